@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "egocal/problem/cost.hpp"
+#include "egocal/solvers/solution.hpp"
+
+namespace egocal {
+
+/// Answer of a method that the paper compares with. valid is false where the method's own assumption is violated;
+/// note then says which. The cost matrix plays no part: these methods minimise other things.
+struct BaselineAnswer {
+  DualQuaternion T_a_b;
+  bool valid = false;
+  bool certified = false;  ///< matrix only: its own duality gap is closed
+  double gap = 0;          ///< matrix only
+  std::string note;
+};
+
+/// Daniilidis [19]: null space of the stacked vector parts; assumes two singular values near zero and two axes.
+BaselineAnswer solve_analytic(std::span<const MotionPair> pairs);
+/// Giamou et al. [8]: rotation-matrix QCQP with its 22 constraints, by its Lagrangian dual.
+BaselineAnswer solve_matrix(std::span<const MotionPair> pairs);
+/// Brookshire and Teller [7]: nonlinear least squares on the Lie algebra of dual quaternions.
+BaselineAnswer solve_local(std::span<const MotionPair> pairs, const DualQuaternion& start = {});
+
+}  // namespace egocal

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/geometry/dual_quaternion.hpp"
+
+namespace egocal {
+
+/// (32): of the displacement between the truth and an estimate.
+struct ExtrinsicError {
+  double translation = 0;  ///< [m]
+  double rotation = 0;     ///< [0, pi] [rad]
+};
+ExtrinsicError extrinsic_error(const DualQuaternion& truth, const DualQuaternion& estimate);
+
+}  // namespace egocal

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "egocal/geometry/pose.hpp"
+
+namespace egocal {
+
+using Vector8d = Eigen::Matrix<double, 8, 1>;
+using Matrix8d = Eigen::Matrix<double, 8, 8>;
+
+// Quaternions as vectors, always in the order w, x, y, z.
+Eigen::Vector4d quaternion_product(const Eigen::Vector4d& p, const Eigen::Vector4d& q);
+Eigen::Vector4d quaternion_conjugate(const Eigen::Vector4d& q);
+/// vec(p q) = left_matrix(p) q, and vec(p q) = right_matrix(q) p.
+Eigen::Matrix4d left_matrix(const Eigen::Vector4d& p);
+Eigen::Matrix4d right_matrix(const Eigen::Vector4d& q);
+
+/// q = real + eps dual (1), each w, x, y, z; a unit one (5) is a rigid displacement (7).
+struct DualQuaternion {
+  Eigen::Vector4d real = Eigen::Vector4d::UnitX();
+  Eigen::Vector4d dual = Eigen::Vector4d::Zero();  ///< 1/2 t real [m]
+
+  /// vec(q) of (11).
+  Vector8d vec() const;
+  static DualQuaternion from_vec(const Vector8d& q);
+};
+
+DualQuaternion operator*(const DualQuaternion& p, const DualQuaternion& q);  ///< (9)
+DualQuaternion operator-(const DualQuaternion& q);                          ///< the same displacement
+DualQuaternion conjugate(const DualQuaternion& q);                          ///< (2), the inverse of a unit one
+Matrix8d left_matrix(const DualQuaternion& p);                              ///< Q_p^l of (10)
+Matrix8d right_matrix(const DualQuaternion& q);                             ///< Q_q^r of (10)
+
+/// The nearest unit dual quaternion: real scaled to length one, dual made orthogonal to it (5).
+DualQuaternion normalized(const DualQuaternion& q);
+/// Of q and -q the one whose real scalar is >= 0 (of a half turn: whose first non-zero real part is > 0).
+DualQuaternion canonical_sign(const DualQuaternion& q);
+
+DualQuaternion to_dual_quaternion(const Pose& T);  ///< (6), (7); canonical sign
+Pose to_pose(const DualQuaternion& q);             ///< of the normalised q
+
+/// The screw of a motion: it turns by angle about an axis and slides by pitch along it. Every pair of motions of two
+/// rigidly mounted sensors has the same angle and slide (screw congruence), whatever the extrinsic.
+struct Screw {
+  double angle = 0;  ///< [0, pi] [rad]
+  double slide = 0;  ///< along the axis [m]; the length of the translation where the angle is 0
+};
+Screw screw_of(const DualQuaternion& q);
+
+/// Screw linear interpolation from p (s = 0) to q (s = 1), the shorter way round.
+DualQuaternion interpolate(const DualQuaternion& p, const DualQuaternion& q, double s);
+
+}  // namespace egocal

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace egocal {
+
+/// A rigid displacement T_a_b: p_a = rotation * p_b + translation. The rotation is a unit quaternion.
+struct Pose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// T_a_c = T_a_b * T_b_c.
+Pose operator*(const Pose& T_a_b, const Pose& T_b_c);
+/// T_b_a.
+Pose inverse(const Pose& T_a_b);
+Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b);
+
+/// Rotation by the vector's length about its direction [rad].
+Eigen::Quaterniond rotation_exp(const Eigen::Vector3d& rotation_vector);
+/// The rotation vector of the shorter way round, its length in [0, pi] [rad].
+Eigen::Vector3d rotation_log(const Eigen::Quaterniond& rotation);
+
+/// Roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) [rad].
+Eigen::Vector3d roll_pitch_yaw(const Eigen::Quaterniond& rotation);
+
+}  // namespace egocal

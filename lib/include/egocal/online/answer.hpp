@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "egocal/certificate/certificate.hpp"
+#include "egocal/problem/problem.hpp"
+#include "egocal/solvers/solution.hpp"
+
+namespace egocal {
+
+/// How to solve (18). In planar mode dual and sdp are the closed form; sqp is too (it needs no start).
+enum class Method { dual, sdp, sqp, slsqp };
+std::string_view name(Method method);
+std::optional<Method> method_from_name(std::string_view name);  ///< also "global" (dual) and "fast" (sqp)
+
+/// Per direction x y z roll pitch yaw of sensor a's frame.
+struct Knowledge {
+  std::array<bool, 6> observable{};
+  std::array<double, 6> stddev{};  ///< [m, rad]; infinite where not observable
+  std::string hint;                ///< which motion would help most; empty where nothing is missing
+};
+
+/// Fit (cost), optimality (certificate) and uncertainty (knowledge) are three different things.
+struct Answer {
+  DualQuaternion T_a_b;  ///< pose of sensor b in sensor a, canonical sign
+  Certificate certificate;
+  Knowledge knowledge;
+  SolverStatus status = SolverStatus::converged;
+  Method method = Method::dual;
+};
+
+/// Solve, verify, and say what is known. start: for the local methods; without it they start at the identity.
+/// In directions that the motions do not show the answer is the closest to the problem's prior (or to the identity).
+Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt);
+
+}  // namespace egocal

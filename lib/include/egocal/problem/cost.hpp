@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "egocal/geometry/dual_quaternion.hpp"
+
+namespace egocal {
+
+/// Motions of sensors a and b over one interval, each the pose of the later frame in the earlier one:
+/// q_a q_T = q_T q_b (13) with T = T_a_b.
+struct MotionPair {
+  DualQuaternion a;
+  DualQuaternion b;
+  std::int64_t begin_us = 0;
+  std::int64_t end_us = 0;
+  double eta = 1;  ///< relative weight in (16), before the normalisation to sum 1
+};
+
+/// The weights W of (15) that a drive can be re-weighted by after it was accumulated:
+/// w1..w4 = rotation (the real rows), w5..w8 = translation (the dual rows) [1/m^2].
+struct Balance {
+  double rotation = 1;
+  double translation = 1;
+};
+
+/// Q_w of one pair for any eight row weights w1..w8 (15).
+Matrix8d pair_cost(const DualQuaternion& a, const DualQuaternion& b, const Vector8d& w = Vector8d::Ones());
+
+/// 36 numbers, the whole memory of any number of motion pairs: sum of eta M_d'M_d over the dual rows M_d of (14).
+/// Its lower right block is the rotation part D, so every Balance follows from it (design, section 3 point 6).
+/// The sum is plain, in the order of the calls: the same calls give the same bits.
+struct Statistics {
+  Matrix8d dual_rows = Matrix8d::Zero();  ///< symmetric, both triangles filled
+  double weight = 0;                      ///< sum of eta
+  std::uint64_t count = 0;                ///< pairs
+
+  void add(const DualQuaternion& a, const DualQuaternion& b, double eta = 1);
+  void add(const MotionPair& pair) { add(pair.a, pair.b, pair.eta); }
+  Statistics& operator+=(const Statistics& other);
+};
+
+/// Q of (16): normalised so that the eta sum to one. Zero where there are no pairs.
+Matrix8d cost_matrix(const Statistics& statistics, const Balance& balance = {});
+
+/// Statistics in consecutive blocks of equal length, for the jack-knife: bounded however long the drive. When
+/// max_blocks are full, neighbours are merged and blocks become twice as long.
+class BlockStatistics {
+ public:
+  static constexpr std::size_t max_blocks = 32;
+
+  BlockStatistics() = default;
+  /// As carried by a message; the last block may be unfinished. pairs_per_block is that of the first block.
+  explicit BlockStatistics(std::vector<Statistics> blocks);
+
+  void add(const MotionPair& pair);
+  /// Between 1 and max_blocks of them; never empty ones.
+  const std::vector<Statistics>& blocks() const { return blocks_; }
+  std::uint64_t pairs_per_block() const { return pairs_per_block_; }
+
+ private:
+  std::vector<Statistics> blocks_;
+  std::uint64_t pairs_per_block_ = 1;
+};
+
+/// The sum of the blocks, in their order.
+Statistics total(const std::vector<Statistics>& blocks);
+
+/// J(q) = q' Q q (16).
+double cost(const Matrix8d& Q, const DualQuaternion& q);
+
+}  // namespace egocal
