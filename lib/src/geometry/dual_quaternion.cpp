@@ -14,7 +14,9 @@ Eigen::Vector4d quaternion_product(const Eigen::Vector4d& p, const Eigen::Vector
           p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
 
-Eigen::Vector4d quaternion_conjugate(const Eigen::Vector4d& q) { return {q[0], -q[1], -q[2], -q[3]}; }
+Eigen::Vector4d quaternion_conjugate(const Eigen::Vector4d& q) {
+  return {q[0], -q[1], -q[2], -q[3]};
+}
 
 Eigen::Matrix4d left_matrix(const Eigen::Vector4d& p) {
   Eigen::Matrix4d M;
@@ -40,13 +42,18 @@ Vector8d DualQuaternion::vec() const {
   return q;
 }
 
-DualQuaternion DualQuaternion::from_vec(const Vector8d& q) { return {q.head<4>(), q.tail<4>()}; }
-
-DualQuaternion operator*(const DualQuaternion& p, const DualQuaternion& q) {
-  return {quaternion_product(p.real, q.real), quaternion_product(p.real, q.dual) + quaternion_product(p.dual, q.real)};
+DualQuaternion DualQuaternion::from_vec(const Vector8d& q) {
+  return {q.head<4>(), q.tail<4>()};
 }
 
-DualQuaternion operator-(const DualQuaternion& q) { return {-q.real, -q.dual}; }
+DualQuaternion operator*(const DualQuaternion& p, const DualQuaternion& q) {
+  return {quaternion_product(p.real, q.real),
+          quaternion_product(p.real, q.dual) + quaternion_product(p.dual, q.real)};
+}
+
+DualQuaternion operator-(const DualQuaternion& q) {
+  return {-q.real, -q.dual};
+}
 
 DualQuaternion conjugate(const DualQuaternion& q) {
   return {quaternion_conjugate(q.real), quaternion_conjugate(q.dual)};
@@ -116,9 +123,10 @@ DualQuaternion interpolate(const DualQuaternion& p, const DualQuaternion& q, dou
     part.real << 1, s * v;
     part.real.normalize();
     const Pose whole = to_pose(motion);
-    part.dual = 0.5 * quaternion_product(Eigen::Vector4d(0, s * whole.translation.x(), s * whole.translation.y(),
-                                                         s * whole.translation.z()),
-                                         part.real);
+    part.dual =
+        0.5 * quaternion_product(Eigen::Vector4d(0, s * whole.translation.x(), s * whole.translation.y(),
+                                                 s * whole.translation.z()),
+                                 part.real);
   } else {
     const double half_angle = std::atan2(sine, motion.real[0]);
     const double half_slide = -motion.dual[0] / sine;

@@ -7,7 +7,8 @@
 namespace egocal {
 
 Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
-  return {(T_a_b.rotation * T_b_c.rotation).normalized(), T_a_b.rotation * T_b_c.translation + T_a_b.translation};
+  return {(T_a_b.rotation * T_b_c.rotation).normalized(),
+          T_a_b.rotation * T_b_c.translation + T_a_b.translation};
 }
 
 Pose inverse(const Pose& T_a_b) {

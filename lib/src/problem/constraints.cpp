@@ -24,7 +24,7 @@ Multipliers least_squares_multipliers(const Matrix8d& Q, const DualQuaternion& q
   const double rr = q.real.squaredNorm();
   const double rd = q.real.dot(q.dual);
   const double orthogonal_norm = rr + q.dual.squaredNorm();
-  const double b1 = q.real.dot(g.head<4>());                                 // - column_1 . g
+  const double b1 = q.real.dot(g.head<4>());                               // - column_1 . g
   const double b2 = -(q.dual.dot(g.head<4>()) + q.real.dot(g.tail<4>()));  // - column_2 . g
   const double determinant = rr * orthogonal_norm - rd * rd;
   return {(orthogonal_norm * b1 + rd * b2) / determinant, (rr * b2 + rd * b1) / determinant};

@@ -78,6 +78,8 @@ double cost(const Matrix8d& Q, const DualQuaternion& q) {
   return v.dot(Q * v);
 }
 
-Matrix8d cost_matrix(const Problem& problem) { return cost_matrix(total(problem.blocks), problem.balance); }
+Matrix8d cost_matrix(const Problem& problem) {
+  return cost_matrix(total(problem.blocks), problem.balance);
+}
 
 }  // namespace egocal

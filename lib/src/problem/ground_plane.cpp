@@ -17,7 +17,8 @@ GroundPlane checked(const GroundPlane& plane) {
 }
 
 DualQuaternion plane_frame(const GroundPlane& plane) {
-  const Eigen::Quaterniond rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), plane.normal);
+  const Eigen::Quaterniond rotation =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), plane.normal);
   return to_dual_quaternion({rotation, plane.distance * plane.normal});
 }
 
@@ -25,11 +26,13 @@ DualQuaternion planar_motion(const DualQuaternion& motion, const DualQuaternion&
   return canonical_sign(normalized(conjugate(G) * motion * G));
 }
 
-DualQuaternion extrinsic_from_planar(const DualQuaternion& T_p, const DualQuaternion& G_a, const DualQuaternion& G_b) {
+DualQuaternion extrinsic_from_planar(const DualQuaternion& T_p, const DualQuaternion& G_a,
+                                     const DualQuaternion& G_b) {
   return canonical_sign(normalized(G_a * T_p * conjugate(G_b)));
 }
 
-DualQuaternion planar_from_extrinsic(const DualQuaternion& T, const DualQuaternion& G_a, const DualQuaternion& G_b) {
+DualQuaternion planar_from_extrinsic(const DualQuaternion& T, const DualQuaternion& G_a,
+                                     const DualQuaternion& G_b) {
   DualQuaternion T_p = conjugate(G_a) * T * G_b;
   T_p.real[1] = T_p.real[2] = 0;
   T_p.dual[0] = T_p.dual[3] = 0;

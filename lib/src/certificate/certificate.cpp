@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/certificate/certificate.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "egocal/problem/cost.hpp"
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "solvers/tangent.hpp"
+
+namespace egocal {
+
+namespace {
+
+using detail::Matrix6d;
+using Extended = long double;  // 64 bits of mantissa where the machine has them; never less than double
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Proves that a symmetric matrix is positive semidefinite. A Cholesky factorisation that runs to its end in
+/// floating point factors a matrix whose entries differ from the given ones by at most (n + 1) u sqrt(m_ii
+/// m_jj) (Demmel, Higham theorem 10.5), so it is enough that it does so after the diagonal has been reduced
+/// by n (n + 1) u of itself.
+template <int N>
+bool proven_semidefinite(std::array<std::array<Extended, N>, N> M) {
+  constexpr Extended margin = 2 * N * (N + 1) * std::numeric_limits<Extended>::epsilon();
+  for (int i = 0; i < N; ++i) M[i][i] -= margin * std::abs(M[i][i]);
+  for (int j = 0; j < N; ++j) {
+    if (!(M[j][j] > 0)) return false;
+    const Extended inverse = 1 / M[j][j];
+    for (int i = j + 1; i < N; ++i) {
+      const Extended factor = M[i][j] * inverse;
+      for (int k = j + 1; k <= i; ++k) M[i][k] -= factor * M[k][j];
+    }
+  }
+  return true;
+}
+
+/// A quadratic problem |u| = 1, u the first half of the variables, as both modes have it: how to build the
+/// Lagrangian matrix for a proposed bound, with the second half first, where elimination is best conditioned.
+template <int N>
+std::array<std::array<Extended, N>, N> reordered_lagrangian(const Eigen::Matrix<double, N, N>& Q,
+                                                            Extended bound, Extended orthogonal,
+                                                            Extended lift) {
+  constexpr int half = N / 2;
+  std::array<std::array<Extended, N>, N> Z;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) Z[i][j] = Q((i + half) % N, (j + half) % N);
+  for (int i = 0; i < half; ++i) {
+    Z[i][i] += lift;
+    Z[i + half][i + half] -= bound;
+    Z[i][i + half] += orthogonal;
+    Z[i + half][i] += orthogonal;
+  }
+  return Z;
+}
+
+template <int N>
+bool proven_bound(const Eigen::Matrix<double, N, N>& Q, double bound, double orthogonal, double lift) {
+  return proven_semidefinite<N>(reordered_lagrangian<N>(Q, bound, orthogonal, lift));
+}
+
+template <int N>
+double extended_cost(const Eigen::Matrix<double, N, N>& Q, const Eigen::Matrix<double, N, 1>& v) {
+  Extended sum = 0;
+  for (int i = 0; i < N; ++i) {
+    Extended row = 0;
+    for (int j = 0; j < N; ++j) row += static_cast<Extended>(Q(i, j)) * v[j];
+    sum += row * v[i];
+  }
+  return static_cast<double>(sum);
+}
+
+struct Reach {
+  double translation = infinity;
+  double rotation = infinity;
+  double rotation_curvature = 0;  ///< least curvature of the cost over half the rotation vector
+};
+
+constexpr double farthest =
+    1e4;  ///< where D is singular, extrinsics further apart than this are no competitors [m]
+
+/// M minimised over the variable `out`; its row and column become zero.
+template <int N>
+void eliminate(Eigen::Matrix<double, N, N>& M, int out) {
+  const double pivot = M(out, out);
+  if (pivot > 0) {
+    const Eigen::Matrix<double, N, 1> column = M.col(out);
+    M.noalias() -= column * (column / pivot).transpose();
+  }
+  M.row(out).setZero();
+  M.col(out).setZero();
+}
+
+/// How far p = q^-1 q' can be from the identity if x'Hx <= gap (docs/method.md, "Reach"), x = half the
+/// rotation vector (first Rot) and half the translation in units of `length` (the rest). H is known up to
+/// `noise`.
+template <int N, int Rot>
+Reach reach_within(Eigen::Matrix<double, N, N> H, double gap, double noise, double length) {
+  Reach reach;
+  H.diagonal().array() -= noise;
+  const Eigen::LLT<Eigen::Matrix<double, N, N>> factor(H);
+  if (factor.info() != Eigen::Success) return reach;
+  const Eigen::Matrix<double, N, N> inverse = factor.solve(Eigen::Matrix<double, N, N>::Identity());
+  const double rotation = inverse.template topLeftCorner<Rot, Rot>().trace();
+  const double translation = inverse.template bottomRightCorner<N - Rot, N - Rot>().trace();
+  if (!(rotation > 0) || !(translation >= 0) || !std::isfinite(rotation + translation)) return reach;
+  reach.rotation_curvature = 1 / rotation;
+  const double sine = std::sqrt(gap * rotation);  // bounds |p_v| = sin(angle / 2)
+  if (!(sine < 0.9)) return reach;
+  reach.rotation = 2 * std::asin(sine);
+  // |t|^2 - (t . p_v)^2 = |2 p_dv|^2
+  reach.translation = 2 * length * std::sqrt(gap * translation / (1 - sine * sine));
+  return reach;
+}
+
+/// Fills bound, gap, reach and the verdict. lambda is a proposal: whatever it is, the bound is proven.
+template <int N>
+struct Verifier {
+  const Eigen::Matrix<double, N, N>& Q;
+  Eigen::Matrix<double, N, 1> v;
+
+  double rounding() const { return 4 * epsilon * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs()); }
+  /// Where D is singular up to rounding: the true D is not smaller than the given one by more than this.
+  double lift() const { return 4 * epsilon * Q.diagonal().template tail<N / 2>().maxCoeff(); }
+
+  /// The largest of a few proposals below `value` that can be proven; nothing proven gives -infinity.
+  double best_bound(double value, double orthogonal, double lifted) const {
+    double step = 0.25 * rounding();
+    for (int i = 0; i < 6; ++i, step *= 16)
+      if (proven_bound<N>(Q, value - step, orthogonal, lifted)) return value - step;
+    return -infinity;
+  }
+};
+
+/// Bound, gap, reach and whether that certifies. reach_for(gap, lift) is the reach of competitors whose cost
+/// above the bound is at most the gap.
+template <int N, class ReachFunction>
+void decide(const Verifier<N>& verifier, const CertificateOptions& options, const ReachFunction& reach_for,
+            Certificate& certificate) {
+  const double J = certificate.cost;
+  const double m = certificate.lambda.orthogonal;
+  double bound = 0;  // J is a sum of squares
+  Reach reach;
+  const double plain = verifier.best_bound(J, m, 0);
+  if (std::isfinite(plain)) {
+    bound = std::max(bound, plain);
+    reach = reach_for(J - plain, 0);
+  }
+  if (J - bound > certificate.rounding) {
+    // D may be singular by rounding alone: the true one is at least the given one less `lift`. With the lift
+    // the bound holds for J + lift |d|^2, and |d| of a competitor is at most |d_q| + reach / 2
+    // (docs/method.md, "Singular D").
+    const double lift = verifier.lift();
+    const double lifted = verifier.best_bound(J, m, lift);
+    if (std::isfinite(lifted)) {
+      const double d = verifier.v.template tail<N / 2>().norm();
+      const double gap = J - lifted + 2 * lift * d * d;
+      const Reach near = reach_for(gap, lift);
+      const double charge = lift * std::pow(d + 0.5 * near.translation, 2);
+      const bool far_excluded = 0.81 * near.rotation_curvature > gap + 0.5 * lift * farthest * farthest;
+      if (far_excluded && near.translation < farthest && lifted - charge > bound) {
+        bound = lifted - charge;
+        reach = near;
+      }
+    }
+  }
+  certificate.lower_bound = std::min(bound, J);
+  certificate.gap = std::max(0.0, J - bound);
+  certificate.scaled_gap = certificate.rounding > 0 ? certificate.gap / certificate.rounding : 0;
+  certificate.reach_translation = reach.translation;
+  certificate.reach_rotation = reach.rotation;
+  const bool near =
+      reach.translation <= options.reach_translation && reach.rotation <= options.reach_rotation;
+  certificate.optimality =
+      certificate.gap <= certificate.rounding || near ? Optimality::certified : Optimality::undecided;
+}
+
+/// Reach of competitors in 3-D. Z seen from q in units of `length`, minimised over q's own direction and that
+/// of (0, r), which no rigid displacement is free to choose.
+Reach spatial_reach(const Matrix8d& Q, const DualQuaternion& q, const Multipliers& lambda, double length,
+                    double gap, double lift) {
+  Matrix8d basis = left_matrix(q);
+  basis.rightCols<4>() *= length;
+  Matrix8d Z = lagrangian_matrix(Q, lambda);
+  Z.diagonal().tail<4>().array() += lift;
+  Matrix8d M = basis.transpose() * Z * basis;
+  const Matrix8d size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
+  eliminate<8>(M, 4);
+  eliminate<8>(M, 0);
+  Matrix6d H;
+  H << M.block<3, 3>(1, 1), M.block<3, 3>(1, 5), M.block<3, 3>(5, 1), M.block<3, 3>(5, 5);
+  // at |p_v| <= 0.9 a competitor's |p_d|^2 is at most 5.3 |p_dv|^2; twice that times the lift is not
+  // curvature
+  H.diagonal().tail<3>().array() -= 11 * lift * length * length;
+  return reach_within<6, 3>(H, gap, 16 * epsilon * size.diagonal().maxCoeff(), length);
+}
+
+}  // namespace
+
+Certificate verify(const Matrix8d& Q, const DualQuaternion& q_in, const CertificateOptions& options) {
+  Certificate certificate;
+  const DualQuaternion q = normalized(q_in);
+  if (!Q.allFinite() || !q.vec().allFinite()) {
+    certificate.cost = certificate.gap = certificate.scaled_gap = infinity;
+    certificate.lower_bound = -infinity;
+    certificate.reach_translation = certificate.reach_rotation = infinity;
+    return certificate;
+  }
+  const double length = detail::length_scale(Q);
+  const Verifier<8> verifier{Q, q.vec()};
+  certificate.cost = extended_cost<8>(Q, verifier.v);
+  certificate.rounding = verifier.rounding();
+  certificate.lambda = least_squares_multipliers(Q, q);
+  const auto reach_for = [&](double gap, double lift) {
+    return spatial_reach(Q, q, {certificate.cost - gap, certificate.lambda.orthogonal}, length, gap, lift);
+  };
+  decide<8>(verifier, options, reach_for, certificate);
+  if (certificate.optimality == Optimality::certified) return certificate;
+
+  // The multiplier of (28) proves little when q is no stationary point. The dual's own multiplier does
+  // better, and its primal, if it is better than q by more than rounding, disproves q.
+  const Solution best = solve_dual(Q);
+  const double better = extended_cost<8>(Q, best.q.vec());
+  const double proven = Verifier<8>{Q, best.q.vec()}.best_bound(better, best.lambda.orthogonal, 0);
+  if (proven > certificate.lower_bound) {
+    certificate.lower_bound = std::min(proven, certificate.cost);
+    certificate.gap = certificate.cost - certificate.lower_bound;
+    certificate.scaled_gap = certificate.rounding > 0 ? certificate.gap / certificate.rounding : 0;
+    certificate.lambda.orthogonal = best.lambda.orthogonal;
+    if (certificate.gap <= certificate.rounding) certificate.optimality = Optimality::certified;
+    const Reach reach = reach_for(certificate.gap, 0);
+    certificate.reach_translation = reach.translation;
+    certificate.reach_rotation = reach.rotation;
+  }
+  if (certificate.optimality != Optimality::certified && better < certificate.cost - certificate.rounding)
+    certificate.optimality = Optimality::not_optimal;
+  return certificate;
+}
+
+Certificate verify_planar(const Matrix8d& Q_planar, const DualQuaternion& T_p,
+                          const CertificateOptions& options) {
+  Certificate certificate;
+  if (!Q_planar.allFinite() || !T_p.vec().allFinite()) {
+    certificate.cost = certificate.gap = certificate.scaled_gap = infinity;
+    certificate.lower_bound = -infinity;
+    certificate.reach_translation = certificate.reach_rotation = infinity;
+    return certificate;
+  }
+  // The four variables (26) leaves: q1, q4, q6, q7.
+  constexpr std::array<int, 4> kept = {0, 3, 5, 6};
+  Eigen::Matrix4d Q;
+  Eigen::Vector4d v;
+  const Vector8d full = T_p.vec();
+  for (int i = 0; i < 4; ++i) {
+    v[i] = full[kept[static_cast<std::size_t>(i)]];
+    for (int j = 0; j < 4; ++j)
+      Q(i, j) = Q_planar(kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]);
+  }
+  v /= v.head<2>().norm();
+  const double length = detail::length_scale(Q_planar);
+  const Verifier<4> verifier{Q, v};
+  certificate.cost = extended_cost<4>(Q, v);
+  certificate.rounding = verifier.rounding();
+  const Eigen::Vector2d u = v.head<2>();
+  certificate.lambda = {u.dot(Q.topRows<2>() * v), 0};
+
+  // Seen from T_p: its own direction, yaw, and the two translations in the plane.
+  const double c = v[0], s = v[1], dx = v[2], dy = v[3];
+  Eigen::Matrix4d basis;
+  basis << c, -s, 0, 0,                 //
+      s, c, 0, 0,                       //
+      dx, dy, c * length, -s * length,  //
+      dy, -dx, s * length, c * length;
+  const auto reach_for = [&](double gap, double lift) {
+    Eigen::Matrix4d Z = Q;
+    Z.diagonal().head<2>().array() -= certificate.cost - gap;
+    Z.diagonal().tail<2>().array() += lift;
+    Eigen::Matrix4d M = basis.transpose() * Z * basis;
+    const Eigen::Matrix4d size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
+    eliminate<4>(M, 0);
+    Eigen::Matrix3d H = M.bottomRightCorner<3, 3>();
+    H.diagonal().tail<2>().array() -= 11 * lift * length * length;
+    return reach_within<3, 1>(H, gap, 16 * epsilon * size.diagonal().maxCoeff(), length);
+  };
+  decide<4>(verifier, options, reach_for, certificate);
+  if (certificate.optimality == Optimality::certified) return certificate;
+
+  const Solution best = solve_planar(Q_planar);
+  const double better = cost(Q_planar, best.q);
+  if (better < certificate.cost - certificate.rounding) certificate.optimality = Optimality::not_optimal;
+  return certificate;
+}
+
+}  // namespace egocal
