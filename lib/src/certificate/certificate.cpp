@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "certificate/proof.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
@@ -17,54 +18,12 @@ namespace egocal {
 
 namespace {
 
+using detail::Extended;
 using detail::Matrix6d;
-using Extended = long double;  // 64 bits of mantissa where the machine has them; never less than double
+using detail::proven_bound;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Proves that a symmetric matrix is positive semidefinite. A Cholesky factorisation that runs to its end in
-/// floating point factors a matrix whose entries differ from the given ones by at most (n + 1) u sqrt(m_ii
-/// m_jj) (Demmel, Higham theorem 10.5), so it is enough that it does so after the diagonal has been reduced
-/// by n (n + 1) u of itself.
-template <int N>
-bool proven_semidefinite(std::array<std::array<Extended, N>, N> M) {
-  constexpr Extended margin = 2 * N * (N + 1) * std::numeric_limits<Extended>::epsilon();
-  for (int i = 0; i < N; ++i) M[i][i] -= margin * std::abs(M[i][i]);
-  for (int j = 0; j < N; ++j) {
-    if (!(M[j][j] > 0)) return false;
-    const Extended inverse = 1 / M[j][j];
-    for (int i = j + 1; i < N; ++i) {
-      const Extended factor = M[i][j] * inverse;
-      for (int k = j + 1; k <= i; ++k) M[i][k] -= factor * M[k][j];
-    }
-  }
-  return true;
-}
-
-/// A quadratic problem |u| = 1, u the first half of the variables, as both modes have it: how to build the
-/// Lagrangian matrix for a proposed bound, with the second half first, where elimination is best conditioned.
-template <int N>
-std::array<std::array<Extended, N>, N> reordered_lagrangian(const Eigen::Matrix<double, N, N>& Q,
-                                                            Extended bound, Extended orthogonal,
-                                                            Extended lift) {
-  constexpr int half = N / 2;
-  std::array<std::array<Extended, N>, N> Z;
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < N; ++j) Z[i][j] = Q((i + half) % N, (j + half) % N);
-  for (int i = 0; i < half; ++i) {
-    Z[i][i] += lift;
-    Z[i + half][i + half] -= bound;
-    Z[i][i + half] += orthogonal;
-    Z[i + half][i] += orthogonal;
-  }
-  return Z;
-}
-
-template <int N>
-bool proven_bound(const Eigen::Matrix<double, N, N>& Q, double bound, double orthogonal, double lift) {
-  return proven_semidefinite<N>(reordered_lagrangian<N>(Q, bound, orthogonal, lift));
-}
 
 template <int N>
 double extended_cost(const Eigen::Matrix<double, N, N>& Q, const Eigen::Matrix<double, N, 1>& v) {
@@ -99,10 +58,10 @@ void eliminate(Eigen::Matrix<double, N, N>& M, int out) {
 }
 
 /// How far p = q^-1 q' can be from the identity if x'Hx <= gap (docs/method.md, "Reach"), x = half the
-/// rotation vector (first Rot) and half the translation in units of `length` (the rest). H is known up to
+/// rotation vector (first Rot) and half the translation (the rest). H is known up to
 /// `noise`.
 template <int N, int Rot>
-Reach reach_within(Eigen::Matrix<double, N, N> H, double gap, double noise, double length) {
+Reach reach_within(Eigen::Matrix<double, N, N> H, double gap, double noise) {
   Reach reach;
   H.diagonal().array() -= noise;
   const Eigen::LLT<Eigen::Matrix<double, N, N>> factor(H);
@@ -116,7 +75,7 @@ Reach reach_within(Eigen::Matrix<double, N, N> H, double gap, double noise, doub
   if (!(sine < 0.9)) return reach;
   reach.rotation = 2 * std::asin(sine);
   // |t|^2 - (t . p_v)^2 = |2 p_dv|^2
-  reach.translation = 2 * length * std::sqrt(gap * translation / (1 - sine * sine));
+  reach.translation = 2 * std::sqrt(gap * translation / (1 - sine * sine));
   return reach;
 }
 
@@ -126,7 +85,7 @@ struct Verifier {
   const Eigen::Matrix<double, N, N>& Q;
   Eigen::Matrix<double, N, 1> v;
 
-  double rounding() const { return 4 * epsilon * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs()); }
+  double rounding() const { return detail::rounding_of<N>(Q, v); }
   /// Where D is singular up to rounding: the true D is not smaller than the given one by more than this.
   double lift() const { return 4 * epsilon * Q.diagonal().template tail<N / 2>().maxCoeff(); }
 
@@ -138,6 +97,19 @@ struct Verifier {
     return -infinity;
   }
 };
+
+void set_bound(double bound, const Reach& reach, const CertificateOptions& options,
+               Certificate& certificate) {
+  certificate.lower_bound = std::min(bound, certificate.cost);
+  certificate.gap = std::max(0.0, certificate.cost - bound);
+  certificate.scaled_gap = certificate.rounding > 0 ? certificate.gap / certificate.rounding : 0;
+  certificate.reach_translation = reach.translation;
+  certificate.reach_rotation = reach.rotation;
+  const bool near =
+      reach.translation <= options.reach_translation && reach.rotation <= options.reach_rotation;
+  certificate.optimality =
+      certificate.gap <= certificate.rounding || near ? Optimality::certified : Optimality::undecided;
+}
 
 /// Bound, gap, reach and whether that certifies. reach_for(gap, lift) is the reach of competitors whose cost
 /// above the bound is at most the gap.
@@ -171,23 +143,14 @@ void decide(const Verifier<N>& verifier, const CertificateOptions& options, cons
       }
     }
   }
-  certificate.lower_bound = std::min(bound, J);
-  certificate.gap = std::max(0.0, J - bound);
-  certificate.scaled_gap = certificate.rounding > 0 ? certificate.gap / certificate.rounding : 0;
-  certificate.reach_translation = reach.translation;
-  certificate.reach_rotation = reach.rotation;
-  const bool near =
-      reach.translation <= options.reach_translation && reach.rotation <= options.reach_rotation;
-  certificate.optimality =
-      certificate.gap <= certificate.rounding || near ? Optimality::certified : Optimality::undecided;
+  set_bound(bound, reach, options, certificate);
 }
 
-/// Reach of competitors in 3-D. Z seen from q in units of `length`, minimised over q's own direction and that
-/// of (0, r), which no rigid displacement is free to choose.
-Reach spatial_reach(const Matrix8d& Q, const DualQuaternion& q, const Multipliers& lambda, double length,
-                    double gap, double lift) {
-  Matrix8d basis = left_matrix(q);
-  basis.rightCols<4>() *= length;
+/// Reach of competitors in 3-D: Z seen from q, minimised over q's own direction and that of (0, r), which no
+/// rigid displacement is free to choose.
+Reach spatial_reach(const Matrix8d& Q, const DualQuaternion& q, const Multipliers& lambda, double gap,
+                    double lift) {
+  const Matrix8d basis = left_matrix(q);
   Matrix8d Z = lagrangian_matrix(Q, lambda);
   Z.diagonal().tail<4>().array() += lift;
   Matrix8d M = basis.transpose() * Z * basis;
@@ -198,104 +161,119 @@ Reach spatial_reach(const Matrix8d& Q, const DualQuaternion& q, const Multiplier
   H << M.block<3, 3>(1, 1), M.block<3, 3>(1, 5), M.block<3, 3>(5, 1), M.block<3, 3>(5, 5);
   // at |p_v| <= 0.9 a competitor's |p_d|^2 is at most 5.3 |p_dv|^2; twice that times the lift is not
   // curvature
-  H.diagonal().tail<3>().array() -= 11 * lift * length * length;
-  return reach_within<6, 3>(H, gap, 16 * epsilon * size.diagonal().maxCoeff(), length);
+  H.diagonal().tail<3>().array() -= 11 * lift;
+  return reach_within<6, 3>(H, gap, 16 * epsilon * size.diagonal().maxCoeff());
+}
+
+/// The four variables that (26) leaves, q1, q4, q6, q7, of a problem in 3-D.
+constexpr std::array<int, 4> planar_variables = {0, 3, 5, 6};
+
+Eigen::Matrix4d planar_part(const Matrix8d& Q) {
+  Eigen::Matrix4d part;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      part(i, j) =
+          Q(planar_variables[static_cast<std::size_t>(i)], planar_variables[static_cast<std::size_t>(j)]);
+  return part;
+}
+
+Eigen::Vector4d planar_part(const DualQuaternion& q) {
+  const Eigen::Vector4d part(q.real[0], q.real[3], q.dual[1], q.dual[2]);
+  return part / part.head<2>().norm();
+}
+
+/// Reach of competitors in the plane: seen from v, yaw and two translations.
+Reach planar_reach(const Eigen::Matrix4d& Q, const Eigen::Vector4d& v, double bound, double gap,
+                   double lift) {
+  Eigen::Matrix4d basis;
+  basis << v[0], -v[1], 0, 0,   //
+      v[1], v[0], 0, 0,         //
+      v[2], v[3], v[0], -v[1],  //
+      v[3], -v[2], v[1], v[0];
+  Eigen::Matrix4d Z = Q;
+  Z.diagonal().head<2>().array() -= bound;
+  Z.diagonal().tail<2>().array() += lift;
+  Eigen::Matrix4d M = basis.transpose() * Z * basis;
+  const Eigen::Matrix4d size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
+  eliminate<4>(M, 0);
+  Eigen::Matrix3d H = M.bottomRightCorner<3, 3>();
+  H.diagonal().tail<2>().array() -= 11 * lift;
+  return reach_within<3, 1>(H, gap, 16 * epsilon * size.diagonal().maxCoeff());
+}
+
+Certificate not_finite() {
+  Certificate certificate;
+  certificate.cost = certificate.gap = certificate.scaled_gap = infinity;
+  certificate.lower_bound = -infinity;
+  certificate.reach_translation = certificate.reach_rotation = infinity;
+  return certificate;
+}
+
+/// From lengths in `length` back to metres.
+Certificate in_metres(Certificate certificate, double length) {
+  certificate.reach_translation *= length;
+  certificate.lambda = detail::in_units_of(1 / length, certificate.lambda);
+  return certificate;
 }
 
 }  // namespace
 
-Certificate verify(const Matrix8d& Q, const DualQuaternion& q_in, const CertificateOptions& options) {
+Certificate verify(const Matrix8d& Q_in, const DualQuaternion& q_in, const CertificateOptions& options_in) {
+  const DualQuaternion unit = normalized(q_in);
+  if (!Q_in.allFinite() || !unit.vec().allFinite()) return not_finite();
+  const double length = detail::length_scale(Q_in);
+  const Matrix8d Q = detail::in_units_of(length, Q_in);
+  const DualQuaternion q = detail::in_units_of(length, unit);
+  const CertificateOptions options{options_in.reach_translation / length, options_in.reach_rotation};
+
   Certificate certificate;
-  const DualQuaternion q = normalized(q_in);
-  if (!Q.allFinite() || !q.vec().allFinite()) {
-    certificate.cost = certificate.gap = certificate.scaled_gap = infinity;
-    certificate.lower_bound = -infinity;
-    certificate.reach_translation = certificate.reach_rotation = infinity;
-    return certificate;
-  }
-  const double length = detail::length_scale(Q);
   const Verifier<8> verifier{Q, q.vec()};
   certificate.cost = extended_cost<8>(Q, verifier.v);
   certificate.rounding = verifier.rounding();
   certificate.lambda = least_squares_multipliers(Q, q);
   const auto reach_for = [&](double gap, double lift) {
-    return spatial_reach(Q, q, {certificate.cost - gap, certificate.lambda.orthogonal}, length, gap, lift);
+    return spatial_reach(Q, q, {certificate.cost - gap, certificate.lambda.orthogonal}, gap, lift);
   };
   decide<8>(verifier, options, reach_for, certificate);
-  if (certificate.optimality == Optimality::certified) return certificate;
+  if (certificate.optimality == Optimality::certified) return in_metres(certificate, length);
 
   // The multiplier of (28) proves little when q is no stationary point. The dual's own multiplier does
   // better, and its primal, if it is better than q by more than rounding, disproves q.
   const Solution best = solve_dual(Q);
-  const double better = extended_cost<8>(Q, best.q.vec());
-  const double proven = Verifier<8>{Q, best.q.vec()}.best_bound(better, best.lambda.orthogonal, 0);
+  const Verifier<8> best_verifier{Q, best.q.vec()};
+  const double better = extended_cost<8>(Q, best_verifier.v);
+  const double proven = best_verifier.best_bound(better, best.lambda.orthogonal, 0);
   if (proven > certificate.lower_bound) {
-    certificate.lower_bound = std::min(proven, certificate.cost);
-    certificate.gap = certificate.cost - certificate.lower_bound;
-    certificate.scaled_gap = certificate.rounding > 0 ? certificate.gap / certificate.rounding : 0;
     certificate.lambda.orthogonal = best.lambda.orthogonal;
-    if (certificate.gap <= certificate.rounding) certificate.optimality = Optimality::certified;
-    const Reach reach = reach_for(certificate.gap, 0);
-    certificate.reach_translation = reach.translation;
-    certificate.reach_rotation = reach.rotation;
+    set_bound(proven, reach_for(certificate.cost - proven, 0), options, certificate);
   }
   if (certificate.optimality != Optimality::certified && better < certificate.cost - certificate.rounding)
     certificate.optimality = Optimality::not_optimal;
-  return certificate;
+  return in_metres(certificate, length);
 }
 
-Certificate verify_planar(const Matrix8d& Q_planar, const DualQuaternion& T_p,
-                          const CertificateOptions& options) {
+Certificate verify_planar(const Matrix8d& Q_in, const DualQuaternion& T_p,
+                          const CertificateOptions& options_in) {
+  if (!Q_in.allFinite() || !T_p.vec().allFinite()) return not_finite();
+  const double length = detail::length_scale(Q_in);
+  const Eigen::Matrix4d Q = planar_part(detail::in_units_of(length, Q_in));
+  const Eigen::Vector4d v = planar_part(detail::in_units_of(length, T_p));
+  const CertificateOptions options{options_in.reach_translation / length, options_in.reach_rotation};
+
   Certificate certificate;
-  if (!Q_planar.allFinite() || !T_p.vec().allFinite()) {
-    certificate.cost = certificate.gap = certificate.scaled_gap = infinity;
-    certificate.lower_bound = -infinity;
-    certificate.reach_translation = certificate.reach_rotation = infinity;
-    return certificate;
-  }
-  // The four variables (26) leaves: q1, q4, q6, q7.
-  constexpr std::array<int, 4> kept = {0, 3, 5, 6};
-  Eigen::Matrix4d Q;
-  Eigen::Vector4d v;
-  const Vector8d full = T_p.vec();
-  for (int i = 0; i < 4; ++i) {
-    v[i] = full[kept[static_cast<std::size_t>(i)]];
-    for (int j = 0; j < 4; ++j)
-      Q(i, j) = Q_planar(kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]);
-  }
-  v /= v.head<2>().norm();
-  const double length = detail::length_scale(Q_planar);
   const Verifier<4> verifier{Q, v};
   certificate.cost = extended_cost<4>(Q, v);
   certificate.rounding = verifier.rounding();
-  const Eigen::Vector2d u = v.head<2>();
-  certificate.lambda = {u.dot(Q.topRows<2>() * v), 0};
-
-  // Seen from T_p: its own direction, yaw, and the two translations in the plane.
-  const double c = v[0], s = v[1], dx = v[2], dy = v[3];
-  Eigen::Matrix4d basis;
-  basis << c, -s, 0, 0,                 //
-      s, c, 0, 0,                       //
-      dx, dy, c * length, -s * length,  //
-      dy, -dx, s * length, c * length;
+  certificate.lambda = {v.head<2>().dot(Q.topRows<2>() * v), 0};
   const auto reach_for = [&](double gap, double lift) {
-    Eigen::Matrix4d Z = Q;
-    Z.diagonal().head<2>().array() -= certificate.cost - gap;
-    Z.diagonal().tail<2>().array() += lift;
-    Eigen::Matrix4d M = basis.transpose() * Z * basis;
-    const Eigen::Matrix4d size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
-    eliminate<4>(M, 0);
-    Eigen::Matrix3d H = M.bottomRightCorner<3, 3>();
-    H.diagonal().tail<2>().array() -= 11 * lift * length * length;
-    return reach_within<3, 1>(H, gap, 16 * epsilon * size.diagonal().maxCoeff(), length);
+    return planar_reach(Q, v, certificate.cost - gap, gap, lift);
   };
   decide<4>(verifier, options, reach_for, certificate);
-  if (certificate.optimality == Optimality::certified) return certificate;
+  if (certificate.optimality == Optimality::certified) return in_metres(certificate, length);
 
-  const Solution best = solve_planar(Q_planar);
-  const double better = cost(Q_planar, best.q);
+  const double better = extended_cost<4>(Q, planar_part(detail::in_units_of(length, solve_planar(Q_in).q)));
   if (better < certificate.cost - certificate.rounding) certificate.optimality = Optimality::not_optimal;
-  return certificate;
+  return in_metres(certificate, length);
 }
 
 }  // namespace egocal

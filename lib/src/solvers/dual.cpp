@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "certificate/proof.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "solvers/tangent.hpp"
@@ -28,7 +29,10 @@ struct DualFunction {
   double length = 1;
   double scale = 0;  ///< size of the numbers, for tolerances
 
-  explicit DualFunction(const Matrix8d& Q) {
+  /// floor: of D's eigenvalues, in parts of the scale. Where rotations are nearly noise-free D is nearly
+  /// singular; a floor keeps the elimination finite, and what it changes is repaired by Newton steps on the
+  /// true Q.
+  DualFunction(const Matrix8d& Q, double floor) {
     length = detail::length_scale(Q);
     const Matrix4d D = length * length * Q.bottomRightCorner<4, 4>();
     const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(D);
@@ -36,10 +40,7 @@ struct DualFunction {
     const Matrix4d A = U.transpose() * Q.topLeftCorner<4, 4>() * U;
     B.noalias() = length * U.transpose() * Q.topRightCorner<4, 4>() * U;
     scale = A.trace() + D.trace();
-    // Where rotations are noise-free D is singular. A floor under its eigenvalues keeps the elimination
-    // finite; what it changes is repaired by Newton steps on the true Q.
-    const double floor = 64 * epsilon * scale;
-    inverse = eigen.eigenvalues().cwiseMax(floor).cwiseInverse();
+    inverse = eigen.eigenvalues().cwiseMax(floor * scale).cwiseInverse();
     const Matrix4d BD = B * inverse.asDiagonal();
     S0 = A;
     S0.noalias() -= BD * B.transpose();
@@ -75,6 +76,53 @@ Vector4d orthogonal_combination(const DualFunction& phi, const Vector4d& r1, con
   return std::cos(angle) * r1 + std::sin(angle) * r2;
 }
 
+/// Is no unit dual quaternion better than q by more than rounding?
+bool proven_optimal(const Matrix8d& Q, const Solution& solution) {
+  const double rounding = detail::rounding_of<8>(Q, solution.q.vec());
+  return solution.cost <= rounding ||
+         detail::proven_bound<8>(Q, solution.cost - 0.5 * rounding, solution.lambda.orthogonal, 0);
+}
+
+/// Safeguarded Newton ascent of the concave phi. Each time that less than `gain` (in parts of the scale) is
+/// left to climb, Newton steps on the KKT system of the true Q start from there; true as soon as what they
+/// reach is proven.
+bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain_enough, Solution& best) {
+  double m = 0;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 100; ++i) {
+    ++best.iterations;
+    const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(phi.at(m));
+    const double value = eigen.eigenvalues()[0];
+    Vector4d r = eigen.eigenvectors().col(0);
+    const double slope = 2 * r.dot(phi.dual_part(r, m));
+    const Vector4d change = phi.S1 * r + 2 * m * phi.inverse.cwiseProduct(r);
+    double curvature = 2 * r.dot(phi.inverse.cwiseProduct(r));
+    for (int k = 1; k < 4; ++k) {
+      const double coupling = eigen.eigenvectors().col(k).dot(change);
+      curvature += 2 * coupling * coupling / std::max(eigen.eigenvalues()[k] - value, epsilon * phi.scale);
+    }
+    (slope > 0 ? low : high) = m;
+    const bool pinned = high - low <= 4 * epsilon * std::max(std::abs(low), std::abs(high));
+    const double gain = 0.5 * slope * slope / curvature;
+    if (gain <= gain_enough * phi.scale || pinned) {
+      if (pinned && gain > gain_enough * phi.scale)
+        r = orthogonal_combination(phi, r, eigen.eigenvectors().col(1), m);
+      Solution polished = solve_sqp(Q, phi.quaternion(r, m));
+      if (polished.cost < best.cost) {
+        polished.iterations = best.iterations;
+        best = polished;
+      }
+      return proven_optimal(Q, best);
+    }
+    const double newton = m + slope / curvature;
+    // a bracket that hardly shrinks is halved: the maximum is at a kink
+    const bool stalling = std::isfinite(high - low) && i > 6 && i % 2 == 1;
+    m = newton > low && newton < high && !stalling ? newton : 0.5 * (low + high);
+  }
+  return false;
+}
+
 }  // namespace
 
 Solution solve_dual(const Matrix8d& Q) {
@@ -87,60 +135,14 @@ Solution solve_dual(const Matrix8d& Q) {
     solution.status = SolverStatus::degenerate;
     return solution;
   }
-  const DualFunction phi(Q);
-
-  // Safeguarded Newton ascent of the concave phi; a few steps bring the primal into Newton's basin.
-  double m = 0;
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  double bound = -std::numeric_limits<double>::infinity();
-  bool found = false;
-  for (int i = 0; i < 200; ++i) {
-    const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(phi.at(m));
-    const Vector4d r = eigen.eigenvectors().col(0);
-    const double value = eigen.eigenvalues()[0];
-    const double slope = 2 * r.dot(phi.dual_part(r, m));
-    bound = std::max(bound, value);
-
-    const Vector4d change = phi.S1 * r + 2 * m * phi.inverse.cwiseProduct(r);
-    double curvature = 2 * r.dot(phi.inverse.cwiseProduct(r));
-    for (int k = 1; k < 4; ++k) {
-      const double coupling = eigen.eigenvectors().col(k).dot(change);
-      curvature += 2 * coupling * coupling / std::max(eigen.eigenvalues()[k] - value, epsilon * phi.scale);
-    }
-    const double gain = 0.5 * slope * slope / curvature;
-
-    (slope > 0 ? low : high) = m;
-    const bool pinned = high - low <= 4 * epsilon * std::max(std::abs(low), std::abs(high));
-    if (gain < 1e-5 * phi.scale || pinned) {
-      const Vector4d r_start = pinned ? orthogonal_combination(phi, r, eigen.eigenvectors().col(1), m) : r;
-      const Solution polished = solve_sqp(Q, phi.quaternion(r_start, m));
-      if (!found || polished.cost < solution.cost) {
-        const int iterations = solution.iterations;
-        solution = polished;
-        solution.iterations = iterations + 1;
-        found = true;
-      }
-      // the primal meets the bound: nothing better exists
-      const double tolerance = 256 * epsilon * phi.scale;
-      if (solution.cost - bound <= tolerance || gain < epsilon * phi.scale || pinned) return solution;
-      const double suggestion = phi.length * polished.lambda.orthogonal;
-      if (suggestion > low && suggestion < high && suggestion != m) {
-        m = suggestion;
-        continue;
-      }
-    }
-    ++solution.iterations;
-    const double newton = m + slope / curvature;
-    if (newton > low && newton < high) {
-      // a bracket that hardly shrinks is halved: concave but kinked
-      const bool stalling = std::isfinite(high - low) && i > 8 && i % 2 == 1;
-      m = stalling ? 0.5 * (low + high) : newton;
-    } else {
-      m = 0.5 * (low + high);
-    }
-  }
-  solution.status = SolverStatus::iteration_limit;
+  solution.cost = std::numeric_limits<double>::infinity();
+  // The first attempt is nearly always the last. The others are for problems where Newton's basin is small or
+  // D is nearly singular in a way that matters.
+  constexpr struct {
+    double floor, gain;
+  } attempts[] = {{1e-9, 1e-4}, {1e-9, 1e-9}, {1e-12, 1e-12}, {1e-6, 1e-12}, {64 * epsilon, 1e-15}};
+  for (const auto& attempt : attempts)
+    if (ascend(Q, DualFunction(Q, attempt.floor), attempt.gain, solution)) return solution;
   return solution;
 }
 

@@ -46,15 +46,16 @@ Vector6d truncated_step(const Matrix6d& H, const Vector6d& g) {
 
 }  // namespace
 
-Solution solve_sqp(const Matrix8d& Q, const DualQuaternion& start, const SqpOptions& options) {
+Solution solve_sqp(const Matrix8d& Q_in, const DualQuaternion& start, const SqpOptions& options) {
   Solution solution;
-  if (!Q.allFinite()) {
+  if (!Q_in.allFinite()) {
     solution.status = SolverStatus::not_finite;
     return solution;
   }
-  DualQuaternion q = normalized(start);
+  const double length = detail::length_scale(Q_in);
+  const Matrix8d Q = detail::in_units_of(length, Q_in);
+  DualQuaternion q = detail::in_units_of(length, normalized(start));
   if (!q.vec().allFinite()) q = {};
-  const double length = detail::length_scale(Q);
   double J = cost(Q, q);
   double shift = 0;
   solution.status = SolverStatus::iteration_limit;
@@ -63,7 +64,7 @@ Solution solve_sqp(const Matrix8d& Q, const DualQuaternion& start, const SqpOpti
     // Newton on the KKT system of (18): on the constraints' tangent space the gradient is T' Q q and the
     // Hessian that of the Lagrangian (19), T' Z(lambda) T.
     const Vector8d v = q.vec();
-    const Matrix86d T = detail::tangent_basis(q, length);
+    const Matrix86d T = detail::tangent_basis(q);
     const Matrix8d Z = lagrangian_matrix(Q, least_squares_multipliers(Q, q));
     const Matrix86d ZT = Z * T;
     const Matrix6d hessian = T.transpose() * ZT;
@@ -87,7 +88,7 @@ Solution solve_sqp(const Matrix8d& Q, const DualQuaternion& start, const SqpOpti
           continue;
         }
       }
-      next = detail::retract(q, x, length);
+      next = detail::retract(q, x);
       J_next = cost(Q, next);
       accepted = J_next <= J + rounding;
       if (!accepted) shift = std::max(4 * shift, 1e-6 * trace);
@@ -104,9 +105,9 @@ Solution solve_sqp(const Matrix8d& Q, const DualQuaternion& start, const SqpOpti
       break;
     }
   }
-  solution.q = canonical_sign(q);
-  solution.cost = cost(Q, solution.q);
-  solution.lambda = least_squares_multipliers(Q, solution.q);
+  solution.cost = cost(Q, q);
+  solution.lambda = detail::in_units_of(1 / length, least_squares_multipliers(Q, q));
+  solution.q = canonical_sign(detail::in_units_of(1 / length, q));
   return solution;
 }
 
