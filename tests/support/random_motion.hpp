@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "egocal/problem/cost.hpp"
+
+namespace egocal::testing {
+
+/// The same numbers on every machine (SplitMix64; the standard's distributions differ between libraries).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t bits() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31);
+  }
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< [0, 1)
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  double log_uniform(double low, double high) { return low * std::pow(high / low, uniform()); }
+  std::uint64_t below(std::uint64_t n) { return bits() % n; }
+  double normal() {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+  Eigen::Vector3d normal3(double sigma = 1) {
+    const double x = normal(), y = normal(), z = normal();
+    return sigma * Eigen::Vector3d(x, y, z);
+  }
+  Eigen::Vector3d direction() { return normal3().normalized(); }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Rotation vector [rad] and translation [m] to a displacement.
+inline DualQuaternion displacement(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation) {
+  return to_dual_quaternion({rotation_exp(rotation), translation});
+}
+
+enum class Motion {
+  free,           ///< axes and slides in all directions
+  dominant_axis,  ///< a vehicle: yaw, with a twentieth of it as roll and pitch
+  planar,         ///< yaw, x and y only
+  single_axis,    ///< turns about one axis, slides anywhere
+  translation,    ///< never turns
+};
+
+struct RandomDrive {
+  Motion motion = Motion::free;
+  std::uint64_t pairs = 100;
+  double rotation = 0.1;     ///< of one motion, standard deviation [rad]
+  double translation = 0.8;  ///< [m]
+  double noise = 0;          ///< relative to the two above, on each sensor
+  bool flip_signs = false;   ///< q and -q are the same motion
+};
+
+/// Motions of sensors a and b that are mounted by T_a_b.
+inline std::vector<MotionPair> random_pairs(const DualQuaternion& T_a_b, const RandomDrive& drive,
+                                            Random& random) {
+  std::vector<MotionPair> pairs;
+  pairs.reserve(drive.pairs);
+  const Eigen::Vector3d axis = random.direction();
+  const bool planar = drive.motion == Motion::planar;
+  for (std::uint64_t i = 0; i < drive.pairs; ++i) {
+    Eigen::Vector3d rotation = random.normal3(drive.rotation),
+                    translation = random.normal3(drive.translation);
+    switch (drive.motion) {
+      case Motion::free:
+        break;
+      case Motion::dominant_axis:
+        rotation.head<2>() *= 0.05;
+        translation[2] *= 0.05;
+        break;
+      case Motion::planar:
+        rotation.head<2>().setZero();
+        translation[2] = 0;
+        break;
+      case Motion::single_axis:
+        rotation = rotation[2] * axis;
+        break;
+      case Motion::translation:
+        rotation.setZero();
+        break;
+    }
+    const DualQuaternion b = displacement(rotation, translation);
+    const auto noisy = [&](const DualQuaternion& q) {
+      Eigen::Vector3d turn = random.normal3(drive.noise * drive.rotation);
+      Eigen::Vector3d shift = random.normal3(drive.noise * drive.translation);
+      if (planar) {
+        turn.head<2>().setZero();
+        shift[2] = 0;
+      }
+      return q * displacement(turn, shift);
+    };
+    MotionPair pair{noisy(T_a_b * b * conjugate(T_a_b)), noisy(b)};
+    if (drive.flip_signs && random.uniform() < 0.5) pair.a = -pair.a;
+    if (drive.flip_signs && random.uniform() < 0.5) pair.b = -pair.b;
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+inline Matrix8d cost_of(const std::vector<MotionPair>& pairs, const Balance& balance = {}) {
+  Statistics statistics;
+  for (const MotionPair& pair : pairs) statistics.add(pair);
+  return cost_matrix(statistics, balance);
+}
+
+/// Any rotation at all, translation of about the given size [m].
+inline DualQuaternion random_extrinsic(Random& random, double size = 2) {
+  return displacement(random.uniform(0, std::numbers::pi) * random.direction(), random.normal3(size));
+}
+
+/// x, y and yaw only.
+inline DualQuaternion random_planar_extrinsic(Random& random, double size = 2) {
+  const double yaw = random.uniform(-std::numbers::pi, std::numbers::pi);
+  const double x = random.normal() * size, y = random.normal() * size;
+  return displacement({0, 0, yaw}, {x, y, 0});
+}
+
+}  // namespace egocal::testing
