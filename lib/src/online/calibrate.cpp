@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/online/calibrate.hpp"
+
+namespace egocal {
+
+OnlineStep calibrate(const Problem& problem, std::int64_t time_us, const OnlineState& state,
+                     const OnlineOptions& options) {
+  OnlineStep step;
+  step.state = state;
+  if (state.last) {
+    step.answer = solve(problem, options.fast, state.last);                            // line 6
+    step.fast_verified = step.answer.certificate.optimality == Optimality::certified;  // line 7
+  }
+  if (!step.fast_verified) step.state.last_local_error_us = time_us;  // lines 8, 9
+  const std::int64_t t_no_fail_us = static_cast<std::int64_t>(options.t_no_fail * 1e6);
+  const bool recent_error =
+      step.state.last_local_error_us && time_us - *step.state.last_local_error_us <= t_no_fail_us;
+  if (recent_error) {  // lines 10, 11
+    step.answer = solve(problem, options.global);
+    step.global_used = true;
+  }
+  step.state.last = step.answer.T_a_b;
+  return step;
+}
+
+bool counts_more(const Claim& x, const Claim& y) {
+  if (x.session != y.session) return x.session > y.session;
+  if (x.seq != y.seq) return x.seq > y.seq;
+  const bool x_certified = x.optimality == Optimality::certified;
+  const bool y_certified = y.optimality == Optimality::certified;
+  if (x_certified != y_certified) return x_certified;
+  return x.cost < y.cost;
+}
+
+}  // namespace egocal

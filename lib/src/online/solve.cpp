@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <limits>
+
+#include "egocal/online/answer.hpp"
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/sdp.hpp"
+#include "egocal/solvers/slsqp.hpp"
+#include "egocal/solvers/sqp.hpp"
+#include "egocal/uncertainty/knowledge.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal {
+
+std::string_view name(Method method) {
+  switch (method) {
+    case Method::dual:
+      return "dual";
+    case Method::sdp:
+      return "sdp";
+    case Method::sqp:
+      return "sqp";
+    case Method::slsqp:
+      return "slsqp";
+  }
+  return "unknown";
+}
+
+std::optional<Method> method_from_name(std::string_view text) {
+  if (text == "global") return Method::dual;
+  if (text == "fast") return Method::sqp;
+  for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp})
+    if (text == name(method)) return method;
+  return std::nullopt;
+}
+
+namespace {
+
+Solution minimise(const Matrix8d& Q, Method method, const DualQuaternion& start) {
+  switch (method) {
+    case Method::dual:
+      return solve_dual(Q);
+    case Method::sdp:
+      return solve_sdp(Q);
+    case Method::sqp:
+      return solve_sqp(Q, start);
+    case Method::slsqp:
+      return solve_slsqp(Q, start);
+  }
+  return {};
+}
+
+/// Of all equally good extrinsics the one closest to the prior: along the directions in which the cost is
+/// flat up to rounding, as long as it does not rise above it. Their set may be curved (rotation about a
+/// common axis), hence steps.
+DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimiser,
+                                const DualQuaternion& prior) {
+  DualQuaternion q = minimiser;
+  const double least = cost(Q, q);
+  for (int i = 0; i < 50; ++i) {
+    const FlatDirections flat = flat_directions(Q, q);
+    if (flat.basis.cols() == 0) return q;
+    detail::Vector6d wish = detail::frame_a_difference(q, prior);
+    wish.head<3>() /= flat.length;
+    detail::Vector6d step = flat.basis * (flat.basis.transpose() * wish);
+    // rotations are followed in small steps, for their flat set is curved
+    const double turn = step.tail<3>().norm();
+    if (turn > 0.3) step *= 0.3 / turn;
+    const double size = step.norm();
+    step.head<3>() *= flat.length;
+    DualQuaternion next = detail::frame_a_moved(q, step);
+    if (turn > 1e-6) next = solve_sqp(Q, next).q;
+    const Vector8d v = next.vec().cwiseAbs();
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * v.dot(Q.cwiseAbs() * v);
+    if (!(cost(Q, next) <= least + rounding)) return q;
+    q = next;
+    if (size < 1e-9) return q;
+  }
+  return q;
+}
+
+Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start) {
+  Answer answer;
+  answer.method = method;
+  const Solution solution = minimise(Q, method, start);
+  answer.status = solution.status;
+  answer.T_a_b = solution.q;
+  const DualQuaternion prior = problem.prior.value_or(DualQuaternion{});
+  if (solution.status == SolverStatus::degenerate || !(Q.diagonal().maxCoeff() > 0))
+    answer.T_a_b = canonical_sign(normalized(prior));
+  else if (solution.status != SolverStatus::not_finite)
+    answer.T_a_b = nearest_to_prior(Q, solution.q, prior);
+  answer.certificate = verify(Q, answer.T_a_b);
+  return answer;
+}
+
+Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start) {
+  const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  Answer answer;
+  answer.method = method;
+  const Solution solution = method == Method::slsqp
+                                ? solve_slsqp_planar(Q, planar_from_extrinsic(start, G_a, G_b))
+                                : solve_planar(Q);
+  answer.status = solution.status;
+  DualQuaternion T_p = solution.q;
+  const DualQuaternion prior = planar_from_extrinsic(problem.prior.value_or(DualQuaternion{}), G_a, G_b);
+  if (solution.status == SolverStatus::degenerate) {
+    T_p = prior;
+  } else if (!(Q.block<2, 2>(5, 5).trace() > 1e-28 * (Q(0, 0) + Q(3, 3)))) {
+    // nothing turned: the translation is free
+    const Pose free_translation = to_pose(prior);
+    T_p = to_dual_quaternion({to_pose(T_p).rotation, free_translation.translation});
+  }
+  answer.certificate = verify_planar(Q, T_p);
+  answer.T_a_b = extrinsic_from_planar(T_p, G_a, G_b);
+  return answer;
+}
+
+}  // namespace
+
+Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start) {
+  const Matrix8d Q = cost_matrix(problem);
+  const DualQuaternion from = start.value_or(DualQuaternion{});
+  Answer answer = problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, from)
+                                               : solve_spatial(problem, Q, method, from);
+  answer.knowledge = knowledge(problem, Q, answer.T_a_b);
+  return answer;
+}
+
+}  // namespace egocal

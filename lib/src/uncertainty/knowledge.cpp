@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/uncertainty/knowledge.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "egocal/solvers/planar.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal {
+
+namespace {
+
+using detail::Matrix6d;
+using detail::Matrix86d;
+using detail::Vector6d;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A direction of x y z roll pitch yaw counts as unobservable when more than this part of it lies in
+/// directions that the motions do not show.
+constexpr double leak_allowed = 0.05;
+
+/// How many times the curvature that noise alone makes a direction needs to be called observable.
+constexpr double noise_factor = 3;
+
+struct Spectrum {
+  Matrix6d vectors;  ///< columns; dt in units of length, dtheta [rad]
+  Vector6d curvatures;
+};
+
+Spectrum spectrum(const Matrix6d& H) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
+  return {eigen.eigenvectors(), eigen.eigenvalues()};
+}
+
+/// Rotation noise, as it enters D: without noise r'Dr is zero; with noise, independent of sensor and motion,
+/// it is added to D in every direction alike.
+double rotation_noise(const Matrix8d& Q, const DualQuaternion& q) {
+  return std::max(0.0, q.real.dot(Q.bottomRightCorner<4, 4>() * q.real));
+}
+
+/// Standard deviations by leaving out blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et
+/// al. 1999).
+class Jackknife {
+ public:
+  explicit Jackknife(double pairs) : pairs_(pairs) {}
+  /// difference: estimate without the block minus estimate with all.
+  void leave_out(double block_pairs, const Vector6d& difference) {
+    const double h = pairs_ / block_pairs;
+    const Vector6d pseudo = -(h - 1) * difference;  // pseudo value minus the estimate with all
+    count_ += 1;
+    sum_ += pseudo / h;
+    squares_ += pseudo.cwiseAbs2() / (h - 1);
+    cross_ += pseudo / (h - 1);
+    weights_ += 1 / (h - 1);
+  }
+  Vector6d variance() const {
+    // mean of (pseudo - mean)^2 / (h - 1)
+    return (squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_) / count_;
+  }
+
+ private:
+  double pairs_;
+  double count_ = 0, weights_ = 0;
+  Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
+};
+
+/// Fewer blocks than this say too little about a spread.
+constexpr std::size_t least_blocks = 6;
+
+std::string text_of(const Eigen::Vector3d& v) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
+  return text;
+}
+
+/// What would help, from the translation directions that are not seen (columns of `hidden`, orthonormal) and
+/// whether rotation is.
+std::string spatial_hint(int hidden_translations, bool rotation_hidden,
+                         const Eigen::Vector3d& hidden_direction) {
+  if (hidden_translations >= 2 && rotation_hidden) return "still needed: motion with turns";
+  if (hidden_translations >= 2) return "still needed: turns";
+  if (rotation_hidden) return "still needed: turns, or motion in another direction";
+  if (hidden_translations == 1)
+    return "still needed: rotation about an axis across " + text_of(hidden_direction) +
+           " of a (on the ground: ramps, bumps, banked curves)";
+  return "";
+}
+
+Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {
+  Knowledge result;
+  result.stddev.fill(infinity);
+  const Statistics all = total(problem.blocks);
+  const double length = detail::length_scale(Q_metres);
+  const Matrix8d Q = detail::in_units_of(length, Q_metres);
+  const DualQuaternion q = detail::in_units_of(length, T_a_b);
+  const Matrix86d T = detail::frame_a_basis(q);
+  const Matrix6d H = T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, q)) * T;
+
+  // What is left of the curvature when noise is taken off: in the translations noise_factor times what
+  // rotation noise adds to D (a quarter, as d = t r / 2), in the rotations the fluctuation of J, whose mean
+  // lambda_1 takes off already.
+  const double noise = rotation_noise(Q, q);
+  const double fluctuation = 4 / std::sqrt(std::max(1.0, static_cast<double>(all.count)));
+  Matrix6d clean = H;
+  clean.diagonal().head<3>().array() -= 0.25 * noise * (noise_factor + fluctuation);
+  clean.diagonal().tail<3>().array() -= 0.25 * fluctuation * std::max(0.0, cost(Q, q));
+  const Spectrum seen = spectrum(clean);
+  const double floor = 1e-12 * (H.diagonal().cwiseAbs().sum() + Q.diagonal().maxCoeff() * 1e-3);
+  int hidden = 0;
+  while (hidden < 6 && !(seen.curvatures[hidden] > floor)) ++hidden;
+
+  const auto hidden_vectors = seen.vectors.leftCols(hidden);
+  for (int i = 0; i < 6; ++i)
+    result.observable[static_cast<std::size_t>(i)] = hidden_vectors.row(i).norm() <= leak_allowed;
+  int hidden_translations = 0;
+  bool rotation_hidden = false;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  for (int k = 0; k < hidden; ++k) {
+    const Vector6d v = seen.vectors.col(k);
+    if (v.head<3>().norm() > 0.3) {
+      ++hidden_translations;
+      direction = v.head<3>().normalized();
+    }
+    if (v.tail<3>().norm() > 0.3) rotation_hidden = true;
+  }
+  result.hint = spatial_hint(hidden_translations, rotation_hidden, direction);
+
+  const int shown = 6 - hidden;
+  if (shown == 0 || problem.blocks.size() < least_blocks) return result;
+  // Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
+  using Basis = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+  using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+  const Basis shown_vectors = seen.vectors.rightCols(shown);
+  const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6> tangent = T * shown_vectors;
+  const Vector8d v = q.vec();
+  Jackknife jackknife(static_cast<double>(all.count));
+  for (const Statistics& block : problem.blocks) {
+    Statistics rest = all;
+    rest.dual_rows -= block.dual_rows;
+    rest.weight -= block.weight;
+    rest.count -= block.count;
+    const Matrix8d Q_rest = detail::in_units_of(length, cost_matrix(rest, problem.balance));
+    const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6> Z_tangent =
+        lagrangian_matrix(Q_rest, least_squares_multipliers(Q_rest, q)) * tangent;
+    const Small curvature = tangent.transpose() * Z_tangent;
+    const SmallVector slope = Z_tangent.transpose() * v;
+    const Eigen::LDLT<Small> factor(curvature);
+    Vector6d step = Vector6d::Constant(infinity);
+    if (factor.info() == Eigen::Success && factor.isPositive()) step = -shown_vectors * factor.solve(slope);
+    jackknife.leave_out(static_cast<double>(block.count), step);
+  }
+  const Vector6d variance = jackknife.variance();
+  // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
+  Vector6d pull = Vector6d::Zero();
+  const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
+  const Eigen::Matrix3d D_t = 4 * H.topLeftCorner<3, 3>();
+  const Eigen::LDLT<Eigen::Matrix3d> D_factor(D_t);
+  if (D_factor.info() == Eigen::Success && D_factor.isPositive()) pull.head<3>() = noise * D_factor.solve(t);
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!result.observable[k]) continue;
+    const double stddev = std::sqrt(variance[i] + pull[i] * pull[i]) * (i < 3 ? length : 1);
+    if (std::isfinite(stddev)) result.stddev[k] = stddev;
+  }
+  return result;
+}
+
+Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b) {
+  Knowledge result;
+  result.stddev.fill(infinity);
+  const Statistics all = total(problem.blocks);
+  const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, G_b);
+
+  // yaw: curvature of the cost minimised over the translation; x, y: the block of D, less what rotation noise
+  // makes
+  const double count = std::max(1.0, static_cast<double>(all.count));
+  const double fluctuation = 4 / std::sqrt(count);
+  const double noise = rotation_noise(Q, T_p);
+  const double D_least =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Q.block<2, 2>(5, 5), Eigen::EigenvaluesOnly)
+          .eigenvalues()[0];
+  const Solution best = solve_planar(Q);
+  DualQuaternion turned = best.q;  // the other eigenvector of the 2 x 2 Schur complement is the worst yaw
+  turned.real = {-best.q.real[3], 0, 0, best.q.real[0]};
+  double worst = turned.real.dot(Q.topLeftCorner<4, 4>() * turned.real);
+  if (Q.block<2, 2>(5, 5).determinant() > 0) {
+    Eigen::Vector2d slope = Q.block<4, 2>(0, 5).transpose() * turned.real;
+    worst -= slope.dot(Q.block<2, 2>(5, 5).inverse() * slope);
+  }
+  const double rounding = 1e-12 * (Q.diagonal().sum());
+  const bool yaw_seen = worst - best.cost > fluctuation * std::max(0.0, best.cost) + rounding;
+  const double unit = detail::length_scale(Q);
+  const bool translation_seen =
+      D_least > noise * (noise_factor + fluctuation) + rounding / (unit * unit) && D_least > 1e-28 * Q(0, 0);
+
+  // The plane's own directions in sensor a's frame; yaw turns about the normal.
+  const Eigen::Vector3d normal = problem.plane_a.normal;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    result.observable[k] = translation_seen && std::abs(normal[i]) <= leak_allowed;
+    // a rotation axis is shown by yaw alone where it is the normal
+    result.observable[k + 3] = yaw_seen && 1 - std::abs(normal[i]) <= leak_allowed;
+  }
+  if (!translation_seen || !yaw_seen)
+    result.hint = translation_seen ? "still needed: motion" : "still needed: turns";
+
+  if (problem.blocks.size() < least_blocks) return result;
+  Jackknife jackknife(count);
+  for (const Statistics& block : problem.blocks) {
+    Statistics rest = all;
+    rest.dual_rows -= block.dual_rows;
+    rest.weight -= block.weight;
+    rest.count -= block.count;
+    const Solution without = solve_planar(cost_matrix(rest, problem.balance));
+    jackknife.leave_out(static_cast<double>(block.count),
+                        detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
+  }
+  const Vector6d variance = jackknife.variance();
+  const double pull = D_least > 0 ? 2 * T_p.dual.norm() * noise / D_least : infinity;
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!result.observable[k]) continue;
+    const double stddev = std::sqrt(variance[i] + (i < 3 ? pull * pull : 0));
+    if (std::isfinite(stddev)) result.stddev[k] = stddev;
+  }
+  return result;
+}
+
+}  // namespace
+
+Knowledge knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b) {
+  if (!Q.allFinite() || !(Q.diagonal().maxCoeff() > 0)) {
+    Knowledge nothing;
+    nothing.stddev.fill(infinity);
+    nothing.hint = "still needed: motion";
+    return nothing;
+  }
+  return problem.mode == Mode::planar ? planar_knowledge(problem, Q, T_a_b)
+                                      : spatial_knowledge(problem, Q, T_a_b);
+}
+
+FlatDirections flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {
+  FlatDirections flat;
+  flat.length = detail::length_scale(Q_metres);
+  const Matrix8d Q = detail::in_units_of(flat.length, Q_metres);
+  const DualQuaternion q = detail::in_units_of(flat.length, T_a_b);
+  const Matrix86d T = detail::frame_a_basis(q);
+  const Matrix6d H = T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, q)) * T;
+  const Matrix6d size = T.cwiseAbs().transpose() * (Q.cwiseAbs() * T.cwiseAbs());
+  const Spectrum all = spectrum(H);
+  int count = 0;
+  while (count < 6 && !(all.curvatures[count] > 64 * epsilon * size.diagonal().maxCoeff())) ++count;
+  flat.basis = all.vectors.leftCols(count);
+  return flat;
+}
+
+}  // namespace egocal
