@@ -98,7 +98,7 @@ struct Verifier {
   }
 };
 
-void set_bound(double bound, const Reach& reach, const CertificateOptions& options,
+void set_bound(double bound, const Reach& reach, double trace, const CertificateOptions& options,
                Certificate& certificate) {
   certificate.lower_bound = std::min(bound, certificate.cost);
   certificate.gap = std::max(0.0, certificate.cost - bound);
@@ -107,8 +107,11 @@ void set_bound(double bound, const Reach& reach, const CertificateOptions& optio
   certificate.reach_rotation = reach.rotation;
   const bool near =
       reach.translation <= options.reach_translation && reach.rotation <= options.reach_rotation;
-  certificate.optimality =
-      certificate.gap <= certificate.rounding || near ? Optimality::certified : Optimality::undecided;
+  // far out along a flat direction rounding hides everything
+  const bool meaningful = certificate.rounding <= options.largest_rounding * trace;
+  certificate.optimality = meaningful && (certificate.gap <= certificate.rounding || near)
+                               ? Optimality::certified
+                               : Optimality::undecided;
 }
 
 /// Bound, gap, reach and whether that certifies. reach_for(gap, lift) is the reach of competitors whose cost
@@ -143,7 +146,7 @@ void decide(const Verifier<N>& verifier, const CertificateOptions& options, cons
       }
     }
   }
-  set_bound(bound, reach, options, certificate);
+  set_bound(bound, reach, verifier.Q.trace(), options, certificate);
 }
 
 /// Reach of competitors in 3-D: Z seen from q, minimised over q's own direction and that of (0, r), which no
@@ -224,7 +227,8 @@ Certificate verify(const Matrix8d& Q_in, const DualQuaternion& q_in, const Certi
   const double length = detail::length_scale(Q_in);
   const Matrix8d Q = detail::in_units_of(length, Q_in);
   const DualQuaternion q = detail::in_units_of(length, unit);
-  const CertificateOptions options{options_in.reach_translation / length, options_in.reach_rotation};
+  CertificateOptions options = options_in;
+  options.reach_translation /= length;
 
   Certificate certificate;
   const Verifier<8> verifier{Q, q.vec()};
@@ -245,7 +249,7 @@ Certificate verify(const Matrix8d& Q_in, const DualQuaternion& q_in, const Certi
   const double proven = best_verifier.best_bound(better, best.lambda.orthogonal, 0);
   if (proven > certificate.lower_bound) {
     certificate.lambda.orthogonal = best.lambda.orthogonal;
-    set_bound(proven, reach_for(certificate.cost - proven, 0), options, certificate);
+    set_bound(proven, reach_for(certificate.cost - proven, 0), Q.trace(), options, certificate);
   }
   if (certificate.optimality != Optimality::certified && better < certificate.cost - certificate.rounding)
     certificate.optimality = Optimality::not_optimal;
@@ -258,7 +262,8 @@ Certificate verify_planar(const Matrix8d& Q_in, const DualQuaternion& T_p,
   const double length = detail::length_scale(Q_in);
   const Eigen::Matrix4d Q = planar_part(detail::in_units_of(length, Q_in));
   const Eigen::Vector4d v = planar_part(detail::in_units_of(length, T_p));
-  const CertificateOptions options{options_in.reach_translation / length, options_in.reach_rotation};
+  CertificateOptions options = options_in;
+  options.reach_translation /= length;
 
   Certificate certificate;
   const Verifier<4> verifier{Q, v};

@@ -83,42 +83,87 @@ bool proven_optimal(const Matrix8d& Q, const Solution& solution) {
          detail::proven_bound<8>(Q, solution.cost - 0.5 * rounding, solution.lambda.orthogonal, 0);
 }
 
-/// Safeguarded Newton ascent of the concave phi. Each time that less than `gain` (in parts of the scale) is
-/// left to climb, Newton steps on the KKT system of the true Q start from there; true as soon as what they
-/// reach is proven.
-bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain_enough, Solution& best) {
-  double m = 0;
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 100; ++i) {
+/// phi at one multiplier.
+struct Sample {
+  double m = 0, value = 0, slope = 0, curvature = 0;  ///< curvature: minus the second derivative
+  Vector4d r, next;                                   ///< eigenvectors of the two smallest eigenvalues
+};
+
+Sample sample(const DualFunction& phi, double m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(phi.at(m));
+  Sample here;
+  here.m = m;
+  here.value = eigen.eigenvalues()[0];
+  here.r = eigen.eigenvectors().col(0);
+  here.next = eigen.eigenvectors().col(1);
+  here.slope = 2 * here.r.dot(phi.dual_part(here.r, m));
+  const Vector4d change = phi.S1 * here.r + 2 * m * phi.inverse.cwiseProduct(here.r);
+  here.curvature = 2 * here.r.dot(phi.inverse.cwiseProduct(here.r));
+  for (int k = 1; k < 4; ++k) {
+    const double coupling = eigen.eigenvectors().col(k).dot(change);
+    here.curvature +=
+        2 * coupling * coupling / std::max(eigen.eigenvalues()[k] - here.value, epsilon * phi.scale);
+  }
+  return here;
+}
+
+/// Keeps the better of best and what Newton steps on the KKT system of the true Q reach from r; is it proven?
+bool polish(const Matrix8d& Q, const DualFunction& phi, const Vector4d& r, double m, Solution& best) {
+  Solution polished = solve_sqp(Q, phi.quaternion(r, m));
+  if (polished.cost < best.cost) {
+    polished.iterations = best.iterations;
+    best = polished;
+  }
+  return proven_optimal(Q, best);
+}
+
+/// Ascent of the concave phi: Newton steps where it is smooth, the crossing of the tangents on both sides of
+/// the maximum where it has a kink, halving where neither makes progress. Each time that less than `gain` (in
+/// parts of the scale, ever smaller) is left to climb, Newton steps in the primal start from there; true as
+/// soon as what they reach is proven.
+bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain, Solution& best) {
+  Sample low, high;  // on the rising and on the falling side
+  bool rising = false, falling = false;
+  double m = 0, step = 0, width = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 60; ++i) {
     ++best.iterations;
-    const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(phi.at(m));
-    const double value = eigen.eigenvalues()[0];
-    Vector4d r = eigen.eigenvectors().col(0);
-    const double slope = 2 * r.dot(phi.dual_part(r, m));
-    const Vector4d change = phi.S1 * r + 2 * m * phi.inverse.cwiseProduct(r);
-    double curvature = 2 * r.dot(phi.inverse.cwiseProduct(r));
-    for (int k = 1; k < 4; ++k) {
-      const double coupling = eigen.eigenvectors().col(k).dot(change);
-      curvature += 2 * coupling * coupling / std::max(eigen.eigenvalues()[k] - value, epsilon * phi.scale);
+    const Sample here = sample(phi, m);
+    (here.slope > 0 ? rising : falling) = true;
+    (here.slope > 0 ? low : high) = here;
+
+    // at most this much above `here`
+    double crossing = m;
+    double left = 0.5 * here.slope * here.slope / here.curvature;
+    bool pinned = false;
+    if (rising && falling) {
+      crossing =
+          (high.value - low.value + low.slope * low.m - high.slope * high.m) / (low.slope - high.slope);
+      left = low.value + low.slope * (crossing - low.m) - here.value;
+      pinned = high.m - low.m <= 4 * epsilon * std::max(std::abs(low.m), std::abs(high.m));
     }
-    (slope > 0 ? low : high) = m;
-    const bool pinned = high - low <= 4 * epsilon * std::max(std::abs(low), std::abs(high));
-    const double gain = 0.5 * slope * slope / curvature;
-    if (gain <= gain_enough * phi.scale || pinned) {
-      if (pinned && gain > gain_enough * phi.scale)
-        r = orthogonal_combination(phi, r, eigen.eigenvectors().col(1), m);
-      Solution polished = solve_sqp(Q, phi.quaternion(r, m));
-      if (polished.cost < best.cost) {
-        polished.iterations = best.iterations;
-        best = polished;
-      }
-      return proven_optimal(Q, best);
+    const bool finished = pinned || left <= epsilon * phi.scale;
+    if (finished || left <= gain * phi.scale) {
+      if (polish(Q, phi, here.r, m, best)) return true;
+      if (finished) return polish(Q, phi, orthogonal_combination(phi, here.r, here.next, m), m, best);
+      gain *= 1e-4;
     }
-    const double newton = m + slope / curvature;
-    // a bracket that hardly shrinks is halved: the maximum is at a kink
-    const bool stalling = std::isfinite(high - low) && i > 6 && i % 2 == 1;
-    m = newton > low && newton < high && !stalling ? newton : 0.5 * (low + high);
+
+    const double newton = m + here.slope / here.curvature;
+    if (!rising || !falling) {
+      // still on one side: at least twice as far as the last time
+      const double wanted = newton - m;
+      step = std::abs(wanted) > 2 * std::abs(step) ? wanted : 2 * step;
+      m += step;
+      continue;
+    }
+    const bool shrinking = high.m - low.m < 0.5 * width;
+    width = high.m - low.m;
+    if (i % 3 == 2 && !shrinking)
+      m = 0.5 * (low.m + high.m);
+    else if (i % 2 == 0 && newton > low.m && newton < high.m)
+      m = newton;
+    else
+      m = crossing > low.m && crossing < high.m ? crossing : 0.5 * (low.m + high.m);
   }
   return false;
 }
@@ -140,7 +185,7 @@ Solution solve_dual(const Matrix8d& Q) {
   // D is nearly singular in a way that matters.
   constexpr struct {
     double floor, gain;
-  } attempts[] = {{1e-9, 1e-4}, {1e-9, 1e-9}, {1e-12, 1e-12}, {1e-6, 1e-12}, {64 * epsilon, 1e-15}};
+  } attempts[] = {{1e-9, 1e-4}, {1e-12, 1e-9}, {1e-6, 1e-9}, {64 * epsilon, 1e-12}};
   for (const auto& attempt : attempts)
     if (ascend(Q, DualFunction(Q, attempt.floor), attempt.gain, solution)) return solution;
   return solution;
