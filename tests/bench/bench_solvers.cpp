@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Every solver on the same problem, beside general solvers, in one run on one thread. Ends with the ratios
+// that docs/benchmarks.md quotes.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "egocal/baselines/baselines.hpp"
+#include "egocal/certificate/certificate.hpp"
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/sdp.hpp"
+#include "egocal/solvers/slsqp.hpp"
+#include "egocal/solvers/sqp.hpp"
+#include "nlopt_rivals.hpp"
+#include "support/random_motion.hpp"
+#ifdef EGOCAL_WITH_SDPA
+#include "sdpa_rival.hpp"
+#endif
+
+namespace {
+
+using namespace egocal;
+using testing::cost_of;
+using testing::displacement;
+using testing::Motion;
+using testing::Random;
+
+/// A drive of 1000 motions with one dominant axis and 1 % noise; warm starts come from its first 990 motions,
+/// as a solver that follows a drive has them.
+struct Drive {
+  DualQuaternion T_a_b;
+  std::vector<MotionPair> pairs;
+  Matrix8d Q;
+  DualQuaternion warm, optimum;
+
+  Drive(Motion motion, std::uint64_t seed, std::uint64_t n = 1000) {
+    Random random(seed);
+    T_a_b = motion == Motion::planar ? testing::random_planar_extrinsic(random)
+                                     : testing::random_extrinsic(random);
+    pairs = testing::random_pairs(T_a_b, {.motion = motion, .pairs = n, .noise = 0.01}, random);
+    Q = cost_of(pairs);
+    optimum = motion == Motion::planar ? solve_planar(Q).q : solve_dual(Q).q;
+    const Matrix8d earlier = cost_of({pairs.begin(), pairs.end() - static_cast<std::ptrdiff_t>(n / 100)});
+    warm = motion == Motion::planar ? solve_planar(earlier).q : solve_dual(earlier).q;
+  }
+};
+
+/// Several drives, so that no branch predictor learns one problem by heart.
+const std::vector<Drive>& drives(Motion motion) {
+  const auto make = [](Motion kind) {
+    std::vector<Drive> made;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) made.emplace_back(kind, seed);
+    return made;
+  };
+  static const std::vector<Drive> rough = make(Motion::dominant_axis), planar = make(Motion::planar);
+  return motion == Motion::planar ? planar : rough;
+}
+
+template <typename Solve>
+void run(benchmark::State& state, Motion motion, const Solve& solve) {
+  const std::vector<Drive>& all = drives(motion);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solve(all[i]));
+    i = (i + 1) % all.size();
+  }
+}
+
+template <typename Solve>
+void add(const char* name, Motion motion, Solve solve) {
+  benchmark::RegisterBenchmark(name, [motion, solve](benchmark::State& state) { run(state, motion, solve); });
+}
+
+void per_pair(benchmark::State& state) {
+  const std::vector<MotionPair>& pairs = drives(Motion::dominant_axis).front().pairs;
+  for (auto _ : state) {
+    Statistics statistics;
+    for (const MotionPair& pair : pairs) statistics.add(pair);
+    benchmark::DoNotOptimize(statistics);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(pairs.size()));
+}
+
+/// From motions to the answer: how cost grows with their number.
+void pairs_to_answer(benchmark::State& state) {
+  const Drive drive(Motion::dominant_axis, 1, static_cast<std::uint64_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(solve_dual(cost_of(drive.pairs)));
+  state.SetComplexityN(state.range(0));
+}
+
+/// Keeps the medians of the processor time for the ratios at the end.
+class Reporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    benchmark::ConsoleReporter::ReportRuns(runs);
+    for (const Run& r : runs) {
+      if (r.error_occurred) continue;
+      if (r.run_type == Run::RT_Aggregate && r.aggregate_name != "median") continue;
+      const double seconds =
+          r.cpu_accumulated_time /
+          (r.iterations > 0 && r.run_type != Run::RT_Aggregate ? static_cast<double>(r.iterations) : 1.0);
+      median_[r.run_name.function_name] = r.run_type == Run::RT_Aggregate ? r.cpu_accumulated_time : seconds;
+    }
+  }
+
+  void print_ratios() const {
+    std::printf("\n| asked | measured |\n|---|---|\n");
+    at_least("dual 100 times as fast as SDPA", "sdpa", "dual", 100);
+    at_least("dual 30 times as fast as SLSQP cold", "nlopt_slsqp_cold", "dual", 30);
+    at_least("dual faster than SLSQP warm", "nlopt_slsqp_warm", "dual", 1);
+    at_least("dual faster than AUGLAG + TNEWTON warm", "nlopt_auglag_warm", "dual", 1);
+    at_least("planar 50 times as fast as SLSQP in four variables", "nlopt_planar_cold", "planar", 50);
+    at_most("sqp warm over dual, at most 1.5", "sqp_warm", "dual", 1.5);
+    below("verification below 3 us", "verify", 3e-6, 1);
+    below("building the cost below 100 ns a pair", "statistics_add_1000", 100e-9, 1000);
+  }
+
+ private:
+  bool have(const std::string& name) const { return median_.count(name) > 0; }
+  void at_least(const char* text, const char* slow, const char* fast, double limit) const {
+    if (!have(slow) || !have(fast)) return;
+    const double ratio = median_.at(slow) / median_.at(fast);
+    std::printf("| %s | %.1f%s |\n", text, ratio, ratio >= limit ? "" : " (missed)");
+  }
+  void at_most(const char* text, const char* over, const char* under, double limit) const {
+    if (!have(over) || !have(under)) return;
+    const double ratio = median_.at(over) / median_.at(under);
+    std::printf("| %s | %.2f%s |\n", text, ratio, ratio <= limit ? "" : " (missed)");
+  }
+  void below(const char* text, const char* name, double limit, double items) const {
+    if (!have(name)) return;
+    const double seconds = median_.at(name) / items;
+    std::printf("| %s | %.1f ns%s |\n", text, seconds * 1e9, seconds < limit ? "" : " (missed)");
+  }
+
+  std::map<std::string, double> median_;  ///< [s]
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  constexpr Motion rough = Motion::dominant_axis, planar = Motion::planar;
+  const DualQuaternion identity;
+  add("dual", rough, [](const Drive& d) { return solve_dual(d.Q); });
+  add("sqp_warm", rough, [](const Drive& d) { return solve_sqp(d.Q, d.warm); });
+  add("sqp_cold", rough, [identity](const Drive& d) { return solve_sqp(d.Q, identity); });
+  add("sdp", rough, [](const Drive& d) { return solve_sdp(d.Q); });
+  add("slsqp_cold", rough, [identity](const Drive& d) { return solve_slsqp(d.Q, identity); });
+  add("slsqp_warm", rough, [](const Drive& d) { return solve_slsqp(d.Q, d.warm); });
+  add("planar", planar, [](const Drive& d) { return solve_planar(d.Q); });
+  add("verify", rough, [](const Drive& d) { return verify(d.Q, d.optimum); });
+  add("verify_planar", planar, [](const Drive& d) { return verify_planar(d.Q, d.optimum); });
+#ifdef EGOCAL_WITH_SDPA
+  benchmark::RegisterBenchmark("sdpa", [](benchmark::State& state) {
+    drives(rough);
+    const bench::Silence silence;
+    run(state, rough, [](const Drive& d) { return bench::sdpa(d.Q); });
+  });
+#endif
+  add("nlopt_slsqp_cold", rough, [identity](const Drive& d) { return bench::nlopt_slsqp(d.Q, identity); });
+  add("nlopt_slsqp_warm", rough, [](const Drive& d) { return bench::nlopt_slsqp(d.Q, d.warm); });
+  add("nlopt_auglag_warm", rough,
+      [](const Drive& d) { return bench::nlopt_augmented_lagrangian(d.Q, d.warm); });
+  add("nlopt_planar_cold", planar, [identity](const Drive& d) { return bench::nlopt_planar(d.Q, identity); });
+  add("nlopt_planar_warm", planar, [](const Drive& d) { return bench::nlopt_planar(d.Q, d.warm); });
+  benchmark::RegisterBenchmark("statistics_add_1000", per_pair);
+  add("baseline_analytic", rough, [](const Drive& d) { return solve_analytic(d.pairs); });
+  add("baseline_matrix", rough, [](const Drive& d) { return solve_matrix(d.pairs); });
+  add("baseline_local", rough, [](const Drive& d) { return solve_local(d.pairs, d.warm); });
+  benchmark::RegisterBenchmark("pairs_to_answer", pairs_to_answer)
+      ->RangeMultiplier(10)
+      ->Range(100, 1'000'000)
+      ->Complexity(benchmark::oN);
+
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  Reporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  reporter.print_ratios();
+  return 0;
+}

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Random problems, honest answers, local minima and falsified ones against a reference in extended precision:
+// is anything certified that is not the optimum, and how many optima go without a certificate? A problem is
+// made from its number alone, so any line of the output can be made again with --first NUMBER --problems 1.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "egocal/certificate/certificate.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/sdp.hpp"
+#include "egocal/solvers/sqp.hpp"
+#include "extended_reference.hpp"
+#include "support/random_motion.hpp"
+
+namespace {
+
+using namespace egocal;
+using bench::Extended;
+using testing::Motion;
+using testing::Random;
+
+struct Case {
+  bool planar = false;
+  bool degenerate = false;  ///< near-degenerate by construction: no certificate is owed
+  Matrix8d Q;
+};
+
+/// Noise 1e-6 to 0.5, 1 to 1000 pairs, a third of them near-degenerate, a quarter of the others planar.
+Case make_case(std::uint64_t number) {
+  Random random(number);
+  Case made;
+  testing::RandomDrive drive;
+  drive.noise = random.log_uniform(1e-6, 0.5);
+  drive.pairs = static_cast<std::uint64_t>(random.log_uniform(1, 1001));
+  drive.rotation = random.log_uniform(0.01, 0.5);
+  drive.translation = random.log_uniform(0.05, 5);
+  drive.flip_signs = true;
+  const std::uint64_t kind = random.below(12);
+  made.degenerate = kind < 4 || drive.pairs < 3;
+  made.planar = kind >= 10 || (kind < 4 && random.below(4) == 0);
+  drive.motion = made.planar ? Motion::planar : kind % 2 ? Motion::free : Motion::dominant_axis;
+  if (kind < 4) {
+    switch (random.below(6)) {
+      case 0:
+        drive.noise = 0;
+        break;
+      case 1:
+        drive.noise = random.log_uniform(1e-12, 1e-7);
+        break;
+      case 2:
+        drive.pairs = 1 + random.below(2);
+        break;
+      case 3:
+        drive.motion = made.planar ? Motion::planar : Motion::single_axis;
+        break;
+      case 4:
+        drive.motion = Motion::translation;
+        break;
+      default:
+        drive.rotation = random.log_uniform(1e-9, 1e-3);
+        break;
+    }
+  }
+  const double size = random.log_uniform(0.1, 100);
+  const DualQuaternion T =
+      made.planar ? testing::random_planar_extrinsic(random, size) : testing::random_extrinsic(random, size);
+  const Balance balance{1, random.log_uniform(1e-3, 1)};
+  made.Q = testing::cost_of(testing::random_pairs(T, drive, random), balance);
+  return made;
+}
+
+/// Directions x (half rotation vector, half translation, in sensor b's frame) that the cost feels least.
+Eigen::Matrix<double, 6, 6> flat_directions(const Matrix8d& Q, const DualQuaternion& q) {
+  Eigen::Matrix<double, 8, 6> basis;
+  const Matrix8d left = left_matrix(q);
+  basis << left.middleCols<3>(1), left.rightCols<3>();
+  const Matrix8d Z = lagrangian_matrix(Q, least_squares_multipliers(Q, q));
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(basis.transpose() * Z * basis)
+      .eigenvectors();
+}
+
+/// The optimum falsified by 0.001 to 20 deg and 0.1 mm to 20 m, one of both or both, along a flat direction
+/// half of the time.
+DualQuaternion falsified(const Case& problem, const DualQuaternion& optimum, Random& random) {
+  const double rotation = random.log_uniform(0.001, 20) * std::numbers::pi / 180;
+  const double translation = random.log_uniform(1e-4, 20);
+  const std::uint64_t which = random.below(3);
+  Eigen::Vector3d turn = random.direction(), shift = random.direction();
+  if (random.below(2) == 0) {
+    const Eigen::Matrix<double, 6, 1> x =
+        flat_directions(problem.Q, optimum).col(static_cast<int>(random.below(3)));
+    // the whole direction, as long as the larger of its two parts says
+    const double scale = which == 0 ? rotation / std::max(1e-12, 2 * x.head<3>().norm())
+                                    : translation / std::max(1e-12, 2 * x.tail<3>().norm());
+    turn = 2 * scale * x.head<3>();
+    shift = 2 * scale * x.tail<3>();
+    if (turn.norm() > 0.5) {
+      shift *= 0.5 / turn.norm();
+      turn *= 0.5 / turn.norm();
+    }
+  } else {
+    turn *= which == 1 ? 0 : rotation;
+    shift *= which == 0 ? 0 : translation;
+  }
+  if (problem.planar) {
+    turn.head<2>().setZero();
+    shift[2] = 0;
+  }
+  return optimum * testing::displacement(turn, shift);
+}
+
+struct Tally {
+  std::uint64_t problems = 0, degenerate = 0, proven = 0;
+  std::uint64_t owed = 0, certified = 0;  ///< of the global solver on problems that are not degenerate
+  std::uint64_t certified_degenerate = 0;
+  std::uint64_t local_starts = 0, local_minima = 0;  ///< of Newton's method from random starts
+  std::uint64_t falsified = 0,
+                falsified_indistinct = 0;  ///< indistinct: the cost rises by no more than rounding
+  std::uint64_t false_certificates = 0;
+  std::uint64_t missed = 0;  ///< global answers above the reference by more than rounding
+  std::uint64_t by_reach =
+      0;  ///< certified above rounding because every better one is nearer than the options say
+  std::uint64_t not_finite = 0;
+
+  void operator+=(const Tally& t) {
+    problems += t.problems;
+    degenerate += t.degenerate;
+    proven += t.proven;
+    owed += t.owed;
+    certified += t.certified;
+    certified_degenerate += t.certified_degenerate;
+    local_starts += t.local_starts;
+    local_minima += t.local_minima;
+    falsified += t.falsified;
+    falsified_indistinct += t.falsified_indistinct;
+    false_certificates += t.false_certificates;
+    missed += t.missed;
+    by_reach += t.by_reach;
+    not_finite += t.not_finite;
+  }
+};
+
+std::mutex printing;
+
+void report(const char* what, std::uint64_t number, const Certificate& certificate, Extended excess) {
+  const std::lock_guard<std::mutex> lock(printing);
+  std::printf("%s: problem %llu cost %.17g excess %.3g rounding %.3g gap %.3g reach %.3g m %.3g rad\n", what,
+              static_cast<unsigned long long>(number), certificate.cost, static_cast<double>(excess),
+              certificate.rounding, certificate.gap, certificate.reach_translation,
+              certificate.reach_rotation);
+}
+
+/// What may be certified: a cost within rounding of the optimum, or an answer that is the optimum to 1 um and
+/// 1 urad.
+bool is_false(const Case&, const Certificate& c, const DualQuaternion& q, const bench::Reference& best,
+              Extended excess, Tally& tally) {
+  if (c.optimality != Optimality::certified || excess <= Extended(c.rounding)) return false;
+  const ExtrinsicError distance = extrinsic_error(best.q, q);
+  const CertificateOptions options;
+  if (distance.translation <= options.reach_translation && distance.rotation <= options.reach_rotation) {
+    ++tally.by_reach;
+    return false;
+  }
+  return true;
+}
+
+Tally study(std::uint64_t number) {
+  Tally tally;
+  const Case problem = make_case(number);
+  const Matrix8d& Q = problem.Q;
+  Random random(number ^ 0x5eed5eed5eed5eedULL);
+  const auto check = [&](const DualQuaternion& q) {
+    return problem.planar ? verify_planar(Q, q) : verify(Q, q);
+  };
+
+  const Solution global = problem.planar ? solve_planar(Q) : solve_dual(Q);
+  bench::Reference best;
+  if (problem.planar) {
+    best = bench::planar_reference(Q);
+  } else {
+    best = bench::reference(Q, {global.q, solve_sdp(Q).q});
+    if (!best.proven) {
+      std::vector<DualQuaternion> starts{best.q};
+      for (int i = 0; i < 4; ++i) starts.push_back(solve_sqp(Q, testing::random_extrinsic(random)).q);
+      best = bench::reference(Q, starts);
+    }
+  }
+  tally.problems = 1;
+  tally.degenerate = problem.degenerate;
+  tally.proven = best.proven;
+  tally.not_finite = !global.q.vec().allFinite();
+
+  const auto judge = [&](const char* what, const DualQuaternion& q) {
+    const Certificate certificate = check(q);
+    const Extended excess = bench::extended_cost(Q, q) - best.cost;
+    if (is_false(problem, certificate, q, best, excess, tally)) {
+      ++tally.false_certificates;
+      report(what, number, certificate, excess);
+    }
+    return std::pair(certificate, excess);
+  };
+
+  const auto [certificate, excess] = judge("FALSE CERTIFICATE of the global answer", global.q);
+  const bool certified = certificate.optimality == Optimality::certified;
+  if (excess > Extended(4 * certificate.rounding)) {
+    ++tally.missed;
+    if (!problem.degenerate) report("missed optimum", number, certificate, excess);
+  }
+  if (problem.degenerate) {
+    tally.certified_degenerate = certified;
+  } else {
+    tally.owed = 1;
+    tally.certified = certified;
+    if (!certified) report("no certificate", number, certificate, excess);
+  }
+
+  if (!problem.planar) {
+    const DualQuaternion q = solve_sqp(Q, testing::random_extrinsic(random)).q;
+    const auto [c, above] = judge("FALSE CERTIFICATE of a local minimum", q);
+    ++tally.local_starts;
+    tally.local_minima += above > Extended(c.rounding);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const DualQuaternion q = falsified(problem, best.q, random);
+    const auto [c, above] = judge("FALSE CERTIFICATE of a falsified answer", q);
+    ++tally.falsified;
+    tally.falsified_indistinct += above <= Extended(c.rounding);
+  }
+  return tally;
+}
+
+int usage(std::FILE* out) {
+  std::fprintf(
+      out,
+      "usage: certificate_study [--problems N] [--first NUMBER] [--threads N]\n"
+      "Checks certificates on random problems against a reference in extended precision.\n"
+      "Exit 0 when nothing false was certified and at least 99.99 %% of what is owed was, 1 otherwise.\n");
+  return out == stdout ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::uint64_t problems = 1'000'000, first = 0;
+  unsigned threads = 1;
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    if (option == "--help") return usage(stdout);
+    if (i + 1 >= argc) return usage(stderr);
+    char* end = nullptr;
+    const std::uint64_t value = std::strtoull(argv[++i], &end, 10);
+    if (*end != '\0') return usage(stderr);
+    if (option == "--problems") {
+      problems = value;
+    } else if (option == "--first") {
+      first = value;
+    } else if (option == "--threads") {
+      threads = std::max(1u, static_cast<unsigned>(value));
+    } else {
+      return usage(stderr);
+    }
+  }
+
+  std::atomic<std::uint64_t> next{first};
+  std::vector<Tally> tallies(threads);
+  std::vector<std::thread> workers;
+  for (unsigned t = 0; t < threads; ++t)
+    workers.emplace_back([&, t] {
+      for (std::uint64_t number = next++; number < first + problems; number = next++)
+        tallies[t] += study(number);
+    });
+  for (std::thread& worker : workers) worker.join();
+  Tally all;
+  for (const Tally& tally : tallies) all += tally;
+
+  const auto row = [](const char* what, std::uint64_t count) {
+    std::printf("| %s | %llu |\n", what, static_cast<unsigned long long>(count));
+  };
+  std::printf("| | |\n|---|---|\n");
+  row("problems", all.problems);
+  row("of them near-degenerate", all.degenerate);
+  row("reference proven optimal in extended precision", all.proven);
+  row("false certificates", all.false_certificates);
+  row("global answers on problems that are not degenerate", all.owed);
+  row("certified of these", all.certified);
+  row("certified of the near-degenerate ones", all.certified_degenerate);
+  row("global answers above the reference by more than rounding", all.missed);
+  row("answers from random starts", all.local_starts);
+  row("of these above the optimum, none certified", all.local_minima);
+  row("falsified optima", all.falsified);
+  row("of these with a cost that rose by no more than rounding", all.falsified_indistinct);
+  row("certified above rounding, but within 1 um and 1 urad of the optimum", all.by_reach);
+  row("answers that are not finite", all.not_finite);
+  const bool enough = static_cast<double>(all.certified) >= 0.9999 * static_cast<double>(all.owed);
+  return all.false_certificates == 0 && all.not_finite == 0 && enough ? 0 : 1;
+}
