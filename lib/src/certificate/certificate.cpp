@@ -91,9 +91,10 @@ struct Verifier {
 
   /// The largest of a few proposals below `value` that can be proven; nothing proven gives -infinity.
   double best_bound(double value, double orthogonal, double lifted) const {
-    double step = 0.25 * rounding();
-    for (int i = 0; i < 6; ++i, step *= 16)
-      if (proven_bound<N>(Q, value - step, orthogonal, lifted)) return value - step;
+    for (const double step : {0.25, 0.9, 16.0, 256.0, 4096.0, 65536.0}) {
+      const double bound = value - step * rounding();
+      if (proven_bound<N>(Q, bound, orthogonal, lifted)) return bound;
+    }
     return -infinity;
   }
 };

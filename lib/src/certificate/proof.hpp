@@ -15,7 +15,7 @@ using Extended = long double;  ///< 64 bits of mantissa where the machine has th
 /// place.
 template <int N>
 double rounding_of(const Eigen::Matrix<double, N, N>& Q, const Eigen::Matrix<double, N, 1>& v) {
-  return 4 * std::numeric_limits<double>::epsilon() * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
+  return 16 * std::numeric_limits<double>::epsilon() * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
 }
 
 /// Proves that a symmetric matrix is positive semidefinite. A Cholesky factorisation that runs to its end in

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <limits>
 
+#include "certificate/proof.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
@@ -72,9 +72,7 @@ DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimis
     step.head<3>() *= flat.length;
     DualQuaternion next = detail::frame_a_moved(q, step);
     if (turn > 1e-6) next = solve_sqp(Q, next).q;
-    const Vector8d v = next.vec().cwiseAbs();
-    const double rounding = 4 * std::numeric_limits<double>::epsilon() * v.dot(Q.cwiseAbs() * v);
-    if (!(cost(Q, next) <= least + rounding)) return q;
+    if (!(cost(Q, next) <= least + detail::rounding_of<8>(Q, next.vec()))) return q;
     q = next;
     if (size < 1e-9) return q;
   }
