@@ -3,7 +3,6 @@
 #include "egocal/solvers/sdp.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 
@@ -35,8 +34,15 @@ DualQuaternion with_best_dual(const Matrix8d& Q, const Eigen::Vector4d& r) {
   K.bottomLeftCorner<1, 4>() = r.transpose();
   Eigen::Matrix<double, 5, 1> right;
   right << -Q.bottomLeftCorner<4, 4>() * r, 0;
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 5, 5>> decomposition(K);
-  const Eigen::Matrix<double, 5, 1> solution = decomposition.solve(right);
+  // the shortest of all solutions, where D leaves a choice
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(K);
+  const double floor = 1e-14 * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  Eigen::Matrix<double, 5, 1> solution = Eigen::Matrix<double, 5, 1>::Zero();
+  for (int i = 0; i < 5; ++i) {
+    const double value = eigen.eigenvalues()[i];
+    if (std::abs(value) > floor)
+      solution += eigen.eigenvectors().col(i).dot(right) / value * eigen.eigenvectors().col(i);
+  }
   return normalized({r, solution.head<4>()});
 }
 
