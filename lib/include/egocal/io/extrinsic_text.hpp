@@ -13,10 +13,10 @@ namespace egocal {
 
 /// An extrinsic with what a reader must know to use it the right way round.
 struct NamedExtrinsic {
-  std::string parent, child;  ///< frames: the sensors a and b
-  Pose T_parent_child;        ///< pose of the child in the parent: p_parent = T p_child
-  bool certified = false;     ///< globally optimal, proven
-  long long pairs = 0;        ///< motion pairs behind it
+  std::string parent, child;                    ///< frames: the sensors a and b
+  Pose T_parent_child;                          ///< pose of the child in the parent: p_parent = T p_child
+  bool certified = false;                       ///< globally optimal, proven
+  long long pairs = 0;                          ///< motion pairs behind it
   std::optional<std::array<double, 6>> stddev;  ///< x y z [m] roll pitch yaw [rad] in the parent's frame
 };
 
@@ -29,8 +29,9 @@ enum class ExtrinsicFormat {
 std::string_view name(ExtrinsicFormat format);
 std::optional<ExtrinsicFormat> extrinsic_format_from_name(std::string_view name);
 
-/// The whole text of a file; every format names parent, child, direction and quaternion order. Numbers read back as
-/// exactly the same doubles. Throws Error where a value is not finite: nobody shall mount a sensor at NaN.
+/// The whole text of a file; every format names parent, child, direction and quaternion order. Numbers read
+/// back as exactly the same doubles. Throws Error where a value is not finite: nobody shall mount a sensor at
+/// NaN.
 std::string extrinsic_text(const NamedExtrinsic& extrinsic, ExtrinsicFormat format);
 
 /// Writes the whole file or none: beside it first, then renamed. Throws Error naming the file.

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "egocal/calibration_t.hpp"
+#include "egocal/command_t.hpp"
+#include "egocal/geometry/pose.hpp"
+#include "egocal/monitor/history.hpp"
+#include "egocal/problem_t.hpp"
+#include "egocal/status_t.hpp"
+
+namespace egocal::monitor {
+
+/// The time at which something reaches the model: it has no clock of its own. Ages are taken on mono, wall is
+/// for people.
+struct Now {
+  std::int64_t mono_us = 0;
+  std::int64_t wall_us = 0;
+};
+
+struct ModelOptions {
+  double heartbeat_timeout = 3.0;  ///< [s] a process silent for longer counts as gone
+  double stream_timeout = 2.0;     ///< [s] likewise the problems of a pair and the answers of a solver
+  double max_gap = 0.5;            ///< [s] of measured time between two problems; more is reported as a gap
+};
+
+enum class Severity { info, good, warning, bad };
+
+struct Event {
+  Now at;
+  Severity severity = Severity::info;
+  std::string subject;  ///< "lidar -> camera", the name of a process, "stderr"
+  std::string text;
+  int repeated = 1;  ///< the same again within a short time is counted, not listed
+};
+
+enum class Role { global, fast };
+
+/// What one solver says about one pair.
+struct SolverTrack {
+  std::string name;
+  Role role = Role::fast;
+  calibration_t answer;  ///< the newest
+  Now at;                ///< its arrival
+  bool silent = false;
+  std::int64_t answers = 0;
+  History history;  ///< over seconds of measured time since the session began
+};
+
+enum class ReferenceKind { none, truth, nominal };
+
+/// The answer that counts, made plain.
+struct Shown {
+  bool valid = false;  ///< all values of the transform are finite and the quaternion is one
+  Pose T_a_b;
+  ReferenceKind reference = ReferenceKind::none;
+  double error_translation = 0;  ///< against the reference (32) [m]; NaN without one
+  double error_rotation = 0;     ///< [rad]
+};
+
+struct PairState {
+  std::string a, b;
+  bool has_problem = false;
+  problem_t problem;  ///< the newest, without its blocks
+  Now problem_at;
+  bool silent = false;
+  std::int64_t session = 0;
+  std::vector<SolverTrack> solvers;
+  int counted = -1;  ///< the solver whose answer counts (egocal::counts_more); -1: no answer yet
+  Shown shown;
+  /// Measured time [s since the session began] from which on only the fast solver ran; empty while the global
+  /// one does.
+  std::optional<double> only_fast_since;
+  bool certified = false;  ///< as shown; a moment without a certificate does not unset it
+  std::int64_t certified_mono_us = 0;
+  std::int64_t fallback_mono_us = 0;
+  bool fallback = false;
+  double reported_time_offset = 0;
+  bool time_offset_known = false;
+  std::int64_t gap_count = 0;
+
+  const calibration_t* answer() const {
+    return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;
+  }
+  const SolverTrack* counted_solver() const {
+    return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)];
+  }
+};
+
+struct ProcessState {
+  status_t status;  ///< the newest
+  Now at;
+  bool alive = true;
+  double rate_in = 0, rate_out = 0;  ///< [1/s]; negative: unknown
+  std::int64_t in = 0, out = 0, lost = 0, rejected = 0;
+  std::int64_t rate_mono_us = 0, rate_in_count = 0, rate_out_count = 0;
+};
+
+/// Everything the monitor knows: messages in, plain data out. Names are kept as sent, drawing makes them
+/// safe. Bounded in memory whatever arrives: what is beyond the limits below is counted in ignored().
+class Model {
+ public:
+  explicit Model(const ModelOptions& options = {}) : options_(options) {}
+
+  /// Shows a pair before its first message, e.g. because the rig names it.
+  void expect_pair(const std::string& a, const std::string& b);
+
+  void on_problem(const problem_t& message, Now now);
+  void on_calibration(const calibration_t& message, Now now);
+  void on_status(const status_t& message, Now now);
+  void on_command(const command_t& message, Now now);
+  /// A line for the list of events from outside, e.g. captured standard error.
+  void note(Severity severity, const std::string& subject, const std::string& text, Now now);
+  /// Lets time pass: finds out who has gone silent. To be called a few times a second.
+  void tick(Now now);
+
+  const std::vector<PairState>& pairs() const { return pairs_; }
+  const std::vector<ProcessState>& processes() const { return processes_; }
+  const std::deque<Event>& events() const { return events_; }  ///< oldest first
+  std::int64_t ignored() const { return ignored_; }
+  std::int64_t messages() const { return messages_; }
+  Now now() const { return now_; }
+  const ModelOptions& options() const { return options_; }
+
+  static constexpr std::size_t kMaxPairs = 64, kMaxProcesses = 64, kMaxSolvers = 4, kMaxEvents = 1000;
+  static constexpr std::size_t kMaxText = 200;  ///< bytes kept of any text
+
+ private:
+  PairState* find_pair(const std::string& a, const std::string& b);
+  void begin_session(PairState& pair, std::int64_t session);
+  Role role_of(const calibration_t& message) const;
+  void count_answer(PairState& pair, Now now);
+  void watch_verdict(PairState& pair, Now now);
+
+  ModelOptions options_;
+  std::vector<PairState> pairs_;
+  std::vector<ProcessState> processes_;
+  std::deque<Event> events_;
+  std::int64_t ignored_ = 0;
+  std::int64_t messages_ = 0;
+  Now now_;
+};
+
+/// "lidar -> camera", for events and lines.
+std::string pair_name(const std::string& a, const std::string& b);
+/// An answer made plain, with its error against the pair's truth, else against its nominal value.
+Shown shown_of(const PairState& pair, const calibration_t& answer);
+/// A pose from the wire; empty unless all values are finite and the quaternion is of a sensible length (it is
+/// normalised).
+std::optional<Pose> pose_from(const double pos[3], const double quat_wxyz[4]);
+
+}  // namespace egocal::monitor

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/monitor/layout.hpp"
+
+#include <algorithm>
+
+namespace egocal::monitor {
+namespace {
+
+struct Frame {
+  Rect header, body, keys;
+};
+
+Frame frame_of(int width, int height) {
+  width = std::max(0, width);
+  height = std::max(0, height);
+  Frame frame;
+  const int header = height >= 3 ? 1 : 0, keys = height >= 5 ? 1 : 0;
+  frame.header = {0, 0, width, header};
+  frame.body = {0, header, width, height - header - keys};
+  frame.keys = {0, height - keys, width, keys};
+  return frame;
+}
+
+}  // namespace
+
+OverviewLayout layout_overview(int width, int height, int pairs, int processes) {
+  const Frame frame = frame_of(width, height);
+  OverviewLayout layout;
+  layout.header = frame.header;
+  layout.keys = frame.keys;
+  const int rows = frame.body.h;
+  pairs = std::max(1, pairs);
+  processes = std::max(1, processes);
+  layout.titles = rows >= 8;
+  if (!layout.titles) {
+    layout.pairs = frame.body;
+    return layout;
+  }
+  // as many processes as there are while the pairs keep the larger half
+  const int table_rows = 2 + pairs;
+  const int process_rows =
+      std::clamp(processes + 1, 2, std::max(2, std::min(rows / 3, rows - std::min(table_rows, rows / 2))));
+  int left = rows - process_rows;
+  for (int card : {5, 4})
+    if (width >= 76 && layout.card_rows == 0 && 1 + card * pairs <= left) layout.card_rows = card;
+  const int wanted = layout.card_rows > 0 ? 1 + layout.card_rows * pairs : table_rows;
+  const int pair_rows = std::min(wanted, left);
+  left -= pair_rows;
+  const int event_rows = left >= 2 ? left : 0;
+  layout.pairs = {0, frame.body.y, width, rows - process_rows - event_rows};
+  layout.processes = {0, layout.pairs.y + layout.pairs.h, width, process_rows};
+  layout.events = {0, layout.processes.y + process_rows, width, event_rows};
+  return layout;
+}
+
+std::vector<PlacedColumn> layout_pair_table(int width) {
+  struct Wish {
+    PairColumn column;
+    int width;
+    int rank;  // what is given room first
+  };
+  // from left to right
+  constexpr Wish wishes[] = {{PairColumn::name, 12, 1},
+                             {PairColumn::verdict, 11, 0},
+                             {PairColumn::error_translation, 9, 2},
+                             {PairColumn::error_rotation, 8, 3},
+                             {PairColumn::translation, 29, 7},
+                             {PairColumn::rotation, 29, 8},
+                             {PairColumn::gap, 8, 9},
+                             {PairColumn::frames, 6, 4},
+                             {PairColumn::solver, 10, 5},
+                             {PairColumn::solve, 7, 10},
+                             {PairColumn::verify, 7, 11},
+                             {PairColumn::latency, 7, 12},
+                             {PairColumn::age, 6, 6}};
+  std::array<bool, std::size(wishes)> chosen{};
+  int used = 1;  // the cursor's column
+  for (int rank = 0; rank < static_cast<int>(std::size(wishes)); ++rank)
+    for (std::size_t i = 0; i < std::size(wishes); ++i)
+      if (wishes[i].rank == rank && used + wishes[i].width + 1 <= width) {
+        chosen[i] = true;
+        used += wishes[i].width + 1;
+      }
+  std::vector<PlacedColumn> columns;
+  int x = 1;
+  for (std::size_t i = 0; i < std::size(wishes); ++i) {
+    if (!chosen[i]) continue;
+    int w = wishes[i].width;
+    if (wishes[i].column == PairColumn::name)
+      w += std::min(20, width - used);  // names take what is left over
+    columns.push_back({wishes[i].column, x, w});
+    x += w + 1;
+  }
+  if (columns.empty() && width > 0) columns.push_back({PairColumn::verdict, 0, width});
+  return columns;
+}
+
+DetailLayout layout_detail(int width, int height) {
+  const Frame frame = frame_of(width, height);
+  DetailLayout layout;
+  layout.header = frame.header;
+  layout.keys = frame.keys;
+  const Rect body = frame.body;
+
+  const auto place_plots = [&](const Rect& area) {
+    const int columns = area.w >= 40 ? 2 : 1, rows = 4 / columns;
+    if (area.w < 20 || area.h < 4) return;
+    const int shown_rows = std::min(rows, area.h / 4);  // a curve needs four rows to say anything
+    for (int i = 0; i < shown_rows * columns; ++i) {
+      const int column = i % columns, row = i / columns;
+      const int x0 = area.w * column / columns, x1 = area.w * (column + 1) / columns;
+      const int y0 = area.h * row / shown_rows, y1 = area.h * (row + 1) / shown_rows;
+      layout.plots[static_cast<std::size_t>(i)] = {area.x + x0, area.y + y0, x1 - x0, y1 - y0};
+    }
+  };
+
+  if (body.w >= 76 && body.h >= 18) {
+    layout.matrices = body.h >= 24;
+    const int direction_rows = layout.matrices ? 7 : 4;
+    const int upper = body.h - direction_rows;
+    const int side = std::clamp(body.w * 38 / 100, 30, 46);
+    place_plots({0, body.y, body.w - side, upper});
+    layout.observability = {body.w - side, body.y, side, 8};
+    layout.solvers = {body.w - side, body.y + 8, side, upper - 8};
+    const int half = body.w / 2;
+    layout.directions[0] = {0, body.y + upper, half, direction_rows};
+    layout.directions[1] = {half, body.y + upper, body.w - half, direction_rows};
+    return layout;
+  }
+
+  const int summary = std::min(body.h, 4);
+  layout.summary = {0, body.y, body.w, summary};
+  Rect rest{0, body.y + summary, body.w, body.h - summary};
+  if (rest.h >= 8 + 8 && rest.w >= 28) {
+    layout.observability = {0, rest.y, rest.w, 8};
+    rest = {0, rest.y + 8, rest.w, rest.h - 8};
+  }
+  place_plots(rest);
+  return layout;
+}
+
+EventsLayout layout_events(int width, int height) {
+  const Frame frame = frame_of(width, height);
+  return {frame.header, frame.body, frame.keys};
+}
+
+Rect layout_dialog(int width, int height, int wanted_width, int wanted_height) {
+  const int w = std::clamp(wanted_width, 0, std::max(0, width)),
+            h = std::clamp(wanted_height, 0, std::max(0, height));
+  return {(std::max(0, width) - w) / 2, (std::max(0, height) - h) / 2, w, h};
+}
+
+}  // namespace egocal::monitor

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/monitor/lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "egocal/geometry/pose.hpp"
+#include "panels.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+using nlohmann::json;
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+json real(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+json reals(const double* values, int n) {
+  json list = json::array();
+  for (int i = 0; i < n; ++i) list.push_back(real(values[i]));
+  return list;
+}
+
+const char* severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return "info";
+    case Severity::good:
+      return "good";
+    case Severity::warning:
+      return "warning";
+    case Severity::bad:
+      return "bad";
+  }
+  return "info";
+}
+
+const char* status_name(int status) {
+  return status == 0 ? "certified" : status == 1 ? "not optimal" : "undecided";
+}
+
+const char* reference_name(ReferenceKind kind) {
+  return kind == ReferenceKind::truth ? "truth" : kind == ReferenceKind::nominal ? "nominal" : "none";
+}
+
+json answer_json(const PairState& pair, const SolverTrack& solver) {
+  const calibration_t& answer = solver.answer;
+  const Shown shown = shown_of(pair, answer);
+  json j;
+  j["solver"] = clean(solver.name, 100);
+  j["role"] = solver.role == Role::global ? "global" : "fast";
+  j["method"] = clean(answer.method, 100);
+  j["session"] = answer.session;
+  j["seq"] = answer.seq;
+  j["pairs"] = answer.pairs;
+  j["translation"] = reals(answer.pos, 3);
+  j["rotation_wxyz"] = reals(answer.quat, 4);
+  j["cost"] = real(answer.cost);
+  j["lower_bound"] = real(answer.lower_bound);
+  j["gap"] = real(answer.gap);
+  j["scaled_gap"] = real(answer.scaled_gap);
+  j["certified"] = answer.status == 0;
+  j["status"] = status_name(answer.status);
+  j["observable"] = json::array();
+  for (signed char o : answer.observable) j["observable"].push_back(o != 0);
+  j["stddev"] = reals(answer.stddev, 6);
+  j["hint"] = clean(answer.hint, 200);
+  j["fallback"] = answer.fallback != 0;
+  j["solve_us"] = static_cast<double>(answer.solve_ns) * 1e-3;
+  j["verify_us"] = static_cast<double>(answer.verify_ns) * 1e-3;
+  j["latency_us"] = answer.latency_us < 0 ? json(nullptr) : json(answer.latency_us);
+  j["reference"] = reference_name(shown.reference);
+  j["error_translation_m"] = real(shown.error_translation);
+  j["error_rotation_deg"] = real(shown.error_rotation * kDegrees);
+  return j;
+}
+
+}  // namespace
+
+std::string text_lines(const Model& model, Charset charset) {
+  const Symbols& s = symbols(charset);
+  const std::string degree = charset == Charset::unicode ? "°" : " deg";
+  std::string text;
+  for (const PairState& pair : model.pairs()) {
+    text += clean(pair.a, 40) + " -> " + clean(pair.b, 40) + ": ";
+    const calibration_t* answer = pair.answer();
+    if (!answer) {
+      text +=
+          pair.has_problem ? count(pair.problem.matched) + " motions, no answer yet\n" : "no motions yet\n";
+      continue;
+    }
+    text += verdict_of(pair, charset).text + " by " + clean(answer->solver, 40) + " (" +
+            clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
+    if (pair.shown.valid) {
+      const Pose& T = pair.shown.T_a_b;
+      const Eigen::Vector3d rpy = roll_pitch_yaw(T.rotation) * kDegrees;
+      const auto triple = [&](const Eigen::Vector3d& v, const double* spread, double scale) {
+        std::string part;
+        for (int i = 0; i < 3; ++i)
+          part += (i ? " " : "") + number(v(i), 2, charset) + s.plus_minus +
+                  number(spread[i] * scale, 2, charset);
+        return part;
+      };
+      text += "x y z " + triple(T.translation * 100, answer->stddev, 100) + " cm, roll pitch yaw " +
+              triple(rpy, answer->stddev + 3, kDegrees) + degree;
+      if (pair.shown.reference != ReferenceKind::none)
+        text += std::string(pair.shown.reference == ReferenceKind::truth ? ", error " : ", off nominal ") +
+                number(pair.shown.error_translation * 100, 2, charset) + " cm " +
+                number(pair.shown.error_rotation * kDegrees, 3, charset) + degree;
+    } else {
+      text += "no transform: values that are not finite";
+    }
+    text += ", gap " + compact(answer->scaled_gap, charset) + " of 1, solve " +
+            duration(static_cast<double>(answer->solve_ns) * 1e-9, charset) + " verify " +
+            duration(static_cast<double>(answer->verify_ns) * 1e-9, charset);
+    if (answer->latency_us >= 0)
+      text += " end to end " + duration(static_cast<double>(answer->latency_us) * 1e-6, charset);
+    if (!answer->hint.empty()) text += ", hint: " + clean(answer->hint, 120);
+    text += "\n";
+  }
+  for (const ProcessState& process : model.processes()) {
+    const status_t& status = process.status;
+    text += clean(status.name, 40) + ": " +
+            (process.alive             ? clean(status.state, 20)
+             : status.state == "ended" ? "ended"
+                                       : "GONE") +
+            ", pid " + std::to_string(status.pid) + " on " + clean(status.host, 40) + ", in " +
+            std::to_string(process.in) + " out " + std::to_string(process.out) + " lost " +
+            std::to_string(process.lost) + " rejected " + std::to_string(process.rejected);
+    if (!status.last_error.empty()) text += ", error: " + clean(status.last_error, 200);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string event_line(const Event& event, int utc_offset_s) {
+  std::string text = clock_time(event.at.wall_us, utc_offset_s) + " " + clean(event.subject, 100) + ": " +
+                     clean(event.text, 200);
+  if (event.repeated > 1) text += " (" + std::to_string(event.repeated) + " times)";
+  return text;
+}
+
+std::string json_line(const Model& model) {
+  json j;
+  j["time_us"] = model.now().wall_us;
+  j["pairs"] = json::array();
+  for (const PairState& pair : model.pairs()) {
+    json p;
+    p["a"] = clean(pair.a, 200);
+    p["b"] = clean(pair.b, 200);
+    p["session"] = pair.session;
+    if (pair.has_problem) {
+      p["mode"] = pair.problem.mode == 1 ? "planar" : "spatial";
+      p["seq"] = pair.problem.seq;
+      p["matched"] = pair.problem.matched;
+      p["rejected"] = pair.problem.rejected;
+      p["stride"] = pair.problem.stride;
+      p["time_offset"] = real(pair.problem.time_offset);
+    }
+    p["answer"] = pair.counted_solver() ? answer_json(pair, *pair.counted_solver()) : json(nullptr);
+    p["solvers"] = json::array();
+    for (const SolverTrack& solver : pair.solvers) p["solvers"].push_back(answer_json(pair, solver));
+    j["pairs"].push_back(p);
+  }
+  j["processes"] = json::array();
+  for (const ProcessState& process : model.processes()) {
+    const status_t& status = process.status;
+    j["processes"].push_back({{"name", clean(status.name, 200)},
+                              {"role", clean(status.role, 200)},
+                              {"host", clean(status.host, 200)},
+                              {"pid", status.pid},
+                              {"alive", process.alive},
+                              {"state", clean(status.state, 200)},
+                              {"in", process.in},
+                              {"out", process.out},
+                              {"lost", process.lost},
+                              {"rejected", process.rejected},
+                              {"last_error", clean(status.last_error, 200)}});
+  }
+  j["events"] = json::array();
+  const auto& events = model.events();
+  const std::size_t first = events.size() > 20 ? events.size() - 20 : 0;
+  for (std::size_t i = first; i < events.size(); ++i)
+    j["events"].push_back({{"time_us", events[i].at.wall_us},
+                           {"severity", severity_name(events[i].severity)},
+                           {"subject", clean(events[i].subject, 200)},
+                           {"text", clean(events[i].text, 200)},
+                           {"repeated", events[i].repeated}});
+  return j.dump();
+}
+
+}  // namespace egocal::monitor

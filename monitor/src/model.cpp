@@ -1,0 +1,438 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/monitor/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/online/calibrate.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// A verdict or a fallback must have lasted this long before its end is an event: solvers alternate, people do
+// not.
+constexpr double kSettle = 1.0;   // [s]
+constexpr double kRepeat = 30.0;  // [s] the same event again within this time is only counted
+
+double seconds(std::int64_t from_us, std::int64_t to_us) {
+  return (static_cast<double>(to_us) - static_cast<double>(from_us)) * 1e-6;
+}
+
+std::string bounded(const std::string& text) {
+  return text.substr(0, Model::kMaxText);
+}
+
+std::string rounded(double value, int decimals) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
+  return buffer;
+}
+
+bool starts_with(const std::string& text, const char* prefix) {
+  return text.rfind(prefix, 0) == 0;
+}
+
+Optimality optimality_of(const calibration_t& answer) {
+  return answer.status == 0   ? Optimality::certified
+         : answer.status == 1 ? Optimality::not_optimal
+                              : Optimality::undecided;
+}
+
+Claim claim_of(const calibration_t& answer) {
+  return {answer.session, answer.seq, optimality_of(answer), answer.cost};
+}
+
+}  // namespace
+
+std::string pair_name(const std::string& a, const std::string& b) {
+  return a + " -> " + b;
+}
+
+std::optional<Pose> pose_from(const double pos[3], const double quat_wxyz[4]) {
+  Pose pose;
+  pose.translation = Eigen::Vector3d(pos[0], pos[1], pos[2]);
+  pose.rotation = Eigen::Quaterniond(quat_wxyz[0], quat_wxyz[1], quat_wxyz[2], quat_wxyz[3]);
+  const double norm = pose.rotation.norm();
+  if (!pose.translation.allFinite() || !(norm > 1e-3 && norm < 1e3)) return std::nullopt;
+  pose.rotation.coeffs() /= norm;
+  return pose;
+}
+
+PairState* Model::find_pair(const std::string& a, const std::string& b) {
+  for (PairState& pair : pairs_)
+    if (pair.a == a && pair.b == b) return &pair;
+  if (pairs_.size() == kMaxPairs) {
+    ++ignored_;
+    return nullptr;
+  }
+  PairState& pair = pairs_.emplace_back();
+  pair.a = a;
+  pair.b = b;
+  return &pair;
+}
+
+void Model::expect_pair(const std::string& a, const std::string& b) {
+  find_pair(bounded(a), bounded(b));
+}
+
+void Model::note(Severity severity, const std::string& subject, const std::string& text, Now now) {
+  now_ = now;
+  const std::size_t recent = std::min<std::size_t>(events_.size(), 16);
+  for (std::size_t i = 1; i <= recent; ++i) {
+    Event& event = events_[events_.size() - i];
+    if (event.subject == subject && event.text == text && seconds(event.at.mono_us, now.mono_us) < kRepeat) {
+      ++event.repeated;
+      return;
+    }
+  }
+  if (events_.size() == kMaxEvents) events_.pop_front();
+  events_.push_back({now, severity, bounded(subject), bounded(text), 1});
+}
+
+void Model::begin_session(PairState& pair, std::int64_t session) {
+  pair.session = session;
+  pair.solvers.clear();
+  pair.counted = -1;
+  pair.shown = {};
+  pair.only_fast_since.reset();
+  pair.certified = pair.fallback = false;
+  pair.time_offset_known = false;
+}
+
+void Model::on_problem(const problem_t& message, Now now) {
+  now_ = now;
+  ++messages_;
+  PairState* pair = find_pair(bounded(message.sensor_a), bounded(message.sensor_b));
+  if (!pair) return;
+  const std::string name = pair_name(pair->a, pair->b);
+  if (pair->session != message.session) {
+    if (pair->has_problem) note(Severity::warning, name, "session reset: the calibration begins anew", now);
+    begin_session(*pair, message.session);
+  } else if (pair->has_problem) {
+    const double step = seconds(pair->problem.utime, message.utime);
+    if (step < 0) {
+      note(Severity::warning, name, "time ran backwards in the problems of one session", now);
+    } else if (step > options_.max_gap * std::max(1, std::min(message.stride, 1000)) &&
+               message.seq > pair->problem.seq) {
+      ++pair->gap_count;
+      note(Severity::warning, name, "gap of " + rounded(step, 1) + " s in the stream", now);
+    }
+  }
+  if (pair->silent) note(Severity::good, name, "the stream is back", now);
+  const bool chosen_anew = pair->has_problem && pair->problem.stride != message.stride;
+  pair->silent = false;
+  pair->has_problem = true;
+  pair->problem_at = now;
+
+  problem_t& kept = pair->problem;
+  const auto copy_head = [&] {
+    kept.utime = message.utime;
+    kept.session = message.session;
+    kept.seq = message.seq;
+    kept.sensor_a = pair->a;
+    kept.sensor_b = pair->b;
+    kept.mode = message.mode;
+    std::copy_n(message.plane_a, 4, kept.plane_a);
+    std::copy_n(message.plane_b, 4, kept.plane_b);
+    kept.weight_rotation = message.weight_rotation;
+    kept.weight_translation = message.weight_translation;
+    kept.stride = message.stride;
+    kept.choice = bounded(message.choice);
+    kept.n_blocks = 0;
+    kept.has_prior = message.has_prior;
+    std::copy_n(message.prior_pos, 3, kept.prior_pos);
+    std::copy_n(message.prior_quat, 4, kept.prior_quat);
+    kept.has_truth = message.has_truth;
+    std::copy_n(message.truth_pos, 3, kept.truth_pos);
+    std::copy_n(message.truth_quat, 4, kept.truth_quat);
+    kept.time_offset = message.time_offset;
+    kept.time_offset_stddev = message.time_offset_stddev;
+    kept.matched = message.matched;
+    kept.rejected = message.rejected;
+    kept.host = bounded(message.host);
+    kept.received_mono_us = message.received_mono_us;
+  };
+  copy_head();
+  if (chosen_anew)
+    note(Severity::info, name, "stride is now " + std::to_string(kept.stride) + " (" + kept.choice + ")",
+         now);
+
+  if (std::isfinite(kept.time_offset)) {
+    const double spread = kept.time_offset_stddev >= 0 ? 3 * kept.time_offset_stddev : 0;
+    if (!pair->time_offset_known) {
+      pair->reported_time_offset = kept.time_offset;
+      pair->time_offset_known = true;
+    } else if (std::abs(kept.time_offset - pair->reported_time_offset) > std::max(1e-3, spread)) {
+      note(Severity::info, name,
+           "time offset changed from " + rounded(pair->reported_time_offset * 1e3, 1) + " to " +
+               rounded(kept.time_offset * 1e3, 1) + " ms",
+           now);
+      pair->reported_time_offset = kept.time_offset;
+    }
+  }
+}
+
+Role Model::role_of(const calibration_t& message) const {
+  for (const ProcessState& process : processes_)
+    if (process.status.name == message.solver) {
+      if (process.status.role == "global") return Role::global;
+      if (process.status.role == "fast") return Role::fast;
+    }
+  if (message.solver.find("global") != std::string::npos) return Role::global;
+  if (message.solver.find("fast") != std::string::npos) return Role::fast;
+  return message.method == "dual" || message.method == "sdp" ? Role::global : Role::fast;
+}
+
+Shown shown_of(const PairState& pair, const calibration_t& answer) {
+  Shown shown;
+  shown.error_translation = shown.error_rotation = kNaN;
+  std::optional<Pose> reference;
+  if (pair.has_problem && pair.problem.has_truth) {
+    reference = pose_from(pair.problem.truth_pos, pair.problem.truth_quat);
+    if (reference) shown.reference = ReferenceKind::truth;
+  }
+  if (!reference && pair.has_problem && pair.problem.has_prior) {
+    reference = pose_from(pair.problem.prior_pos, pair.problem.prior_quat);
+    if (reference) shown.reference = ReferenceKind::nominal;
+  }
+  const auto T = pose_from(answer.pos, answer.quat);
+  if (!T) return shown;
+  shown.valid = true;
+  shown.T_a_b = *T;
+  if (reference) {
+    const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*reference), to_dual_quaternion(*T));
+    shown.error_translation = error.translation;
+    shown.error_rotation = error.rotation;
+  }
+  return shown;
+}
+
+void Model::count_answer(PairState& pair, Now now) {
+  int best = -1;
+  for (std::size_t i = 0; i < pair.solvers.size(); ++i)
+    if (best < 0 || counts_more(claim_of(pair.solvers[i].answer),
+                                claim_of(pair.solvers[static_cast<std::size_t>(best)].answer)))
+      best = static_cast<int>(i);
+  pair.counted = best;
+  if (best >= 0) pair.shown = shown_of(pair, *pair.answer());
+  watch_verdict(pair, now);
+}
+
+void Model::watch_verdict(PairState& pair, Now now) {
+  const calibration_t* answer = pair.answer();
+  if (!answer) return;
+  const std::string name = pair_name(pair.a, pair.b);
+  if (answer->status == 0) {
+    if (!pair.certified) note(Severity::good, name, "certified globally optimal, by " + answer->solver, now);
+    pair.certified = true;
+    pair.certified_mono_us = now.mono_us;
+  } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > kSettle) {
+    pair.certified = false;
+    note(Severity::bad, name,
+         answer->status == 1 ? "certificate lost: a better answer is known"
+                             : "certificate lost: too imprecise to decide",
+         now);
+  }
+}
+
+void Model::on_calibration(const calibration_t& message, Now now) {
+  now_ = now;
+  ++messages_;
+  PairState* pair = find_pair(bounded(message.sensor_a), bounded(message.sensor_b));
+  if (!pair) return;
+  if (pair->has_problem ? message.session != pair->session : message.session < pair->session) return;
+  if (!pair->has_problem && message.session != pair->session) begin_session(*pair, message.session);
+  const std::string name = pair_name(pair->a, pair->b);
+
+  const std::string solver = bounded(message.solver);
+  SolverTrack* track = nullptr;
+  for (SolverTrack& candidate : pair->solvers)
+    if (candidate.name == solver) track = &candidate;
+  if (!track) {
+    if (pair->solvers.size() == kMaxSolvers) {
+      // a long session of swapped solvers: the one that has been silent the longest makes room
+      auto oldest =
+          std::min_element(pair->solvers.begin(), pair->solvers.end(),
+                           [](const auto& x, const auto& y) { return x.at.mono_us < y.at.mono_us; });
+      pair->solvers.erase(oldest);
+    }
+    track = &pair->solvers.emplace_back();
+    track->name = solver;
+    if (pair->solvers.size() > 1 || pair->counted >= 0)
+      note(Severity::info, name,
+           "solver swapped: " + solver + " (" + bounded(message.method) + ") answers too", now);
+  } else if (track->answer.method != bounded(message.method)) {
+    note(Severity::info, name,
+         "solver swapped: " + solver + " changed from " + track->answer.method + " to " +
+             bounded(message.method),
+         now);
+  } else if (track->silent) {
+    note(Severity::good, name, solver + " answers again", now);
+  }
+  const bool newer = track->answers == 0 || message.seq >= track->answer.seq;
+  track->silent = false;
+  track->at = now;
+  ++track->answers;
+  if (!newer) return;  // overtaken on the way
+
+  track->answer = message;
+  track->answer.sensor_a = pair->a;
+  track->answer.sensor_b = pair->b;
+  track->answer.solver = solver;
+  track->answer.method = bounded(message.method);
+  track->answer.hint = bounded(message.hint);
+  track->role = role_of(track->answer);
+
+  const double time = seconds(pair->session, message.utime);
+  if (track->role == Role::global || message.fallback) {
+    pair->only_fast_since.reset();
+  } else if (!pair->only_fast_since && message.status == 0) {
+    pair->only_fast_since = time;
+  }
+  if (message.fallback) {
+    if (!pair->fallback)
+      note(Severity::warning, name, "fallback: " + solver + " asked for the global solver", now);
+    pair->fallback = true;
+    pair->fallback_mono_us = now.mono_us;
+  } else if (pair->fallback && seconds(pair->fallback_mono_us, now.mono_us) > kSettle) {
+    pair->fallback = false;
+    note(Severity::good, name, "only the fast solver runs again", now);
+  }
+
+  // every solver's own course, so that two can be compared
+  const Shown own = shown_of(*pair, message);
+  std::array<double, curve_count> values{};
+  values[rotation_error] = own.error_rotation;
+  values[translation_error] = own.error_translation;
+  if (own.reference == ReferenceKind::none) {
+    values[translation_error] = std::max({message.stddev[0], message.stddev[1], message.stddev[2]});
+    values[rotation_error] = std::max({message.stddev[3], message.stddev[4], message.stddev[5]});
+  }
+  values[scaled_gap] = message.scaled_gap;
+  values[execution_time] =
+      (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
+  track->history.add(time, values);
+  count_answer(*pair, now);
+}
+
+void Model::on_status(const status_t& message, Now now) {
+  now_ = now;
+  ++messages_;
+  const std::string name = bounded(message.name), host = bounded(message.host);
+  ProcessState* process = nullptr;
+  for (ProcessState& candidate : processes_)
+    if (candidate.status.name == name && candidate.status.host == host) process = &candidate;
+  const std::string state = bounded(message.state), error = bounded(message.last_error);
+  if (!process) {
+    if (processes_.size() == kMaxProcesses) {
+      auto gone = std::find_if(processes_.begin(), processes_.end(), [](const auto& p) { return !p.alive; });
+      if (gone == processes_.end()) {
+        ++ignored_;
+        return;
+      }
+      processes_.erase(gone);
+    }
+    process = &processes_.emplace_back();
+    process->rate_in = process->rate_out = -1;
+    process->rate_mono_us = now.mono_us;
+    process->alive = state != "ended";
+    if (process->alive) note(Severity::good, name, "process is there (" + state + ")", now);
+    if (!error.empty()) note(Severity::warning, name, error, now);
+  } else {
+    const bool ended = state == "ended";
+    const bool restarted = process->status.run != message.run;
+    if (restarted && process->alive && process->status.pid != message.pid &&
+        message.run < process->status.run) {
+      note(Severity::warning, name, "a second process of this name is running", now);
+    } else if (restarted) {
+      note(Severity::good, name, process->alive ? "process was started anew" : "process is back", now);
+    } else if (!process->alive && !ended) {
+      note(Severity::good, name, "process is back", now);
+    } else if (process->status.state != state) {
+      note(ended || state == "running" ? Severity::info : Severity::warning, name,
+           "is " + state + ", was " + process->status.state, now);
+    }
+    if (error != process->status.last_error && !error.empty()) note(Severity::warning, name, error, now);
+    process->alive = !ended;
+    if (restarted) process->rate_mono_us = 0;
+  }
+  process->at = now;
+  process->status = status_t();
+  process->status.utime = message.utime;
+  process->status.name = name;
+  process->status.role = bounded(message.role);
+  process->status.host = host;
+  process->status.pid = message.pid;
+  process->status.run = message.run;
+  process->status.version = bounded(message.version);
+  process->status.state = state;
+  process->status.last_error = error;
+
+  process->in = process->out = process->lost = process->rejected = 0;
+  for (const counter_t& counter : message.counters) {
+    // a hostile count must not overflow the sums
+    const std::int64_t value =
+        std::clamp<std::int64_t>(counter.value, -(std::int64_t{1} << 50), std::int64_t{1} << 50);
+    const auto add = [&](std::int64_t& sum) { sum = std::min(sum + value, std::int64_t{1} << 60); };
+    if (counter.name == "in") add(process->in);
+    if (counter.name == "out") add(process->out);
+    if (starts_with(counter.name, "lost") || starts_with(counter.name, "dropped")) add(process->lost);
+    if (starts_with(counter.name, "rejected")) add(process->rejected);
+  }
+  const double elapsed = seconds(process->rate_mono_us, now.mono_us);
+  if (process->rate_mono_us == 0 || process->in < process->rate_in_count || elapsed < 0) {
+    process->rate_in = process->rate_out = -1;
+  } else if (elapsed >= 0.7) {
+    process->rate_in = static_cast<double>(process->in - process->rate_in_count) / elapsed;
+    process->rate_out = static_cast<double>(process->out - process->rate_out_count) / elapsed;
+  } else {
+    return;  // changes come in bursts, a rate needs a while
+  }
+  process->rate_mono_us = now.mono_us;
+  process->rate_in_count = process->in;
+  process->rate_out_count = process->out;
+}
+
+void Model::on_command(const command_t& message, Now now) {
+  ++messages_;
+  const std::string subject = message.sensor_a.empty() && message.sensor_b.empty()
+                                  ? std::string("all pairs")
+                                  : pair_name(bounded(message.sensor_a), bounded(message.sensor_b));
+  note(Severity::info, bounded(subject),
+       "command: " + bounded(message.verb) + (message.to == "*" ? "" : " to " + bounded(message.to)), now);
+}
+
+void Model::tick(Now now) {
+  now_ = now;
+  for (ProcessState& process : processes_) {
+    if (process.alive && seconds(process.at.mono_us, now.mono_us) > options_.heartbeat_timeout) {
+      process.alive = false;
+      process.rate_in = process.rate_out = -1;
+      note(Severity::bad, process.status.name,
+           "process is gone: no heartbeat for " + rounded(options_.heartbeat_timeout, 0) + " s", now);
+    }
+  }
+  for (PairState& pair : pairs_) {
+    const std::string name = pair_name(pair.a, pair.b);
+    if (pair.has_problem && !pair.silent &&
+        seconds(pair.problem_at.mono_us, now.mono_us) > options_.stream_timeout) {
+      pair.silent = true;
+      note(Severity::info, name,
+           "the stream is silent: no new motion for " + rounded(options_.stream_timeout, 0) + " s", now);
+    }
+    for (SolverTrack& track : pair.solvers) {
+      // a solver is missed only where there is something to solve
+      const bool owed = pair.has_problem && !pair.silent && track.role == Role::fast;
+      if (owed && !track.silent && seconds(track.at.mono_us, now.mono_us) > options_.stream_timeout) {
+        track.silent = true;
+        note(Severity::bad, name, "solver swapped: " + track.name + " no longer answers", now);
+      }
+    }
+  }
+}
+
+}  // namespace egocal::monitor

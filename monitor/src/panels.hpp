@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/monitor/canvas.hpp"
+#include "egocal/monitor/layout.hpp"
+#include "egocal/monitor/view.hpp"
+
+namespace egocal::monitor {
+
+// The parts that the screens are put together from. Each fills the pane that the layout gave it.
+
+struct Verdict {
+  std::string text;  ///< with a mark, at most 12 cells
+  Style style;
+};
+Verdict verdict_of(const PairState& pair, Charset charset);
+
+/// A title with a rule to the right edge.
+void draw_title(const Pane& pane, const std::string& title, Charset charset);
+std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
+/// "fast" for "egocal-fast".
+std::string short_solver(const std::string& name, std::size_t max = 12);
+Style solver_style(Role role);
+
+void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, Charset charset);
+void draw_pair_table(const Pane& pane, const Model& model, int selected, bool header, Charset charset);
+void draw_processes(const Pane& pane, const Model& model, bool title, Charset charset);
+void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset);
+
+void draw_summary(const Pane& pane, const PairState& pair, Charset charset);
+void draw_observability(const Pane& pane, const PairState& pair, Charset charset);
+void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset charset);
+/// inverted: T_b_a, else T_a_b with its standard deviations.
+void draw_direction(const Pane& pane, const PairState& pair, bool inverted, bool matrix, Charset charset);
+void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewState& view);
+
+}  // namespace egocal::monitor

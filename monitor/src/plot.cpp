@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/monitor/plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace egocal::monitor {
+namespace {
+
+// Dots that know to which cell they belong.
+class Dots {
+ public:
+  Dots(int cells_wide, int cells_high, Charset charset)
+      : charset_(charset), w_(cells_wide), h_(cells_high), cells_(static_cast<std::size_t>(w_ * h_)) {}
+  int width() const { return charset_ == Charset::unicode ? 2 * w_ : w_; }
+  int height() const { return charset_ == Charset::unicode ? 4 * h_ : h_; }
+
+  void set(int x, int y, Style style) {
+    if (x < 0 || y < 0 || x >= width() || y >= height()) return;
+    static constexpr unsigned kBit[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+    if (charset_ == Charset::unicode) {
+      Dot& cell = cells_[static_cast<std::size_t>(y / 4 * w_ + x / 2)];
+      cell.bits |= kBit[y % 4][x % 2];
+      cell.style = style;
+    } else {
+      Dot& cell = cells_[static_cast<std::size_t>(y * w_ + x)];
+      cell.bits = 1;
+      cell.style = style;
+    }
+  }
+
+  void draw(const Pane& pane) const {
+    for (int y = 0; y < h_; ++y)
+      for (int x = 0; x < w_; ++x) {
+        const Dot& cell = cells_[static_cast<std::size_t>(y * w_ + x)];
+        if (cell.bits)
+          pane.put(x, y, {charset_ == Charset::unicode ? U'\u2800' + cell.bits : U'*', cell.style, false});
+      }
+  }
+
+ private:
+  struct Dot {
+    unsigned bits = 0;
+    Style style = Style::normal;
+  };
+  Charset charset_;
+  int w_, h_;
+  std::vector<Dot> cells_;
+};
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  void take(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  bool empty() const { return !(low <= high); }
+};
+
+}  // namespace
+
+void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
+  constexpr int kLabel = 8;
+  const int w = pane.width() - kLabel - 2, h = pane.height() - 2;
+  pane.text(1, 0, pad_right(plot.title, pane.width() - 1), Style::strong);
+  if (w < 4 || h < 1) return;
+
+  const double span = plot.end - plot.begin;
+  const auto axis_value = [&](double value) { return plot.logarithmic ? std::log10(value) : value; };
+  const auto usable = [&](double value) { return std::isfinite(value) && (!plot.logarithmic || value > 0); };
+
+  Range range;
+  for (const PlotSeries& series : plot.series) {
+    for (const Slice& slice : series.history->since(plot.begin)) {
+      if (slice.begin < plot.begin - 1 || slice.begin > plot.end) continue;
+      for (float raw : {slice.low[plot.curve], slice.high[plot.curve]}) {
+        const double value = static_cast<double>(raw) * plot.scale;
+        if (usable(value)) range.take(value);
+      }
+    }
+  }
+  const bool nothing = range.empty();
+  if (plot.threshold && (usable(*plot.threshold))) range.take(*plot.threshold);
+  if (range.empty()) {
+    const std::string text = "no values yet";
+    pane.text(kLabel + std::max(0, (w - width_of(text)) / 2), 1 + h / 2, text, Style::dim);
+    return;
+  }
+  double low = range.low, high = range.high;
+  if (plot.logarithmic) {
+    low = std::max(std::floor(std::log10(low) + 1e-9), std::log10(high) - 15);
+    high = std::ceil(std::log10(high) - 1e-9);
+    if (high - low < 1) high = low + 1;
+  } else {
+    if (low > 0 && low < 0.6 * high) low = 0;
+    const double room = 0.05 * std::max(high - low, 1e-9 * std::max(1.0, std::abs(high)));
+    high += room;
+    if (low != 0) low -= room;
+  }
+
+  // numbers at the axis: every decade that fits, or the ends and the middle
+  const auto row_of = [&](double axis) {
+    return static_cast<int>(std::lround((high - axis) / (high - low) * (h - 1)));
+  };
+  const auto label = [&](double axis) {
+    const double value = plot.logarithmic ? std::pow(10.0, axis) : axis;
+    const int row = row_of(axis);
+    if (row < 0 || row >= h) return;
+    pane.text(0, 1 + row, pad_left(compact(value, charset), kLabel - 1), Style::dim);
+    pane.text(kLabel, 1 + row, charset == Charset::unicode ? "┤" : "+", Style::dim);
+  };
+  for (int row = 0; row < h; ++row)
+    pane.text(kLabel, 1 + row, charset == Charset::unicode ? "│" : "|", Style::dim);
+  if (plot.logarithmic) {
+    const int decades = static_cast<int>(high - low);
+    const int step = std::max(1, (2 * decades + h - 1) / std::max(1, h));
+    for (int d = 0; d <= decades; d += step) label(low + d);
+  } else {
+    label(low);
+    label(high);
+    if (h >= 5) label(0.5 * (low + high));
+  }
+  const std::string from = compact(plot.begin, charset), to = compact(plot.end, charset) + " s";
+  pane.text(kLabel, 1 + h, charset == Charset::unicode ? "└" : "+", Style::dim);
+  for (int x = 0; x < w; ++x) pane.text(kLabel + 1 + x, 1 + h, symbols(charset).line, Style::dim);
+  pane.text(kLabel + 1, 1 + h, from, Style::dim);
+  if (w > width_of(from) + width_of(to) + 1) pane.text(kLabel + 1 + w - width_of(to), 1 + h, to, Style::dim);
+
+  const Pane field = pane.part({kLabel + 1, 1, w, h});
+  if (plot.threshold && usable(*plot.threshold)) {
+    const int row = row_of(axis_value(*plot.threshold));
+    for (int x = 0; x < w; ++x) field.text(x, row, charset == Charset::unicode ? "╌" : "-", Style::threshold);
+  }
+  if (plot.mark && span > 0 && *plot.mark >= plot.begin && *plot.mark <= plot.end) {
+    const int x = static_cast<int>((*plot.mark - plot.begin) / span * (w - 1));
+    for (int y = 0; y < h; ++y) field.text(x, y, charset == Charset::unicode ? "┊" : ":", Style::global);
+  }
+  if (nothing || !(span > 0)) return;
+
+  Dots dots(w, h, charset);
+  for (const PlotSeries& series : plot.series) {
+    const auto& course = series.history->since(plot.begin);
+    std::vector<Range> columns(static_cast<std::size_t>(dots.width()));
+    for (const Slice& slice : course) {
+      const double x = (slice.begin - plot.begin) / span * dots.width();
+      if (!(x > -1) || !(x < dots.width())) continue;
+      Range& column = columns[static_cast<std::size_t>(std::max(0.0, x))];
+      for (float raw : {slice.low[plot.curve], slice.high[plot.curve]}) {
+        const double value = static_cast<double>(raw) * plot.scale;
+        if (usable(value)) column.take(axis_value(value));
+      }
+    }
+    const auto y_of = [&](double axis) {
+      return static_cast<int>(
+          std::lround(std::clamp((high - axis) / (high - low), 0.0, 1.0) * (dots.height() - 1)));
+    };
+    // neighbouring slices are joined, also over the empty columns between two slices; true gaps stay open
+    const double columns_per_slice = series.history->slice_width(course) / span * dots.width();
+    const int bridge = static_cast<int>(std::min(1e4, std::max(2.0, 3 * columns_per_slice + 1)));
+    int last_x = -1, last_y = 0;
+    for (int x = 0; x < dots.width(); ++x) {
+      const Range& column = columns[static_cast<std::size_t>(x)];
+      if (column.empty()) continue;
+      const int top = y_of(column.high), bottom = y_of(column.low);
+      for (int y = top; y <= bottom; ++y) dots.set(x, y, series.style);
+      if (last_x >= 0 && x - last_x <= bridge) {
+        const int target = std::clamp(last_y, top, bottom);
+        for (int k = last_x + 1; k <= x; ++k) {
+          const double s = static_cast<double>(k - last_x) / (x - last_x);
+          const int from_y =
+              static_cast<int>(std::lround(last_y + (s - 1.0 / (x - last_x)) * (target - last_y)));
+          const int to_y = static_cast<int>(std::lround(last_y + s * (target - last_y)));
+          for (int y = std::min(from_y, to_y); y <= std::max(from_y, to_y); ++y) dots.set(k, y, series.style);
+        }
+      }
+      last_x = x;
+      last_y = (top + bottom) / 2;
+    }
+  }
+  dots.draw(field);
+}
+
+}  // namespace egocal::monitor

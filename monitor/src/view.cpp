@@ -1,0 +1,428 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/monitor/view.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "egocal/monitor/layout.hpp"
+#include "panels.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+constexpr std::array<double, 7> kWindows{0, 10, 30, 60, 300, 1800, 7200};  // [s], 0: all
+
+const PairState* selected_pair(const Model& model, const ViewState& view) {
+  if (model.pairs().empty()) return nullptr;
+  const int last = static_cast<int>(model.pairs().size()) - 1;
+  return &model.pairs()[static_cast<std::size_t>(std::clamp(view.selected, 0, last))];
+}
+
+void zoom(ViewState& view, int step) {
+  // from all of the drive to ever less of it
+  auto at = std::find(kWindows.begin(), kWindows.end(), view.window_s);
+  int index = at == kWindows.end() ? 0 : static_cast<int>(at - kWindows.begin());
+  const int n = static_cast<int>(kWindows.size());
+  // in: all -> 7200 -> ... -> 10; out: the way back
+  if (step > 0) index = index == 0 ? n - 1 : std::max(1, index - 1);
+  if (step < 0) index = index == 0 || index == n - 1 ? 0 : index + 1;
+  view.window_s = kWindows[static_cast<std::size_t>(index)];
+  view.notice =
+      index == 0 ? "the curves show the whole session" : "the curves show the last " + age(view.window_s);
+}
+
+Action about_pair(Action::Kind kind, const PairState& pair) {
+  Action action;
+  action.kind = kind;
+  action.a = pair.a;
+  action.b = pair.b;
+  action.session = pair.session;
+  return action;
+}
+
+Action press_in_dialog(ViewState& view, const Model& model, KeyPress key) {
+  const Dialog dialog = view.dialog;
+  view.dialog = Dialog::none;
+  const PairState* pair = selected_pair(model, view);
+  const char c = key.key == Key::character ? key.character : '\0';
+  if (dialog == Dialog::help || !pair) return {};
+  if (dialog == Dialog::export_format) {
+    constexpr ExtrinsicFormat formats[] = {ExtrinsicFormat::yaml, ExtrinsicFormat::ros, ExtrinsicFormat::urdf,
+                                           ExtrinsicFormat::kalibr};
+    for (ExtrinsicFormat format : formats)
+      if (c == name(format)[0]) {
+        Action action = about_pair(Action::Kind::export_answer, *pair);
+        action.format = format;
+        return action;
+      }
+    view.notice = "nothing exported";
+    return {};
+  }
+  if (c == 'y' || c == 'Y') {
+    return about_pair(dialog == Dialog::reset   ? Action::Kind::reset
+                      : dialog == Dialog::pause ? Action::Kind::pause
+                                                : Action::Kind::resume,
+                      *pair);
+  }
+  view.notice = "nothing done";
+  return {};
+}
+
+bool is_paused(const Model& model) {
+  return std::any_of(model.processes().begin(), model.processes().end(),
+                     [](const ProcessState& p) { return p.alive && p.status.state == "paused"; });
+}
+
+void ask(ViewState& view, const Model& model, Dialog dialog) {
+  if (!selected_pair(model, view)) {
+    view.notice = "there is no pair yet";
+  } else if (!view.live && dialog != Dialog::export_format) {
+    view.notice = "this is a log: there is no process to tell";
+  } else {
+    view.dialog = dialog;
+  }
+}
+
+void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
+  if (pane.height() < 1) return;
+  const Symbols& s = symbols(view.charset);
+  const PairState* pair = selected_pair(model, view);
+  int x = 1;
+  std::string right = clock_time(model.now().wall_us, view.utc_offset_s);
+  if (view.screen == Screen::detail && pair) {
+    x = pane.text(x, 0, pair_title(*pair, view.charset, pane.width() >= 60 ? 24 : 12), Style::title) + 2;
+    const Verdict verdict = verdict_of(*pair, view.charset);
+    x = pane.text(x, 0, verdict.text, verdict.style) + 1;
+    if (const calibration_t* answer = pair->answer(); answer && pane.width() >= 60) {
+      x = pane.text(x, 0, "by ", Style::dim);
+      x = pane.text(x, 0, clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
+      x = pane.text(x, 0,
+                    std::string(" ") + s.dot + " " + (pair->problem.mode == 1 ? "planar" : "3-D") + " " +
+                        s.dot + " " + count(answer->pairs) + " frames",
+                    Style::dim);
+      if (pair->has_problem && pane.width() >= 90) {
+        const double offset_ms = pair->problem.time_offset * 1e3;
+        x = pane.text(x, 0,
+                      std::string(" ") + s.dot + " stride " + std::to_string(pair->problem.stride) + " " +
+                          s.dot + " offset " + number(offset_ms, 1, view.charset) + " ms",
+                      Style::dim);
+      }
+    }
+  } else {
+    x = pane.text(x, 0, "egocal", Style::title) + 2;
+    std::size_t certified = 0, gone = 0;
+    for (const PairState& p : model.pairs()) certified += p.answer() && p.answer()->status == 0;
+    for (const ProcessState& p : model.processes()) gone += !p.alive && p.status.state != "ended";
+    x = pane.text(x, 0,
+                  std::to_string(certified) + " of " + std::to_string(model.pairs().size()) + " certified",
+                  certified == model.pairs().size() && certified ? Style::good : Style::normal) +
+        2;
+    if (gone) x = pane.text(x, 0, std::to_string(gone) + " gone", Style::bad) + 2;
+    if (pane.width() >= 70) right = clean(view.source, 40) + "  " + right;
+  }
+  if (view.frozen) right = "VIEW PAUSED  " + right;
+  const int at = pane.width() - width_of(right) - 1;
+  if (at > x) pane.text(at, 0, right, view.frozen ? Style::warning : Style::dim);
+}
+
+void draw_keys(const Pane& pane, const ViewState& view) {
+  if (pane.height() < 1) return;
+  if (!view.notice.empty()) {
+    pane.text(1, 0, clean(view.notice, 200), Style::warning);
+    return;
+  }
+  struct Hint {
+    const char* key;
+    const char* does;
+  };
+  std::vector<Hint> hints;
+  switch (view.screen) {
+    case Screen::overview:
+      hints = {{"q", "quit"},           {"?", "help"},   {"Enter", "detail"}, {"e", "events"},
+               {"space", "pause view"}, {"x", "export"}, {"r", "reset"},      {"p", "pause calibration"}};
+      break;
+    case Screen::detail:
+      hints = {{"q", "quit"},           {"?", "help"},   {"Esc", "back"}, {"+-", "zoom"}, {"l", "log/linear"},
+               {"space", "pause view"}, {"x", "export"}, {"r", "reset"},  {"p", "pause"}, {"n", "next pair"}};
+      break;
+    case Screen::events:
+      hints = {{"q", "quit"}, {"?", "help"}, {"Esc", "back"}, {"up/down", "scroll"}, {"space", "pause view"}};
+      break;
+  }
+  int x = 1;
+  for (const Hint& hint : hints) {
+    const int w = width_of(hint.key) + 1 + width_of(hint.does);
+    if (x + w > pane.width()) break;
+    x = pane.text(x, 0, hint.key, Style::key) + 1;
+    x = pane.text(x, 0, hint.does, Style::dim) + 3;
+  }
+}
+
+void draw_dialog(Canvas& canvas, const Model& model, const ViewState& view) {
+  const PairState* pair = selected_pair(model, view);
+  std::vector<std::string> lines;
+  std::string title;
+  const std::string which = pair ? pair_title(*pair, view.charset, 20) : "";
+  switch (view.dialog) {
+    case Dialog::none:
+      return;
+    case Dialog::help:
+      title = "Keys";
+      lines = {"q        quit                      Enter    detail of the pair",
+               "up down  choose a pair, scroll     Esc      back to the overview",
+               "n N      next, previous pair       e        events",
+               "+ -      zoom the time             l        log or linear axes",
+               "space    pause the view only       x        export the answer",
+               "r        reset the calibration     p        pause or resume it",
+               "Ctrl-L   draw anew                 Ctrl-Z   suspend",
+               "",
+               "certified: no transform fits the motions better, proven.",
+               "gap of 1: distance to that proof, in units of its limit.",
+               std::string(symbols(view.charset).plus_minus) +
+                   " and the bars: how well the motions show it (one sigma).",
+               "cyan: fast solver, magenta: global solver"};
+      break;
+    case Dialog::reset:
+      title = "Reset";
+      lines = {"Forget all motions of " + which + "?", "", "y  yes, begin anew        any other key  no"};
+      break;
+    case Dialog::pause:
+      title = "Pause";
+      lines = {"Pause the calibration of " + which + "?", "Motions in the meantime are not used.", "",
+               "y  yes        any other key  no"};
+      break;
+    case Dialog::resume:
+      title = "Resume";
+      lines = {"Resume the calibration of " + which + "?", "", "y  yes        any other key  no"};
+      break;
+    case Dialog::export_format:
+      title = "Export";
+      lines = {"Write the answer of " + which + " to a file:", "",
+               "y  YAML    r  ROS    u  URDF    k  Kalibr", "", "any other key  nothing"};
+      break;
+  }
+  int wanted = 0;
+  for (const std::string& line : lines) wanted = std::max(wanted, width_of(line));
+  const Rect box =
+      layout_dialog(canvas.width(), canvas.height(), wanted + 4, static_cast<int>(lines.size()) + 2);
+  const Pane pane(canvas, box);
+  pane.clear();
+  const bool unicode = view.charset == Charset::unicode;
+  for (int x = 0; x < box.w; ++x)
+    for (int y : {0, box.h - 1}) pane.text(x, y, unicode ? "─" : "-", Style::dim);
+  for (int y = 0; y < box.h; ++y)
+    for (int x : {0, box.w - 1}) pane.text(x, y, unicode ? "│" : "|", Style::dim);
+  const char* corners[4] = {unicode ? "┌" : "+", unicode ? "┐" : "+", unicode ? "└" : "+",
+                            unicode ? "┘" : "+"};
+  pane.text(0, 0, corners[0], Style::dim);
+  pane.text(box.w - 1, 0, corners[1], Style::dim);
+  pane.text(0, box.h - 1, corners[2], Style::dim);
+  pane.text(box.w - 1, box.h - 1, corners[3], Style::dim);
+  pane.text(2, 0, " " + title + " ", Style::title);
+  const Pane inner = pane.part({2, 1, box.w - 4, box.h - 2});
+  for (std::size_t i = 0; i < lines.size(); ++i) inner.text(0, static_cast<int>(i), lines[i]);
+}
+
+void draw_overview(Canvas& canvas, const Model& model, const ViewState& view) {
+  const OverviewLayout layout =
+      layout_overview(canvas.width(), canvas.height(), static_cast<int>(model.pairs().size()),
+                      static_cast<int>(model.processes().size()));
+  draw_header(Pane(canvas, layout.header), model, view);
+  const Pane pairs(canvas, layout.pairs);
+  const int top = layout.titles ? 1 : 0;
+  if (layout.titles) draw_title(pairs, "Sensor pairs", view.charset);
+  const Pane rows = pairs.part({0, top, pairs.width(), pairs.height() - top});
+  if (layout.card_rows > 0 && !model.pairs().empty()) {
+    for (std::size_t i = 0; i < model.pairs().size(); ++i)
+      draw_pair_card(rows.part({0, static_cast<int>(i) * layout.card_rows, rows.width(), layout.card_rows}),
+                     model.pairs()[i], model.now(), static_cast<int>(i) == view.selected, view.charset);
+  } else {
+    draw_pair_table(rows, model, view.selected, layout.titles, view.charset);
+  }
+  if (!layout.processes.empty())
+    draw_processes(Pane(canvas, layout.processes), model, layout.titles, view.charset);
+  if (!layout.events.empty()) {
+    const Pane events(canvas, layout.events);
+    draw_title(events, "Events", view.charset);
+    draw_events(events.part({0, 1, events.width(), events.height() - 1}), model, 0, view.utc_offset_s,
+                view.charset);
+  }
+  draw_keys(Pane(canvas, layout.keys), view);
+}
+
+void draw_detail(Canvas& canvas, const Model& model, const ViewState& view) {
+  const PairState* pair = selected_pair(model, view);
+  const DetailLayout layout = layout_detail(canvas.width(), canvas.height());
+  draw_header(Pane(canvas, layout.header), model, view);
+  draw_keys(Pane(canvas, layout.keys), view);
+  if (!pair) {
+    Pane(canvas).text(1, layout.header.h, "no pair yet: waiting for messages", Style::dim);
+    return;
+  }
+  if (!layout.summary.empty()) draw_summary(Pane(canvas, layout.summary), *pair, view.charset);
+  for (int i = 0; i < 4; ++i)
+    if (const Rect& rect = layout.plots[static_cast<std::size_t>(i)]; !rect.empty())
+      draw_curve(Pane(canvas, rect), *pair, i, view);
+  if (!layout.observability.empty())
+    draw_observability(Pane(canvas, layout.observability), *pair, view.charset);
+  if (!layout.solvers.empty()) draw_solvers(Pane(canvas, layout.solvers), *pair, model.now(), view.charset);
+  for (int i = 0; i < 2; ++i)
+    if (const Rect& rect = layout.directions[static_cast<std::size_t>(i)]; !rect.empty())
+      draw_direction(Pane(canvas, rect), *pair, i == 1, layout.matrices, view.charset);
+}
+
+void draw_event_screen(Canvas& canvas, const Model& model, const ViewState& view) {
+  const EventsLayout layout = layout_events(canvas.width(), canvas.height());
+  draw_header(Pane(canvas, layout.header), model, view);
+  draw_keys(Pane(canvas, layout.keys), view);
+  const Pane list(canvas, layout.list);
+  if (list.height() < 3) {
+    draw_events(list, model, view.scroll, view.utc_offset_s, view.charset);
+    return;
+  }
+  draw_title(list, "Events", view.charset);
+  draw_events(list.part({0, 1, list.width(), list.height() - 1}), model, view.scroll, view.utc_offset_s,
+              view.charset);
+}
+
+}  // namespace
+
+Action press(ViewState& view, const Model& model, KeyPress key) {
+  view.notice.clear();
+  if (view.dialog != Dialog::none) return press_in_dialog(view, model, key);
+  const int pairs = static_cast<int>(model.pairs().size());
+  const int events = static_cast<int>(model.events().size());
+  const auto select = [&](int index) { view.selected = pairs ? std::clamp(index, 0, pairs - 1) : 0; };
+  const auto scroll = [&](int lines) {
+    view.scroll = std::clamp(view.scroll + lines, 0, std::max(0, events - 1));
+  };
+  const bool list = view.screen == Screen::events;
+  switch (key.key) {
+    case Key::up:
+      list ? scroll(1) : select(view.selected - 1);
+      return {};
+    case Key::down:
+      list ? scroll(-1) : select(view.selected + 1);
+      return {};
+    case Key::page_up:
+      list ? scroll(10) : select(view.selected - 10);
+      return {};
+    case Key::page_down:
+      list ? scroll(-10) : select(view.selected + 10);
+      return {};
+    case Key::home:
+      list ? scroll(events) : select(0);
+      return {};
+    case Key::end:
+      list ? scroll(-events) : select(pairs - 1);
+      return {};
+    case Key::enter:
+    case Key::right:
+      if (view.screen == Screen::overview) view.screen = Screen::detail;
+      return {};
+    case Key::escape:
+    case Key::left:
+      view.screen = Screen::overview;
+      return {};
+    case Key::tab:
+      view.screen = view.screen == Screen::overview ? Screen::detail
+                    : view.screen == Screen::detail ? Screen::events
+                                                    : Screen::overview;
+      return {};
+    case Key::character:
+      break;
+  }
+  switch (key.character) {
+    case 'q':
+    case 'Q': {
+      Action action;
+      action.kind = Action::Kind::quit;
+      return action;
+    }
+    case '?':
+    case 'h':
+      view.dialog = Dialog::help;
+      break;
+    case 'k':
+      list ? scroll(1) : select(view.selected - 1);
+      break;
+    case 'j':
+      list ? scroll(-1) : select(view.selected + 1);
+      break;
+    case 'n':
+      select(pairs ? (view.selected + 1) % pairs : 0);
+      break;
+    case 'N':
+      select(pairs ? (view.selected + pairs - 1) % pairs : 0);
+      break;
+    case '1':
+      view.screen = Screen::overview;
+      break;
+    case '2':
+      view.screen = Screen::detail;
+      break;
+    case '3':
+    case 'e':
+      view.screen = Screen::events;
+      view.scroll = 0;
+      break;
+    case '+':
+    case '=':
+      zoom(view, 1);
+      break;
+    case '-':
+      zoom(view, -1);
+      break;
+    case 'l':
+      view.logarithmic = !view.logarithmic;
+      view.notice = view.logarithmic ? "logarithmic axes" : "linear axes";
+      break;
+    case ' ':
+      view.frozen = !view.frozen;
+      break;
+    case 'r':
+      ask(view, model, Dialog::reset);
+      break;
+    case 'p':
+      ask(view, model, is_paused(model) ? Dialog::resume : Dialog::pause);
+      break;
+    case 'x':
+      ask(view, model, Dialog::export_format);
+      break;
+    default:
+      break;
+  }
+  return {};
+}
+
+void draw(Canvas& canvas, const Model& model, const ViewState& view) {
+  switch (view.screen) {
+    case Screen::overview:
+      draw_overview(canvas, model, view);
+      break;
+    case Screen::detail:
+      draw_detail(canvas, model, view);
+      break;
+    case Screen::events:
+      draw_event_screen(canvas, model, view);
+      break;
+  }
+  draw_dialog(canvas, model, view);
+}
+
+std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
+  const calibration_t* answer = pair.answer();
+  if (!answer || !pair.shown.valid) return std::nullopt;
+  NamedExtrinsic extrinsic;
+  extrinsic.parent = pair.a;
+  extrinsic.child = pair.b;
+  extrinsic.T_parent_child = pair.shown.T_a_b;
+  extrinsic.certified = answer->status == 0;
+  extrinsic.pairs = answer->pairs;
+  extrinsic.stddev.emplace();
+  std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());
+  return extrinsic;
+}
+
+}  // namespace egocal::monitor
