@@ -71,7 +71,7 @@ DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimis
     const double size = step.norm();
     step.head<3>() *= flat.length;
     DualQuaternion next = detail::frame_a_moved(q, step);
-    if (turn > 1e-6) next = solve_sqp(Q, next).q;
+    next = solve_sqp(Q, next).q;
     if (!(cost(Q, next) <= least + detail::rounding_of<8>(Q, next.vec()))) return q;
     q = next;
     if (size < 1e-9) return q;

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+
+#include "../support/random_motion.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/online/answer.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::displacement;
+using testing::Motion;
+using testing::Random;
+using testing::random_pairs;
+using testing::RandomDrive;
+
+using Flags = std::array<bool, 6>;
+
+Problem problem_of(const std::vector<MotionPair>& pairs) {
+  BlockStatistics blocks;
+  for (const MotionPair& pair : pairs) blocks.add(pair);
+  Problem problem;
+  problem.blocks = blocks.blocks();
+  return problem;
+}
+
+/// Motions of a that keep its own axes: z is the axis of turns.
+std::vector<MotionPair> motions_of_a(const DualQuaternion& T, int n, double noise, std::uint64_t seed,
+                                     const std::function<DualQuaternion(Random&)>& motion) {
+  Random random(seed);
+  std::vector<MotionPair> pairs;
+  for (int i = 0; i < n; ++i) {
+    const DualQuaternion a = motion(random);
+    const auto noisy = [&](const DualQuaternion& q) {
+      const Eigen::Vector3d turn = random.normal3(noise * 0.05), shift = random.normal3(noise);
+      return q * displacement(turn, shift);
+    };
+    const DualQuaternion b = conjugate(T) * a * T;
+    const DualQuaternion noisy_a = noisy(a);
+    pairs.push_back({noisy_a, noisy(b)});
+  }
+  return pairs;
+}
+
+const DualQuaternion T_a_b = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
+
+DualQuaternion planar(Random& random) {
+  const double yaw = 0.05 * random.normal(), x = 1 + 0.1 * random.normal(), y = 0.05 * random.normal();
+  return displacement({0, 0, yaw}, {x, y, 0});
+}
+
+TEST(Knowledge, FreeMotionShowsEverything) {
+  Random random(1);
+  const Answer answer =
+      solve(problem_of(random_pairs(T_a_b, {.pairs = 300, .noise = 0.01}, random)), Method::dual);
+  EXPECT_EQ(answer.knowledge.observable, (Flags{true, true, true, true, true, true}));
+  for (const double stddev : answer.knowledge.stddev) {
+    EXPECT_GT(stddev, 0);
+    EXPECT_LT(stddev, 0.1);
+  }
+  EXPECT_EQ(answer.knowledge.hint, "");
+}
+
+TEST(Knowledge, HeightIsNeverSeenInPlanarMotion) {
+  for (const double noise : {0.0, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.1})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Answer answer = solve(problem_of(motions_of_a(T_a_b, 300, noise, seed, planar)), Method::dual);
+      const Flags& seen = answer.knowledge.observable;
+      EXPECT_FALSE(seen[2]) << noise << " " << seed;
+      EXPECT_TRUE(std::isinf(answer.knowledge.stddev[2]));
+      if (noise <= 0.01) {
+        EXPECT_EQ(seen, (Flags{true, true, false, true, true, true})) << noise << " " << seed;
+      }
+      EXPECT_NE(answer.knowledge.hint, "");
+      EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
+    }
+}
+
+TEST(Knowledge, PureTranslationShowsNoTranslation) {
+  for (const double noise : {0.0, 0.01}) {
+    const Answer answer = solve(problem_of(motions_of_a(T_a_b, 200, noise, 1,
+                                                        [](Random& random) {
+                                                          return displacement({0, 0, 0}, random.normal3());
+                                                        })),
+                                Method::dual);
+    EXPECT_EQ(answer.knowledge.observable, (Flags{false, false, false, true, true, true})) << noise;
+    EXPECT_EQ(answer.knowledge.hint, "still needed: turns");
+    EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 0.01);
+  }
+}
+
+TEST(Knowledge, StraightOnShowsOnlyTheDirection) {
+  const Answer answer =
+      solve(problem_of(motions_of_a(T_a_b, 200, 0, 1,
+                                    [](Random& random) {
+                                      return displacement({0, 0, 0}, {random.uniform(0.5, 1.5), 0, 0});
+                                    })),
+            Method::dual);
+  // roll turns about the direction of travel
+  EXPECT_EQ(answer.knowledge.observable, (Flags{false, false, false, false, true, true}));
+}
+
+TEST(Knowledge, NoMotionShowsNothing) {
+  Problem problem = problem_of(std::vector<MotionPair>(50));
+  problem.prior = T_a_b;
+  for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
+    const Answer answer = solve(problem, method);
+    EXPECT_EQ(answer.knowledge.observable, Flags{}) << name(method);
+    EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).translation, 1e-12);
+    EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 1e-12);
+    EXPECT_NE(answer.knowledge.hint, "");
+  }
+  EXPECT_EQ(solve(Problem{}, Method::dual).knowledge.observable, Flags{});
+}
+
+TEST(Knowledge, OnePairShowsNoTranslationAlongItsAxis) {
+  const Answer answer = solve(problem_of(motions_of_a(T_a_b, 1, 0, 1, planar)), Method::dual);
+  EXPECT_FALSE(answer.knowledge.observable[2]);
+  EXPECT_TRUE(answer.T_a_b.vec().allFinite());
+}
+
+TEST(Knowledge, FlatDirectionsAreTakenFromThePrior) {
+  // true but for the height: the motions give x, y and the rotation, the prior gives z
+  Problem problem = problem_of(motions_of_a(T_a_b, 100, 0, 1, planar));
+  Pose prior = to_pose(T_a_b);
+  prior.translation += Eigen::Vector3d(0.3, -0.2, 0.7);
+  prior.rotation = prior.rotation * rotation_exp({0.05, 0.02, -0.03});
+  problem.prior = to_dual_quaternion(prior);
+  for (const Method method : {Method::dual, Method::sdp, Method::sqp}) {
+    const Answer answer = solve(problem, method, problem.prior);
+    const Pose T = to_pose(answer.T_a_b), truth = to_pose(T_a_b);
+    EXPECT_NEAR(T.translation.x(), truth.translation.x(), 1e-9) << name(method);
+    EXPECT_NEAR(T.translation.y(), truth.translation.y(), 1e-9);
+    EXPECT_NEAR(T.translation.z(), prior.translation.z(), 1e-6);
+    EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 1e-9);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
+    EXPECT_TRUE(std::isinf(answer.certificate.reach_translation));
+  }
+}
+
+TEST(Knowledge, PlanarModeShowsXYAndYaw) {
+  const GroundPlane plane_a{Eigen::Vector3d::UnitZ(), -1.8}, plane_b{Eigen::Vector3d(0, -1, 0), -1.6};
+  const DualQuaternion G_a = plane_frame(plane_a), G_b = plane_frame(plane_b);
+  const DualQuaternion T = extrinsic_from_planar(displacement({0, 0, 0.4}, {1, 2, 0}), G_a, G_b);
+  std::vector<MotionPair> pairs = motions_of_a(T, 300, 0.01, 1, planar);
+  for (MotionPair& pair : pairs) pair = {planar_motion(pair.a, G_a), planar_motion(pair.b, G_b)};
+  Problem problem = problem_of(pairs);
+  problem.mode = Mode::planar;
+  problem.plane_a = plane_a;
+  problem.plane_b = plane_b;
+  for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
+    const Answer answer = solve(problem, method);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << name(method);
+    EXPECT_EQ(answer.knowledge.observable, (Flags{true, true, false, false, false, true}));
+    EXPECT_LT(extrinsic_error(T, answer.T_a_b).translation, 0.1);
+    EXPECT_LT(extrinsic_error(T, answer.T_a_b).rotation, 0.01);
+  }
+}
+
+TEST(Knowledge, PlanarModeWithoutTurnsShowsNoTranslation) {
+  const GroundPlane plane{Eigen::Vector3d::UnitZ(), -1.8};
+  Problem problem = problem_of(motions_of_a(displacement({0, 0, 0.4}, {1, 2, 0}), 100, 0, 1, [](Random&) {
+    return displacement({0, 0, 0}, {1, 0, 0});
+  }));
+  problem.mode = Mode::planar;
+  problem.plane_a = problem.plane_b = plane;
+  const Answer answer = solve(problem, Method::dual);
+  EXPECT_EQ(answer.knowledge.observable, (Flags{false, false, false, false, false, true}));
+  EXPECT_EQ(answer.knowledge.hint, "still needed: turns");
+}
+
+TEST(Knowledge, IntervalsOfTwoSigmaCoverTheTruth) {
+  // independent noise, free motion: each direction's 95 % interval must cover the truth in about 95 % of the
+  // drives
+  int covered = 0, cases = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const DualQuaternion T = testing::random_extrinsic(random);
+    const Answer answer =
+        solve(problem_of(random_pairs(T, {.pairs = 320, .noise = 0.01}, random)), Method::dual);
+    const Pose truth = to_pose(T), estimate = to_pose(answer.T_a_b);
+    Eigen::Matrix<double, 6, 1> error;
+    error << estimate.translation - truth.translation,
+        rotation_log(estimate.rotation * truth.rotation.conjugate());
+    for (std::size_t i = 0; i < 6; ++i) {
+      ASSERT_TRUE(answer.knowledge.observable[i]);
+      ++cases;
+      if (std::abs(error[static_cast<int>(i)]) <= 1.96 * answer.knowledge.stddev[i]) ++covered;
+    }
+  }
+  const double share = static_cast<double>(covered) / cases;
+  EXPECT_GT(share, 0.92);
+  EXPECT_LT(share, 0.98);
+}
+
+}  // namespace
+}  // namespace egocal
