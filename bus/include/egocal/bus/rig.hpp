@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "egocal/geometry/dual_quaternion.hpp"
+#include "egocal/pairing/drive.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/problem/ground_plane.hpp"
 #include "egocal/problem/problem.hpp"
@@ -28,30 +27,34 @@ struct Sensor {
 struct PairConfig {
   std::string a, b;  ///< names of sensors; T is the pose of b in a
   Mode mode = Mode::spatial;
-  std::optional<Pose> truth;    ///< known extrinsic, for showing errors
-  std::optional<Pose> nominal;  ///< mounting drawing: the prior in unobservable directions
-  std::optional<int> stride;        ///< empty: auto
-  std::optional<Balance> balance;   ///< empty: auto
-  std::optional<double> time_offset;  ///< [s] added to the stamps of b; empty: auto
+  std::optional<Pose> truth;              ///< known extrinsic, for showing errors
+  std::optional<Pose> nominal;            ///< mounting drawing: the prior in unobservable directions
+  std::optional<int> stride;              ///< empty: auto
+  std::optional<Balance> balance;         ///< empty: auto
+  std::optional<double> time_offset = 0;  ///< [s] added to the stamps of b; empty: auto
 };
 
 struct Rig {
   std::string file;
   std::vector<Sensor> sensors;
   std::vector<PairConfig> pairs;
-  double t_no_fail = 5.0;              ///< [s] Algorithm 1
-  double max_gap = 0.5;                ///< [s] poses further apart are never interpolated between
-  double reorder_window = 0.2;         ///< [s] a lost pose is waited for at most this long (measured time)
-  double heartbeat_timeout = 3.0;      ///< [s] a process silent for longer counts as gone
-  double gap_threshold_translation = 1e-6;  ///< [m] CertificateOptions
-  double gap_threshold_rotation = 1e-6;     ///< [rad]
+  double t_no_fail = 5.0;          ///< [s] Algorithm 1
+  double max_gap = 0.5;            ///< [s] poses further apart are never interpolated between
+  double reorder_window = 0.2;     ///< [s] a lost pose is waited for at most this long (measured time)
+  double heartbeat_timeout = 3.0;  ///< [s] a process silent for longer counts as gone
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
 };
 
-/// Reads a rig file (TOML). Throws Error naming file, line and key on anything that is not understood: a misspelt key
-/// is an error, not ignored.
+/// Reads a rig file (TOML, docs/rig.md). Throws Error naming file, line and key on anything that is not
+/// understood: a misspelt key is an error, not ignored.
 Rig read_rig(const std::string& file);
+/// The same from text; file is the name that errors carry.
+Rig parse_rig(const std::string& text, const std::string& file);
 
+/// Throws Error where the rig has no sensor of that name.
 const Sensor& sensor(const Rig& rig, const std::string& name);
+
+/// What pairing is to make of the rig's pair: an automatic time offset starts at zero.
+DriveOptions drive_options(const Rig& rig, const PairConfig& pair);
 
 }  // namespace egocal::bus

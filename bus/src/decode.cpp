@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/bus/decode.hpp"
+
+#include <cstdint>
+
+namespace egocal::bus {
+
+namespace {
+
+/// Walks over the layout of an encoded message (big-endian, strings with length and final zero) without
+/// reading more of it than the length fields.
+class Walk {
+ public:
+  explicit Walk(Bytes bytes) : bytes_(bytes) { skip(8); }  // the fingerprint
+
+  void skip(std::size_t size) {
+    if (size > bytes_.size() - position_)
+      fail();
+    else
+      position_ += size;
+  }
+
+  std::int32_t int32() {
+    const std::size_t at = position_;
+    skip(4);
+    if (failed_) return 0;
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes_[at + i]);
+    return static_cast<std::int32_t>(value);
+  }
+
+  void string() {
+    const std::int32_t length = int32();
+    if (length < 1)
+      fail();
+    else
+      skip(static_cast<std::size_t>(length));
+  }
+
+  /// A count whose elements take at least this many bytes each.
+  std::size_t count(std::size_t least_size) {
+    const std::int32_t n = int32();
+    if (failed_ || n < 0 || static_cast<std::size_t>(n) > (bytes_.size() - position_) / least_size) {
+      fail();
+      return 0;
+    }
+    return static_cast<std::size_t>(n);
+  }
+
+  bool done() const { return !failed_ && position_ == bytes_.size(); }
+
+ private:
+  void fail() {
+    failed_ = true;
+    position_ = bytes_.size();
+  }
+
+  Bytes bytes_;
+  std::size_t position_ = 0;
+  bool failed_ = false;
+};
+
+constexpr std::size_t statistics_size = 8 + 8 + 36 * 8;
+
+}  // namespace
+
+bool lengths_fit(const odometry_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(16 + 24 + 32);
+  walk.skip(8 * walk.count(8));
+  return walk.done();
+}
+
+bool lengths_fit(const bot_core::pose_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(8 + 24 + 24 + 32 + 24 + 24);
+  return walk.done();
+}
+
+bool lengths_fit(const motion_pair_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(4 * 8 + 4 + 2 * 64 + 8 + 1);
+  return walk.done();
+}
+
+bool lengths_fit(const problem_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(3 * 8);
+  walk.string();
+  walk.string();
+  walk.skip(1 + 2 * 32 + 2 * 8 + 4);
+  walk.string();
+  walk.skip(statistics_size * walk.count(statistics_size));
+  walk.skip(2 * (1 + 24 + 32) + 4 * 8);
+  walk.string();
+  walk.skip(8);
+  return walk.done();
+}
+
+bool lengths_fit(const calibration_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(4 * 8);
+  for (int i = 0; i < 4; ++i) walk.string();
+  walk.skip(24 + 32 + 4 * 8 + 1 + 2 * 8 + 6 + 6 * 8);
+  walk.string();
+  walk.skip(1 + 3 * 8);
+  return walk.done();
+}
+
+bool lengths_fit(const status_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(8);
+  for (int i = 0; i < 3; ++i) walk.string();
+  walk.skip(4 + 8);
+  for (int i = 0; i < 3; ++i) walk.string();
+  const std::size_t counters = walk.count(4 + 1 + 8);
+  for (std::size_t i = 0; i < counters; ++i) {
+    walk.string();
+    walk.skip(8);
+  }
+  const std::size_t acknowledgements = walk.count(4 + 1 + 16);
+  for (std::size_t i = 0; i < acknowledgements; ++i) {
+    walk.string();
+    walk.skip(16);
+  }
+  return walk.done();
+}
+
+bool lengths_fit(const command_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(8);
+  for (int i = 0; i < 4; ++i) walk.string();
+  walk.skip(8);
+  return walk.done();
+}
+
+}  // namespace egocal::bus

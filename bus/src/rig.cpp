@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/bus/rig.hpp"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/glue.hpp"
+#include "egocal/error.hpp"
+
+namespace egocal::bus {
+
+namespace {
+
+constexpr std::size_t max_channel_length = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+
+/// One table of the file, with its name for error messages. Everything asked of it throws Error at its line.
+class Table {
+ public:
+  Table(const toml::table& table, std::string name, const std::string& file)
+      : table_(table), name_(std::move(name)), file_(file) {}
+
+  [[noreturn]] void fail(const toml::node* node, const std::string& key, const std::string& problem) const {
+    const long line = static_cast<long>((node ? node->source() : table_.source()).begin.line);
+    const std::string field = name_.empty() ? key : key.empty() ? name_ : name_ + "." + key;
+    throw error_at(file_, line, field, problem);
+  }
+  [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
+    fail(table_.get(key), key, problem);
+  }
+
+  void only(std::initializer_list<std::string_view> keys) const {
+    for (const auto& [key, node] : table_) {
+      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+      std::string known;
+      for (const std::string_view k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
+      const long line = static_cast<long>(key.source().begin.line);
+      throw error_at(file_, line, (name_.empty() ? "" : name_ + ".") + std::string(key.str()),
+                     "unknown key; expected one of: " + known);
+    }
+  }
+
+  bool has(const std::string& key) const { return table_.get(key) != nullptr; }
+
+  const toml::node& require(const std::string& key) const {
+    const toml::node* node = table_.get(key);
+    if (!node) fail(key, "is missing");
+    return *node;
+  }
+
+  std::string text(const std::string& key) const {
+    const toml::node& node = require(key);
+    if (!node.is_string()) fail(key, "expected a text in quotes");
+    return node.as_string()->get();
+  }
+
+  /// One of these texts.
+  std::string choice(const std::string& key, std::initializer_list<std::string_view> choices) const {
+    const std::string value = text(key);
+    if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
+      std::string known;
+      for (const std::string_view c : choices)
+        known += (known.empty() ? "\"" : ", \"") + std::string(c) + "\"";
+      fail(key, "expected one of " + known + ", got \"" + value + "\"");
+    }
+    return value;
+  }
+
+  double number(const std::string& key, double least, double most, const std::string& unit) const {
+    return number(require(key), key, least, most, unit);
+  }
+
+  double number(const toml::node& node, const std::string& key, double least, double most,
+                const std::string& unit) const {
+    const std::optional<double> value = node.is_number() ? node.value<double>() : std::optional<double>{};
+    if (!value || !(*value >= least && *value <= most)) {
+      std::ostringstream expected;
+      expected << "expected a number from " << least << " to " << most << (unit.empty() ? "" : " ") << unit;
+      fail(&node, key, expected.str());
+    }
+    return *value;
+  }
+
+  std::vector<double> numbers(const std::string& key, std::size_t count, const std::string& meaning) const {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    if (!array || array->size() != count)
+      fail(key, "expected " + std::to_string(count) + " numbers " + meaning);
+    std::vector<double> values;
+    for (const toml::node& element : *array) values.push_back(number(element, key, -1e9, 1e9, ""));
+    return values;
+  }
+
+  Pose pose(const std::string& key) const {
+    const std::vector<double> v = numbers(key, 7, "[x, y, z, qw, qx, qy, qz]");
+    Pose pose{{v[3], v[4], v[5], v[6]}, {v[0], v[1], v[2]}};
+    if (std::abs(pose.rotation.norm() - 1) > 0.01)
+      fail(key, "the quaternion (qw, qx, qy, qz) is not of unit length");
+    pose.rotation.normalize();
+    return pose;
+  }
+
+  std::string sensor_name(const std::string& key) const {
+    std::string value = text(key);
+    if (!plausible_name(value)) fail(key, "expected 1 to 40 letters, digits, _ or -");
+    return value;
+  }
+
+  /// The tables of [[key]].
+  std::vector<Table> tables(const std::string& key) const {
+    const toml::array* array = require(key).as_array();
+    if (!array || array->empty()) fail(key, "expected [[" + key + "]] sections");
+    std::vector<Table> tables;
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const toml::table* table = array->get(i)->as_table();
+      if (!table) fail(array->get(i), key, "expected [[" + key + "]] sections");
+      tables.emplace_back(*table, key + "[" + std::to_string(i + 1) + "]", file_);
+    }
+    return tables;
+  }
+
+  std::optional<Table> table(const std::string& key) const {
+    const toml::node* node = table_.get(key);
+    if (!node) return std::nullopt;
+    if (!node->is_table()) fail(key, "expected a section [" + key + "]");
+    return Table(*node->as_table(), key, file_);
+  }
+
+ private:
+  const toml::table& table_;
+  std::string name_;
+  const std::string& file_;
+};
+
+Sensor read_sensor(const Table& in) {
+  in.only({"name", "channel", "type", "plane"});
+  Sensor sensor;
+  sensor.name = in.sensor_name("name");
+  sensor.channel = in.text("channel");
+  if (sensor.channel.empty() || sensor.channel.size() > max_channel_length)
+    in.fail("channel", "expected 1 to 63 characters");
+  if (in.has("type") && in.choice("type", {"egocal.odometry_t", "bot_core.pose_t"}) == "bot_core.pose_t")
+    sensor.type = OdometryType::pose;
+  if (in.has("plane")) {
+    const std::vector<double> v = in.numbers("plane", 4, "[nx, ny, nz, d]");
+    try {
+      sensor.plane = checked(GroundPlane{{v[0], v[1], v[2]}, v[3]});
+    } catch (const Error& error) {
+      in.fail("plane", error.what());
+    }
+  }
+  return sensor;
+}
+
+PairConfig read_pair(const Table& in, const Rig& rig) {
+  in.only({"a", "b", "mode", "truth", "nominal", "stride", "weights", "time_offset"});
+  PairConfig pair;
+  for (const std::string key : {"a", "b"}) {
+    const std::string name = in.sensor_name(key);
+    const auto known =
+        std::find_if(rig.sensors.begin(), rig.sensors.end(), [&](const Sensor& s) { return s.name == name; });
+    if (known == rig.sensors.end()) in.fail(key, "no [[sensor]] has the name \"" + name + "\"");
+    (key == "a" ? pair.a : pair.b) = name;
+  }
+  if (pair.a == pair.b) in.fail("b", "is the same sensor as a");
+  if (calibration_channel(pair.a, pair.b).size() > max_channel_length)
+    in.fail("b", "the two names together are too long for a channel (63 characters)");
+  if (in.has("mode") && in.choice("mode", {"spatial", "planar"}) == "planar") {
+    pair.mode = Mode::planar;
+    for (const std::string& name : {pair.a, pair.b})
+      if (!sensor(rig, name).plane) in.fail("mode", "planar needs the plane of sensor \"" + name + "\"");
+  }
+  if (in.has("truth")) pair.truth = in.pose("truth");
+  if (in.has("nominal")) pair.nominal = in.pose("nominal");
+  if (in.has("stride") && !(in.require("stride").is_string() && in.text("stride") == "auto")) {
+    const toml::node& node = in.require("stride");
+    if (!node.is_integer() || node.as_integer()->get() < 1 || node.as_integer()->get() > 10000)
+      in.fail("stride", "expected \"auto\" or a whole number from 1 to 10000");
+    pair.stride = static_cast<int>(node.as_integer()->get());
+  }
+  if (in.has("weights")) {
+    if (in.require("weights").is_string()) {
+      if (in.choice("weights", {"auto", "equal"}) == "equal") pair.balance = Balance{};
+    } else {
+      const std::vector<double> v =
+          in.numbers("weights", 2, "[rotation, translation], or \"auto\" or \"equal\"");
+      if (v[0] < 0 || v[1] <= 0) in.fail("weights", "expected rotation >= 0 and translation > 0");
+      pair.balance = Balance{v[0], v[1]};
+    }
+  }
+  pair.time_offset = 0;
+  if (in.has("time_offset")) {
+    if (in.require("time_offset").is_string()) {
+      in.choice("time_offset", {"auto"});
+      pair.time_offset.reset();
+    } else {
+      pair.time_offset = in.number("time_offset", -1e9, 1e9, "s, or \"auto\"");
+    }
+  }
+  return pair;
+}
+
+Rig understood(const toml::table& root, const std::string& file) {
+  const Table in(root, "", file);
+  in.only({"sensor", "pair", "bus", "pairing", "solver"});
+  Rig rig;
+  rig.file = file;
+  std::set<std::string> names, channels;
+  for (const Table& table : in.tables("sensor")) {
+    rig.sensors.push_back(read_sensor(table));
+    if (!names.insert(rig.sensors.back().name).second)
+      table.fail("name", "two sensors have the name \"" + rig.sensors.back().name + "\"");
+    if (!channels.insert(rig.sensors.back().channel).second)
+      table.fail("channel", "two sensors have the channel \"" + rig.sensors.back().channel + "\"");
+  }
+  std::set<std::string> pair_channels;
+  for (const Table& table : in.tables("pair")) {
+    rig.pairs.push_back(read_pair(table, rig));
+    const PairConfig& pair = rig.pairs.back();
+    // a_b with c and a with b_c would share their channels
+    if (!pair_channels.insert(problem_channel(pair.a, pair.b)).second)
+      table.fail("b", "another pair has the channel " + problem_channel(pair.a, pair.b));
+  }
+  if (const std::optional<Table> bus = in.table("bus")) {
+    bus->only({"url"});
+    if (bus->has("url")) rig.lcm_url = bus->text("url");
+  }
+  if (const std::optional<Table> pairing = in.table("pairing")) {
+    pairing->only({"max_gap", "reorder_window"});
+    if (pairing->has("max_gap")) rig.max_gap = pairing->number("max_gap", 1e-3, 3600, "s");
+    if (pairing->has("reorder_window")) rig.reorder_window = pairing->number("reorder_window", 0, 3600, "s");
+  }
+  if (const std::optional<Table> solver = in.table("solver")) {
+    solver->only({"t_no_fail", "heartbeat_timeout"});
+    if (solver->has("t_no_fail")) rig.t_no_fail = solver->number("t_no_fail", 0, 1e6, "s");
+    if (solver->has("heartbeat_timeout"))
+      rig.heartbeat_timeout = solver->number("heartbeat_timeout", 1.5, 3600, "s");
+  }
+  return rig;
+}
+
+}  // namespace
+
+Rig parse_rig(const std::string& text, const std::string& file) {
+  try {
+    return understood(toml::parse(text, file), file);
+  } catch (const toml::parse_error& error) {
+    throw error_at(file, static_cast<long>(error.source().begin.line), "",
+                   "not TOML: " + printable(std::string(error.description())));
+  }
+}
+
+Rig read_rig(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad()) throw error_at(file, 0, "", "cannot be read as a rig file");
+  return parse_rig(text, file);
+}
+
+const Sensor& sensor(const Rig& rig, const std::string& name) {
+  for (const Sensor& s : rig.sensors)
+    if (s.name == name) return s;
+  throw error_at(rig.file, 0, "", "no sensor has the name \"" + name + "\"");
+}
+
+DriveOptions drive_options(const Rig& rig, const PairConfig& pair) {
+  DriveOptions options;
+  options.mode = pair.mode;
+  if (pair.mode == Mode::planar) {
+    options.plane_a = sensor(rig, pair.a).plane.value_or(GroundPlane{});
+    options.plane_b = sensor(rig, pair.b).plane.value_or(GroundPlane{});
+  }
+  options.stride = pair.stride;
+  options.balance = pair.balance;
+  options.time_offset = pair.time_offset.value_or(0);
+  options.max_gap = rig.max_gap;
+  if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
+  return options;
+}
+
+}  // namespace egocal::bus
