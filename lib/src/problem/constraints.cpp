@@ -19,8 +19,11 @@ Matrix8d lagrangian_matrix(const Matrix8d& Q, const Multipliers& lambda) {
 }
 
 Multipliers least_squares_multipliers(const Matrix8d& Q, const DualQuaternion& q) {
+  return least_squares_multipliers(q, Q * q.vec());
+}
+
+Multipliers least_squares_multipliers(const DualQuaternion& q, const Vector8d& g) {
   // Z(lambda) q = Q q + lambda_1 (-r, 0) + lambda_2 (d, r); the columns' products are |r|^2 and r.d
-  const Vector8d g = Q * q.vec();
   const double rr = q.real.squaredNorm();
   const double rd = q.real.dot(q.dual);
   const double orthogonal_norm = rr + q.dual.squaredNorm();

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/solvers/dual.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
 #include "certificate/proof.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/sqp.hpp"
-#include "solvers/tangent.hpp"
+#include "solvers/newton.hpp"
 
 namespace egocal {
 
@@ -20,45 +20,29 @@ using Eigen::Vector4d;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// phi(m) and what belongs to it, in D's own axes and with lengths in units of `length`, where D is diagonal.
+/// phi(m) and what belongs to it.
 struct DualFunction {
-  Matrix4d S0, S1;   ///< S(m) = S0 - m S1 - m^2 diag(inverse)
-  Vector4d inverse;  ///< of D's eigenvalues
+  Matrix4d S0, S1, inverse;  ///< S(m) = S0 - m S1 - m^2 inverse
   Matrix4d B;
-  Matrix4d U;  ///< D's eigenvectors
-  double length = 1;
   double scale = 0;  ///< size of the numbers, for tolerances
 
-  /// floor: of D's eigenvalues, in parts of the scale. Where rotations are nearly noise-free D is nearly
-  /// singular; a floor keeps the elimination finite, and what it changes is repaired by Newton steps on the
+  /// lift: added to D's diagonal, in parts of the scale. Where rotations are nearly noise-free D is nearly
+  /// singular; the lift keeps the elimination finite, and what it changes is repaired by Newton steps on the
   /// true Q.
-  DualFunction(const Matrix8d& Q, double floor) {
-    length = detail::length_scale(Q);
-    const Matrix4d D = length * length * Q.bottomRightCorner<4, 4>();
-    const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(D);
-    U = eigen.eigenvectors();
-    const Matrix4d A = U.transpose() * Q.topLeftCorner<4, 4>() * U;
-    B.noalias() = length * U.transpose() * Q.topRightCorner<4, 4>() * U;
-    scale = A.trace() + D.trace();
-    inverse = eigen.eigenvalues().cwiseMax(floor * scale).cwiseInverse();
-    const Matrix4d BD = B * inverse.asDiagonal();
-    S0 = A;
-    S0.noalias() -= BD * B.transpose();
+  DualFunction(const Matrix8d& Q, double lift) {
+    scale = Q.trace();
+    Matrix4d D = Q.bottomRightCorner<4, 4>();
+    D.diagonal().array() += lift * scale;
+    inverse = D.llt().solve(Matrix4d::Identity());
+    B = Q.topRightCorner<4, 4>();
+    const Matrix4d BD = B * inverse;
+    S0 = Q.topLeftCorner<4, 4>() - BD * B.transpose();
     S1 = BD + BD.transpose();
   }
 
-  Matrix4d at(double m) const {
-    Matrix4d S = S0 - m * S1;
-    S.diagonal() -= m * m * inverse;
-    return S;
-  }
+  Matrix4d at(double m) const { return S0 - m * S1 - m * m * inverse; }
   /// The d that minimises the Lagrangian for this r.
-  Vector4d dual_part(const Vector4d& r, double m) const {
-    return -inverse.cwiseProduct(B.transpose() * r + m * r);
-  }
-  DualQuaternion quaternion(const Vector4d& r, double m) const {
-    return normalized({U * r, length * (U * dual_part(r, m))});
-  }
+  Vector4d dual_part(const Vector4d& r, double m) const { return -(inverse * (B.transpose() * r + m * r)); }
 };
 
 /// Where phi has a kink its smallest eigenvalue is double, and the r in their span that has r'd = 0 is the
@@ -97,8 +81,8 @@ Sample sample(const DualFunction& phi, double m) {
   here.r = eigen.eigenvectors().col(0);
   here.next = eigen.eigenvectors().col(1);
   here.slope = 2 * here.r.dot(phi.dual_part(here.r, m));
-  const Vector4d change = phi.S1 * here.r + 2 * m * phi.inverse.cwiseProduct(here.r);
-  here.curvature = 2 * here.r.dot(phi.inverse.cwiseProduct(here.r));
+  const Vector4d change = phi.S1 * here.r + 2 * m * (phi.inverse * here.r);
+  here.curvature = 2 * here.r.dot(phi.inverse * here.r);
   for (int k = 1; k < 4; ++k) {
     const double coupling = eigen.eigenvectors().col(k).dot(change);
     here.curvature +=
@@ -109,7 +93,7 @@ Sample sample(const DualFunction& phi, double m) {
 
 /// Keeps the better of best and what Newton steps on the KKT system of the true Q reach from r; is it proven?
 bool polish(const Matrix8d& Q, const DualFunction& phi, const Vector4d& r, double m, Solution& best) {
-  Solution polished = solve_sqp(Q, phi.quaternion(r, m));
+  Solution polished = detail::newton_on_kkt(Q, {r, phi.dual_part(r, m)});
   if (polished.cost < best.cost) {
     polished.iterations = best.iterations;
     best = polished;
@@ -170,24 +154,28 @@ bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain, Solution& b
 
 }  // namespace
 
-Solution solve_dual(const Matrix8d& Q) {
+Solution solve_dual(const Matrix8d& Q_in) {
   Solution solution;
-  if (!Q.allFinite()) {
+  if (!Q_in.allFinite()) {
     solution.status = SolverStatus::not_finite;
     return solution;
   }
-  if (!(Q.diagonal().maxCoeff() > 0)) {
+  if (!(Q_in.diagonal().maxCoeff() > 0)) {
     solution.status = SolverStatus::degenerate;
     return solution;
   }
+  const double length = detail::length_scale(Q_in);
+  const Matrix8d Q = detail::in_units_of(length, Q_in);
   solution.cost = std::numeric_limits<double>::infinity();
   // The first attempt is nearly always the last. The others are for problems where Newton's basin is small or
   // D is nearly singular in a way that matters.
   constexpr struct {
-    double floor, gain;
+    double lift, gain;
   } attempts[] = {{1e-9, 1e-4}, {1e-12, 1e-9}, {1e-6, 1e-9}, {64 * epsilon, 1e-12}};
   for (const auto& attempt : attempts)
-    if (ascend(Q, DualFunction(Q, attempt.floor), attempt.gain, solution)) return solution;
+    if (ascend(Q, DualFunction(Q, attempt.lift), attempt.gain, solution)) break;
+  solution.q = detail::in_units_of(1 / length, solution.q);
+  solution.lambda = detail::in_units_of(1 / length, solution.lambda);
   return solution;
 }
 

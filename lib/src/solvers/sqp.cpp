@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "egocal/problem/cost.hpp"
-#include "solvers/tangent.hpp"
+#include "solvers/newton.hpp"
 
 namespace egocal {
 
@@ -46,29 +46,28 @@ Vector6d truncated_step(const Matrix6d& H, const Vector6d& g) {
 
 }  // namespace
 
-Solution solve_sqp(const Matrix8d& Q_in, const DualQuaternion& start, const SqpOptions& options) {
+namespace detail {
+
+Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_iterations) {
   Solution solution;
-  if (!Q_in.allFinite()) {
-    solution.status = SolverStatus::not_finite;
-    return solution;
-  }
-  const double length = detail::length_scale(Q_in);
-  const Matrix8d Q = detail::in_units_of(length, Q_in);
-  DualQuaternion q = detail::in_units_of(length, normalized(start));
+  DualQuaternion q = normalized(start);
   if (!q.vec().allFinite()) q = {};
-  double J = cost(Q, q);
+  Vector8d v = q.vec();
+  Vector8d Qv = Q * v;
+  double J = v.dot(Qv);
   double shift = 0;
   solution.status = SolverStatus::iteration_limit;
-  for (int i = 0; i < options.max_iterations; ++i) {
+  for (int i = 0; i < max_iterations; ++i) {
     solution.iterations = i + 1;
-    // Newton on the KKT system of (18): on the constraints' tangent space the gradient is T' Q q and the
-    // Hessian that of the Lagrangian (19), T' Z(lambda) T.
-    const Vector8d v = q.vec();
-    const Matrix86d T = detail::tangent_basis(q);
-    const Matrix8d Z = lagrangian_matrix(Q, least_squares_multipliers(Q, q));
-    const Matrix86d ZT = Z * T;
+    // On the constraints' tangent space the gradient of J is T'Qq and the Hessian of the Lagrangian (19) is
+    // T'ZT.
+    const Matrix86d T = tangent_basis(q);
+    const Multipliers lambda = least_squares_multipliers(q, Qv);
+    Matrix86d ZT = Q * T;
+    ZT.topRows<4>() += lambda.orthogonal * T.bottomRows<4>() - lambda.norm * T.topRows<4>();
+    ZT.bottomRows<4>() += lambda.orthogonal * T.topRows<4>();
     const Matrix6d hessian = T.transpose() * ZT;
-    const Vector6d gradient = ZT.transpose() * v;
+    const Vector6d gradient = T.transpose() * Qv;
     const double trace = hessian.diagonal().cwiseAbs().sum();
     if (!(trace > 0)) {
       solution.status = SolverStatus::degenerate;
@@ -77,6 +76,7 @@ Solution solve_sqp(const Matrix8d& Q_in, const DualQuaternion& start, const SqpO
     const double rounding = 8 * epsilon * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
     Vector6d x;
     DualQuaternion next;
+    Vector8d v_next, Qv_next;
     double J_next = J;
     bool accepted = false;
     for (int attempt = 0; attempt < 40 && !accepted; ++attempt) {
@@ -88,8 +88,10 @@ Solution solve_sqp(const Matrix8d& Q_in, const DualQuaternion& start, const SqpO
           continue;
         }
       }
-      next = detail::retract(q, x);
-      J_next = cost(Q, next);
+      next = retract(q, x);
+      v_next = next.vec();
+      Qv_next = Q * v_next;
+      J_next = v_next.dot(Qv_next);
       accepted = J_next <= J + rounding;
       if (!accepted) shift = std::max(4 * shift, 1e-6 * trace);
     }
@@ -97,17 +99,35 @@ Solution solve_sqp(const Matrix8d& Q_in, const DualQuaternion& start, const SqpO
     const double step = x.norm();
     const bool still = shift == 0 && J_next >= J - rounding;
     q = next;
+    v = v_next;
+    Qv = Qv_next;
     J = J_next;
     shift = shift < 1e-5 * trace ? 0 : shift / 16;
     // quadratic convergence: the error left is the square of this step; or nothing is gained any more
-    if (shift == 0 && (step < 1e-9 || (still && step < 1e-6) || (still && i > 10))) {
+    if (shift == 0 && (step < 1e-8 || (still && step < 1e-6) || (still && i > 10))) {
       solution.status = SolverStatus::converged;
       break;
     }
   }
-  solution.cost = cost(Q, q);
-  solution.lambda = detail::in_units_of(1 / length, least_squares_multipliers(Q, q));
-  solution.q = canonical_sign(detail::in_units_of(1 / length, q));
+  solution.q = canonical_sign(q);
+  solution.cost = J;
+  solution.lambda = least_squares_multipliers(q, Qv);
+  return solution;
+}
+
+}  // namespace detail
+
+Solution solve_sqp(const Matrix8d& Q, const DualQuaternion& start, const SqpOptions& options) {
+  Solution solution;
+  if (!Q.allFinite()) {
+    solution.status = SolverStatus::not_finite;
+    return solution;
+  }
+  const double length = detail::length_scale(Q);
+  solution = detail::newton_on_kkt(detail::in_units_of(length, Q), detail::in_units_of(length, start),
+                                   options.max_iterations);
+  solution.q = detail::in_units_of(1 / length, solution.q);
+  solution.lambda = detail::in_units_of(1 / length, solution.lambda);
   return solution;
 }
 

@@ -18,6 +18,8 @@ Eigen::Vector2d constraints(const DualQuaternion& q);
 Matrix8d lagrangian_matrix(const Matrix8d& Q, const Multipliers& lambda);
 /// lambda by least squares from Z(lambda) q = 0 (28).
 Multipliers least_squares_multipliers(const Matrix8d& Q, const DualQuaternion& q);
+/// The same from the product Qq.
+Multipliers least_squares_multipliers(const DualQuaternion& q, const Vector8d& Qq);
 /// L(q, lambda) of (19), (21).
 double lagrangian(const Matrix8d& Q, const DualQuaternion& q, const Multipliers& lambda);
 

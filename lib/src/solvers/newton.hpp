@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/solvers/solution.hpp"
+#include "solvers/tangent.hpp"
+
+namespace egocal::detail {
+
+/// Newton steps on the KKT system of (18) from the start to the next minimum. Q must be finite, with lengths
+/// in a unit near length_scale(); so are those of the answer.
+Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_iterations = 50);
+
+}  // namespace egocal::detail
