@@ -8,16 +8,16 @@ OnlineStep calibrate(const Problem& problem, std::int64_t time_us, const OnlineS
                      const OnlineOptions& options) {
   OnlineStep step;
   step.state = state;
-  if (state.last) {
-    step.answer = solve(problem, options.fast, state.last);                            // line 6
+  if (state.last || !options.global) {
+    step.answer = solve(problem, options.fast, state.last, options.clock);             // line 6
     step.fast_verified = step.answer.certificate.optimality == Optimality::certified;  // line 7
   }
-  if (!step.fast_verified) step.state.last_local_error_us = time_us;  // lines 8, 9
+  if (!state.last || !step.fast_verified) step.state.last_local_error_us = time_us;  // lines 8, 9
   const std::int64_t t_no_fail_us = static_cast<std::int64_t>(options.t_no_fail * 1e6);
-  const bool recent_error =
+  step.global_wanted =
       step.state.last_local_error_us && time_us - *step.state.last_local_error_us <= t_no_fail_us;
-  if (recent_error) {  // lines 10, 11
-    step.answer = solve(problem, options.global);
+  if (step.global_wanted && options.global) {  // lines 10, 11
+    step.answer = solve(problem, *options.global, std::nullopt, options.clock);
     step.global_used = true;
   }
   step.state.last = step.answer.T_a_b;

@@ -38,6 +38,11 @@ std::optional<Method> method_from_name(std::string_view text) {
 
 namespace {
 
+struct Stopwatch {
+  NanosecondClock clock;
+  std::int64_t now() const { return clock ? clock() : 0; }
+};
+
 Solution minimise(const Matrix8d& Q, Method method, const DualQuaternion& start) {
   switch (method) {
     case Method::dual:
@@ -79,10 +84,13 @@ DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimis
   return q;
 }
 
-Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start) {
+Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start,
+                     const Stopwatch& time) {
   Answer answer;
   answer.method = method;
+  const std::int64_t begin = time.now();
   const Solution solution = minimise(Q, method, start);
+  answer.solve_ns = time.now() - begin;
   answer.status = solution.status;
   answer.T_a_b = solution.q;
   const DualQuaternion prior = problem.prior.value_or(DualQuaternion{});
@@ -90,17 +98,22 @@ Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method, c
     answer.T_a_b = canonical_sign(normalized(prior));
   else if (solution.status != SolverStatus::not_finite)
     answer.T_a_b = nearest_to_prior(Q, solution.q, prior);
+  const std::int64_t verified = time.now();
   answer.certificate = verify(Q, answer.T_a_b);
+  answer.verify_ns = time.now() - verified;
   return answer;
 }
 
-Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start) {
+Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start,
+                      const Stopwatch& time) {
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
   Answer answer;
   answer.method = method;
+  const std::int64_t begin = time.now();
   const Solution solution = method == Method::slsqp
                                 ? solve_slsqp_planar(Q, planar_from_extrinsic(start, G_a, G_b))
                                 : solve_planar(Q);
+  answer.solve_ns = time.now() - begin;
   answer.status = solution.status;
   DualQuaternion T_p = solution.q;
   const DualQuaternion prior = planar_from_extrinsic(problem.prior.value_or(DualQuaternion{}), G_a, G_b);
@@ -111,18 +124,22 @@ Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, 
     const Pose free_translation = to_pose(prior);
     T_p = to_dual_quaternion({to_pose(T_p).rotation, free_translation.translation});
   }
+  const std::int64_t verified = time.now();
   answer.certificate = verify_planar(Q, T_p);
+  answer.verify_ns = time.now() - verified;
   answer.T_a_b = extrinsic_from_planar(T_p, G_a, G_b);
   return answer;
 }
 
 }  // namespace
 
-Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start) {
+Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start,
+             NanosecondClock clock) {
+  const Stopwatch time{clock};
   const Matrix8d Q = cost_matrix(problem);
   const DualQuaternion from = start.value_or(DualQuaternion{});
-  Answer answer = problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, from)
-                                               : solve_spatial(problem, Q, method, from);
+  Answer answer = problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, from, time)
+                                               : solve_spatial(problem, Q, method, from, time);
   answer.knowledge = knowledge(problem, Q, answer.T_a_b);
   return answer;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,10 +33,17 @@ struct Answer {
   Knowledge knowledge;
   SolverStatus status = SolverStatus::converged;
   Method method = Method::dual;
+  std::int64_t solve_ns = 0;   ///< the solver alone; 0 without a clock [ns]
+  std::int64_t verify_ns = 0;  ///< the certificate alone; 0 without a clock [ns]
 };
 
+/// The caller's clock [ns]: the library has none of its own.
+using NanosecondClock = std::int64_t (*)();
+
 /// Solve, verify, and say what is known. start: for the local methods; without it they start at the identity.
-/// In directions that the motions do not show the answer is the closest to the problem's prior (or to the identity).
-Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt);
+/// In directions that the motions do not show the answer is the closest to the problem's prior (or to the
+/// identity).
+Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt,
+             NanosecondClock clock = nullptr);
 
 }  // namespace egocal

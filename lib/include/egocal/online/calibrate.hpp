@@ -10,26 +10,30 @@ namespace egocal {
 
 struct OnlineOptions {
   Method fast = Method::sqp;
-  Method global = Method::dual;
+  /// Empty: the global solution is another process's work; the step then only says that it is wanted.
+  std::optional<Method> global = Method::dual;
   double t_no_fail = 5.0;  ///< [s] of measured time that the fast solution must have been verified for
+  NanosecondClock clock = nullptr;  ///< for the timings of the answer
 };
 
-/// What Algorithm 1 carries from step to step. A default-constructed one is the start: the first step is global.
+/// What Algorithm 1 carries from step to step. A default-constructed one is the start: the first step is
+/// global.
 struct OnlineState {
-  std::optional<DualQuaternion> last;       ///< q_(i-1)
+  std::optional<DualQuaternion> last;               ///< q_(i-1)
   std::optional<std::int64_t> last_local_error_us;  ///< t_lastLocalError
 };
 
 struct OnlineStep {
   Answer answer;
-  OnlineState state;         ///< for the next step
+  OnlineState state;  ///< for the next step
   bool fast_verified = false;
-  bool global_used = false;  ///< the answer is the global solver's
+  bool global_wanted = false;  ///< the fast solution has not been verified for long enough
+  bool global_used = false;    ///< the answer is the global solver's
 };
 
-/// Algorithm 1: fast solution from the last answer, verified; the global one while the fast one has not been verified
-/// for t_no_fail. Pure: the same problem, time and state give the same step.
-/// time_us: of the problem's newest motion, not of any clock.
+/// Algorithm 1: fast solution from the last answer, verified; the global one while the fast one has not been
+/// verified for t_no_fail. Pure: the same problem, time and state give the same step. time_us: of the
+/// problem's newest motion, not of any clock.
 OnlineStep calibrate(const Problem& problem, std::int64_t time_us, const OnlineState& state,
                      const OnlineOptions& options = {});
 
@@ -40,7 +44,8 @@ struct Claim {
   Optimality optimality = Optimality::undecided;
   double cost = 0;
 };
-/// Which of two answers counts: newest problem, certified before uncertified, lower cost. False for equal claims.
+/// Which of two answers counts: newest problem, certified before uncertified, lower cost. False for equal
+/// claims.
 bool counts_more(const Claim& x, const Claim& y);
 
 }  // namespace egocal
