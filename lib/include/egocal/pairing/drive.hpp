@@ -18,21 +18,21 @@ namespace egocal {
 /// How motions are made from two streams of poses, and what the solvers are to minimise.
 struct DriveOptions {
   Mode mode = Mode::spatial;
-  GroundPlane plane_a, plane_b;      ///< planar mode
-  std::optional<int> stride;         ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
-  std::optional<Balance> balance;    ///< empty: chosen by the jack-knife
-  double time_offset = 0;            ///< added to the stamps of b before pairing [s]
-  double max_gap = 0.5;              ///< poses further apart are never interpolated between [s]
+  GroundPlane plane_a, plane_b;  ///< planar mode
+  std::optional<int> stride;  ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
+  std::optional<Balance> balance;       ///< empty: chosen by the jack-knife
+  double time_offset = 0;               ///< added to the stamps of b before pairing [s]
+  double max_gap = 0.5;                 ///< poses further apart are never interpolated between [s]
   std::optional<DualQuaternion> prior;  ///< handed on to the problem
 };
 
 /// Why a pose or a motion is not in the statistics.
 enum class Rejection {
-  not_finite,         ///< NaN, infinity or a quaternion far from unit length
-  out_of_order,       ///< not newer than the newest of its stream
-  no_partner,         ///< the other stream has no pose on one side of it (before its start, after its end)
-  gap,                ///< the neighbours in the other stream, or the two ends of the motion, are too far apart
-  screw_congruence,   ///< the two motions differ in angle or slide by more than noise explains
+  not_finite,        ///< NaN, infinity or a quaternion far from unit length
+  out_of_order,      ///< not newer than the newest of its stream
+  no_partner,        ///< the other stream has no pose on one side of it (before its start, after its end)
+  gap,               ///< the neighbours in the other stream, or the two ends of the motion, are too far apart
+  screw_congruence,  ///< the two motions differ in angle or slide by more than noise explains
   too_much_rotation,  ///< so near to half a turn that the sign of its quaternion is a guess
   count_
 };
@@ -52,28 +52,77 @@ struct Choice {
   std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
 };
 
-/// From two streams of poses to the problem, one pose at a time: synchronises by screw interpolation of the faster
-/// stream at the stamps of the slower one, forms motions, gates them, accumulates them in blocks for every stride
-/// under consideration, and chooses stride and balance. Used offline and by egocal-pairing alike; the result depends
-/// on the poses of each stream alone, not on how the two streams interleave. Its memory is bounded.
+/// Everything that a Drive remembers; bounded whatever the length of the drive. Continuing from a copy gives
+/// the same bits as never having stopped.
+struct DriveState {
+  /// Poses of both sensors at one time; motions never span two chains.
+  struct Instant {
+    std::int64_t time_us = 0;
+    DualQuaternion a, b;
+    std::uint64_t chain = 0;
+  };
+  struct PerStride {
+    int stride = 1;
+    BlockStatistics statistics;
+  };
+
+  DriveCounts counts;
+  Choice choice;
+  std::array<std::optional<std::int64_t>, 2> newest_us;  ///< of each stream, b's with the offset
+  std::array<std::deque<StampedPose>, 2> waiting;  ///< not yet synchronised; the faster one keeps a neighbour
+  std::optional<Side> keys;                        ///< the slower stream, at whose stamps poses are paired
+  std::int64_t period_us = 0;                      ///< typical, of the slower stream
+  std::deque<Instant> instants;                    ///< the newest, as many as the longest motion needs
+  std::uint64_t chain = 0;
+  std::vector<PerStride> strides;
+  std::uint64_t next_choice = 0;       ///< number of instants at which to choose again
+  std::deque<double> angle_residuals;  ///< of the newest steps, for the gate [rad]
+  std::deque<double> slide_residuals;  ///< [m]
+};
+
+/// From two streams of poses to the problem, one pose at a time: synchronises by screw interpolation of the
+/// faster stream at the stamps of the slower one, forms motions, gates them, accumulates them in blocks for
+/// every stride under consideration, and chooses stride and balance. Used offline and by egocal-pairing
+/// alike; the result depends on the poses of each stream alone, not on how the two streams interleave.
 class Drive {
  public:
   explicit Drive(DriveOptions options);
+  Drive(DriveOptions options, DriveState state);
 
   /// Takes in the next pose of one stream. Returns the motion pairs of the chosen stride that it completed.
   std::vector<MotionPair> push(Side side, const StampedPose& pose);
 
+  /// No more poses will come: pairs what a drive too short to tell its slower stream has held back.
+  std::vector<MotionPair> finish();
+
   /// What is known so far.
   Problem problem() const;
-  const Choice& choice() const { return choice_; }
-  const DriveCounts& counts() const { return counts_; }
+  const Choice& choice() const { return state_.choice; }
+  const DriveCounts& counts() const { return state_.counts; }
   const DriveOptions& options() const { return options_; }
-  std::optional<std::int64_t> newest_us() const;  ///< end of the newest motion (time of a) [us]
+  const DriveState& state() const { return state_; }
+  std::optional<std::int64_t> newest_us() const;  ///< time of the newest synchronised instant [us]
 
  private:
+  void reject(Rejection reason) { ++state_.counts.rejected[static_cast<std::size_t>(reason)]; }
+  void decide_keys();
+  std::vector<MotionPair> synchronise();
+  bool step_is_congruent(const DriveState::Instant& from, const DriveState::Instant& to);
+  void add_instant(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
+  std::optional<MotionPair> motion(const DriveState::Instant& from, const DriveState::Instant& to, int stride,
+                                   bool count_rejections);
+  void choose();
+
   DriveOptions options_;
-  Choice choice_;
-  DriveCounts counts_;
+  DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
+  DriveState state_;
 };
+
+/// Both trajectories through a Drive, in the order of time.
+struct DriveResult {
+  Drive drive;
+  std::vector<MotionPair> pairs;  ///< of the stride in force when each was completed
+};
+DriveResult run_drive(const DriveOptions& options, const Trajectory& a, const Trajectory& b);
 
 }  // namespace egocal

@@ -1,0 +1,325 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "egocal/error.hpp"
+#include "egocal/pairing/selection.hpp"
+
+namespace egocal {
+
+namespace {
+
+using Instant = DriveState::Instant;
+
+/// So many poses of each stream show which one is slower.
+constexpr std::size_t poses_to_decide = 8;
+/// A stream whose partner is silent does not grow without bound.
+constexpr std::size_t most_waiting = 4096;
+/// Motions longer than this in time are not considered when the stride is chosen [us].
+constexpr std::int64_t longest_motion_us = 8'000'000;
+/// A motion may take this many times as long as its stride says: lost poses make longer motions, standing
+/// still for minutes does not make one.
+constexpr std::int64_t stretch = 4;
+/// Above this the sign of a quaternion is a guess [rad].
+constexpr double most_rotation = 170 * std::numbers::pi / 180;
+constexpr double balances[] = {1, 0.1, 0.01, 0.001};
+/// The first choice is made after so many instants, each further one after a quarter more.
+constexpr std::uint64_t first_choice = 64;
+/// Steps that the gate's scale is taken from.
+constexpr std::size_t gate_memory = 401, gate_least = 41;
+constexpr double gate_sigmas = 12;
+
+std::int64_t median_period(const std::deque<StampedPose>& poses) {
+  std::vector<std::int64_t> periods;
+  for (std::size_t i = 1; i < poses.size(); ++i) periods.push_back(poses[i].time_us - poses[i - 1].time_us);
+  if (periods.empty()) return 0;
+  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
+                   periods.end());
+  return periods[periods.size() / 2];
+}
+
+double median(std::deque<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+DualQuaternion motion_between(const DualQuaternion& from, const DualQuaternion& to) {
+  return canonical_sign(normalized(conjugate(from) * to));
+}
+
+std::size_t index(Side side) {
+  return side == Side::a ? 0 : 1;
+}
+
+}  // namespace
+
+std::string_view name(Rejection reason) {
+  switch (reason) {
+    case Rejection::not_finite:
+      return "not finite";
+    case Rejection::out_of_order:
+      return "out of order";
+    case Rejection::no_partner:
+      return "no partner";
+    case Rejection::gap:
+      return "gap";
+    case Rejection::screw_congruence:
+      return "screw congruence";
+    case Rejection::too_much_rotation:
+      return "too much rotation";
+    case Rejection::count_:
+      break;
+  }
+  return "unknown";
+}
+
+Drive::Drive(DriveOptions options) : Drive(std::move(options), DriveState{}) {
+  state_.choice.stride = options_.stride.value_or(1);
+  state_.choice.balance = options_.balance.value_or(Balance{});
+  state_.choice.reason = options_.stride && options_.balance ? "fixed" : "too few motions to choose yet";
+  state_.next_choice = first_choice;
+}
+
+Drive::Drive(DriveOptions options, DriveState state)
+    : options_(std::move(options)), state_(std::move(state)) {
+  if (options_.stride && *options_.stride < 1) throw Error("stride: expected at least 1");
+  if (options_.mode == Mode::planar) {
+    options_.plane_a = checked(options_.plane_a);
+    options_.plane_b = checked(options_.plane_b);
+    G_a_ = plane_frame(options_.plane_a);
+    G_b_ = plane_frame(options_.plane_b);
+  }
+}
+
+std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
+  ++(side == Side::a ? state_.counts.poses_a : state_.counts.poses_b);
+  StampedPose pose = given;
+  const double norm = pose.pose.real.norm();
+  if (!pose.pose.vec().allFinite() || !(std::abs(norm - 1) < 0.01)) {
+    reject(Rejection::not_finite);
+    return {};
+  }
+  pose.pose = normalized(pose.pose);
+  if (side == Side::b) pose.time_us += std::llround(options_.time_offset * 1e6);
+  auto& newest = state_.newest_us[index(side)];
+  if (newest && pose.time_us <= *newest) {
+    reject(Rejection::out_of_order);
+    return {};
+  }
+  newest = pose.time_us;
+  auto& waiting = state_.waiting[index(side)];
+  waiting.push_back(pose);
+  if (waiting.size() > most_waiting) {
+    waiting.pop_front();
+    reject(Rejection::no_partner);
+  }
+  if (!state_.keys && state_.waiting[0].size() >= poses_to_decide &&
+      state_.waiting[1].size() >= poses_to_decide)
+    decide_keys();
+  return state_.keys ? synchronise() : std::vector<MotionPair>{};
+}
+
+std::vector<MotionPair> Drive::finish() {
+  if (!state_.keys && !state_.waiting[0].empty() && !state_.waiting[1].empty()) decide_keys();
+  std::vector<MotionPair> pairs = state_.keys ? synchronise() : std::vector<MotionPair>{};
+  if (state_.keys) {
+    auto& keys = state_.waiting[index(*state_.keys)];
+    while (!keys.empty()) {
+      keys.pop_front();
+      reject(Rejection::no_partner);
+    }
+  }
+  return pairs;
+}
+
+void Drive::decide_keys() {
+  // only the first poses decide, however many have come of one stream before the other spoke
+  const auto first = [](const std::deque<StampedPose>& poses) {
+    return std::deque<StampedPose>(
+        poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(std::min(poses.size(), poses_to_decide)));
+  };
+  const std::int64_t period_a = median_period(first(state_.waiting[0]));
+  const std::int64_t period_b = median_period(first(state_.waiting[1]));
+  state_.keys = 10 * period_b >= 9 * period_a ? Side::b : Side::a;
+  state_.period_us = std::max<std::int64_t>(1, std::max(period_a, period_b));
+  if (options_.stride) {
+    state_.strides.push_back({*options_.stride, {}});
+  } else {
+    for (int stride = 1; stride == 1 || stride * state_.period_us <= longest_motion_us; stride *= 2)
+      state_.strides.push_back({stride, {}});
+  }
+}
+
+std::vector<MotionPair> Drive::synchronise() {
+  std::vector<MotionPair> pairs;
+  auto& keys = state_.waiting[index(*state_.keys)];
+  auto& others = state_.waiting[1 - index(*state_.keys)];
+  const auto max_gap_us = static_cast<std::int64_t>(options_.max_gap * 1e6);
+  while (!keys.empty() && !others.empty()) {
+    const StampedPose& key = keys.front();
+    if (key.time_us < others.front().time_us) {
+      reject(Rejection::no_partner);
+      keys.pop_front();
+      continue;
+    }
+    while (others.size() > 1 && others[1].time_us <= key.time_us) others.pop_front();
+    const bool exact = others.front().time_us == key.time_us;
+    if (!exact && others.size() < 2) break;
+    if (!exact && others[1].time_us - others[0].time_us > max_gap_us) {
+      reject(Rejection::gap);
+      keys.pop_front();
+      continue;
+    }
+    DualQuaternion other = others[0].pose;
+    if (!exact)
+      other = interpolate(others[0].pose, others[1].pose,
+                          static_cast<double>(key.time_us - others[0].time_us) /
+                              static_cast<double>(others[1].time_us - others[0].time_us));
+    Instant instant{key.time_us, key.pose, other, 0};
+    if (*state_.keys == Side::b) std::swap(instant.a, instant.b);
+    keys.pop_front();
+    add_instant(instant, pairs);
+  }
+  return pairs;
+}
+
+/// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
+/// length. A step that does not is a jump, a frozen pose or a lost track of one of them.
+bool Drive::step_is_congruent(const Instant& from, const Instant& to) {
+  const Screw a = screw_of(motion_between(from.a, to.a)), b = screw_of(motion_between(from.b, to.b));
+  const double angle = std::abs(a.angle - b.angle);
+  // the slide along an axis means something only where there is one
+  const bool has_axis = std::min(a.angle, b.angle) > 0.02;
+  const double slide = has_axis ? std::abs(a.slide - b.slide) : 0;
+  bool congruent = true;
+  if (state_.angle_residuals.size() >= gate_least)
+    congruent = angle <= gate_sigmas * 1.4826 * median(state_.angle_residuals) + 1e-6;
+  if (congruent && has_axis && state_.slide_residuals.size() >= gate_least)
+    congruent = slide <= gate_sigmas * 1.4826 * median(state_.slide_residuals) + 1e-5;
+  // the scale follows what is rejected too: half of it may be wrong, and a new regime is learnt
+  state_.angle_residuals.push_back(angle);
+  if (state_.angle_residuals.size() > gate_memory) state_.angle_residuals.pop_front();
+  if (has_axis) {
+    state_.slide_residuals.push_back(slide);
+    if (state_.slide_residuals.size() > gate_memory) state_.slide_residuals.pop_front();
+  }
+  return congruent;
+}
+
+void Drive::add_instant(const Instant& given, std::vector<MotionPair>& pairs) {
+  Instant instant = given;
+  if (!state_.instants.empty() && !step_is_congruent(state_.instants.back(), instant)) {
+    ++state_.chain;
+    reject(Rejection::screw_congruence);
+  }
+  instant.chain = state_.chain;
+  ++state_.counts.synchronised;
+  state_.instants.push_back(instant);
+  const auto longest = static_cast<std::size_t>(state_.strides.back().stride);
+  while (state_.instants.size() > longest + 1) state_.instants.pop_front();
+
+  for (auto& [stride, statistics] : state_.strides) {
+    const auto steps = static_cast<std::size_t>(stride);
+    if (state_.instants.size() <= steps) continue;
+    const bool chosen = stride == state_.choice.stride;
+    const std::optional<MotionPair> pair =
+        motion(state_.instants[state_.instants.size() - 1 - steps], instant, stride, chosen);
+    if (!pair) continue;
+    statistics.add(*pair);
+    if (!chosen) continue;
+    pairs.push_back(*pair);
+  }
+  if (state_.counts.synchronised >= state_.next_choice) {
+    choose();
+    state_.next_choice = state_.counts.synchronised + state_.counts.synchronised / 4;
+  }
+  for (const auto& [stride, statistics] : state_.strides)
+    if (stride == state_.choice.stride) state_.counts.matched = total(statistics.blocks()).count;
+}
+
+std::optional<MotionPair> Drive::motion(const Instant& from, const Instant& to, int stride,
+                                        bool count_rejections) {
+  if (from.chain != to.chain) return std::nullopt;
+  if (to.time_us - from.time_us > stretch * stride * state_.period_us) {
+    if (count_rejections) reject(Rejection::gap);
+    return std::nullopt;
+  }
+  MotionPair pair{motion_between(from.a, to.a), motion_between(from.b, to.b), from.time_us, to.time_us, 1};
+  if (std::max(screw_of(pair.a).angle, screw_of(pair.b).angle) > most_rotation) {
+    if (count_rejections) reject(Rejection::too_much_rotation);
+    return std::nullopt;
+  }
+  if (options_.mode == Mode::planar) {
+    pair.a = planar_motion(pair.a, G_a_);
+    pair.b = planar_motion(pair.b, G_b_);
+  }
+  return pair;
+}
+
+void Drive::choose() {
+  if (options_.stride && options_.balance) return;
+  std::vector<Candidate> candidates;
+  std::optional<std::size_t> current;
+  for (const auto& [stride, statistics] : state_.strides)
+    for (const double translation : balances) {
+      const Balance balance = options_.balance.value_or(Balance{1, translation});
+      if (stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
+          balance.translation == state_.choice.balance.translation)
+        current = candidates.size();
+      candidates.push_back({stride, balance, &statistics.blocks()});
+      if (options_.balance) break;
+    }
+  Problem problem;
+  problem.mode = options_.mode;
+  problem.plane_a = options_.plane_a;
+  problem.plane_b = options_.plane_b;
+  const std::optional<Selection> selection = select(problem, candidates, current);
+  if (!selection) return;
+  const Candidate& chosen = candidates[selection->index];
+  state_.choice.stride = chosen.stride;
+  state_.choice.balance = chosen.balance;
+  char text[160];
+  std::snprintf(text, sizeof text, "smallest jack-knife spread of %zu settings: %.3f deg, %.2f cm",
+                candidates.size(), selection->spread.rotation * 180 / std::numbers::pi,
+                100 * selection->spread.translation);
+  state_.choice.reason = text;
+}
+
+Problem Drive::problem() const {
+  Problem problem;
+  problem.mode = options_.mode;
+  problem.plane_a = options_.plane_a;
+  problem.plane_b = options_.plane_b;
+  problem.balance = state_.choice.balance;
+  problem.prior = options_.prior;
+  for (const auto& [stride, statistics] : state_.strides)
+    if (stride == state_.choice.stride) problem.blocks = statistics.blocks();
+  return problem;
+}
+
+std::optional<std::int64_t> Drive::newest_us() const {
+  if (state_.instants.empty()) return std::nullopt;
+  return state_.instants.back().time_us;
+}
+
+DriveResult run_drive(const DriveOptions& options, const Trajectory& a, const Trajectory& b) {
+  DriveResult result{Drive(options), {}};
+  const auto take = [&result](std::vector<MotionPair> pairs) {
+    result.pairs.insert(result.pairs.end(), pairs.begin(), pairs.end());
+  };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() || j < b.size()) {
+    const bool from_a = j == b.size() || (i < a.size() && a[i].time_us <= b[j].time_us);
+    take(from_a ? result.drive.push(Side::a, a[i++]) : result.drive.push(Side::b, b[j++]));
+  }
+  take(result.drive.finish());
+  return result;
+}
+
+}  // namespace egocal

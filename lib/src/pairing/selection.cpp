@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "egocal/online/answer.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Parts of the drive that the jack-knife leaves out: at least this many, each at least two motions long, or
+/// else neighbouring parts share motions and their spread says too little.
+constexpr std::size_t least_parts = 8;
+
+std::vector<Statistics> merged(const std::vector<Statistics>& blocks, std::uint64_t least_count) {
+  std::vector<Statistics> parts;
+  for (const Statistics& block : blocks) {
+    if (parts.empty() || parts.back().count >= least_count) parts.emplace_back();
+    parts.back() += block;
+  }
+  // a rest that is too short joins its neighbour
+  if (parts.size() > 1 && parts.back().count < least_count) {
+    const Statistics rest = parts.back();
+    parts.pop_back();
+    parts.back() += rest;
+  }
+  return parts;
+}
+
+double score(const Spread& spread) {
+  double sum = 0;
+  if (spread.rotation > 0) sum += std::log(spread.rotation);
+  if (spread.translation > 0) sum += std::log(spread.translation);
+  return sum;
+}
+
+}  // namespace
+
+std::optional<Spread> spread(const Problem& problem, int stride) {
+  Problem parts = problem;
+  parts.blocks = merged(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
+  if (parts.blocks.size() < least_parts) return std::nullopt;
+  const Answer answer = solve(parts, Method::dual);
+  Spread result;
+  double rotation = 0, translation = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!answer.knowledge.observable[i] || !std::isfinite(answer.knowledge.stddev[i])) continue;
+    ++result.directions;
+    (i < 3 ? translation : rotation) += answer.knowledge.stddev[i] * answer.knowledge.stddev[i];
+  }
+  if (result.directions == 0) return std::nullopt;
+  result.rotation = std::sqrt(rotation);
+  result.translation = std::sqrt(translation);
+  return result;
+}
+
+std::optional<Selection> select(const Problem& problem, std::span<const Candidate> candidates,
+                                std::optional<std::size_t> current) {
+  constexpr double hysteresis = 0.1;
+  std::optional<Selection> best;
+  double best_score = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    Problem trial = problem;
+    trial.balance = candidates[i].balance;
+    trial.blocks = *candidates[i].blocks;
+    const std::optional<Spread> here = spread(trial, candidates[i].stride);
+    if (!here) continue;
+    const double here_score = score(*here) - (current == i ? 2 * hysteresis : 0);
+    const bool better = !best || here->directions > best->spread.directions ||
+                        (here->directions == best->spread.directions && here_score < best_score);
+    if (!better) continue;
+    best = Selection{i, *here};
+    best_score = here_score;
+  }
+  return best;
+}
+
+}  // namespace egocal
