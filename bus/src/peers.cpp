@@ -31,6 +31,13 @@ bool Peers::alive(const std::string& role, Time now, std::chrono::nanoseconds ti
   });
 }
 
+std::string Peers::role_of(const std::string& name) const {
+  const Peer* found = nullptr;
+  for (const auto& [key, peer] : peers_)
+    if (peer.name == name && (!found || peer.heard > found->heard)) found = &peer;
+  return found ? found->role : std::string{};
+}
+
 std::optional<Peer> Peers::elder_namesake(const std::string& name, std::int64_t run, const std::string& host,
                                           std::int32_t pid, Time now,
                                           std::chrono::nanoseconds timeout) const {

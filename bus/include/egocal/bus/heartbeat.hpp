@@ -53,6 +53,7 @@ class Heartbeat {
   void publish();
 
   bool alive(const std::string& role) const;
+  std::string role_of(const std::string& name) const { return peers_.role_of(name); }
   /// Another living process has this name and started earlier.
   std::optional<Peer> elder_namesake() const;
 

@@ -29,6 +29,8 @@ class Peers {
 
   /// Some process of this role is running and was heard within the timeout.
   bool alive(const std::string& role, Time now, std::chrono::nanoseconds timeout) const;
+  /// Role of the process of this name heard last; empty: never heard.
+  std::string role_of(const std::string& name) const;
   /// Another run of this name that is alive and started earlier.
   std::optional<Peer> elder_namesake(const std::string& name, std::int64_t run, const std::string& host,
                                      std::int32_t pid, Time now, std::chrono::nanoseconds timeout) const;

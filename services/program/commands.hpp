@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "egocal/bus/heartbeat.hpp"
+
+namespace egocal::services {
+
+enum class Verb { reset, pause, resume };
+
+/// Hands on the commands that are meant for this process: its name or "*", a known verb, names that make
+/// sense. What is not understood is counted as rejected.
+void hear_commands(bus::Loop& loop, bus::Heartbeat& heartbeat,
+                   std::function<void(Verb, const command_t&)> callback);
+
+/// Whether a command means this pair: both names, or none for all pairs.
+bool means(const command_t& command, const std::string& sensor_a, const std::string& sensor_b);
+
+}  // namespace egocal::services

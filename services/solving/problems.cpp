@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solving/problems.hpp"
+
+#include <chrono>
+
+namespace egocal::services {
+
+ProblemInbox::ProblemInbox(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& pair)
+    : heartbeat_(heartbeat),
+      sensor_a_(pair.a),
+      sensor_b_(pair.b),
+      newest_(loop, bus::problem_channel(pair.a, pair.b)) {}
+
+std::optional<ReceivedProblem> ProblemInbox::take() {
+  ReceivedProblem received;
+  if (!newest_.take(received.message)) return std::nullopt;
+  ++heartbeat_.counter("in");
+  bus::Checked<Problem> problem = bus::to_problem(received.message);
+  if (problem && (received.message.sensor_a != sensor_a_ || received.message.sensor_b != sensor_b_))
+    problem = {{}, "sensors of another pair"};
+  if (!problem) {
+    heartbeat_.reject(problem.reason);
+    return std::nullopt;
+  }
+  received.problem = std::move(*problem.value);
+  return received;
+}
+
+bool AnswerOutbox::repeat(const problem_t& problem) {
+  if (!last_ || last_->session != problem.session || last_->seq != problem.seq ||
+      last_->utime != problem.utime)
+    return false;
+  loop_.publish(bus::calibration_channel(problem.sensor_a, problem.sensor_b), *last_);
+  return true;
+}
+
+void AnswerOutbox::send(const Answer& answer, const problem_t& problem, bool fallback) {
+  calibration_t message = bus::to_message(answer, problem);
+  message.solver = heartbeat_.identity().name;
+  message.fallback = fallback;
+  message.solve_ns = answer.solve_ns;
+  message.verify_ns = answer.verify_ns;
+  static const std::string host = bus::host_name();
+  if (problem.host == host && problem.received_mono_us > 0)
+    message.latency_us = std::max<std::int64_t>(0, bus::mono_us() - problem.received_mono_us);
+  loop_.publish(bus::calibration_channel(problem.sensor_a, problem.sensor_b), message);
+  ++heartbeat_.counter("out");
+  message.latency_us = -1;  // what is sent once more later was not waited for that long
+  last_ = std::move(message);
+}
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace egocal::services

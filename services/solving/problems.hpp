@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/glue.hpp"
+#include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/newest.hpp"
+#include "egocal/bus/rig.hpp"
+
+namespace egocal::services {
+
+/// A problem as it came, and its checked mathematics.
+struct ReceivedProblem {
+  problem_t message{};
+  Problem problem;
+};
+
+/// The newest problem of one sensor pair.
+class ProblemInbox {
+ public:
+  ProblemInbox(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& pair);
+
+  /// The newest problem since the last call, if one came that stands the checks. Counts the others.
+  std::optional<ReceivedProblem> take();
+  /// Newer ones that made older ones superfluous before they were looked at.
+  std::int64_t skipped() const { return newest_.skipped(); }
+
+ private:
+  bus::Heartbeat& heartbeat_;
+  std::string sensor_a_, sensor_b_;
+  bus::Newest<problem_t> newest_;
+};
+
+/// Sends an answer and remembers it: where the problem is sent again so is the answer, and late listeners
+/// heal.
+class AnswerOutbox {
+ public:
+  AnswerOutbox(bus::Loop& loop, bus::Heartbeat& heartbeat) : loop_(loop), heartbeat_(heartbeat) {}
+
+  /// The answer to just this problem has been sent: sends it once more.
+  bool repeat(const problem_t& problem);
+  void send(const Answer& answer, const problem_t& problem, bool fallback);
+  /// The next problem is answered anew whatever it is.
+  void forget() { last_.reset(); }
+
+ private:
+  bus::Loop& loop_;
+  bus::Heartbeat& heartbeat_;
+  std::optional<calibration_t> last_;
+};
+
+/// CLOCK_MONOTONIC for the library's timings [ns].
+std::int64_t monotonic_ns();
+
+}  // namespace egocal::services
