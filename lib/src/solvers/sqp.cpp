@@ -63,10 +63,10 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
     // T'ZT.
     const Matrix86d T = tangent_basis(q);
     const Multipliers lambda = least_squares_multipliers(q, Qv);
-    Matrix86d ZT = Q * T;
+    Matrix86d ZT = Q.lazyProduct(T);  // small: not worth packing into blocks
     ZT.topRows<4>() += lambda.orthogonal * T.bottomRows<4>() - lambda.norm * T.topRows<4>();
     ZT.bottomRows<4>() += lambda.orthogonal * T.topRows<4>();
-    const Matrix6d hessian = T.transpose() * ZT;
+    const Matrix6d hessian = T.transpose().lazyProduct(ZT);
     const Vector6d gradient = T.transpose() * Qv;
     const double trace = hessian.diagonal().cwiseAbs().sum();
     if (!(trace > 0)) {
