@@ -214,7 +214,7 @@ bool Drive::step_is_congruent(const Instant& from, const Instant& to) {
 
 void Drive::add_instant(const Instant& given, std::vector<MotionPair>& pairs) {
   Instant instant = given;
-  if (!state_.instants.empty() && !step_is_congruent(state_.instants.back(), instant)) {
+  if (options_.gate && !state_.instants.empty() && !step_is_congruent(state_.instants.back(), instant)) {
     ++state_.chain;
     reject(Rejection::screw_congruence);
   }

@@ -23,6 +23,7 @@ struct DriveOptions {
   std::optional<Balance> balance;       ///< empty: chosen by the jack-knife
   double time_offset = 0;               ///< added to the stamps of b before pairing [s]
   double max_gap = 0.5;                 ///< poses further apart are never interpolated between [s]
+  bool gate = true;                     ///< leave out steps whose two motions are not screw congruent
   std::optional<DualQuaternion> prior;  ///< handed on to the problem
 };
 
