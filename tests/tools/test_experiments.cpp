@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include "../support/random_motion.hpp"
+#include "egocal/error.hpp"
+#include "experiments/comparison.hpp"
+#include "experiments/figure.hpp"
+#include "experiments/globality.hpp"
+#include "experiments/noise.hpp"
+#include "experiments/online.hpp"
+#include "experiments/source.hpp"
+
+namespace egocal::tools {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double degree = std::numbers::pi / 180;
+
+DataSet random_data(egocal::testing::Motion motion, std::uint64_t pairs, double noise) {
+  egocal::testing::Random random(5);
+  DataSet data;
+  data.truth = motion == egocal::testing::Motion::planar ? egocal::testing::random_planar_extrinsic(random)
+                                                         : egocal::testing::random_extrinsic(random);
+  data.pairs =
+      egocal::testing::random_pairs(*data.truth, {.motion = motion, .pairs = pairs, .noise = noise}, random);
+  for (std::size_t i = 0; i < data.pairs.size(); ++i) {
+    data.pairs[i].begin_us = static_cast<std::int64_t>(i) * 100'000;
+    data.pairs[i].end_us = data.pairs[i].begin_us + 100'000;
+  }
+  return data;
+}
+
+TEST(Compare, EveryMethodFindsTheExtrinsicOfAWellConditionedDrive) {
+  const DataSet data = random_data(egocal::testing::Motion::free, 500, 0.01);
+  const std::vector<ComparisonRow> rows = compare(data, 1);
+  EXPECT_EQ(rows.size(), 7u);
+  for (const ComparisonRow& row : rows) {
+    ASSERT_TRUE(row.error);
+    EXPECT_LT(row.error->rotation, 0.1 * degree) << row.method;
+    EXPECT_LT(row.error->translation, 0.05) << row.method;
+    EXPECT_GT(row.milliseconds, 0) << row.method;
+    EXPECT_THAT(row.verdict, ::testing::AnyOf("certified", "valid")) << row.method;
+  }
+  EXPECT_THAT(table(rows), HasSubstr("analytic [19]"));
+}
+
+TEST(Compare, OurSolversAgreeAndTheAnalyticOneSaysThatItFailed) {
+  const std::vector<ComparisonRow> rows =
+      compare(random_data(egocal::testing::Motion::dominant_axis, 500, 0.05), 1);
+  std::map<std::string, ComparisonRow> by_name;
+  for (const ComparisonRow& row : rows) by_name[row.method] = row;
+  const DualQuaternion dual = by_name.at("global (dual)").T_a_b;
+  for (const char* name : {"global (sdp)", "fast (slsqp)", "fast (sqp)"}) {
+    EXPECT_LT(extrinsic_error(dual, by_name.at(name).T_a_b).translation, 1e-8) << name;
+    EXPECT_EQ(by_name.at(name).verdict, "certified") << name;
+  }
+  EXPECT_THAT(by_name.at("analytic [19]").verdict, HasSubstr("axes"));
+  EXPECT_EQ(by_name.at("matrix [8]").verdict, "certified");
+}
+
+TEST(Compare, RunsThePlanarMethodsWhereTheGroundIsKnown) {
+  DataSet data = random_data(egocal::testing::Motion::planar, 500, 0.02);
+  data.plane_a = data.plane_b = GroundPlane{};
+  const std::vector<ComparisonRow> rows = compare(data, 1);
+  ASSERT_EQ(rows.size(), 9u);
+  for (std::size_t i = 7; i < 9; ++i) {
+    EXPECT_EQ(rows[i].mode, Mode::planar);
+    EXPECT_LT(rows[i].error->rotation, 0.5 * degree);
+    EXPECT_LT(rows[i].error->translation, 0.1);
+    EXPECT_EQ(rows[i].verdict, "certified");
+  }
+}
+
+TEST(Globality, TheGapGrowsWithTheErrorAndNothingFalsifiedIsCertified) {
+  const DataSet data = random_data(egocal::testing::Motion::free, 400, 0.05);
+  const std::vector<GlobalityPoint> points = globality_experiment(data, {});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(points[i].certified, 0);
+    EXPECT_EQ(points[i].disproved, points[i].runs);
+    EXPECT_LE(points[i].excess_median, points[i].gap_median * (1 + 1e-6));
+    if (i > 0 && points[i].rotation == points[i - 1].rotation && points[i].frames == points[i - 1].frames) {
+      EXPECT_GT(points[i].gap_median, points[i - 1].gap_median);
+    }
+  }
+}
+
+TEST(Globality, TheGapDoesNotDependOnTheNumberOfFrames) {
+  const DataSet data = random_data(egocal::testing::Motion::free, 4000, 0.05);
+  GlobalityOptions options;
+  options.rotations = {1};
+  options.translations = {0.1};
+  options.parts = {0.1, 1};
+  const std::vector<GlobalityPoint> points = globality_experiment(data, options);
+  ASSERT_EQ(points.size(), 4u);
+  EXPECT_NEAR(points[0].gap_median / points[2].gap_median, 1, 0.3);
+  EXPECT_NEAR(points[1].gap_median / points[3].gap_median, 1, 0.3);
+}
+
+TEST(Online, FallsBackOnTheGlobalSolverUntilTheFastOneIsVerified) {
+  const DataSet data = random_data(egocal::testing::Motion::dominant_axis, 150, 0.02);
+  double progress = 0;
+  const std::vector<OnlinePoint> points =
+      online_experiment(data, Mode::spatial, 120, {}, [&](double part) { progress = part; });
+  ASSERT_EQ(points.size(), 120u);
+  EXPECT_EQ(progress, 1);
+  EXPECT_TRUE(points.front().global_used);
+  EXPECT_FALSE(points.back().global_used);
+  EXPECT_TRUE(points.back().fast_verified);
+  for (const OnlinePoint& point : points) EXPECT_TRUE(point.certified) << point.frame;
+  EXPECT_LT(points.back().error->rotation, points[2].error->rotation);
+  EXPECT_NEAR(points.back().time, 12, 1e-9);
+}
+
+TEST(Noise, ErrorsFallWithThePairsAndRiseWithTheNoise) {
+  NoiseOptions options;
+  options.levels = {0.01, 0.1};
+  options.most_pairs = 400;
+  options.sizes = 3;
+  options.sensors = 3;
+  options.repeats = 4;
+  const std::vector<NoisePoint> points = noise_experiment(options, {});
+  ASSERT_EQ(points.size(), 6u);
+  EXPECT_LT(points[2].rotation, points[0].rotation);
+  EXPECT_LT(points[2].rotation, points[5].rotation);
+  for (const NoisePoint& point : points) EXPECT_EQ(point.certified, point.runs);
+}
+
+TEST(Figure, LeavesNumbersAndScript) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "egocal_test_figure" / "deep";
+  std::filesystem::remove_all(folder);
+  const std::vector<GlobalityPoint> points{{.frames = 10, .rotation = true, .amount = 1, .gap_median = 0.5}};
+  const FigureFiles files = figure_files(folder.string(), "gap");
+  write_figure(files, csv(points), plot(points, files.csv, files.png));
+  std::ifstream in(files.csv);
+  std::stringstream text;
+  text << in.rdbuf();
+  EXPECT_THAT(text.str(), HasSubstr("10,rotation,1,deg,0,0.5,"));
+  EXPECT_TRUE(std::filesystem::exists(files.script));
+  std::filesystem::remove_all(folder.parent_path());
+}
+
+TEST(Figure, NamesTheFileThatItCannotWrite) {
+  const FigureFiles files = figure_files("/proc/nowhere", "gap");
+  try {
+    write_figure(files, "", "");
+    FAIL() << "wrote to /proc";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/proc/nowhere"));
+  }
+}
+
+TEST(Source, SimulatesWhereThereAreNoFiles) {
+  const DataSet data = load({.poses = 101});
+  EXPECT_EQ(data.pairs.size(), 100u);
+  EXPECT_TRUE(data.truth);
+}
+
+TEST(Source, NamesTheOptionThatIsWrong) {
+  const auto message = [](const Source& source) -> std::string {
+    try {
+      load(source);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_THAT(message({.file_a = "one.tum"}), HasSubstr("two trajectory files"));
+  EXPECT_THAT(message({.file_a = "/nowhere/a.tum", .file_b = "/nowhere/b.tum"}), HasSubstr("/nowhere/a.tum"));
+  EXPECT_THAT(message({.truth = "1,2,3"}), HasSubstr("--truth"));
+  EXPECT_THAT(message({.truth = "1,2,3,0,0,0,x"}), HasSubstr("--truth"));
+  EXPECT_THAT(message({.truth = "1,2,3,0,0,0,0"}), HasSubstr("--truth"));
+  EXPECT_THAT(message({.plane_a = "0,0,1,-1"}), HasSubstr("--plane-b"));
+  EXPECT_THAT(message({.plane_a = "0,0,1", .plane_b = "0,0,1,-1"}), HasSubstr("--plane-a"));
+  EXPECT_THAT(message({.weights = "heavy"}), HasSubstr("--weights"));
+  EXPECT_THAT(message({.terrain = "sea"}), HasSubstr("--terrain"));
+  EXPECT_THAT(message({.poses = 1}), HasSubstr("--poses"));
+}
+
+}  // namespace
+}  // namespace egocal::tools

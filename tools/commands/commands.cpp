@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/commands.hpp"
+
+#include "commands/compare.hpp"
+#include "commands/experiment.hpp"
+
+namespace egocal::tools {
+
+void add_commands(CLI::App& program) {
+  add_solve(program);
+  add_simulate(program);
+  add_compare(program);
+  add_experiment(program);
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "commands/source_options.hpp"
+#include "experiments/comparison.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+struct Options {
+  Source source;
+  int repeats = 10;
+  bool json = false;
+};
+
+nlohmann::ordered_json row_json(const ComparisonRow& row) {
+  const Pose T = to_pose(row.T_a_b);
+  nlohmann::ordered_json json;
+  json["method"] = row.method;
+  json["mode"] = row.mode == Mode::planar ? "planar" : "spatial";
+  json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
+  json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
+  if (row.error) {
+    json["error_translation_m"] = row.error->translation;
+    json["error_rotation_deg"] = row.error->rotation * 180 / std::numbers::pi;
+  }
+  json["milliseconds"] = row.milliseconds;
+  json["verdict"] = row.verdict;
+  return json;
+}
+
+void run(const Options& options) {
+  const DataSet data = load(options.source);
+  const std::vector<ComparisonRow> rows = compare(data, options.repeats);
+  if (options.json) {
+    nlohmann::ordered_json json;
+    json["pairs"] = data.pairs.size();
+    json["methods"] = nlohmann::ordered_json::array();
+    for (const ComparisonRow& row : rows) json["methods"].push_back(row_json(row));
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{} motion pairs; times from the pairs to the answer, median of {}\n\n{}", data.pairs.size(),
+             options.repeats, table(rows));
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("compare", "every method on one data set: the paper's Tables I and II");
+  add_source_options(*command, options->source);
+  command->add_option("--repeats", options->repeats, "of each method, for its time")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", options->json, "one JSON object on standard output");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/experiment.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "commands/source_options.hpp"
+#include "experiments/figure.hpp"
+#include "experiments/globality.hpp"
+#include "experiments/noise.hpp"
+#include "experiments/online.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// A progress bar on standard error, where somebody is looking.
+class Progress {
+ public:
+  void operator()(double part) {
+    const int percent = static_cast<int>(100 * part);
+    if (!terminal_ || percent == percent_) return;
+    percent_ = percent;
+    fmt::print(stderr, "\r[{:<40}] {:3} %{}", std::string(static_cast<std::size_t>(percent) * 40 / 100, '#'),
+               percent, percent == 100 ? "\n" : "");
+    std::fflush(stderr);
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  int percent_ = -1;
+};
+
+template <typename Points>
+void finish(const Points& points, const std::string& directory, const std::string& name) {
+  const FigureFiles files = figure_files(directory, name);
+  const FigureFiles written = write_figure(files, csv(points), plot(points, files.csv, files.png));
+  fmt::print("{}\n{}\n", written.csv, written.script);
+  if (written.png.empty()) {
+    fmt::print(stderr, "no plot: gnuplot is not installed or failed; the numbers are in {}\n", written.csv);
+  } else {
+    fmt::print("{}\n", written.png);
+  }
+}
+
+void add_noise(CLI::App& experiment) {
+  struct Options {
+    NoiseOptions noise;
+    std::string out = ".";
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = experiment.add_subcommand(
+      "noise", "Fig. 4: error over the number of motion pairs for several noise levels");
+  command->add_option("--levels", options->noise.levels, "noise relative to the mean motion")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--pairs", options->noise.most_pairs, "most motion pairs")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 1000000));
+  command->add_option("--sizes", options->noise.sizes, "how many numbers of pairs, from 10 to the most")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--sensors", options->noise.sensors, "poses of sensor b, 2 to 8 m away")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--repeats", options->noise.repeats, "runs of each")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--seed", options->noise.seed, "of the random numbers")->capture_default_str();
+  command->add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
+      ->capture_default_str();
+  command->callback(
+      [options] { finish(noise_experiment(options->noise, Progress{}), options->out, "noise"); });
+}
+
+void add_online(CLI::App& experiment) {
+  struct Options {
+    Source source;
+    std::size_t frames = 150;
+    double t_no_fail = 5;
+    std::string fast = "sqp", global = "dual";
+    std::string out = ".";
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = experiment.add_subcommand(
+      "online", "Fig. 6: Algorithm 1 frame by frame; planar where both ground planes are given");
+  add_source_options(*command, options->source);
+  command->add_option("--frames", options->frames, "motion pairs")->capture_default_str();
+  command
+      ->add_option("--t-no-fail", options->t_no_fail,
+                   "time that the fast solution must have been verified for [s]")
+      ->capture_default_str();
+  command->add_option("--fast", options->fast, "sqp or slsqp")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"sqp", "slsqp"}));
+  command->add_option("--global", options->global, "dual or sdp")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"dual", "sdp"}));
+  command->add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
+      ->capture_default_str();
+  command->callback([options] {
+    const DataSet data = load(options->source);
+    OnlineOptions online;
+    online.t_no_fail = options->t_no_fail;
+    online.fast = method_from_name(options->fast).value_or(Method::sqp);
+    online.global = method_from_name(options->global).value_or(Method::dual);
+    const Mode mode = data.plane_a ? Mode::planar : Mode::spatial;
+    finish(online_experiment(data, mode, options->frames, online, Progress{}), options->out, "online");
+  });
+}
+
+void add_globality(CLI::App& experiment) {
+  struct Options {
+    Source source;
+    GlobalityOptions globality;
+    std::string out = ".";
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = experiment.add_subcommand(
+      "globality", "section V-F: the optimum falsified by growing amounts, and its duality gap");
+  add_source_options(*command, options->source);
+  command->add_option("--directions", options->globality.directions, "of each amount")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
+      ->capture_default_str();
+  command->callback([options] {
+    finish(globality_experiment(load(options->source), options->globality), options->out, "globality");
+  });
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& program) {
+  CLI::App* experiment = program.add_subcommand("experiment", "the paper's experiments as CSV and plot");
+  experiment->require_subcommand(1);
+  add_noise(*experiment);
+  add_online(*experiment);
+  add_globality(*experiment);
+}
+
+}  // namespace egocal::tools

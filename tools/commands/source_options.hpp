@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/source.hpp"
+
+namespace egocal::tools {
+
+/// The options that say which data an experiment is run on: two files, or a simulated drive.
+void add_source_options(CLI::App& command, Source& source);
+
+}  // namespace egocal::tools

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/globality.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "egocal/solvers/dual.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// Directions spread evenly over the sphere by the golden angle, turned by the seed.
+Eigen::Vector3d direction(int index, int count, std::uint64_t seed) {
+  const double z = 1 - (2.0 * index + 1) / count;
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double angle = golden * (index + static_cast<double>(seed % 1000));
+  const double radius = std::sqrt(std::max(0.0, 1 - z * z));
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+}  // namespace
+
+std::vector<GlobalityPoint> globality_experiment(const DataSet& data, const GlobalityOptions& options) {
+  std::vector<GlobalityPoint> points;
+  for (const double part : options.parts) {
+    const std::size_t frames =
+        std::max<std::size_t>(1, static_cast<std::size_t>(part * static_cast<double>(data.pairs.size())));
+    const Matrix8d Q = cost_matrix(problem_of(data, Mode::spatial, frames));
+    const Solution optimum = solve_dual(Q);
+    const auto falsify = [&](bool rotation, double amount) {
+      GlobalityPoint point;
+      point.frames = frames;
+      point.rotation = rotation;
+      point.amount = amount;
+      std::vector<double> gaps, excesses;
+      for (int i = 0; i < options.directions; ++i) {
+        const Eigen::Vector3d along = direction(i, options.directions, options.seed);
+        const double radians = amount * std::numbers::pi / 180;
+        const Pose by = rotation ? Pose{rotation_exp(radians * along), Eigen::Vector3d::Zero()}
+                                 : Pose{Eigen::Quaterniond::Identity(), amount * along};
+        const DualQuaternion q = optimum.q * to_dual_quaternion(by);
+        const Certificate certificate = verify(Q, q);
+        gaps.push_back(certificate.gap);
+        excesses.push_back(certificate.cost - optimum.cost);
+        point.certified += certificate.optimality == Optimality::certified;
+        point.disproved += certificate.optimality == Optimality::not_optimal;
+        ++point.runs;
+      }
+      std::sort(gaps.begin(), gaps.end());
+      std::sort(excesses.begin(), excesses.end());
+      if (!gaps.empty()) {
+        point.gap_least = gaps.front();
+        point.gap_median = gaps[gaps.size() / 2];
+        point.gap_most = gaps.back();
+        point.excess_median = excesses[excesses.size() / 2];
+      }
+      points.push_back(point);
+    };
+    for (const double amount : options.rotations) falsify(true, amount);
+    for (const double amount : options.translations) falsify(false, amount);
+  }
+  return points;
+}
+
+std::string csv(const std::vector<GlobalityPoint>& points) {
+  std::string text =
+      "frames,falsified,amount,unit,gap_least,gap_median,gap_most,excess_median,certified,disproved,runs\n";
+  for (const GlobalityPoint& p : points)
+    text +=
+        fmt::format("{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{}\n", p.frames,
+                    p.rotation ? "rotation" : "translation", p.amount, p.rotation ? "deg" : "m", p.gap_least,
+                    p.gap_median, p.gap_most, p.excess_median, p.certified, p.disproved, p.runs);
+  return text;
+}
+
+std::string plot(const std::vector<GlobalityPoint>& points, const std::string& csv_file,
+                 const std::string& png_file) {
+  std::vector<std::size_t> sizes;
+  for (const GlobalityPoint& p : points)
+    if (sizes.empty() || sizes.back() != p.frames) sizes.push_back(p.frames);
+  std::string script = fmt::format(
+      "set terminal pngcairo size 900,800\nset output '{}'\nset datafile separator ','\nset logscale xy\nset "
+      "grid\n"
+      "set ylabel 'duality gap'\nset key left top title 'frames'\nset multiplot layout 2,1\n",
+      png_file);
+  for (const bool rotation : {true, false}) {
+    script += fmt::format("set xlabel '{}'\nplot ",
+                          rotation ? "rotation falsified by [deg]" : "translation falsified by [m]");
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      script +=
+          fmt::format("{}'{}' using ($1=={} && strcol(2) eq '{}' ? $3 : NaN):6 with linespoints title '{}'",
+                      i ? ", " : "", csv_file, sizes[i], rotation ? "rotation" : "translation", sizes[i]);
+    script += "\n";
+  }
+  return script + "unset multiplot\n";
+}
+
+}  // namespace egocal::tools
