@@ -29,6 +29,12 @@ Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds tim
 }
 
 Heartbeat::~Heartbeat() {
+  before_publish_ = nullptr;  // who counts may be gone by now
+  end();
+}
+
+void Heartbeat::end() {
+  if (state_ == "ended") return;
   state_ = "ended";
   try {
     publish();

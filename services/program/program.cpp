@@ -49,6 +49,7 @@ int run_program(
                              std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));
     const std::shared_ptr<void> service = start(loop, heartbeat, rig);
     loop.run();
+    heartbeat.end();
     return 0;
   } catch (const std::exception& error) {
     std::cerr << description.name << ": " << error.what() << '\n';
