@@ -2,29 +2,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/source_options.hpp"
 
+#include <map>
+#include <utility>
+
+#include "arguments.hpp"
+
 namespace egocal::tools {
 
 void add_source_options(CLI::App& command, Source& source) {
-  command.add_option("A", source.file_a,
-                     "trajectory of sensor a (TUM, KITTI or EuRoC csv); without files: a simulated drive");
-  command.add_option("B", source.file_b, "trajectory of sensor b");
+  CLI::Option* a = command.add_option(
+      "A", source.file_a,
+      "trajectory of sensor a (TUM, KITTI or EuRoC csv); without files: a simulated drive");
+  CLI::Option* b = command.add_option("B", source.file_b, "trajectory of sensor b");
+  a->needs(b);
   command.add_option("--times-a", source.times_a, "times of A, for a KITTI file");
   command.add_option("--times-b", source.times_b, "times of B, for a KITTI file");
-  command.add_option("--truth", source.truth, "X,Y,Z,QW,QX,QY,QZ: pose of sensor b in sensor a [m]");
-  command.add_option("--plane-a", source.plane_a,
-                     "NX,NY,NZ,D: the ground seen from sensor a, n . x = D, n up [m]");
-  command.add_option("--plane-b", source.plane_b, "the ground seen from sensor b");
+  const auto text = [&](const char* name, const char* help, auto&& take) {
+    return command.add_option_function<std::string>(name, std::forward<decltype(take)>(take), help);
+  };
+  text("--truth", "X,Y,Z,QW,QX,QY,QZ: pose of sensor b in sensor a [m]",
+       [&source](const std::string& value) { source.truth = pose("--truth", value); });
+  CLI::Option* plane_a =
+      text("--plane-a", "NX,NY,NZ,D: the ground seen from sensor a, n . x = D, n up [m]",
+           [&source](const std::string& value) { source.plane_a = plane("--plane-a", value); });
+  CLI::Option* plane_b =
+      text("--plane-b", "the ground seen from sensor b",
+           [&source](const std::string& value) { source.plane_b = plane("--plane-b", value); });
+  plane_a->needs(plane_b);
+  plane_b->needs(plane_a);
+  text("--weights", "equal, or R:T of rotation and translation (default: equal)",
+       [&source](const std::string& value) {
+         if (value != "equal") source.balance = balance("--weights", value);
+       });
   command.add_option("--stride", source.stride, "steps of the slower stream in one motion")
-      ->capture_default_str();
-  command.add_option("--weights", source.weights, "equal, or R:T of rotation and translation")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]")
       ->capture_default_str();
-  command.add_option("--poses", source.poses, "of the simulated drive")->capture_default_str();
+  command.add_option("--poses", source.poses, "of the simulated drive")
+      ->capture_default_str()
+      ->check(CLI::Range(3, 10000000));
   command.add_option("--noise", source.noise, "of the simulated drive, relative to the mean motion")
-      ->capture_default_str();
-  command.add_option("--terrain", source.terrain, "of the simulated drive: flat, rough or free")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--terrain", source.terrain, "of the simulated drive: flat, rough or free (default: rough)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Terrain>{
+          {"flat", Terrain::flat}, {"rough", Terrain::rough}, {"free", Terrain::free}}));
   command.add_option("--seed", source.seed, "of the simulated drive")->capture_default_str();
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "egocal/simulation/simulation.hpp"
 #include "experiments/data_set.hpp"
 
 namespace egocal::tools {
@@ -13,19 +15,19 @@ namespace egocal::tools {
 struct Source {
   std::string file_a{}, file_b{};
   std::string times_a{}, times_b{};  ///< for KITTI files
-  std::string truth{};               ///< "X,Y,Z,QW,QX,QY,QZ", empty where unknown
-  std::string plane_a{}, plane_b{};  ///< "NX,NY,NZ,D"
-  std::string weights = "equal";     ///< or "R:T"
-  int stride = 1;
+  std::optional<Pose> truth{};       ///< pose of sensor b in sensor a, where known
+  std::optional<GroundPlane> plane_a{}, plane_b{};
+  Balance balance{};
+  int stride = 1;          ///< steps of the slower stream in one motion
   double time_offset = 0;  ///< added to the stamps of b [s]
 
-  int poses = 1001;               ///< of the simulated drive
-  double noise = 0.01;            ///< relative
-  std::string terrain = "rough";  ///< flat, rough or free
+  int poses = 1001;     ///< of the simulated drive
+  double noise = 0.01;  ///< relative to the mean motion
+  Terrain terrain = Terrain::rough;
   std::uint64_t seed = 1;
 };
 
-/// Reads or simulates. Throws Error naming the file or the option that is wrong.
+/// Reads or simulates. Throws Error naming the file at fault.
 DataSet load(const Source& source);
 
 }  // namespace egocal::tools
