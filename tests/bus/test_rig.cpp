@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "egocal/bus/rig.hpp"
+#include "egocal/error.hpp"
+
+namespace egocal::bus {
+namespace {
+
+const std::string sensors = R"([[sensor]]
+name = "lidar"
+channel = "ODO_L"
+plane = [0, 0, 1, -1.7]
+[[sensor]]
+name = "camera"
+channel = "ODO_C"
+type = "bot_core.pose_t"
+plane = [0, -1, 0, -1.6]
+)";
+const std::string pair = R"([[pair]]
+a = "lidar"
+b = "camera"
+)";
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_rig(text, "my.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Rig, WholeExample) {
+  const Rig rig = parse_rig(sensors + pair + R"(mode = "planar"
+truth = [0.1, 0.2, 0.3, 1, 0, 0, 0]
+nominal = [0, 0, 0, 0, 0, 0, 1]
+stride = 3
+weights = [1, 0.1]
+time_offset = "auto"
+[bus]
+url = "memq://"
+[pairing]
+max_gap = 0.3
+reorder_window = 0.1
+[solver]
+t_no_fail = 2
+heartbeat_timeout = 4
+)",
+                            "my.toml");
+  ASSERT_EQ(rig.sensors.size(), 2u);
+  EXPECT_EQ(rig.sensors[0].type, OdometryType::odometry);
+  EXPECT_EQ(rig.sensors[1].type, OdometryType::pose);
+  EXPECT_EQ(rig.sensors[1].plane->normal, Eigen::Vector3d(0, -1, 0));
+  ASSERT_EQ(rig.pairs.size(), 1u);
+  EXPECT_EQ(rig.pairs[0].mode, Mode::planar);
+  EXPECT_EQ(rig.pairs[0].truth->translation, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(rig.pairs[0].nominal->rotation.z(), 1);
+  EXPECT_EQ(rig.pairs[0].stride, 3);
+  EXPECT_EQ(rig.pairs[0].balance->translation, 0.1);
+  EXPECT_FALSE(rig.pairs[0].time_offset.has_value());
+  EXPECT_EQ(rig.lcm_url, "memq://");
+  EXPECT_EQ(rig.max_gap, 0.3);
+  EXPECT_EQ(rig.reorder_window, 0.1);
+  EXPECT_EQ(rig.t_no_fail, 2);
+  EXPECT_EQ(rig.heartbeat_timeout, 4);
+}
+
+TEST(Rig, DefaultsAreAutomatic) {
+  const Rig rig = parse_rig(sensors + pair, "my.toml");
+  EXPECT_FALSE(rig.pairs[0].stride);
+  EXPECT_FALSE(rig.pairs[0].balance);
+  EXPECT_EQ(rig.pairs[0].time_offset, 0.0);
+  EXPECT_EQ(rig.pairs[0].mode, Mode::spatial);
+}
+
+TEST(Rig, ErrorsNameFileLineAndKey) {
+  const struct {
+    std::string text, file_and_line, key;
+  } cases[] = {
+      {sensors + pair + "strid = 1\n", "my.toml:13", "strid"},
+      {sensors + pair + "stride = 0\n", "my.toml:13", "stride"},
+      {sensors + pair + "stride = \"fast\"\n", "my.toml:13", "stride"},
+      {sensors + pair + "mode = \"flat\"\n", "my.toml:13", "mode"},
+      {sensors + pair + "mode = 3\n", "my.toml:13", "mode"},
+      {sensors + pair + "truth = [0, 0, 0, 0, 0, 0, 0]\n", "my.toml:13", "truth"},
+      {sensors + pair + "truth = [0, 0, 0]\n", "my.toml:13", "truth"},
+      {sensors + pair + "truth = [0, 0, nan, 1, 0, 0, 0]\n", "my.toml:13", "truth"},
+      {sensors + pair + "weights = [0, 0]\n", "my.toml:13", "weights"},
+      {sensors + pair + "weights = \"same\"\n", "my.toml:13", "weights"},
+      {sensors + pair + "time_offset = \"maybe\"\n", "my.toml:13", "time_offset"},
+      {sensors + pair + pair, "my.toml:15", "b"},
+      {sensors + "[[pair]]\na = \"lidar\"\nb = \"radar\"\n", "my.toml:12", "b"},
+      {sensors + "[[pair]]\na = \"lidar\"\nb = \"lidar\"\n", "my.toml:12", "b"},
+      {sensors + "[[pair]]\na = \"lidar\"\n", "my.toml:10", "b"},
+      {sensors, "my.toml", "pair"},
+      {pair, "my.toml", "sensor"},
+      {sensors + sensors + pair, "my.toml:11", "name"},
+      {sensors + pair + "[solver]\nt_no_fail = -1\n", "my.toml:14", "t_no_fail"},
+      {sensors + pair + "[sovler]\n", "my.toml:13", "sovler"},
+      {sensors + pair + "[bus]\nurl = 3\n", "my.toml:14", "url"},
+      {"[[sensor]]\nname = \"a b\"\n", "my.toml:2", "name"},
+      {"[[sensor]]\nname = \"a\"\nchannel = \"c\"\nplane = [0, 0, 2, 0]\n", "my.toml:4", "plane"},
+      {"[[sensor]\n", "my.toml:1", ""},
+      {"", "my.toml", "sensor"},
+  };
+  for (const auto& c : cases) {
+    const std::string message = error_of(c.text);
+    EXPECT_THAT(message, testing::StartsWith(c.file_and_line)) << c.text;
+    EXPECT_THAT(message, testing::HasSubstr(c.key)) << c.text;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(Rig, MissingFile) {
+  EXPECT_THROW(read_rig("/nonexistent/rig.toml"), Error);
+}
+
+}  // namespace
+}  // namespace egocal::bus
