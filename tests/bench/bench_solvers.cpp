@@ -102,10 +102,8 @@ class Reporter : public benchmark::ConsoleReporter {
     for (const Run& r : runs) {
       if (r.error_occurred) continue;
       if (r.run_type == Run::RT_Aggregate && r.aggregate_name != "median") continue;
-      const double seconds =
-          r.cpu_accumulated_time /
-          (r.iterations > 0 && r.run_type != Run::RT_Aggregate ? static_cast<double>(r.iterations) : 1.0);
-      median_[r.run_name.function_name] = r.run_type == Run::RT_Aggregate ? r.cpu_accumulated_time : seconds;
+      median_[r.run_name.function_name] =
+          r.GetAdjustedCPUTime() / benchmark::GetTimeUnitMultiplier(r.time_unit);
     }
   }
 
