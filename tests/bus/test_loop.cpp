@@ -79,7 +79,9 @@ TEST(Newest, OnlyTheNewestIsKept) {
     message.utime = i;
     loop.publish("C", message);
   }
+  loop.publish("C", status_t{});  // of another type: does not displace the newest
   loop.run_once(100ms);
+  EXPECT_EQ(loop.undecodable().at("C"), 1);
   command_t message{};
   ASSERT_TRUE(newest.take(message));
   EXPECT_EQ(message.utime, 5);

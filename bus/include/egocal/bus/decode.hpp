@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,16 @@ bool lengths_fit(const problem_t*, Bytes bytes);
 bool lengths_fit(const calibration_t*, Bytes bytes);
 bool lengths_fit(const status_t*, Bytes bytes);
 bool lengths_fit(const command_t*, Bytes bytes);
+
+/// Fingerprint and lengths are those of the type.
+template <class Message>
+bool is_a(Bytes bytes) {
+  if (!lengths_fit(static_cast<const Message*>(nullptr), bytes)) return false;
+  std::uint64_t fingerprint = 0;
+  for (std::size_t i = 0; i < 8; ++i)
+    fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(bytes[i]);
+  return fingerprint == static_cast<std::uint64_t>(Message::getHash());
+}
 
 /// Decodes a message that must fill the bytes exactly. False: wrong fingerprint (another type or version),
 /// truncated, trailing bytes, or a length field that lies. Never throws on any input but for lack of memory.

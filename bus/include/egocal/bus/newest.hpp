@@ -16,6 +16,10 @@ class Newest {
  public:
   Newest(Loop& loop, const std::string& channel) : loop_(&loop), channel_(channel) {
     loop.subscribe_bytes(channel, [this](const Arrival& arrival) {
+      if (!is_a<Message>(arrival.bytes)) {  // must not displace a good one
+        loop_->count_undecodable(channel_);
+        return;
+      }
       bytes_.assign(arrival.bytes.begin(), arrival.bytes.end());
       mono_us_ = arrival.mono_us;
       if (fresh_) ++skipped_;
@@ -25,7 +29,7 @@ class Newest {
   Newest(const Newest&) = delete;
   Newest& operator=(const Newest&) = delete;
 
-  /// The newest message, once. False where there is none, or it cannot be decoded (then counted by the loop).
+  /// The newest message, once. False where there is none. What cannot be decoded is counted by the loop.
   bool take(Message& message) {
     if (!std::exchange(fresh_, false)) return false;
     message = Message{};
