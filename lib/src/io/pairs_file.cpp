@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "io/text.hpp"
 
 namespace egocal {
@@ -49,7 +50,7 @@ void write_pairs(const std::string& file, const std::vector<MotionPair>& pairs) 
         text += q == &pair.b && i == 7 ? '\n' : ' ';
       }
   }
-  detail::write_whole(file, text);
+  write_whole_file(file, text);
 }
 
 }  // namespace egocal

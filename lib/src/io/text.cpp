@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 
 #include "egocal/error.hpp"
@@ -108,23 +107,6 @@ std::int64_t time_us(const std::string& file, long line, std::string_view text, 
     throw error_at(file, line, "time", "out of range: '" + std::string(text) + "'");
   if (!fraction.empty() && fraction.front() >= '5') ++value;
   return negative ? -value : value;
-}
-
-void write_whole(const std::string& file, const std::string& content) {
-  const std::string temporary = file + ".part";
-  {
-    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    stream << content;
-    stream.close();
-    if (!stream) {
-      std::remove(temporary.c_str());
-      throw error_at(file, 0, "", "cannot be written");
-    }
-  }
-  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw error_at(file, 0, "", "cannot be written");
-  }
 }
 
 }  // namespace egocal::detail

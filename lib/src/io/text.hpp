@@ -27,7 +27,4 @@ double number(const std::string& file, long line, const std::string& field, std:
 enum class TimeUnit { seconds, nanoseconds };
 std::int64_t time_us(const std::string& file, long line, std::string_view text, TimeUnit unit);
 
-/// Writes the whole file or nothing: to a temporary one beside it that takes its name in the end.
-void write_whole(const std::string& file, const std::string& content);
-
 }  // namespace egocal::detail

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "io/text.hpp"
 
 namespace egocal {
@@ -128,7 +129,7 @@ void write_tum(const std::string& file, const Trajectory& trajectory) {
                   q.w());
     text += line;
   }
-  detail::write_whole(file, text);
+  write_whole_file(file, text);
 }
 
 }  // namespace egocal

@@ -32,7 +32,9 @@ constexpr double balances[] = {1, 0.1, 0.01, 0.001};
 constexpr std::uint64_t first_choice = 64;
 /// Steps that the gate's scale is taken from.
 constexpr std::size_t gate_memory = 401, gate_least = 41;
-constexpr double gate_sigmas = 12;
+/// Real odometry has heavy tails that belong to it; only what is grossly wrong is left out, for a step that
+/// is left out also breaks every longer motion across it.
+constexpr double gate_sigmas = 40;
 
 std::int64_t median_period(const std::deque<StampedPose>& poses) {
   std::vector<std::int64_t> periods;
@@ -47,6 +49,15 @@ double median(std::deque<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+bool fits(double residual, double floor, const std::deque<double>& residuals) {
+  return residuals.size() < gate_least || residual <= gate_sigmas * 1.4826 * median(residuals) + floor;
+}
+
+void remember(double residual, std::deque<double>& residuals) {
+  residuals.push_back(residual);
+  if (residuals.size() > gate_memory) residuals.pop_front();
 }
 
 DualQuaternion motion_between(const DualQuaternion& from, const DualQuaternion& to) {
@@ -193,22 +204,19 @@ std::vector<MotionPair> Drive::synchronise() {
 /// length. A step that does not is a jump, a frozen pose or a lost track of one of them.
 bool Drive::step_is_congruent(const Instant& from, const Instant& to) {
   const Screw a = screw_of(motion_between(from.a, to.a)), b = screw_of(motion_between(from.b, to.b));
+  // the slide along an axis means something only where there is one; without, both go the same way the same
+  // distance
+  const bool turns = std::min(a.angle, b.angle) > 0.02;
   const double angle = std::abs(a.angle - b.angle);
-  // the slide along an axis means something only where there is one
-  const bool has_axis = std::min(a.angle, b.angle) > 0.02;
-  const double slide = has_axis ? std::abs(a.slide - b.slide) : 0;
-  bool congruent = true;
-  if (state_.angle_residuals.size() >= gate_least)
-    congruent = angle <= gate_sigmas * 1.4826 * median(state_.angle_residuals) + 1e-6;
-  if (congruent && has_axis && state_.slide_residuals.size() >= gate_least)
-    congruent = slide <= gate_sigmas * 1.4826 * median(state_.slide_residuals) + 1e-5;
+  const double length =
+      turns
+          ? std::abs(a.slide - b.slide)
+          : std::abs(motion_between(from.a, to.a).dual.norm() - motion_between(from.b, to.b).dual.norm()) * 2;
+  auto& lengths = turns ? state_.slide_residuals : state_.length_residuals;
+  const bool congruent = fits(angle, 1e-6, state_.angle_residuals) && fits(length, 1e-5, lengths);
   // the scale follows what is rejected too: half of it may be wrong, and a new regime is learnt
-  state_.angle_residuals.push_back(angle);
-  if (state_.angle_residuals.size() > gate_memory) state_.angle_residuals.pop_front();
-  if (has_axis) {
-    state_.slide_residuals.push_back(slide);
-    if (state_.slide_residuals.size() > gate_memory) state_.slide_residuals.pop_front();
-  }
+  remember(angle, state_.angle_residuals);
+  remember(length, lengths);
   return congruent;
 }
 

@@ -76,9 +76,10 @@ struct DriveState {
   std::deque<Instant> instants;                    ///< the newest, as many as the longest motion needs
   std::uint64_t chain = 0;
   std::vector<PerStride> strides;
-  std::uint64_t next_choice = 0;       ///< number of instants at which to choose again
-  std::deque<double> angle_residuals;  ///< of the newest steps, for the gate [rad]
-  std::deque<double> slide_residuals;  ///< [m]
+  std::uint64_t next_choice = 0;        ///< number of instants at which to choose again
+  std::deque<double> angle_residuals;   ///< of the newest steps, for the gate [rad]
+  std::deque<double> slide_residuals;   ///< of steps that turn [m]
+  std::deque<double> length_residuals;  ///< of those that do not [m]
 };
 
 /// From two streams of poses to the problem, one pose at a time: synchronises by screw interpolation of the

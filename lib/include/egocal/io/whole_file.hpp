@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace egocal {
+
+/// Writes the whole file or nothing: to a temporary one beside it that takes its name in the end. Throws Error.
+void write_whole_file(const std::string& file, const std::string& content);
+
+}  // namespace egocal

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/io/whole_file.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+#include "egocal/error.hpp"
+
+namespace egocal {
+
+void write_whole_file(const std::string& file, const std::string& content) {
+  const std::string temporary = file + ".part";
+  {
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    stream << content;
+    stream.close();
+    if (!stream) {
+      std::remove(temporary.c_str());
+      throw error_at(file, 0, "", "cannot be written");
+    }
+  }
+  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw error_at(file, 0, "", "cannot be written");
+  }
+}
+
+}  // namespace egocal
