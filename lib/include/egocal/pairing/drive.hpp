@@ -18,13 +18,13 @@ namespace egocal {
 /// How motions are made from two streams of poses, and what the solvers are to minimise.
 struct DriveOptions {
   Mode mode = Mode::spatial;
-  GroundPlane plane_a, plane_b;  ///< planar mode
-  std::optional<int> stride;  ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
-  std::optional<Balance> balance;       ///< empty: chosen by the jack-knife
-  double time_offset = 0;               ///< added to the stamps of b before pairing [s]
-  double max_gap = 0.5;                 ///< poses further apart are never interpolated between [s]
-  bool gate = true;                     ///< leave out steps whose two motions are not screw congruent
-  std::optional<DualQuaternion> prior;  ///< handed on to the problem
+  GroundPlane plane_a{}, plane_b{};  ///< planar mode
+  std::optional<int> stride{};  ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
+  std::optional<Balance> balance{};       ///< empty: chosen by the jack-knife
+  double time_offset = 0;                 ///< added to the stamps of b before pairing [s]
+  double max_gap = 0.5;                   ///< poses further apart are never interpolated between [s]
+  bool gate = true;                       ///< leave out steps whose two motions are not screw congruent
+  std::optional<DualQuaternion> prior{};  ///< handed on to the problem
 };
 
 /// Why a pose or a motion is not in the statistics.

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "../support/random_motion.hpp"
+#include "egocal/error.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/online/answer.hpp"
+#include "egocal/pairing/drive.hpp"
+#include "egocal/simulation/simulation.hpp"
+
+namespace egocal {
+namespace {
+
+struct Simulated {
+  DualQuaternion T;
+  Trajectory a, b;
+};
+
+Simulated simulated(Terrain terrain, double noise, int poses = 1001, std::uint64_t seed = 1) {
+  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
+  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = poses;
+  options.relative_noise = noise;
+  options.seed = seed;
+  options.T_vehicle_sensor = {T_v_a, T_v_b};
+  auto trajectories = simulate(options);
+  return {to_dual_quaternion(inverse(T_v_a) * T_v_b), trajectories[0], trajectories[1]};
+}
+
+bool same_bits(const Problem& x, const Problem& y) {
+  if (x.blocks.size() != y.blocks.size() || x.balance.translation != y.balance.translation) return false;
+  for (std::size_t i = 0; i < x.blocks.size(); ++i)
+    if (x.blocks[i].dual_rows != y.blocks[i].dual_rows || x.blocks[i].count != y.blocks[i].count)
+      return false;
+  return true;
+}
+
+ExtrinsicError error_of(const Simulated& data, const Drive& drive) {
+  return extrinsic_error(data.T, solve(drive.problem(), Method::dual).T_a_b);
+}
+
+TEST(Drive, PerfectDataGiveThePerfectAnswer) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    const Simulated data = simulated(terrain, 0);
+    const Drive drive = run_drive({}, data.a, data.b).drive;
+    const Answer answer = solve(drive.problem(), Method::dual);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
+    EXPECT_LT(error_of(data, drive).rotation, 1e-9);
+    EXPECT_LT(error_of(data, drive).translation, 1e-9);
+    for (const std::uint64_t count : drive.counts().rejected) EXPECT_EQ(count, 0u);
+  }
+}
+
+TEST(Drive, EveryMotionOfOneStepIsPaired) {
+  const Simulated data = simulated(Terrain::rough, 0.01);
+  const DriveResult result = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b);
+  EXPECT_EQ(result.drive.counts().matched, 1000u);
+  EXPECT_EQ(result.pairs.size(), 1000u);
+  EXPECT_EQ(result.drive.counts().synchronised, 1001u);
+  EXPECT_EQ(result.drive.choice().reason, "fixed");
+}
+
+TEST(Drive, DoesNotDependOnHowTheStreamsInterleave) {
+  const Simulated data = simulated(Terrain::rough, 0.01, 600);
+  const Problem expected = run_drive({}, data.a, data.b).drive.problem();
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    testing::Random random(seed);
+    Drive drive{DriveOptions{}};
+    std::size_t i = 0, j = 0;
+    while (i < data.a.size() || j < data.b.size()) {
+      // one stream may run ahead of the other by many poses
+      std::size_t run = 1 + random.below(100);
+      const bool from_a = random.uniform() < 0.5;
+      for (; run > 0 && from_a && i < data.a.size(); --run) drive.push(Side::a, data.a[i++]);
+      for (; run > 0 && !from_a && j < data.b.size(); --run) drive.push(Side::b, data.b[j++]);
+    }
+    drive.finish();
+    EXPECT_TRUE(same_bits(drive.problem(), expected)) << seed;
+  }
+}
+
+TEST(Drive, ContinuesFromItsStateBitForBit) {
+  const Simulated data = simulated(Terrain::rough, 0.01, 400);
+  const Problem expected = run_drive({}, data.a, data.b).drive.problem();
+  for (const std::size_t cut : {0u, 3u, 9u, 63u, 64u, 65u, 200u, 399u}) {
+    Drive first{DriveOptions{}};
+    for (std::size_t i = 0; i < cut; ++i) {
+      first.push(Side::a, data.a[i]);
+      first.push(Side::b, data.b[i]);
+    }
+    Drive second(first.options(), first.state());
+    for (std::size_t i = cut; i < data.a.size(); ++i) {
+      second.push(Side::a, data.a[i]);
+      second.push(Side::b, data.b[i]);
+    }
+    second.finish();
+    EXPECT_TRUE(same_bits(second.problem(), expected)) << cut;
+  }
+}
+
+TEST(Drive, InterpolatesTheFasterStream) {
+  // a ten times as fast as b, its stamps never the same
+  const Simulated data = simulated(Terrain::free, 0, 4001);
+  Trajectory slow;
+  for (std::size_t i = 5; i < data.b.size(); i += 10) {
+    slow.push_back(data.b[i]);
+  }
+  Trajectory fast;
+  for (std::size_t i = 0; i < data.a.size(); ++i)
+    if (i % 10 != 5) fast.push_back(data.a[i]);
+  const DriveResult result = run_drive({.stride = 1, .balance = Balance{1, 0.01}}, fast, slow);
+  EXPECT_EQ(result.drive.counts().matched, slow.size() - 1);
+  EXPECT_EQ(result.drive.state().keys, Side::b);
+  const DriveResult swapped = run_drive({.stride = 1, .balance = Balance{1, 0.01}}, slow, fast);
+  EXPECT_EQ(swapped.drive.state().keys, Side::a);
+  EXPECT_LT(error_of(data, result.drive).rotation, 2e-3);
+  EXPECT_LT(error_of(data, result.drive).translation, 0.05);
+}
+
+TEST(Drive, ALostPoseMakesALongerMotionNotAWrongOne) {
+  Simulated data = simulated(Terrain::rough, 0, 400);
+  testing::Random random(3);
+  for (Trajectory* trajectory : {&data.a, &data.b})
+    std::erase_if(*trajectory, [&](const StampedPose&) { return random.uniform() < 0.2; });
+  DriveOptions options{.stride = 1, .balance = Balance{}};
+  options.max_gap = 0.05;  // no interpolation: only instants that both have
+  const Drive drive = run_drive(options, data.a, data.b).drive;
+  EXPECT_GT(drive.counts().matched, 200u);
+  EXPECT_LT(error_of(data, drive).rotation, 1e-9);
+  EXPECT_LT(error_of(data, drive).translation, 1e-8);
+}
+
+TEST(Drive, GapsAreNotBridged) {
+  Simulated data = simulated(Terrain::rough, 0.001, 600);
+  std::erase_if(data.a, [&](const StampedPose& pose) {
+    return pose.time_us > data.b[200].time_us && pose.time_us < data.b[300].time_us;
+  });
+  const Drive drive = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
+  EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::gap)], 99u + 1u);
+  EXPECT_EQ(drive.counts().matched, 599u - 100u);
+}
+
+TEST(Drive, BadPosesAreCountedByReasonAndCostOnlyThemselves) {
+  const Simulated data = simulated(Terrain::rough, 0.001, 300);
+  Drive drive({.stride = 1, .balance = Balance{}});
+  for (std::size_t i = 0; i < data.a.size(); ++i) {
+    drive.push(Side::a, data.a[i]);
+    drive.push(Side::b, data.b[i]);
+    StampedPose bad = data.a[i];
+    bad.pose.dual[1] = std::numeric_limits<double>::quiet_NaN();
+    drive.push(Side::a, bad);
+    drive.push(Side::b, data.b[i]);           // repeated
+    drive.push(Side::b, data.b[i / 2]);       // late
+    bad.pose = {{3, 0, 0, 0}, {0, 0, 0, 0}};  // not unit
+    drive.push(Side::b, bad);
+  }
+  const auto& rejected = drive.counts().rejected;
+  EXPECT_EQ(rejected[static_cast<std::size_t>(Rejection::not_finite)], 600u);
+  EXPECT_EQ(rejected[static_cast<std::size_t>(Rejection::out_of_order)], 600u);
+  const Drive clean = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
+  EXPECT_TRUE(same_bits(drive.problem(), clean.problem()));
+}
+
+TEST(Drive, JumpsAreLeftOut) {
+  const Simulated clean = simulated(Terrain::rough, 0.01, 1001, 4);
+  Simulated data = clean;
+  testing::Random random(5);
+  // relocalisations: from there on all poses of b are elsewhere
+  DualQuaternion jump;
+  int jumps = 0;
+  for (std::size_t i = 100; i < data.b.size(); ++i) {
+    if (i % 100 == 50) {
+      jump = testing::displacement(0.3 * random.direction(), 5 * random.direction()) * jump;
+      ++jumps;
+    }
+    data.b[i].pose = normalized(jump * data.b[i].pose);
+  }
+  const Drive with = run_drive({}, data.a, data.b).drive, without = run_drive({}, clean.a, clean.b).drive;
+  EXPECT_EQ(with.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)],
+            static_cast<std::uint64_t>(jumps));
+  EXPECT_EQ(without.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 0u);
+  EXPECT_LT(error_of(data, with).rotation, 2 * error_of(clean, without).rotation + 2e-4);
+}
+
+TEST(Drive, TimeOffsetIsAddedToB) {
+  Simulated data = simulated(Terrain::rough, 0, 300);
+  for (StampedPose& pose : data.b) pose.time_us -= 12'345'678;
+  DriveOptions options;
+  options.time_offset = 12.345678;
+  const Drive drive = run_drive(options, data.a, data.b).drive;
+  EXPECT_LT(error_of(data, drive).rotation, 1e-9);
+}
+
+TEST(Drive, StreamsThatDoNotOverlapGiveNothingAndSaySo) {
+  Simulated data = simulated(Terrain::rough, 0, 300);
+  for (StampedPose& pose : data.b) pose.time_us += 1'000'000'000;
+  const Drive drive = run_drive({}, data.a, data.b).drive;
+  EXPECT_EQ(drive.counts().matched, 0u);
+  EXPECT_TRUE(drive.problem().blocks.empty());
+  EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)], 300u);
+}
+
+TEST(Drive, ShortDrivesArePairedAtTheEnd) {
+  const Simulated data = simulated(Terrain::rough, 0, 3);
+  EXPECT_EQ(run_drive({}, data.a, data.b).drive.counts().matched, 2u);
+}
+
+TEST(Drive, MemoryIsBoundedWhateverOneStreamDoes) {
+  Drive drive{DriveOptions{}};
+  for (int i = 0; i < 100'000; ++i) drive.push(Side::a, {i * 1000, {}});
+  EXPECT_LE(drive.state().waiting[0].size(), 4096u);
+  EXPECT_GT(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)], 90'000u);
+}
+
+TEST(Drive, ChoosesLongMotionsForNoiseThatDoesNotGrow) {
+  // absolute poses with jitter (a camera that sees a target): short steps are useless, long ones good
+  Simulated data = simulated(Terrain::free, 0, 2001);
+  testing::Random random(6);
+  for (StampedPose& pose : data.b)
+    pose.pose = pose.pose * testing::displacement(random.normal3(0.01), random.normal3(0.02));
+  const Drive chosen = run_drive({}, data.a, data.b).drive;
+  const Drive equal = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
+  EXPECT_GE(chosen.choice().stride, 8);
+  EXPECT_LT(error_of(data, chosen).rotation, 0.6 * error_of(data, equal).rotation);
+}
+
+TEST(Drive, AutomaticSettingsBeatEqualWeights) {
+  std::vector<double> equal, chosen;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Simulated data = simulated(Terrain::rough, 0.01, 1001, seed);
+    equal.push_back(
+        error_of(data, run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive).rotation);
+    chosen.push_back(error_of(data, run_drive({}, data.a, data.b).drive).rotation);
+  }
+  std::sort(equal.begin(), equal.end());
+  std::sort(chosen.begin(), chosen.end());
+  EXPECT_LT(chosen[10] * 57.3, 0.13);
+  EXPECT_LT(chosen[10], 0.3 * equal[10]);
+}
+
+TEST(Drive, RefusesOptionsThatMakeNoSense) {
+  EXPECT_THROW(Drive({.stride = 0}), Error);
+  DriveOptions planar;
+  planar.mode = Mode::planar;
+  planar.plane_a.normal = {0, 0, 2};
+  EXPECT_THROW(Drive{planar}, Error);
+}
+
+TEST(Simulation, IsTheSameForTheSameSeedAndAnotherForAnother) {
+  const Simulated x = simulated(Terrain::rough, 0.01, 100, 1), y = simulated(Terrain::rough, 0.01, 100, 1);
+  const Simulated z = simulated(Terrain::rough, 0.01, 100, 2);
+  for (std::size_t i = 0; i < x.a.size(); ++i) EXPECT_EQ(x.b[i].pose.vec(), y.b[i].pose.vec());
+  EXPECT_NE(x.b.back().pose.vec(), z.b.back().pose.vec());
+}
+
+TEST(Simulation, FlatIsPlanarRoughHasOneDominantAxis) {
+  const auto rotation_about = [](Terrain terrain) {
+    SimulationOptions options;
+    options.terrain = terrain;
+    const Trajectory path = simulate(options)[0];
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+    for (std::size_t i = 1; i < path.size(); ++i)
+      squares += rotation_log(to_pose(conjugate(path[i - 1].pose) * path[i].pose).rotation).cwiseAbs2();
+    return squares.cwiseSqrt().eval();
+  };
+  const Eigen::Vector3d flat = rotation_about(Terrain::flat), rough = rotation_about(Terrain::rough);
+  EXPECT_LT(flat.head<2>().norm(), 1e-12);
+  EXPECT_GT(rough.head<2>().norm(), 0.02 * rough.z());
+  EXPECT_LT(rough.head<2>().norm(), 0.7 * rough.z());
+}
+
+TEST(Simulation, NoiseHasTheSizeThatWasAskedFor) {
+  const Simulated clean = simulated(Terrain::free, 0, 4001), noisy = simulated(Terrain::free, 0.1, 4001);
+  double rotation = 0, error = 0;
+  for (std::size_t i = 1; i < clean.a.size(); ++i) {
+    const DualQuaternion motion = conjugate(clean.a[i - 1].pose) * clean.a[i].pose;
+    const DualQuaternion seen = conjugate(noisy.a[i - 1].pose) * noisy.a[i].pose;
+    rotation += screw_of(motion).angle;
+    const double off = extrinsic_error(motion, seen).rotation;
+    error += off * off;
+  }
+  const double count = static_cast<double>(clean.a.size() - 1);
+  EXPECT_NEAR(std::sqrt(error / count / 3), 0.1 * rotation / count, 0.005 * rotation / count);
+}
+
+}  // namespace
+}  // namespace egocal

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Real drives with known truth. Their licences do not allow copies here: without the folder these tests say
+// so and are skipped; everything they cover is tested on simulated drives elsewhere.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "../support/random_motion.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/online/answer.hpp"
+#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/time_offset.hpp"
+
+namespace egocal {
+namespace {
+
+const DualQuaternion kitti_truth = to_dual_quaternion(
+    {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
+     {0.333504767535, -0.00479610810717, -0.0755785517707}});
+const DualQuaternion arm_reference = to_dual_quaternion(
+    {Eigen::Quaterniond(0.600112895337, -0.605573525678, 0.371519644521, -0.367584509445).normalized(),
+     {-0.00245036495877, -0.0184887305911, 0.00211597057302}});
+
+DriveOptions equal_weights() {
+  DriveOptions options;
+  options.stride = 1;
+  options.balance = Balance{};
+  options.gate = false;
+  return options;
+}
+
+DriveOptions planar(DriveOptions options) {
+  options.mode = Mode::planar;
+  options.plane_a = {{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
+                     -1.779603641715662210};
+  options.plane_b = {{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
+                     -1.684677553916568593};
+  return options;
+}
+
+class RealData : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(EGOCAL_DATA_DIR))
+      GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
+  }
+  static Trajectory read(const std::string& name) {
+    return read_trajectory(std::string(EGOCAL_DATA_DIR "/") + name);
+  }
+
+  struct Result {
+    double degrees, centimetres;
+    std::uint64_t pairs;
+    Answer answer;
+  };
+  static Result run(const DriveOptions& options, const std::string& a, const std::string& b,
+                    const DualQuaternion& truth) {
+    const Drive drive = run_drive(options, read(a), read(b)).drive;
+    const Answer answer = solve(drive.problem(), Method::dual);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
+    const ExtrinsicError error = extrinsic_error(truth, answer.T_a_b);
+    return {error.rotation * 180 / std::numbers::pi, error.translation * 100, drive.counts().matched, answer};
+  }
+  static constexpr const char* lidar05 = "kitti_05/velodyne_pylidar.tum";
+  static constexpr const char* camera05 = "kitti_05/cam0_orbslam2.tum";
+  static constexpr const char* lidar07 = "kitti_07/velodyne_pylidar.tum";
+  static constexpr const char* camera07 = "kitti_07/cam0_orbslam2.tum";
+};
+
+TEST_F(RealData, EqualWeightsGiveWhatAnIndependentImplementationGave) {
+  const Result spatial = run(equal_weights(), lidar07, camera07, kitti_truth);
+  EXPECT_EQ(spatial.pairs, 1100u);
+  EXPECT_NEAR(spatial.degrees, 0.278, 0.0006);
+  EXPECT_NEAR(spatial.centimetres, 19.02, 0.006);
+  const Result flat = run(planar(equal_weights()), lidar07, camera07, kitti_truth);
+  EXPECT_NEAR(flat.degrees, 0.262, 0.0006);
+  EXPECT_NEAR(flat.centimetres, 14.34, 0.006);
+  const Result k05 = run(equal_weights(), lidar05, camera05, kitti_truth);
+  EXPECT_NEAR(k05.degrees, 0.849, 0.0006);
+  EXPECT_NEAR(k05.centimetres, 14.38, 0.006);
+  const Result euroc = run(equal_weights(), "euroc_v2_01/body_gt.tum", "euroc_v2_01/body_vio.tum", {});
+  EXPECT_NEAR(euroc.degrees, 0.184, 0.001);
+  EXPECT_NEAR(euroc.centimetres, 1.85, 0.01);
+}
+
+TEST_F(RealData, NoTuningKitti) {
+  EXPECT_LE(run({}, lidar05, camera05, kitti_truth).degrees, 0.25);
+  EXPECT_LE(run({}, lidar07, camera07, kitti_truth).degrees, 0.25);
+  for (const auto& [lidar, camera] : {std::pair{lidar05, camera05}, std::pair{lidar07, camera07}}) {
+    const Result result = run(planar({}), lidar, camera, kitti_truth);
+    EXPECT_LE(result.degrees, 0.27);
+    EXPECT_LE(result.centimetres, 14.5);
+  }
+}
+
+TEST_F(RealData, NoTuningAsynchronousStamps) {
+  const Result result =
+      run(planar({}), "kitti0930_27_async/velodyne.tum", "kitti0930_27_async/cam0.tum", kitti_truth);
+  EXPECT_LE(result.degrees, 0.27);
+  EXPECT_LE(result.centimetres, 20);
+}
+
+TEST_F(RealData, NoTuningEuroc) {
+  const Result result = run({}, "euroc_v2_01/body_gt.tum", "euroc_v2_01/body_vio.tum", {});
+  EXPECT_LE(result.degrees, 0.20);
+  EXPECT_LE(result.centimetres, 1.9);
+}
+
+TEST_F(RealData, NoTuningRobotArm) {
+  const Result result = run({}, "eth_robot_arm_real/hand.tum", "eth_robot_arm_real/eye.tum", arm_reference);
+  EXPECT_LE(result.degrees, 0.25);
+  EXPECT_LE(result.centimetres, 0.6);
+}
+
+TEST_F(RealData, NoTuningLoopOfThreeCloses) {
+  const auto T = [](const char* a, const char* b) {
+    const auto file = [](const char* name) { return read(std::string("eth_tango_easy/") + name + ".tum"); };
+    return solve(run_drive({}, file(a), file(b)).drive.problem(), Method::dual).T_a_b;
+  };
+  const ExtrinsicError loop =
+      extrinsic_error(T("caligula", "nero"), T("caligula", "mars") * T("mars", "nero"));
+  EXPECT_LE(loop.rotation * 180 / std::numbers::pi, 0.2);
+  EXPECT_LE(loop.translation * 100, 0.6);
+}
+
+TEST_F(RealData, OffsetOfTheClocksIsFoundWhateverItIs) {
+  struct Case {
+    const char *a, *b;
+    double within;
+  };
+  for (const auto& [a, b, within] : {Case{"euroc_v2_01/body_gt.tum", "euroc_v2_01/body_vio.tum", 0.005},
+                                     Case{"eth_tango_easy/caligula.tum", "eth_tango_easy/mars.tum", 0.010},
+                                     Case{"eth_tango_easy/mars.tum", "eth_tango_easy/nero.tum", 0.010}})
+    for (const double shift : {-300.0, -7.3, 300.0})
+      for (const double drop : {0.0, 0.3}) {
+        testing::Random random(1);
+        Trajectory shifted;
+        for (StampedPose pose : read(b)) {
+          pose.time_us += std::llround(shift * 1e6);
+          if (random.uniform() >= drop) shifted.push_back(pose);
+        }
+        const std::optional<TimeOffset> offset = estimate_time_offset(read(a), shifted);
+        ASSERT_TRUE(offset);
+        EXPECT_NEAR(offset->seconds, -shift, within) << a << " " << drop;
+        EXPECT_GT(offset->correlation, 0.9);
+        EXPECT_LT(offset->stddev, 0.01);
+      }
+}
+
+}  // namespace
+}  // namespace egocal
