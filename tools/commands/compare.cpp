@@ -61,7 +61,7 @@ void add_compare(CLI::App& program) {
   add_source_options(*command, options->source);
   command->add_option("--repeats", options->repeats, "of each method, for its time")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 100000));
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->callback([options] { run(*options); });
 }

@@ -36,7 +36,7 @@ void add_source_options(CLI::App& command, Source& source) {
        });
   command.add_option("--stride", source.stride, "steps of the slower stream in one motion")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000000));
   command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]")
       ->capture_default_str();
   command.add_option("--poses", source.poses, "of the simulated drive")
@@ -44,11 +44,16 @@ void add_source_options(CLI::App& command, Source& source) {
       ->check(CLI::Range(3, 10000000));
   command.add_option("--noise", source.noise, "of the simulated drive, relative to the mean motion")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command
-      .add_option("--terrain", source.terrain, "of the simulated drive: flat, rough or free (default: rough)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Terrain>{
-          {"flat", Terrain::flat}, {"rough", Terrain::rough}, {"free", Terrain::free}}));
+      ->check(CLI::Range(0.0, 10.0));
+  text("--terrain", "of the simulated drive: flat, rough or free (default: rough)",
+       [&source](const std::string& value) {
+         const std::map<std::string, Terrain> terrains{
+             {"flat", Terrain::flat}, {"rough", Terrain::rough}, {"free", Terrain::free}};
+         const auto found = terrains.find(value);
+         if (found == terrains.end())
+           throw UsageError("--terrain: expected flat, rough or free, got '" + value + "'");
+         source.terrain = found->second;
+       });
   command.add_option("--seed", source.seed, "of the simulated drive")->capture_default_str();
 }
 
