@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arguments.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "egocal/error.hpp"
+
+namespace egocal::tools {
+
+std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
+                            char separator) {
+  const auto wrong = [&] {
+    return UsageError(option + ": expected " + std::to_string(count) +
+                      (count == 1 ? " number" : " numbers separated by '") +
+                      (count == 1 ? "" : std::string(1, separator) + "'") + ", got '" + text + "'");
+  };
+  std::vector<double> values;
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  while (true) {
+    double value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) throw wrong();
+    values.push_back(value);
+    if (next == end) break;
+    if (*next != separator) throw wrong();
+    at = next + 1;
+  }
+  if (values.size() != count) throw wrong();
+  return values;
+}
+
+double number(const std::string& option, const std::string& text) {
+  return numbers(option, text, 1)[0];
+}
+
+Pose pose(const std::string& option, const std::string& text) {
+  const std::vector<double> v = numbers(option, text, 7);
+  const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
+  if (std::abs(rotation.norm() - 1) > 0.01)
+    throw UsageError(option + ": expected a quaternion QW,QX,QY,QZ of length 1, got length " +
+                     std::to_string(rotation.norm()));
+  return {rotation.normalized(), {v[0], v[1], v[2]}};
+}
+
+GroundPlane plane(const std::string& option, const std::string& text) {
+  const std::vector<double> v = numbers(option, text, 4);
+  try {
+    return checked({{v[0], v[1], v[2]}, v[3]});
+  } catch (const Error& error) {
+    throw UsageError(option + ": " + error.what());
+  }
+}
+
+Balance balance(const std::string& option, const std::string& text) {
+  const std::vector<double> v = numbers(option, text, 2, ':');
+  if (!(v[0] >= 0) || !(v[1] > 0))
+    throw UsageError(option + ": expected R:T with R >= 0 and T > 0, got '" + text + "'");
+  return {v[0], v[1]};
+}
+
+}  // namespace egocal::tools

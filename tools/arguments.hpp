@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "egocal/geometry/pose.hpp"
+#include "egocal/problem/cost.hpp"
+#include "egocal/problem/ground_plane.hpp"
+
+namespace egocal::tools {
+
+/// An option that cannot be understood: exit code 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Exactly `count` finite numbers. Throws UsageError naming the option.
+std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
+                            char separator = ',');
+double number(const std::string& option, const std::string& text);
+/// X,Y,Z,QW,QX,QY,QZ.
+Pose pose(const std::string& option, const std::string& text);
+/// NX,NY,NZ,D: normal . x = D, the unit normal up.
+GroundPlane plane(const std::string& option, const std::string& text);
+/// R:T.
+Balance balance(const std::string& option, const std::string& text);
+
+}  // namespace egocal::tools

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "arguments.hpp"
+#include "commands/commands.hpp"
+#include "egocal/bus/glue.hpp"
+#include "egocal/bus/log_file.hpp"
+#include "egocal/error.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "egocal/simulation/simulation.hpp"
+#include "progress.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// As typed.
+struct Options {
+  std::string out, rig_out, terrain = "rough", type = "odometry";
+  std::vector<std::string> sensors = {"lidar=1.0,0.0,1.8,1,0,0,0", "camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5"};
+  SimulationOptions simulation;
+};
+
+struct MountedSensor {
+  std::string name;
+  std::string channel;
+  Pose T_vehicle_sensor;
+};
+
+MountedSensor mounted(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || !bus::plausible_name(text.substr(0, equals)))
+    throw UsageError("--sensor: expected NAME=X,Y,Z,QW,QX,QY,QZ, got '" + text + "'");
+  MountedSensor sensor{text.substr(0, equals), "ODOMETRY_", pose("--sensor", text.substr(equals + 1))};
+  for (const char c : sensor.name)
+    sensor.channel += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return sensor;
+}
+
+std::string pose_list(const Pose& T) {
+  return fmt::format("[{:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}]", T.translation.x(),
+                     T.translation.y(), T.translation.z(), T.rotation.w(), T.rotation.x(), T.rotation.y(),
+                     T.rotation.z());
+}
+
+/// A rig file for the simulated sensors: the first one with every other one, the truth known.
+std::string rig_text(const std::vector<MountedSensor>& sensors, const std::string& type) {
+  std::string text = "# made by egocal simulate\n";
+  for (const MountedSensor& sensor : sensors)
+    text += fmt::format("\n[[sensor]]\nname = \"{}\"\nchannel = \"{}\"\ntype = \"{}\"\n", sensor.name,
+                        sensor.channel, type == "pose" ? "bot_core.pose_t" : "egocal.odometry_t");
+  for (std::size_t i = 1; i < sensors.size(); ++i)
+    text +=
+        fmt::format("\n[[pair]]\na = \"{}\"\nb = \"{}\"\ntruth = {}  # x, y, z, qw, qx, qy, qz of b in a\n",
+                    sensors[0].name, sensors[i].name,
+                    pose_list(inverse(sensors[0].T_vehicle_sensor) * sensors[i].T_vehicle_sensor));
+  return text;
+}
+
+/// All sensors' poses into one log, in the order of time.
+void write_log(const std::string& file, const std::vector<MountedSensor>& sensors,
+               const std::vector<Trajectory>& trajectories, const std::string& type) {
+  bus::LogWriter log(file);
+  Progress progress("writing");
+  const std::size_t count = trajectories.front().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < sensors.size(); ++k) {
+      const StampedPose& pose = trajectories[k][i];
+      if (type == "pose")
+        log.write(pose.time_us, sensors[k].channel, bus::encode(bus::to_pose_message(pose)));
+      else
+        log.write(pose.time_us, sensors[k].channel,
+                  bus::encode(bus::to_message(pose, static_cast<std::int64_t>(i))));
+    }
+    progress(static_cast<double>(i + 1) / static_cast<double>(count));
+  }
+  log.close();
+}
+
+void write_directory(const std::string& directory, const std::vector<MountedSensor>& sensors,
+                     const std::vector<Trajectory>& trajectories) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw error_at(directory, 0, "", "cannot be made: " + error.message());
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    write_tum(directory + "/" + sensors[k].name + ".tum", trajectories[k]);
+    if (k == 0) continue;
+    const Pose T = inverse(sensors[0].T_vehicle_sensor) * sensors[k].T_vehicle_sensor;
+    write_whole_file(
+        directory + "/truth_" + sensors[0].name + "_" + sensors[k].name + ".txt",
+        fmt::format("# tx ty tz qw qx qy qz, pose of {} in {}\n{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} "
+                    "{:.17g} {:.17g}\n",
+                    sensors[k].name, sensors[0].name, T.translation.x(), T.translation.y(), T.translation.z(),
+                    T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()));
+  }
+}
+
+void run(Options options) {
+  std::vector<MountedSensor> sensors;
+  for (const std::string& text : options.sensors) sensors.push_back(mounted(text));
+  if (sensors.size() < 2) throw UsageError("--sensor: expected at least two");
+  SimulationOptions& simulation = options.simulation;
+  simulation.terrain = options.terrain == "flat"   ? Terrain::flat
+                       : options.terrain == "free" ? Terrain::free
+                                                   : Terrain::rough;
+  simulation.T_vehicle_sensor.clear();
+  for (const MountedSensor& sensor : sensors) simulation.T_vehicle_sensor.push_back(sensor.T_vehicle_sensor);
+  const std::vector<Trajectory> trajectories = simulate(simulation);
+  if (std::filesystem::path(options.out).extension() == ".log")
+    write_log(options.out, sensors, trajectories, options.type);
+  else
+    write_directory(options.out, sensors, trajectories);
+  if (!options.rig_out.empty()) write_whole_file(options.rig_out, rig_text(sensors, options.type));
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  SimulationOptions& simulation = options->simulation;
+  CLI::App* command =
+      program.add_subcommand("simulate", "a drive with known truth, as an LCM log or as TUM files");
+  command->add_option("--out", options->out, "a file .log, or a directory for TUM files")->required();
+  command->add_option("--rig-out", options->rig_out, "also writes a rig file for it");
+  command
+      ->add_option("--terrain", options->terrain,
+                   "flat (planar motion), rough (a road) or free (6 degrees of freedom)")
+      ->check(CLI::IsMember({"flat", "rough", "free"}))
+      ->capture_default_str();
+  command
+      ->add_option("--sensor", options->sensors,
+                   "NAME=X,Y,Z,QW,QX,QY,QZ: its pose on the vehicle; two or more")
+      ->capture_default_str();
+  command->add_option("--poses", simulation.poses, "of each sensor")
+      ->check(CLI::Range(2, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--rate", simulation.rate, "poses a second [Hz]")->capture_default_str();
+  command->add_option("--speed", simulation.speed, "[m/s]")->capture_default_str();
+  command->add_option("--roughness", simulation.roughness, "amplitude of the road's surface [m]")
+      ->capture_default_str();
+  command->add_option("--noise", simulation.relative_noise, "of each motion, as a part of the mean one")
+      ->capture_default_str();
+  command->add_option("--noise-rotation", simulation.noise_rotation, "added to it [rad]")
+      ->capture_default_str();
+  command->add_option("--noise-translation", simulation.noise_translation, "added to it [m]")
+      ->capture_default_str();
+  command->add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
+  command->add_option("--seed", simulation.seed, "of path, surface and noise")->capture_default_str();
+  command
+      ->add_option("--type", options->type,
+                   "of the messages: odometry (egocal.odometry_t) or pose (bot_core.pose_t)")
+      ->check(CLI::IsMember({"odometry", "pose"}))
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace egocal::tools

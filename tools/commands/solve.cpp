@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include <memory>
+
+#include "arguments.hpp"
+#include "commands/commands.hpp"
+#include "offline/calibration.hpp"
+#include "offline/report.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// As typed; empty means not given.
+struct Options {
+  MotionSource source;
+  std::string times;
+  std::string method = "global";
+  bool planar = false;
+  std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal;
+  double max_gap = 0.5;
+  bool json = false;
+};
+
+CalibrationOptions understood(const Options& options) {
+  CalibrationOptions result;
+  result.source = options.source;
+  if (!options.times.empty()) {
+    if (result.source.times_a.empty()) result.source.times_a = options.times;
+    if (result.source.times_b.empty()) result.source.times_b = options.times;
+  }
+  const bool trajectories = options.source.pairs.empty();
+  if (trajectories && (options.source.a.empty() || options.source.b.empty()))
+    throw UsageError(options.source.log.empty()
+                         ? "solve: expected two trajectory files A and B, or --pairs FILE"
+                         : "solve: expected two channel names A and B of the log");
+  if (!trajectories && (!options.source.a.empty() || !options.source.log.empty()))
+    throw UsageError("--pairs: takes the place of A and B and of --log");
+  result.method = options.method;
+
+  if (options.planar != (!options.plane_a.empty() || !options.plane_b.empty()) ||
+      options.plane_a.empty() != options.plane_b.empty())
+    throw UsageError("--planar: goes with both --plane-a and --plane-b");
+  if (options.planar) {
+    result.drive.mode = Mode::planar;
+    result.drive.plane_a = plane("--plane-a", options.plane_a);
+    result.drive.plane_b = plane("--plane-b", options.plane_b);
+  }
+
+  // equal weights are the paper's plain method: every motion of one step, none left out
+  if (options.weights == "equal") {
+    result.drive.balance = Balance{};
+    result.drive.gate = false;
+    if (options.stride.empty()) result.drive.stride = 1;
+  } else if (options.weights != "auto") {
+    result.drive.balance = balance("--weights", options.weights);
+  }
+  if (!options.stride.empty() && options.stride != "auto") {
+    const double stride = number("--stride", options.stride);
+    if (stride < 1 || stride > 100000 || stride != static_cast<int>(stride))
+      throw UsageError("--stride: expected auto or a whole number from 1 to 100000, got '" + options.stride +
+                       "'");
+    result.drive.stride = static_cast<int>(stride);
+  }
+  if (options.time_offset == "auto")
+    result.estimate_time_offset = true;
+  else if (!options.time_offset.empty())
+    result.drive.time_offset = number("--time-offset", options.time_offset);
+  if (std::abs(result.drive.time_offset) > 1e10) throw UsageError("--time-offset: out of range");
+  if (!(options.max_gap > 0) || options.max_gap > 1e6) throw UsageError("--max-gap: expected more than 0 s");
+  result.drive.max_gap = options.max_gap;
+  if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
+  if (!options.nominal.empty()) result.drive.prior = to_dual_quaternion(pose("--nominal", options.nominal));
+  return result;
+}
+
+void run(const Options& options) {
+  const CalibrationOptions understood_options = understood(options);
+  const CalibrationResult result = calibrate_offline(understood_options);
+  fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
+                                  : report_text(result, understood_options.truth));
+}
+
+}  // namespace
+
+void add_solve(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("solve", "two trajectories in, the extrinsic of b in a out, with proof");
+  command->add_option(
+      "A", options->source.a,
+      "trajectory of sensor a: TUM, EuRoC csv, or KITTI with --times; with --log its channel");
+  command->add_option("B", options->source.b, "trajectory of sensor b");
+  command->add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
+  command->add_option("--pairs", options->source.pairs,
+                      "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
+  command->add_option("--times", options->times, "times of KITTI poses, one a line [s]");
+  command->add_option("--times-a", options->source.times_a, "times of A alone");
+  command->add_option("--times-b", options->source.times_b, "times of B alone");
+  command->add_option("--method", options->method, "solver, or a baseline of the paper")
+      ->check(CLI::IsMember({"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))
+      ->capture_default_str();
+  command->add_flag("--planar", options->planar, "x, y and yaw only; the rest from the ground planes");
+  command->add_option("--plane-a", options->plane_a,
+                      "NX,NY,NZ,D: ground seen from a, n . x = D, unit normal n up [m]");
+  command->add_option("--plane-b", options->plane_b, "ground seen from b");
+  command->add_option(
+      "--stride", options->stride,
+      "steps of the slower stream in one motion: a number or auto [auto; 1 with --weights equal]");
+  command->add_option("--weights", options->weights, "of rotation and translation: auto, equal or R:T")
+      ->capture_default_str();
+  command->add_option("--time-offset", options->time_offset, "added to the times of B: seconds or auto [0]");
+  command->add_option("--max-gap", options->max_gap, "poses further apart are not interpolated between [s]")
+      ->capture_default_str();
+  command->add_option("--nominal", options->nominal,
+                      "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
+  command->add_option("--truth", options->truth,
+                      "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
+  command->add_flag("--json", options->json, "one JSON object on standard output");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "offline/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "egocal/evaluation/errors.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+
+nlohmann::ordered_json stream_json(const StreamSpan& stream) {
+  return {{"poses", stream.poses}, {"first_s", stream.first}, {"last_s", stream.last}};
+}
+
+const char* verdict(Optimality optimality) {
+  switch (optimality) {
+    case Optimality::certified:
+      return "certified: no extrinsic has a lower cost";
+    case Optimality::not_optimal:
+      return "NOT OPTIMAL: a better extrinsic is known";
+    case Optimality::undecided:
+      break;
+  }
+  return "UNDECIDED: too imprecise to prove or disprove";
+}
+
+std::string pose_text(const char* label, const Pose& T) {
+  const Eigen::Vector3d& t = T.translation;
+  const Eigen::Vector3d angles = roll_pitch_yaw(T.rotation) * degrees;
+  return fmt::format(
+      "{}\n  translation x y z [m]          {:12.6f} {:12.6f} {:12.6f}\n"
+      "  quaternion w x y z             {:12.9f} {:12.9f} {:12.9f} {:12.9f}\n"
+      "  roll pitch yaw [deg]           {:12.5f} {:12.5f} {:12.5f}   R = Rz(yaw) Ry(pitch) Rx(roll)\n",
+      label, t.x(), t.y(), t.z(), T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z(), angles.x(),
+      angles.y(), angles.z());
+}
+
+Pose with_positive_scalar(Pose T) {
+  if (T.rotation.w() < 0) T.rotation.coeffs() *= -1;
+  return T;
+}
+
+}  // namespace
+
+std::string report_json(const CalibrationResult& result, const std::optional<Pose>& truth) {
+  const Pose T = to_pose(result.answer.T_a_b);
+  const Certificate& certificate = result.answer.certificate;
+  nlohmann::ordered_json json;
+  json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
+  json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
+  json["pairs"] = total(result.problem.blocks).count;
+  json["cost"] = certificate.cost;
+  json["lower_bound"] = certificate.lower_bound;
+  json["gap"] = certificate.gap;
+  json["certified"] = certificate.optimality == Optimality::certified;
+  json["status"] = certificate.optimality == Optimality::certified     ? "certified"
+                   : certificate.optimality == Optimality::not_optimal ? "not optimal"
+                                                                       : "undecided";
+  json["reach_translation"] = certificate.reach_translation;
+  json["reach_rotation"] = certificate.reach_rotation;
+  json["observable"] = result.answer.knowledge.observable;
+  json["stddev"] = result.answer.knowledge.stddev;
+  json["hint"] = result.answer.knowledge.hint;
+  json["method"] = result.method;
+  json["note"] = result.note;
+  json["solve_us"] = result.solve_us;
+  json["mode"] = result.problem.mode == Mode::planar ? "planar" : "spatial";
+  json["stride"] = result.choice.stride;
+  json["weights"] = {{"rotation", result.choice.balance.rotation},
+                     {"translation", result.choice.balance.translation}};
+  json["choice"] = result.choice.reason;
+  json["time_offset_s"] = result.time_offset_applied;
+  if (result.time_offset)
+    json["time_offset_estimate"] = {{"seconds", result.time_offset->seconds},
+                                    {"stddev", result.time_offset->stddev},
+                                    {"correlation", result.time_offset->correlation}};
+  json["synchronised"] = result.counts.synchronised;
+  json["rejected"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
+    json["rejected"][std::string(name(static_cast<Rejection>(i)))] = result.counts.rejected[i];
+  if (result.a) json["a"] = stream_json(*result.a);
+  if (result.b) json["b"] = stream_json(*result.b);
+  if (truth) {
+    const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*truth), result.answer.T_a_b);
+    json["error_translation_m"] = error.translation;
+    json["error_rotation_deg"] = error.rotation * degrees;
+  }
+  return json.dump(2);
+}
+
+std::string report_text(const CalibrationResult& result, const std::optional<Pose>& truth) {
+  const Answer& answer = result.answer;
+  const Pose T = to_pose(answer.T_a_b);
+  std::string text = pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", T);
+  text += pose_text("T_b_a, its inverse", with_positive_scalar(inverse(T)));
+
+  text +=
+      fmt::format("\nmotions       {} pairs, stride {}, weights rotation : translation = {:g} : {:g} ({})\n",
+                  total(result.problem.blocks).count, result.choice.stride, result.choice.balance.rotation,
+                  result.choice.balance.translation, result.choice.reason);
+  for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
+    if (stream)
+      text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,
+                          stream->first, stream->last);
+  if (result.a) {
+    text += fmt::format("pairing       {} instants synchronised", result.counts.synchronised);
+    for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
+      if (result.counts.rejected[i] > 0)
+        text += fmt::format(", {} rejected: {}", result.counts.rejected[i], name(static_cast<Rejection>(i)));
+    text += "\n";
+  }
+  if (result.time_offset)
+    text +=
+        fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
+                    result.time_offset->seconds, result.time_offset->stddev, result.time_offset->correlation);
+  else if (result.time_offset_applied != 0)
+    text += fmt::format("time offset   {:.4f} s added to b\n", result.time_offset_applied);
+
+  const Certificate& certificate = answer.certificate;
+  text += fmt::format("\nfit           cost {:.6g}\n", certificate.cost);
+  text += fmt::format("optimality    {} (method {}, {:.2f} us)\n", verdict(certificate.optimality),
+                      result.method, result.solve_us);
+  text += fmt::format(
+      "              lower bound {:.6g}, gap {:.3g} ({:.2f} of rounding); anything as good is within {:.2g} "
+      "m, {:.2g} deg\n",
+      certificate.lower_bound, certificate.gap, certificate.scaled_gap, certificate.reach_translation,
+      certificate.reach_rotation * degrees);
+  if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
+  text += "uncertainty   in the frame of a, one standard deviation\n";
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double stddev = answer.knowledge.stddev[i];
+    const bool rotation = i >= 3;
+    std::string value = "NOT OBSERVABLE, the number above is not a measurement";
+    if (!answer.knowledge.observable[i] && result.problem.mode == Mode::planar)
+      value = "from the ground planes";
+    if (answer.knowledge.observable[i])
+      value = std::isfinite(stddev)
+                  ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")
+                  : "observable, too few motions for a standard deviation";
+    text += fmt::format("  {:<12}{}\n", directions[i], value);
+  }
+  if (!answer.knowledge.hint.empty()) text += fmt::format("  {}\n", answer.knowledge.hint);
+  if (truth) {
+    const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*truth), answer.T_a_b);
+    text += fmt::format("\nerror against the truth (32)   {:.3f} deg, {:.2f} cm\n", error.rotation * degrees,
+                        error.translation * 100);
+  }
+  return text;
+}
+
+}  // namespace egocal::tools

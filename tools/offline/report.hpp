@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "offline/calibration.hpp"
+
+namespace egocal::tools {
+
+/// One JSON object; numbers that are not finite are null.
+std::string report_json(const CalibrationResult& result, const std::optional<Pose>& truth);
+/// For people: degrees and centimetres, both directions of T, fit and optimality and uncertainty kept apart.
+std::string report_text(const CalibrationResult& result, const std::optional<Pose>& truth);
+
+}  // namespace egocal::tools
