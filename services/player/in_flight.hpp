@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "egocal/bus/log_file.hpp"
+#include "egocal/status_t.hpp"
+
+namespace egocal::services {
+
+/// The messages that pairing has not acknowledged yet, of the channels that it acknowledges. What is lost on
+/// the way, or was sent to a pairing process that died, is still here to be sent again. Pure: no clock, no
+/// LCM.
+class InFlight {
+ public:
+  /// Takes note of a message that was sent. Of channels that pairing does not listen to nothing is kept.
+  void sent(const bus::LogEvent& event);
+  /// A status of pairing. True if it acknowledged something new, or is that of a new process.
+  bool acknowledged(const status_t& pairing);
+
+  bool heard() const { return run_.has_value(); }  ///< any pairing process, ever
+  std::size_t count() const;                       ///< messages on the way
+  /// All of them, in the order in which they were sent.
+  std::vector<bus::LogEvent> all() const;
+  void clear();
+
+ private:
+  struct Message {
+    std::uint64_t order;
+    std::int64_t utime;
+    bus::LogEvent event;
+  };
+  struct Channel {
+    std::int64_t count = 0;  ///< messages that pairing has counted
+    std::int64_t utime = 0;
+    std::deque<Message> messages;
+  };
+  std::map<std::string, Channel> channels_;
+  std::optional<std::int64_t> run_;  ///< of the pairing process
+  std::uint64_t order_ = 0;
+};
+
+/// Time of the measurement in an odometry message of either type [us].
+std::optional<std::int64_t> utime_of(const bus::LogEvent& event);
+
+}  // namespace egocal::services

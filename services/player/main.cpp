@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "egocal/bus/glue.hpp"
+#include "egocal/bus/rig.hpp"
+#include "player/player.hpp"
+
+using namespace egocal;
+
+int main(int argc, char** argv) {
+  CLI::App app("Plays an LCM log on the bus, in step with egocal-pairing.", "egocal-player");
+  app.footer(
+      "On a terminal it takes the lines: pause, resume, step, speed S, seek S, quit.\n"
+      "Exit codes: 0 played or ended by a signal, 1 failure, 2 wrong usage.");
+  services::PlayerOptions options;
+  std::string rig_file, url, name = "egocal-player";
+  double end = -1;
+  app.set_version_flag("--version", "egocal-player " EGOCAL_VERSION);
+  app.add_option("LOG", options.log, "the log, as lcm-logger or egocal wrote it")->required();
+  app.add_option("--rig", rig_file, "rig file, for its LCM URL");
+  app.add_option("--lcm-url", url, "LCM URL instead of the rig's");
+  app.add_option("--name", name, "name of this process on the bus")->capture_default_str();
+  app.add_option("--speed", options.speed, "times real time; 0: as fast as pairing takes it in")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_flag("--loop", options.loop, "from the beginning again at the end, as another session");
+  app.add_flag("--paused", options.paused, "wait for resume");
+  app.add_option("--start", options.start, "begin so far into the log [s]")->check(CLI::NonNegativeNumber);
+  app.add_option("--end", end, "end so far into the log [s]")->check(CLI::NonNegativeNumber);
+  app.add_option("--channel", options.channel, "regular expression: only these channels");
+  try {
+    app.parse(argc, argv);
+    if (!bus::plausible_name(name))
+      throw CLI::ValidationError("--name", "expected 1 to 40 letters, digits, _ or -");
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << "egocal-player: " << bus::printable(error.what()) << "; see --help\n";
+    return 2;
+  }
+  try {
+    if (end >= 0) options.end = end;
+    const bus::Rig rig = rig_file.empty() ? bus::Rig{} : bus::read_rig(rig_file);
+    bus::Loop loop(url.empty() ? rig.lcm_url : url);
+    const std::chrono::duration<double> timeout(rig.heartbeat_timeout);
+    bus::Heartbeat heartbeat(loop, {name, "player", EGOCAL_VERSION},
+                             std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));
+    services::Player player(loop, heartbeat, options);
+    loop.run();
+    heartbeat.end();
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "egocal-player: " << error.what() << '\n';
+    return 1;
+  }
+}
