@@ -80,7 +80,7 @@ json answer_json(const PairState& pair, const SolverTrack& solver) {
 
 }  // namespace
 
-std::string text_lines(const Model& model, Charset charset) {
+std::string pair_lines(const Model& model, Charset charset) {
   const Symbols& s = symbols(charset);
   const std::string degree = charset == Charset::unicode ? "°" : " deg";
   std::string text;
@@ -121,6 +121,11 @@ std::string text_lines(const Model& model, Charset charset) {
     if (!answer->hint.empty()) text += ", hint: " + clean(answer->hint, 120);
     text += "\n";
   }
+  return text;
+}
+
+std::string text_lines(const Model& model, Charset charset) {
+  std::string text = pair_lines(model, charset);
   for (const ProcessState& process : model.processes()) {
     const status_t& status = process.status;
     text += clean(status.name, 40) + ": " +

@@ -89,6 +89,7 @@ void Model::note(Severity severity, const std::string& subject, const std::strin
       return;
     }
   }
+  ++events_seen_;
   if (events_.size() == kMaxEvents) events_.pop_front();
   events_.push_back({now, severity, bounded(subject), bounded(text), 1});
 }

@@ -20,6 +20,8 @@
 // curses.h and term.h define these as macros
 #undef lines
 #undef columns
+#undef tab
+#undef key
 
 namespace egocal::monitor {
 namespace {
@@ -212,7 +214,9 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
     dup2(s.capture[1], STDERR_FILENO);
   }
 
-  quit_flag = resize_flag = suspend_flag = 0;
+  quit_flag = 0;
+  resize_flag = 0;
+  suspend_flag = 0;
   for (int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) handle(signal_number, on_quit);
   handle(SIGWINCH, on_resize);
   handle(SIGTSTP, on_suspend);

@@ -11,6 +11,8 @@ namespace egocal::monitor {
 
 // The same model without a terminal: for pipes, logs and bug reports.
 
+/// A line per pair.
+std::string pair_lines(const Model& model, Charset charset);
 /// A line per pair, then a line per process.
 std::string text_lines(const Model& model, Charset charset);
 /// "12:34:56 lidar -> camera: certified ...": an event as a line.

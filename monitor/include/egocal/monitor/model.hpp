@@ -126,6 +126,7 @@ class Model {
   const std::vector<PairState>& pairs() const { return pairs_; }
   const std::vector<ProcessState>& processes() const { return processes_; }
   const std::deque<Event>& events() const { return events_; }  ///< oldest first
+  std::int64_t events_seen() const { return events_seen_; }    ///< ever, also those that are no longer kept
   std::int64_t ignored() const { return ignored_; }
   std::int64_t messages() const { return messages_; }
   Now now() const { return now_; }
@@ -146,6 +147,7 @@ class Model {
   std::vector<ProcessState> processes_;
   std::deque<Event> events_;
   std::int64_t ignored_ = 0;
+  std::int64_t events_seen_ = 0;
   std::int64_t messages_ = 0;
   Now now_;
 };

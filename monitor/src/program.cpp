@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program.hpp"
+
+#include <algorithm>
+#include <clocale>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include <langinfo.h>
+#include <unistd.h>
+
+#include "egocal/bus/loop.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/error.hpp"
+#include "egocal/monitor/lines.hpp"
+#include "egocal/monitor/view.hpp"
+#include "feed.hpp"
+#include "recording.hpp"
+#include "terminal.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+constexpr std::int64_t kDrainUs = 50000;    // taking in batches keeps the load low
+constexpr std::int64_t kRedrawUs = 100000;  // ten redraws a second
+constexpr std::int64_t kTickUs = 200000;
+
+volatile std::sig_atomic_t stop_flag = 0;
+extern "C" void on_stop(int) {
+  stop_flag = 1;
+}
+
+int utc_offset_s() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return static_cast<int>(local.tm_gmtoff);
+}
+
+// Messages from the bus or from a log, behind one face.
+class Source {
+ public:
+  Source(const ProgramOptions& options, const std::string& url) {
+    if (options.log.empty()) {
+      feed_ = std::make_unique<Feed>(url);
+      name_ = url.substr(0, url.find('?'));
+    } else {
+      recording_ = std::make_unique<Recording>(options.log, options.speed);
+      name_ = "log " + std::filesystem::path(options.log).filename().string();
+    }
+  }
+  bool live() const { return feed_ != nullptr; }
+  bool at_end() const { return recording_ && recording_->at_end(); }
+  const std::string& name() const { return name_; }
+
+  /// Takes in what is there; the time that the model lives in.
+  Now advance(Model& model, const std::string& version) {
+    if (recording_) return recording_->advance(model, bus::mono_us());
+    const Now now{bus::mono_us(), bus::wall_us()};
+    feed_->drain(model, now);
+    feed_->send_heartbeat(now, version);
+    return now;
+  }
+  void send(const command_t& command) {
+    if (feed_) feed_->send(command);
+  }
+
+ private:
+  std::unique_ptr<Feed> feed_;
+  std::unique_ptr<Recording> recording_;
+  std::string name_;
+};
+
+// A name that no file has yet, so that no earlier export is lost.
+std::string free_file_name(const std::string& a, const std::string& b, ExtrinsicFormat format) {
+  const char* ending = format == ExtrinsicFormat::urdf     ? ".urdf"
+                       : format == ExtrinsicFormat::ros    ? ".ros.sh"
+                       : format == ExtrinsicFormat::kalibr ? ".kalibr.yaml"
+                                                           : ".yaml";
+  std::string stem = "extrinsic_";
+  for (char c : a.substr(0, 40) + "_" + b.substr(0, 40)) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    stem += plain ? c : '_';
+  }
+  std::string file = stem + ending;
+  for (int i = 2; std::filesystem::exists(file) && i < 10000; ++i)
+    file = stem + "-" + std::to_string(i) + ending;
+  return file;
+}
+
+const PairState* pair_of(const Model& model, const Action& action) {
+  for (const PairState& pair : model.pairs())
+    if (pair.a == action.a && pair.b == action.b) return &pair;
+  return nullptr;
+}
+
+void carry_out(const Action& action, const Model& model, ViewState& view, Source& source) {
+  if (action.kind == Action::Kind::export_answer) {
+    const PairState* pair = pair_of(model, action);
+    const std::optional<NamedExtrinsic> extrinsic = pair ? extrinsic_of(*pair) : std::nullopt;
+    if (!extrinsic) {
+      view.notice = "there is no answer to export yet";
+      return;
+    }
+    try {
+      const std::string file = free_file_name(action.a, action.b, action.format);
+      write_whole_file(file, extrinsic_text(*extrinsic, action.format));
+      view.notice = "wrote " + file + (extrinsic->certified ? "" : " (not certified)");
+    } catch (const Error& error) {
+      view.notice = error.what();
+    }
+    return;
+  }
+  command_t command{};
+  command.utime = bus::wall_us();
+  command.to = "*";
+  command.verb = action.kind == Action::Kind::reset   ? "reset"
+                 : action.kind == Action::Kind::pause ? "pause"
+                                                      : "resume";
+  command.sensor_a = action.a;
+  command.sensor_b = action.b;
+  if (action.kind == Action::Kind::reset) command.session = action.session;
+  source.send(command);
+  view.notice = command.verb + " sent";
+}
+
+Screen screen_from(const std::string& name) {
+  return name == "detail" ? Screen::detail : name == "events" ? Screen::events : Screen::overview;
+}
+
+ViewState first_view(const ProgramOptions& options, const Source& source) {
+  ViewState view;
+  view.screen = screen_from(options.screen);
+  view.source = source.name();
+  view.live = source.live();
+  view.utc_offset_s = utc_offset_s();
+  return view;
+}
+
+int run_terminal(const ProgramOptions& options, Model& model, Source& source,
+                 std::unique_ptr<Terminal> terminal) {
+  ViewState view = first_view(options, source);
+  view.charset = terminal->charset();
+  std::optional<Model> still;  // what is shown while the view is paused
+  const std::int64_t begin = bus::mono_us();
+  std::int64_t drained = 0, drawn = 0, ticked = 0;
+  bool changed = true;
+  for (;;) {
+    const std::int64_t next =
+        std::min(drained + kDrainUs, changed ? drawn + kRedrawUs / 4 : drawn + kRedrawUs);
+    terminal->wait(static_cast<int>(std::clamp<std::int64_t>((next - bus::mono_us() + 999) / 1000, 0, 100)));
+    const Interrupts interrupts = terminal->interrupts();
+    if (interrupts.quit) return 0;
+    if (interrupts.resized) changed = true;
+
+    std::int64_t mono = bus::mono_us();
+    if (mono - drained >= kDrainUs) {
+      drained = mono;
+      const Now now = source.advance(model, options.version);
+      for (const std::string& line : terminal->captured()) model.note(Severity::warning, "stderr", line, now);
+      if (mono - ticked >= kTickUs) {
+        ticked = mono;
+        model.tick(now);
+      }
+    }
+    while (const auto key = terminal->key()) {
+      const Model& seen = still ? *still : model;
+      const Action action = press(view, seen, *key);
+      if (action.kind == Action::Kind::quit) return 0;
+      if (action.kind != Action::Kind::none) carry_out(action, seen, view, source);
+      if (view.frozen && !still) still = model;
+      if (!view.frozen) still.reset();
+      changed = true;
+    }
+    if (options.duration_s > 0 && static_cast<double>(mono - begin) * 1e-6 > options.duration_s) return 0;
+
+    mono = bus::mono_us();
+    if (mono - drawn >= kRedrawUs || (changed && mono - drawn >= kRedrawUs / 4)) {
+      drawn = mono;
+      changed = false;
+      Canvas canvas(terminal->width(), terminal->height());
+      draw(canvas, still ? *still : model, view);
+      terminal->show(canvas);
+    }
+  }
+}
+
+bool parse_size(const std::string& text, int& width, int& height) {
+  char rest = 0;
+  return std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) == 2 && width >= 1 && height >= 1 &&
+         width <= 1000 && height <= 1000;
+}
+
+bool print(const std::string& text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+}
+
+void handle_stop() {
+  struct sigaction action {};
+  action.sa_handler = on_stop;
+  sigemptyset(&action.sa_mask);
+  for (int signal_number : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal_number, &action, nullptr);
+  signal(SIGPIPE, SIG_IGN);  // a reader that has seen enough ends us through print()
+}
+
+int run_once(const ProgramOptions& options, Model& model, Source& source, Charset charset) {
+  handle_stop();
+  const std::int64_t begin = bus::mono_us();
+  Now now;
+  for (;;) {
+    now = source.advance(model, options.version);
+    model.tick(now);
+    const double waited = static_cast<double>(bus::mono_us() - begin) * 1e-6;
+    if (stop_flag || source.at_end()) break;
+    const bool answered =
+        !model.pairs().empty() && std::all_of(model.pairs().begin(), model.pairs().end(),
+                                              [](const PairState& p) { return p.answer() != nullptr; });
+    // heartbeats come once a second: who is there has been heard by then
+    if (source.live() && ((answered && waited > 1.2) || waited > options.timeout_s)) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (!options.size.empty()) {
+    ViewState view = first_view(options, source);
+    view.charset = charset;
+    int width = 0, height = 0;
+    parse_size(options.size, width, height);
+    Canvas canvas(width, height);
+    draw(canvas, model, view);
+    print(canvas.to_text());
+  } else {
+    print(options.json ? json_line(model) + "\n" : text_lines(model, charset));
+  }
+  const bool heard = std::any_of(model.pairs().begin(), model.pairs().end(),
+                                 [](const PairState& p) { return p.answer() || p.has_problem; }) ||
+                     !model.processes().empty();
+  if (!heard) throw Error("nothing heard on " + source.name());
+  return 0;
+}
+
+int run_follow(const ProgramOptions& options, Model& model, Source& source, Charset charset) {
+  handle_stop();
+  const std::int64_t begin = bus::mono_us();
+  const int offset = utc_offset_s();
+  std::int64_t printed_us = 0;
+  std::int64_t printed_messages = -1;
+  std::int64_t printed_events = 0;
+  for (;;) {
+    const Now now = source.advance(model, options.version);
+    model.tick(now);
+    const std::int64_t mono = bus::mono_us();
+    const bool over =
+        stop_flag || source.at_end() ||
+        (options.duration_s > 0 && static_cast<double>(mono - begin) * 1e-6 > options.duration_s);
+    if (!options.json) {
+      const auto& events = model.events();
+      const std::int64_t fresh = std::min<std::int64_t>(model.events_seen() - printed_events,
+                                                        static_cast<std::int64_t>(events.size()));
+      printed_events = model.events_seen();
+      for (std::size_t i = events.size() - static_cast<std::size_t>(fresh); i < events.size(); ++i)
+        if (!print(event_line(events[i], offset) + "\n")) return 0;
+    }
+    if ((mono - printed_us >= 1000000 || over) && model.messages() != printed_messages) {
+      printed_us = mono;
+      printed_messages = model.messages();
+      std::string text = options.json ? json_line(model) + "\n" : pair_lines(model, charset);
+      if (over && !options.json) text = text_lines(model, charset);
+      if (!print(text)) return 0;
+    }
+    if (over) return 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+}  // namespace
+
+int run(const ProgramOptions& options) {
+  std::setlocale(LC_CTYPE, "");
+  if (int w = 0, h = 0; !options.size.empty() && !parse_size(options.size, w, h)) {
+    std::fprintf(stderr, "egocal-monitor: --size: expected WIDTHxHEIGHT, e.g. 100x30, got '%s'\n",
+                 clean(options.size, 40).c_str());
+    return 2;
+  }
+  ModelOptions model_options;
+  std::optional<bus::Rig> rig;
+  std::string url = bus::Rig().lcm_url;
+  if (!options.rig.empty()) {
+    rig = bus::read_rig(options.rig);
+    model_options.heartbeat_timeout = rig->heartbeat_timeout;
+    model_options.max_gap = rig->max_gap;
+    url = rig->lcm_url;
+  }
+  if (!options.lcm_url.empty()) url = options.lcm_url;
+  Model model(model_options);
+  if (rig)
+    for (const bus::PairConfig& pair : rig->pairs) model.expect_pair(pair.a, pair.b);
+  Source source(options, url);
+
+  const bool utf8 = std::string_view(nl_langinfo(CODESET)) == "UTF-8";
+  const Charset charset = utf8 && !options.ascii ? Charset::unicode : Charset::ascii;
+  if (options.once) return run_once(options, model, source, charset);
+  if (options.follow) return run_follow(options, model, source, charset);
+  TerminalOptions terminal_options;
+  if (options.ascii) terminal_options.charset = Charset::ascii;
+  terminal_options.monochrome = options.monochrome;
+  std::string why_not;
+  if (std::unique_ptr<Terminal> terminal = Terminal::open(terminal_options, why_not))
+    return run_terminal(options, model, source, std::move(terminal));
+  std::fprintf(stderr, "egocal-monitor: %s: printing lines instead\n", why_not.c_str());
+  return run_follow(options, model, source, charset);
+}
+
+}  // namespace egocal::monitor

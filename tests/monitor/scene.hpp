@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "egocal/calibration_t.hpp"
+#include "egocal/problem_t.hpp"
+#include "egocal/status_t.hpp"
+
+namespace egocal::monitor::test {
+
+// A drive as its messages show it: errors that fall with the square root of the frames, a global solver for the first
+// seconds, the fast one throughout.
+
+inline constexpr std::int64_t kBegin = 1'600'000'000'000'000;  // [us]
+
+inline problem_t problem_at(const std::string& a, const std::string& b, std::int64_t step, double hz, int blocks = 0) {
+  problem_t p{};
+  p.session = kBegin;
+  p.utime = kBegin + static_cast<std::int64_t>(static_cast<double>(step) * 1e6 / hz);
+  p.seq = step + 1;
+  p.sensor_a = a;
+  p.sensor_b = b;
+  p.weight_rotation = p.weight_translation = 1;
+  p.stride = 1;
+  p.choice = "fixed by the rig";
+  p.n_blocks = blocks;
+  p.blocks.resize(static_cast<std::size_t>(blocks));
+  for (statistics_t& s : p.blocks) {
+    s.count = 10;
+    s.weight = 10;
+    for (double& q : s.q) q = 1.0 / 3;
+  }
+  p.has_prior = 1;
+  p.prior_quat[0] = 1;
+  p.has_truth = 1;
+  const double pos[3] = {-0.08, -0.05, -0.27};
+  const double quat[4] = {0.5, -0.5, 0.5, -0.5};
+  for (int i = 0; i < 3; ++i) p.truth_pos[i] = pos[i];
+  for (int i = 0; i < 4; ++i) p.truth_quat[i] = quat[i];
+  p.matched = step + 1;
+  p.host = "car";
+  return p;
+}
+
+inline calibration_t calibration_at(const problem_t& p, bool global) {
+  calibration_t c{};
+  c.utime = p.utime;
+  c.session = p.session;
+  c.seq = p.seq;
+  c.pairs = p.seq;
+  c.sensor_a = p.sensor_a;
+  c.sensor_b = p.sensor_b;
+  c.solver = global ? "egocal-global" : "egocal-fast";
+  c.method = global ? "dual" : "sqp";
+  const double n = static_cast<double>(p.seq);
+  const double off = 1.0 / std::sqrt(n);
+  const double wobble = 1 + 0.3 * std::sin(n * 0.37);
+  const double angle = 0.05 * off * wobble;
+  c.pos[0] = -0.08 + 0.3 * off * wobble;
+  c.pos[1] = -0.05 - 0.2 * off;
+  c.pos[2] = -0.27 + 0.4 * off;
+  // the truth turned by a small angle about x of sensor a
+  const double w = std::cos(angle / 2), x = std::sin(angle / 2);
+  c.quat[0] = 0.5 * (w + x);
+  c.quat[1] = 0.5 * (x - w);
+  c.quat[2] = 0.5 * (w + x);
+  c.quat[3] = 0.5 * (x - w);
+  c.cost = 1e-4;
+  c.gap = 1e-12;
+  c.lower_bound = c.cost - c.gap;
+  c.scaled_gap = 0.002 * wobble + (n < 8 ? 30 : 0);
+  c.status = n < 8 && !global ? 2 : 0;
+  for (int i = 0; i < 6; ++i) {
+    c.observable[i] = 1;
+    c.stddev[i] = (i < 3 ? 0.1 : 0.01) * off;
+  }
+  c.fallback = n < 8;
+  c.solve_ns = global ? 3100 : 5200;
+  c.verify_ns = 1900;
+  c.latency_us = 310;
+  return c;
+}
+
+inline status_t status_of(const std::string& name, const std::string& role, std::int64_t in) {
+  status_t s{};
+  s.utime = kBegin;
+  s.name = name;
+  s.role = role;
+  s.host = "car";
+  s.pid = 4711;
+  s.run = 1;
+  s.version = "0.1.0";
+  s.state = "running";
+  s.n_counters = 2;
+  s.counters.resize(2);
+  s.counters[0].name = "in";
+  s.counters[0].value = in;
+  s.counters[1].name = "out";
+  s.counters[1].value = in;
+  return s;
+}
+
+}  // namespace egocal::monitor::test
