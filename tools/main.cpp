@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::Success& success) {
     return program.exit(success);
+  } catch (const CLI::RuntimeError& error) {
+    return error.get_exit_code();  // the command has said why
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "egocal: %s (see egocal --help)\n", error.what());
     return 2;

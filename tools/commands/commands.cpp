@@ -10,6 +10,8 @@ namespace egocal::tools {
 void add_commands(CLI::App& program) {
   add_solve(program);
   add_simulate(program);
+  add_log(program);
+  add_up(program);
   add_compare(program);
   add_experiment(program);
 }

@@ -11,5 +11,7 @@ void add_commands(CLI::App& program);
 
 void add_solve(CLI::App& program);
 void add_simulate(CLI::App& program);
+void add_log(CLI::App& program);
+void add_up(CLI::App& program);
 
 }  // namespace egocal::tools

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "arguments.hpp"
+#include "commands/commands.hpp"
+#include "egocal/bus/glue.hpp"
+#include "egocal/bus/log_file.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/error.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "progress.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+struct CreateOptions {
+  std::string rig, out, times;
+  std::vector<std::string> from;
+};
+
+void create(const CreateOptions& options) {
+  const bus::Rig rig = bus::read_rig(options.rig);
+  struct Entry {
+    std::int64_t time_us;
+    const bus::Sensor* sensor;
+    std::int64_t seq;
+    const StampedPose* pose;
+  };
+  std::vector<Trajectory> trajectories(options.from.size());
+  std::vector<Entry> entries;
+  for (std::size_t k = 0; k < options.from.size(); ++k) {
+    const std::string& text = options.from[k];
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) throw UsageError("--from: expected SENSOR=FILE, got '" + text + "'");
+    const bus::Sensor& sensor = bus::sensor(rig, text.substr(0, equals));
+    trajectories[k] = read_trajectory(text.substr(equals + 1), options.times);
+    for (std::size_t i = 0; i < trajectories[k].size(); ++i)
+      entries.push_back(
+          {trajectories[k][i].time_us, &sensor, static_cast<std::int64_t>(i), &trajectories[k][i]});
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& x, const Entry& y) { return x.time_us < y.time_us; });
+  // Times that begin near zero are no dates; on the wire they must be plausible ones.
+  const std::int64_t shift =
+      bus::plausible_time(entries.front().time_us) ? 0 : 1'700'000'000'000'000 - entries.front().time_us;
+  bus::LogWriter log(options.out);
+  Progress progress("writing");
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    StampedPose pose = *entries[i].pose;
+    pose.time_us += shift;
+    if (entries[i].sensor->type == bus::OdometryType::pose)
+      log.write(pose.time_us, entries[i].sensor->channel, bus::encode(bus::to_pose_message(pose)));
+    else
+      log.write(pose.time_us, entries[i].sensor->channel, bus::encode(bus::to_message(pose, entries[i].seq)));
+    progress(static_cast<double>(i + 1) / static_cast<double>(entries.size()));
+  }
+  log.close();
+  if (shift != 0)
+    fmt::print(stderr, "egocal: times do not begin after 1970; {:.3f} s were added to all of them\n",
+               1e-6 * static_cast<double>(shift));
+}
+
+struct Channel {
+  std::uint64_t count = 0, bytes = 0;
+  std::int64_t first_us = 0, last_us = 0;
+  std::string type;
+};
+
+struct Info {
+  std::map<std::string, Channel> channels;
+  bus::LogDamage damage;
+  std::uint64_t size = 0;
+};
+
+std::string type_of(const bus::LogEvent& event) {
+  odometry_t odometry{};
+  if (bus::decode(event.data, odometry)) return "egocal.odometry_t";
+  bot_core::pose_t pose{};
+  if (bus::decode(event.data, pose)) return "bot_core.pose_t";
+  problem_t problem{};
+  if (bus::decode(event.data, problem)) return "egocal.problem_t";
+  calibration_t calibration{};
+  if (bus::decode(event.data, calibration)) return "egocal.calibration_t";
+  motion_pair_t motion{};
+  if (bus::decode(event.data, motion)) return "egocal.motion_pair_t";
+  status_t status{};
+  if (bus::decode(event.data, status)) return "egocal.status_t";
+  command_t command{};
+  if (bus::decode(event.data, command)) return "egocal.command_t";
+  return "other";
+}
+
+Info inspect(const std::string& file) {
+  bus::LogReader log(file);
+  Info info;
+  info.size = log.size();
+  Progress progress("reading");
+  while (const auto event = log.next()) {
+    Channel& channel = info.channels[event->channel];
+    if (channel.count++ == 0) {
+      channel.first_us = event->time_us;
+      channel.type = type_of(*event);
+    }
+    channel.last_us = event->time_us;
+    channel.bytes += event->data.size();
+    progress(static_cast<double>(log.position()) / static_cast<double>(log.size()));
+  }
+  info.damage = log.damage();
+  return info;
+}
+
+std::string damage_text(const bus::LogDamage& damage) {
+  if (damage.regions == 0) return "no damage";
+  return fmt::format("{} damaged regions, {} bytes and at least {} events lost{}", damage.regions,
+                     damage.bytes, damage.lost_events, damage.truncated ? "; cut off at the end" : "");
+}
+
+void print_info(const std::string& file, bool json) {
+  const Info info = inspect(file);
+  if (json) {
+    nlohmann::ordered_json object;
+    object["file"] = file;
+    object["bytes"] = info.size;
+    object["channels"] = nlohmann::ordered_json::array();
+    for (const auto& [name, channel] : info.channels)
+      object["channels"].push_back({{"channel", bus::printable(name)},
+                                    {"type", channel.type},
+                                    {"events", channel.count},
+                                    {"first_s", 1e-6 * static_cast<double>(channel.first_us)},
+                                    {"last_s", 1e-6 * static_cast<double>(channel.last_us)}});
+    object["damaged_regions"] = info.damage.regions;
+    object["lost_bytes"] = info.damage.bytes;
+    object["lost_events"] = info.damage.lost_events;
+    object["truncated"] = info.damage.truncated;
+    fmt::print("{}\n", object.dump(2));
+    return;
+  }
+  fmt::print("{}: {} bytes, {}\n{:<32} {:<22} {:>9} {:>18} {:>10} {:>9}\n", file, info.size,
+             damage_text(info.damage), "channel", "type", "events", "first [s]", "span [s]", "rate [Hz]");
+  for (const auto& [name, channel] : info.channels) {
+    const double span = 1e-6 * static_cast<double>(channel.last_us - channel.first_us);
+    fmt::print("{:<32} {:<22} {:>9} {:>18.3f} {:>10.3f} {:>9.1f}\n", bus::printable(name, 32), channel.type,
+               channel.count, 1e-6 * static_cast<double>(channel.first_us), span,
+               span > 0 ? static_cast<double>(channel.count - 1) / span : 0.0);
+  }
+}
+
+void repair(const std::string& file, const std::string& out) {
+  bus::LogReader log(file);
+  bus::LogWriter repaired(out);
+  Progress progress("writing");
+  std::uint64_t events = 0;
+  while (const auto event = log.next()) {
+    repaired.write(event->time_us, event->channel, event->data);
+    ++events;
+    progress(static_cast<double>(log.position()) / static_cast<double>(log.size()));
+  }
+  repaired.close();
+  fmt::print("{}: {} events; {}\n", out, events, damage_text(log.damage()));
+}
+
+void add_create(CLI::App& log) {
+  const auto options = std::make_shared<CreateOptions>();
+  CLI::App* command = log.add_subcommand("create", "trajectory files to a log that can be played");
+  command->add_option("RIG", options->rig, "rig file: sensors, channels, types")->required();
+  command->add_option("--from", options->from, "SENSOR=FILE, once for each sensor")->required();
+  command->add_option("--times", options->times, "times of KITTI poses [s]");
+  command->add_option("--out", options->out, "the log")->required();
+  command->callback([options] { create(*options); });
+}
+
+}  // namespace
+
+void add_log(CLI::App& program) {
+  CLI::App* log = program.add_subcommand("log", "make, look into, check and repair LCM logs");
+  log->require_subcommand(1);
+  add_create(*log);
+
+  const auto file = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* info = log->add_subcommand("info", "what is in a log");
+  info->add_option("LOG", *file)->required();
+  info->add_flag("--json", *json, "one JSON object on standard output");
+  info->callback([file, json] { print_info(*file, *json); });
+
+  CLI::App* check = log->add_subcommand("check", "reads all of a log; fails where it is damaged");
+  check->add_option("LOG", *file)->required();
+  check->callback([file] {
+    const Info found = inspect(*file);
+    if (found.damage.regions > 0) throw error_at(*file, 0, "", damage_text(found.damage));
+    fmt::print("{}: {}\n", *file, damage_text(found.damage));
+  });
+
+  const auto out = std::make_shared<std::string>();
+  CLI::App* mend = log->add_subcommand("repair", "all events that can be read, as a new log");
+  mend->add_option("LOG", *file)->required();
+  mend->add_option("--out", *out, "the new log")->required();
+  mend->callback([file, out] { repair(*file, *out); });
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <memory>
+
+#include "commands/commands.hpp"
+#include "egocal/bus/log_file.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/error.hpp"
+#include "supervision/supervisor.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+struct Options {
+  std::string rig, log, url, output_dir, speed = "1", fast = "sqp", global = "dual";
+  bool monitor = false, follow = false;
+};
+
+/// The folder of our own executable: the other programs lie beside it.
+std::filesystem::path programs_directory() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) throw Error("up: cannot find out where this program lies: " + error.message());
+  return self.parent_path();
+}
+
+void run(const Options& options) {
+  // one clear line here instead of one from each process
+  bus::read_rig(options.rig);
+  if (!options.log.empty()) bus::LogReader{options.log};
+  if (!options.output_dir.empty()) std::filesystem::create_directories(options.output_dir);
+
+  const std::filesystem::path directory = programs_directory();
+  const auto program = [&](const char* name, const std::vector<std::string>& more) {
+    Program result;
+    result.name = name;
+    result.command = {(directory / name).string(), "--rig", options.rig};
+    if (!options.url.empty()) result.command.insert(result.command.end(), {"--lcm-url", options.url});
+    result.command.insert(result.command.end(), more.begin(), more.end());
+    return result;
+  };
+  std::vector<Program> programs = {program("egocal-pairing", {}),
+                                   program("egocal-fast", {"--method", options.fast}),
+                                   program("egocal-global", {"--method", options.global})};
+  if (options.monitor || options.follow) {
+    programs.push_back(program("egocal-monitor", options.follow ? std::vector<std::string>{"--follow"}
+                                                                : std::vector<std::string>{}));
+    programs.back().foreground = true;
+  }
+  if (!options.log.empty()) {
+    programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
+    programs.back().ends_all = true;
+  }
+  SupervisorOptions supervisor;
+  supervisor.output_dir = options.output_dir;
+  if (supervise(programs, supervisor) != 0) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_up(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("up", "all processes of a rig, kept alive and ended together");
+  command->add_option("RIG", options->rig, "rig file")->required();
+  command->add_option("--log", options->log, "also plays this log; at its end all end");
+  command->add_option("--speed", options->speed, "of the player; 0: as fast as possible")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--fast", options->fast, "fast solver")
+      ->check(CLI::IsMember({"sqp", "slsqp"}))
+      ->capture_default_str();
+  command->add_option("--global", options->global, "global solver")
+      ->check(CLI::IsMember({"dual", "sdp"}))
+      ->capture_default_str();
+  command->add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
+  command->add_flag("--follow", options->follow, "with the monitor's lines on standard output");
+  command->add_option("--output-dir", options->output_dir, "each process's output in a file there");
+  command->add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace egocal::tools
