@@ -61,7 +61,7 @@ std::vector<PlacedColumn> layout_pair_table(int width) {
     int rank;  // what is given room first
   };
   // from left to right
-  constexpr Wish wishes[] = {{PairColumn::name, 12, 1},
+  constexpr Wish wishes[] = {{PairColumn::name, 17, 1},
                              {PairColumn::verdict, 11, 0},
                              {PairColumn::error_translation, 9, 2},
                              {PairColumn::error_rotation, 8, 3},

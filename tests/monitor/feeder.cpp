@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Plays the processes of a rig towards the monitor: so many pairs, so many messages a second, with problems of full
-// size. Usage: egocal-monitor-feeder PAIRS HZ SECONDS [hostile]; LCM's default URL or LCM_DEFAULT_URL.
+// Plays the processes of a rig towards the monitor: so many pairs, so many messages a second, with problems
+// of full size. Usage: egocal-monitor-feeder PAIRS HZ SECONDS [hostile]; LCM's default URL or
+// LCM_DEFAULT_URL.
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -36,7 +37,8 @@ int main(int argc, char** argv) {
         fast.stddev[2] = inf;
         fast.solve_ns = std::numeric_limits<std::int64_t>::min();
         problem.truth_pos[0] = nan;
-        if (step % 7 == 0) problem.utime = fast.utime = step % 2 ? std::numeric_limits<std::int64_t>::max() : 0;
+        if (step % 7 == 0)
+          problem.utime = fast.utime = step % 2 ? std::numeric_limits<std::int64_t>::max() : 0;
       }
       lcm.publish("EGOCAL_PROBLEM_" + a + "_" + b, &problem);
       lcm.publish("EGOCAL_CALIBRATION_" + a + "_" + b, &fast);
@@ -52,7 +54,9 @@ int main(int argc, char** argv) {
         lcm.publish("EGOCAL_STATUS", &status);
       }
     }
-    std::this_thread::sleep_until(begin + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(static_cast<double>(step + 1) / hz)));
+    std::this_thread::sleep_until(begin +
+                                  std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                      std::chrono::duration<double>(static_cast<double>(step + 1) / hz)));
   }
   return 0;
 }

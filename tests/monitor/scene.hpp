@@ -13,12 +13,13 @@
 
 namespace egocal::monitor::test {
 
-// A drive as its messages show it: errors that fall with the square root of the frames, a global solver for the first
-// seconds, the fast one throughout.
+// A drive as its messages show it: errors that fall with the square root of the frames, a global solver for
+// the first seconds, the fast one throughout.
 
 inline constexpr std::int64_t kBegin = 1'600'000'000'000'000;  // [us]
 
-inline problem_t problem_at(const std::string& a, const std::string& b, std::int64_t step, double hz, int blocks = 0) {
+inline problem_t problem_at(const std::string& a, const std::string& b, std::int64_t step, double hz,
+                            int blocks = 0) {
   problem_t p{};
   p.session = kBegin;
   p.utime = kBegin + static_cast<std::int64_t>(static_cast<double>(step) * 1e6 / hz);
