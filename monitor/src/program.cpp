@@ -17,6 +17,7 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "egocal/monitor/lines.hpp"
 #include "egocal/monitor/view.hpp"
 #include "feed.hpp"

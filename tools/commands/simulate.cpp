@@ -43,7 +43,7 @@ MountedSensor mounted(const std::string& text) {
 }
 
 std::string pose_list(const Pose& T) {
-  return fmt::format("[{:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}]", T.translation.x(),
+  return fmt::format("[{:.15g}, {:.15g}, {:.15g}, {:.15g}, {:.15g}, {:.15g}, {:.15g}]", T.translation.x(),
                      T.translation.y(), T.translation.z(), T.rotation.w(), T.rotation.x(), T.rotation.y(),
                      T.rotation.z());
 }

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "egocal/error.hpp"
-#include "egocal/io/extrinsic_text.hpp"
+#include "egocal/io/whole_file.hpp"
 
 extern char** environ;
 

@@ -4,10 +4,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
 
-#include "egocal/error.hpp"
 
 namespace egocal {
 namespace {
@@ -144,23 +141,6 @@ std::string extrinsic_text(const NamedExtrinsic& extrinsic, ExtrinsicFormat form
     }
   }
   return text;
-}
-
-void write_whole_file(const std::string& file, std::string_view text) {
-  const std::string beside = file + ".part";
-  {
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    if (!out) {
-      std::remove(beside.c_str());
-      throw Error(file + ": cannot be written");
-    }
-  }
-  if (std::rename(beside.c_str(), file.c_str()) != 0) {
-    std::remove(beside.c_str());
-    throw Error(file + ": cannot be written");
-  }
 }
 
 }  // namespace egocal

@@ -9,7 +9,7 @@
 
 namespace egocal {
 
-void write_whole_file(const std::string& file, const std::string& content) {
+void write_whole_file(const std::string& file, std::string_view content) {
   const std::string temporary = file + ".part";
   {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);

@@ -34,7 +34,4 @@ std::optional<ExtrinsicFormat> extrinsic_format_from_name(std::string_view name)
 /// NaN.
 std::string extrinsic_text(const NamedExtrinsic& extrinsic, ExtrinsicFormat format);
 
-/// Writes the whole file or none: beside it first, then renamed. Throws Error naming the file.
-void write_whole_file(const std::string& file, std::string_view text);
-
 }  // namespace egocal

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace egocal {
 
 /// Writes the whole file or nothing: to a temporary one beside it that takes its name in the end. Throws Error.
-void write_whole_file(const std::string& file, const std::string& content);
+void write_whole_file(const std::string& file, std::string_view content);
 
 }  // namespace egocal
