@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "egocal/error.hpp"
 
 namespace egocal {
 namespace {
