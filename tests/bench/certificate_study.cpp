@@ -200,8 +200,8 @@ Tally study(std::uint64_t number) {
       best = bench::reference(Q, starts);
     }
   }
-  // Rounding may leave Q with an eigenvalue of -1e-17, and the literal minimum of such a Q lies below zero, far away.
-  // The cost that Q stands for is a sum of squares.
+  // Rounding may leave Q with an eigenvalue of -1e-17, and the literal minimum of such a Q lies below zero,
+  // far away. The cost that Q stands for is a sum of squares.
   best.cost = std::max(best.cost, Extended(0));
   tally.problems = 1;
   tally.degenerate = problem.degenerate;

@@ -7,8 +7,9 @@
 
 namespace egocal {
 
-/// The one exception of this project: bad input from outside. Its message is one line that names file, line and
-/// field where there are any, and what was expected. Solvers never throw on hard data: they return a status.
+/// The one exception of this project: bad input from outside. Its message is one line that names file, line
+/// and field where there are any, and what was expected. Solvers never throw on hard data: they return a
+/// status.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -10,8 +10,8 @@
 
 namespace egocal {
 
-/// Answer of a method that the paper compares with. valid is false where the method's own assumption is violated;
-/// note then says which. The cost matrix plays no part: these methods minimise other things.
+/// Answer of a method that the paper compares with. valid is false where the method's own assumption is
+/// violated; note then says which. The cost matrix plays no part: these methods minimise other things.
 struct BaselineAnswer {
   DualQuaternion T_a_b;
   bool valid = false;
@@ -20,7 +20,8 @@ struct BaselineAnswer {
   std::string note;
 };
 
-/// Daniilidis [19]: null space of the stacked vector parts; assumes two singular values near zero and two axes.
+/// Daniilidis [19]: null space of the stacked vector parts; assumes two singular values near zero and two
+/// axes.
 BaselineAnswer solve_analytic(std::span<const MotionPair> pairs);
 /// Giamou et al. [8]: rotation-matrix QCQP with its 22 constraints, by its Lagrangian dual.
 BaselineAnswer solve_matrix(std::span<const MotionPair> pairs);

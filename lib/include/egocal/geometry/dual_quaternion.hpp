@@ -29,10 +29,10 @@ struct DualQuaternion {
 };
 
 DualQuaternion operator*(const DualQuaternion& p, const DualQuaternion& q);  ///< (9)
-DualQuaternion operator-(const DualQuaternion& q);                          ///< the same displacement
-DualQuaternion conjugate(const DualQuaternion& q);                          ///< (2), the inverse of a unit one
-Matrix8d left_matrix(const DualQuaternion& p);                              ///< Q_p^l of (10)
-Matrix8d right_matrix(const DualQuaternion& q);                             ///< Q_q^r of (10)
+DualQuaternion operator-(const DualQuaternion& q);                           ///< the same displacement
+DualQuaternion conjugate(const DualQuaternion& q);  ///< (2), the inverse of a unit one
+Matrix8d left_matrix(const DualQuaternion& p);      ///< Q_p^l of (10)
+Matrix8d right_matrix(const DualQuaternion& q);     ///< Q_q^r of (10)
 
 /// The nearest unit dual quaternion: real scaled to length one, dual made orthogonal to it (5).
 DualQuaternion normalized(const DualQuaternion& q);
@@ -42,8 +42,8 @@ DualQuaternion canonical_sign(const DualQuaternion& q);
 DualQuaternion to_dual_quaternion(const Pose& T);  ///< (6), (7); canonical sign
 Pose to_pose(const DualQuaternion& q);             ///< of the normalised q
 
-/// The screw of a motion: it turns by angle about an axis and slides by pitch along it. Every pair of motions of two
-/// rigidly mounted sensors has the same angle and slide (screw congruence), whatever the extrinsic.
+/// The screw of a motion: it turns by angle about an axis and slides by pitch along it. Every pair of motions
+/// of two rigidly mounted sensors has the same angle and slide (screw congruence), whatever the extrinsic.
 struct Screw {
   double angle = 0;  ///< [0, pi] [rad]
   double slide = 0;  ///< along the axis [m]; the length of the translation where the angle is 0

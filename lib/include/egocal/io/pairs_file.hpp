@@ -9,8 +9,8 @@
 
 namespace egocal {
 
-/// Motion pairs as text, one a line: the dual quaternion of a, then of b (w x y z real, w x y z dual, metres).
-/// Throws Error naming file, line and field.
+/// Motion pairs as text, one a line: the dual quaternion of a, then of b (w x y z real, w x y z dual,
+/// metres). Throws Error naming file, line and field.
 std::vector<MotionPair> read_pairs(const std::string& file);
 void write_pairs(const std::string& file, const std::vector<MotionPair>& pairs);
 

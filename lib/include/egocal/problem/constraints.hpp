@@ -23,8 +23,8 @@ Multipliers least_squares_multipliers(const DualQuaternion& q, const Vector8d& Q
 /// L(q, lambda) of (19), (21).
 double lagrangian(const Matrix8d& Q, const DualQuaternion& q, const Multipliers& lambda);
 
-/// q2, q3 and q1 q8 - q4 q5 of (26), all zero for a planar displacement. (The paper's q2^2 + q3^2 = 0 is the same set
-/// but has no gradient on it.)
+/// q2, q3 and q1 q8 - q4 q5 of (26), all zero for a planar displacement. (The paper's q2^2 + q3^2 = 0 is the
+/// same set but has no gradient on it.)
 Eigen::Vector3d planar_constraints(const DualQuaternion& q);
 
 }  // namespace egocal

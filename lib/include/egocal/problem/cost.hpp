@@ -29,9 +29,9 @@ struct Balance {
 /// Q_w of one pair for any eight row weights w1..w8 (15).
 Matrix8d pair_cost(const DualQuaternion& a, const DualQuaternion& b, const Vector8d& w = Vector8d::Ones());
 
-/// 36 numbers, the whole memory of any number of motion pairs: sum of eta M_d'M_d over the dual rows M_d of (14).
-/// Its lower right block is the rotation part D, so every Balance follows from it (design, section 3 point 6).
-/// The sum is plain, in the order of the calls: the same calls give the same bits.
+/// 36 numbers, the whole memory of any number of motion pairs: sum of eta M_d'M_d over the dual rows M_d of
+/// (14). Its lower right block is the rotation part D, so every Balance follows from it (design, section 3
+/// point 6). The sum is plain, in the order of the calls: the same calls give the same bits.
 struct Statistics {
   Matrix8d dual_rows = Matrix8d::Zero();  ///< symmetric, both triangles filled
   double weight = 0;                      ///< sum of eta

@@ -13,18 +13,21 @@ struct GroundPlane {
   double distance = 0;
 };
 
-/// Throws Error where the normal is not of length one (to 1e-3; it is then normalised) or a value is not finite.
+/// Throws Error where the normal is not of length one (to 1e-3; it is then normalised) or a value is not
+/// finite.
 GroundPlane checked(const GroundPlane& plane);
 
-/// G of (23): the pose of the plane's frame (z up, origin on the ground below the sensor) in the sensor's frame,
-/// with the least rotation that takes e_z to the normal.
+/// G of (23): the pose of the plane's frame (z up, origin on the ground below the sensor) in the sensor's
+/// frame, with the least rotation that takes e_z to the normal.
 DualQuaternion plane_frame(const GroundPlane& plane);
 
 /// V_p = G^-1 V G of (24a), (24b): the motion as seen from the plane's frame.
 DualQuaternion planar_motion(const DualQuaternion& motion, const DualQuaternion& G);
 /// T = G_a T_p G_b^-1 of (27), T_p the pose of plane frame b in plane frame a.
-DualQuaternion extrinsic_from_planar(const DualQuaternion& T_p, const DualQuaternion& G_a, const DualQuaternion& G_b);
+DualQuaternion extrinsic_from_planar(const DualQuaternion& T_p, const DualQuaternion& G_a,
+                                     const DualQuaternion& G_b);
 /// T_p = G_a^-1 T G_b of (24c), with the parts (25) sets to zero set to zero.
-DualQuaternion planar_from_extrinsic(const DualQuaternion& T, const DualQuaternion& G_a, const DualQuaternion& G_b);
+DualQuaternion planar_from_extrinsic(const DualQuaternion& T, const DualQuaternion& G_a,
+                                     const DualQuaternion& G_b);
 
 }  // namespace egocal

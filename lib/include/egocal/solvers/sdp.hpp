@@ -11,8 +11,9 @@ struct SdpOptions {
   int max_iterations = 200;
 };
 
-/// The global minimum of (18) by the paper's semidefinite programme (22): an interior-point method on the linear
-/// matrix inequality Z(lambda) >= 0, then (29) to (31). The reference that solve_dual is tested against.
+/// The global minimum of (18) by the paper's semidefinite programme (22): an interior-point method on the
+/// linear matrix inequality Z(lambda) >= 0, then (29) to (31). The reference that solve_dual is tested
+/// against.
 Solution solve_sdp(const Matrix8d& Q, const SdpOptions& options = {});
 
 }  // namespace egocal

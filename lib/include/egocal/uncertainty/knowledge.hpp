@@ -6,18 +6,20 @@
 
 namespace egocal {
 
-/// What the motions tell of each direction around the minimiser of (18), in the coordinates (t, rotation vector) of
-/// sensor a's frame.
+/// What the motions tell of each direction around the minimiser of (18), in the coordinates (t, rotation
+/// vector) of sensor a's frame.
 ///
-/// Observable: the curvature of the cost (the reduced Hessian T'ZT) is more than rounding, and more than the noise of
-/// the motions alone makes: noisy rotations about one axis look like rotations about several.
-/// Standard deviation: the block jack-knife, honest in spite of correlated motions. It is a variance: a systematic error
-/// of one sensor stays. To it is added the attenuation that noisy rotations cause (docs/method.md, "Uncertainty").
-/// Planar mode: z, roll and pitch come from the planes; they are not observable.
+/// Observable: the curvature of the cost (the reduced Hessian T'ZT) is more than rounding, and more than the
+/// noise of the motions alone makes: noisy rotations about one axis look like rotations about several.
+/// Standard deviation: the block jack-knife, honest in spite of correlated motions. It is a variance: a
+/// systematic error of one sensor stays. To it is added the attenuation that noisy rotations cause
+/// (docs/method.md, "Uncertainty"). Planar mode: z, roll and pitch come from the planes; they are not
+/// observable.
 Knowledge knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b);
 
-/// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of the directions
-/// along which the cost is flat up to rounding: the minimum is not unique, any point along them is one.
+/// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of the
+/// directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is
+/// one.
 struct FlatDirections {
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis;
   double length = 1;  ///< [m]
