@@ -188,7 +188,12 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
   }
   if (in.has("weights")) {
     if (in.require("weights").is_string()) {
-      if (in.choice("weights", {"auto", "equal"}) == "equal") pair.balance = Balance{};
+      // equal weights are the paper's plain method, as in `egocal solve`: steps of one, none left out
+      if (in.choice("weights", {"auto", "equal"}) == "equal") {
+        pair.balance = Balance{};
+        pair.gate = false;
+        if (!in.has("stride")) pair.stride = 1;
+      }
     } else {
       const std::vector<double> v =
           in.numbers("weights", 2, "[rotation, translation], or \"auto\" or \"equal\"");
@@ -196,14 +201,10 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
       pair.balance = Balance{v[0], v[1]};
     }
   }
-  pair.time_offset = 0;
   if (in.has("time_offset")) {
-    if (in.require("time_offset").is_string()) {
-      in.choice("time_offset", {"auto"});
-      pair.time_offset.reset();
-    } else {
-      pair.time_offset = in.number("time_offset", -1e9, 1e9, "s, or \"auto\"");
-    }
+    if (in.require("time_offset").is_string())
+      in.fail("time_offset", "expected seconds (egocal solve --time-offset auto finds them)");
+    pair.time_offset = in.number("time_offset", -1e9, 1e9, "s");
   }
   return pair;
 }
@@ -280,7 +281,8 @@ DriveOptions drive_options(const Rig& rig, const PairConfig& pair) {
   }
   options.stride = pair.stride;
   options.balance = pair.balance;
-  options.time_offset = pair.time_offset.value_or(0);
+  options.time_offset = pair.time_offset;
+  options.gate = pair.gate;
   options.max_gap = rig.max_gap;
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
   return options;

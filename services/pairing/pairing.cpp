@@ -108,12 +108,14 @@ void PairSession::publish(bool repeat) {
   message.host = host_;
   message.received_mono_us = fresh_ ? received_mono_us_ : 0;
   loop_.publish(problem_channel_, message);
+  ++sent_;
   fresh_ = false;
 }
 
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
   const DriveCounts& counts = drive_.counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
+  counters["out"] += sent_;
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
       counters["rejected: " + std::string(name(static_cast<Rejection>(i)))] +=

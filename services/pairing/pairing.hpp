@@ -57,6 +57,7 @@ class PairSession {
   std::vector<EarlyPose> early_;
   bool paused_ = false;
   bool fresh_ = false;
+  std::int64_t sent_ = 0;  // problems
   std::int64_t received_mono_us_ = 0;
 };
 

@@ -39,7 +39,7 @@ truth = [0.1, 0.2, 0.3, 1, 0, 0, 0]
 nominal = [0, 0, 0, 0, 0, 0, 1]
 stride = 3
 weights = [1, 0.1]
-time_offset = "auto"
+time_offset = -0.25
 [bus]
 url = "memq://"
 [pairing]
@@ -60,7 +60,7 @@ heartbeat_timeout = 4
   EXPECT_EQ(rig.pairs[0].nominal->rotation.z(), 1);
   EXPECT_EQ(rig.pairs[0].stride, 3);
   EXPECT_EQ(rig.pairs[0].balance->translation, 0.1);
-  EXPECT_FALSE(rig.pairs[0].time_offset.has_value());
+  EXPECT_EQ(rig.pairs[0].time_offset, -0.25);
   EXPECT_EQ(rig.lcm_url, "memq://");
   EXPECT_EQ(rig.max_gap, 0.3);
   EXPECT_EQ(rig.reorder_window, 0.1);

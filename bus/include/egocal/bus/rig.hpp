@@ -27,11 +27,12 @@ struct Sensor {
 struct PairConfig {
   std::string a, b;  ///< names of sensors; T is the pose of b in a
   Mode mode = Mode::spatial;
-  std::optional<Pose> truth;              ///< known extrinsic, for showing errors
-  std::optional<Pose> nominal;            ///< mounting drawing: the prior in unobservable directions
-  std::optional<int> stride;              ///< empty: auto
-  std::optional<Balance> balance;         ///< empty: auto
-  std::optional<double> time_offset = 0;  ///< [s] added to the stamps of b; empty: auto
+  std::optional<Pose> truth;       ///< known extrinsic, for showing errors
+  std::optional<Pose> nominal;     ///< mounting drawing: the prior in unobservable directions
+  std::optional<int> stride;       ///< empty: auto
+  std::optional<Balance> balance;  ///< empty: auto
+  bool gate = true;                ///< leave out steps that are not screw congruent
+  double time_offset = 0;          ///< [s] added to the stamps of b
 };
 
 struct Rig {
@@ -54,7 +55,7 @@ Rig parse_rig(const std::string& text, const std::string& file);
 /// Throws Error where the rig has no sensor of that name.
 const Sensor& sensor(const Rig& rig, const std::string& name);
 
-/// What pairing is to make of the rig's pair: an automatic time offset starts at zero.
+/// What pairing is to make of the rig's pair.
 DriveOptions drive_options(const Rig& rig, const PairConfig& pair);
 
 }  // namespace egocal::bus
