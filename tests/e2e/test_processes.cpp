@@ -18,6 +18,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/glue.hpp"
 #include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -250,6 +251,65 @@ TEST_F(Processes, LcmLogplayerReplaysALogOfBotCorePoses) {
   expect_statistics(expected);
   ASSERT_TRUE(answered("egocal-fast"));
   expect_answer("egocal-fast", expected);
+}
+
+TEST_F(Processes, EgocalPlayerLosesNothingAtAnySpeed) {
+  const auto trajectories = drive(1000);
+  const Problem expected = offline(trajectories);
+  const std::string log = folder / "drive.log";
+  for (const std::string type : {"egocal.odometry_t", "bot_core.pose_t"}) {
+    write_rig(type);
+    bus::LogWriter writer(log);
+    for (const Event& event : events(trajectories))
+      writer.write(event.pose.time_us, channel(event.side),
+                   type == "bot_core.pose_t" ? bus::encode(bus::to_pose_message(event.pose))
+                                             : bus::encode(bus::to_message(event.pose, event.seq)));
+    writer.close();
+    for (const std::string speed : {"0", "1000", "50"}) {
+      problem.reset();
+      answers.clear();
+      start("egocal-pairing");
+      start("egocal-fast");
+      start("egocal-global");
+      ChildProcess replay({bin + "/egocal-player", log, "--lcm-url", url, "--speed", speed},
+                          folder / "player.log");
+      ASSERT_TRUE(until([&] { return problem && problem->matched == 999; }, 20s)) << type << " at " << speed;
+      EXPECT_EQ(replay.wait(5s), 0);
+      expect_statistics(expected);
+      ASSERT_TRUE(answered("egocal-fast"));
+      expect_answer("egocal-fast", expected);
+      EXPECT_EQ(counter("egocal-pairing", "lost"), 0);
+    }
+  }
+}
+
+TEST_F(Processes, EgocalPlayerSendsAgainWhatAKilledPairingMissed) {
+  const auto trajectories = drive(2000);
+  const std::string log = folder / "drive.log";
+  bus::LogWriter writer(log);
+  for (const Event& event : events(trajectories))
+    writer.write(event.pose.time_us, channel(event.side),
+                 bus::encode(bus::to_message(event.pose, event.seq)));
+  writer.close();
+  start("egocal-pairing");
+  ChildProcess replay({bin + "/egocal-player", log, "--lcm-url", url, "--speed", "100"},
+                      folder / "player.log");
+  ASSERT_TRUE(until([&] { return problem && problem->matched > 300; }, 20s));
+  processes.erase("egocal-pairing");  // SIGKILL
+  problem.reset();
+  until([] { return false; }, 700ms);
+  start("egocal-pairing");
+  ASSERT_TRUE(until([&] { return statuses["egocal-player"].state == "ended"; }, 30s));
+  EXPECT_EQ(replay.wait(5s), 0);
+  ASSERT_TRUE(problem.has_value());
+  // the new process has everything from the first message on that the old one had not acknowledged: one
+  // session, no hole
+  const std::int64_t first = problem->session;
+  const auto begin = std::find_if(trajectories[0].begin(), trajectories[0].end(),
+                                  [&](const StampedPose& pose) { return pose.time_us == first; });
+  ASSERT_NE(begin, trajectories[0].end());
+  EXPECT_EQ(problem->matched, std::distance(begin, trajectories[0].end()) - 1);
+  EXPECT_GT(counter("egocal-player", "sent again"), 0);
 }
 
 TEST_F(Processes, KilledAndSwappedSolversLeaveTheAnswerAsItWas) {
