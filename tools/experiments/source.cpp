@@ -32,20 +32,8 @@ DataSet recorded(const Source& source) {
   options.stride = source.stride;
   options.balance = Balance{};
   options.time_offset = source.time_offset;
-  Drive drive(options);
   DataSet data;
-  const auto push = [&](Side side, const StampedPose& pose) {
-    for (const MotionPair& pair : drive.push(side, pose)) data.pairs.push_back(pair);
-  };
-  std::size_t i = 0, j = 0;
-  while (i < a.size() || j < b.size()) {
-    const bool first = j == b.size() || (i < a.size() && a[i].time_us <= b[j].time_us);
-    if (first) {
-      push(Side::a, a[i++]);
-    } else {
-      push(Side::b, b[j++]);
-    }
-  }
+  data.pairs = run_drive(options, a, b).pairs;
   if (data.pairs.empty())
     throw Error(source.file_a + ", " + source.file_b +
                 ": no motion pairs: the two do not overlap in time, or every one was rejected");
