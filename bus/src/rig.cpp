@@ -64,7 +64,7 @@ class Table {
 
   /// One of these texts.
   std::string choice(const std::string& key, std::initializer_list<std::string_view> choices) const {
-    const std::string value = text(key);
+    std::string value = text(key);
     if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
       std::string known;
       for (const std::string_view c : choices)

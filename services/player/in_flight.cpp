@@ -57,6 +57,7 @@ std::vector<bus::LogEvent> InFlight::all() const {
   std::sort(messages.begin(), messages.end(),
             [](const Message* x, const Message* y) { return x->order < y->order; });
   std::vector<bus::LogEvent> events;
+  events.reserve(messages.size());
   for (const Message* message : messages) events.push_back(message->event);
   return events;
 }

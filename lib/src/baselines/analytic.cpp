@@ -83,7 +83,7 @@ BaselineAnswer solve_analytic(std::span<const MotionPair> pairs) {
     return answer;
   }
   const Eigen::JacobiSVD<Matrix8d> svd(stacked_factor(usable), Eigen::ComputeFullV);
-  const Vector8d singular = svd.singularValues();
+  const Vector8d& singular = svd.singularValues();
   const Eigen::Vector4d u1 = svd.matrixV().col(6).head<4>(), v1 = svd.matrixV().col(6).tail<4>();
   const Eigen::Vector4d u2 = svd.matrixV().col(7).head<4>(), v2 = svd.matrixV().col(7).tail<4>();
 
