@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The real program on real files: what it prints, what it refuses and how.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Commands : public ::testing::Test {
+ protected:
+  Commands() : directory_(fs::temp_directory_path() / ("egocal_commands_" + std::to_string(getpid()))) {
+    fs::create_directories(directory_);
+  }
+  ~Commands() override { fs::remove_all(directory_); }
+
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  std::string file(const std::string& name, const std::string& content) const {
+    std::ofstream(directory_ / name, std::ios::binary) << content;
+    return path(name);
+  }
+  static std::string read(const std::string& name) {
+    std::ifstream stream(name, std::ios::binary);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+  Outcome program(const std::string& name, const std::string& arguments) const {
+    const std::string command =
+        EGOCAL_BIN_DIR "/" + name + " " + arguments + " >" + path("out") + " 2>" + path("err");
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("out")), read(path("err"))};
+  }
+  Outcome egocal(const std::string& arguments) const { return program("egocal", arguments); }
+  json solved(const std::string& arguments) const {
+    const Outcome run = egocal("solve --json " + arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return json::parse(run.out);
+  }
+  /// One line that says it, nothing on standard output.
+  static void expect_refusal(const Outcome& run, int code, const std::string& part) {
+    EXPECT_EQ(run.code, code) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+  }
+
+ private:
+  fs::path directory_;
+};
+
+std::string tum(int poses, const std::function<std::string(int)>& pose) {
+  std::string text;
+  for (int i = 0; i < poses; ++i) text += std::to_string(1000 + 0.1 * i) + " " + pose(i) + "\n";
+  return text;
+}
+
+const std::string good_line = "1000.0 0 0 0 0 0 0 1\n";
+
+TEST_F(Commands, SolveSaysEverythingThatOthersRelyOn) {
+  ASSERT_EQ(egocal("simulate --out " + path("d") + " --poses 300 --noise 0").code, 0);
+  const json answer =
+      solved(path("d/lidar.tum") + " " + path("d/camera.tum") + " --truth 0.5,0.2,-0.3,0.5,-0.5,0.5,-0.5");
+  for (const char* key :
+       {"translation", "rotation_wxyz", "pairs", "cost", "lower_bound", "gap", "certified", "observable",
+        "stddev", "method", "solve_us", "error_translation_m", "error_rotation_deg"})
+    EXPECT_TRUE(answer.contains(key)) << key;
+  EXPECT_EQ(answer["observable"].size(), 6u);
+  EXPECT_EQ(answer["stddev"].size(), 6u);
+  EXPECT_TRUE(answer["certified"]);
+  EXPECT_LT(answer["error_translation_m"], 1e-9);
+  EXPECT_LT(answer["error_rotation_deg"], 1e-7);
+}
+
+TEST_F(Commands, LogDirectoryAndPairsGiveTheSameAnswer) {
+  const std::string drive = " --poses 400 --noise 0.01 --seed 3";
+  ASSERT_EQ(egocal("simulate --out " + path("d.log") + " --rig-out " + path("d.toml") + drive).code, 0);
+  ASSERT_EQ(egocal("simulate --out " + path("d") + drive).code, 0);
+  ASSERT_EQ(egocal("log create " + path("d.toml") + " --from lidar=" + path("d/lidar.tum") +
+                   " --from camera=" + path("d/camera.tum") + " --out " + path("e.log"))
+                .code,
+            0);
+  const json from_log = solved("--log " + path("d.log") + " ODOMETRY_LIDAR ODOMETRY_CAMERA");
+  const json from_files = solved(path("d/lidar.tum") + " " + path("d/camera.tum"));
+  const json from_created = solved("--log " + path("e.log") + " ODOMETRY_LIDAR ODOMETRY_CAMERA");
+  for (const json& other : {from_files, from_created})
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(other["translation"][i].get<double>(), from_log["translation"][i].get<double>(), 1e-9);
+  EXPECT_EQ(from_files["pairs"], from_log["pairs"]);
+}
+
+TEST_F(Commands, EveryMethodAnswers) {
+  ASSERT_EQ(egocal("simulate --out " + path("d") + " --terrain free --poses 300 --noise 0.001").code, 0);
+  for (const char* method :
+       {"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}) {
+    const json answer = solved(path("d/lidar.tum") + " " + path("d/camera.tum") + " --method " + method +
+                               " --truth 0.5,0.2,-0.3,0.5,-0.5,0.5,-0.5");
+    EXPECT_LT(answer["error_rotation_deg"], 0.5) << method;
+    EXPECT_LT(answer["error_translation_m"], 0.1) << method;
+  }
+}
+
+TEST_F(Commands, WhatTheMotionsDoNotShowIsNotInvented) {
+  const auto observable = [this](const std::string& text) {
+    const std::string name = file("same.tum", text);
+    const json answer = solved(name + " " + name);
+    EXPECT_NE(answer["hint"], "");
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_EQ(answer["stddev"][i].is_null(), !answer["observable"][i].get<bool>());
+    return answer["observable"].dump();
+  };
+  EXPECT_EQ(observable(tum(100, [](int) { return "0 0 0 0 0 0 1"; })),
+            "[false,false,false,false,false,false]");
+  EXPECT_EQ(observable(tum(100,
+                           [](int i) {
+                             return std::to_string(i) + " " + std::to_string(3 * std::sin(0.3 * i)) + " " +
+                                    std::to_string(2 * std::cos(0.2 * i)) + " 0 0 0 1";
+                           })),
+            "[false,false,false,true,true,true]");
+  EXPECT_EQ(observable(tum(100,
+                           [](int i) {
+                             const double half = 0.5 * std::sin(0.1 * i);
+                             std::ostringstream text;
+                             text.precision(17);
+                             text << i << " " << 5 * std::sin(0.2 * i) << " 0 0 0 " << std::sin(half) << " "
+                                  << std::cos(half);
+                             return text.str();
+                           })),
+            "[true,true,false,true,true,true]");
+}
+
+TEST_F(Commands, BadTrajectoriesAreRefused) {
+  const std::string good =
+      file("good.tum", tum(50, [](int i) { return std::to_string(i) + " 0 0 0 0 0 1"; }));
+  const auto refused = [&](const std::string& content, const std::string& part) {
+    const std::string bad = file("bad.tum", content);
+    expect_refusal(egocal("solve " + good + " " + bad), 1, "bad.tum" + part);
+  };
+  expect_refusal(egocal("solve " + good + " " + path("none.tum")), 1, "none.tum: cannot be opened");
+  refused("", ": holds no data");
+  refused(good_line + "1001 0 0 x1 0 0 0 1\n", ":2: field 4 (tz): expected a number, got 'x1'");
+  refused(good_line + "1001 0 nan 0 0 0 0 1\n", ":2: field 3 (ty): expected a finite number");
+  refused(good_line + "1001 0 0 0 0 0 0 0\n", ":2: quaternion: is zero");
+  refused(good_line + "999 0 0 0 0 0 0 1\n", ":2: time: does not increase");
+  const std::string later = file("later.tum", "9000 0 0 0 0 0 0 1\n9001 1 0 0 0 0 0 1\n9002 2 0 0 0 0 0 1\n");
+  expect_refusal(egocal("solve " + good + " " + later), 1, "no motion pairs");
+}
+
+TEST_F(Commands, WrongUsageIsRefusedWithTwo) {
+  const std::string good = file("good.tum", good_line);
+  for (const char* arguments :
+       {"", "solve", "nonsense", "solve a", "solve a b --method best", "solve a b --weights 1",
+        "solve a b --stride 0", "solve a b --planar", "solve a b --truth 1,2,3",
+        "solve a b --planar --plane-a 0,0,2,1 --plane-b 0,0,1,1", "simulate", "log", "up"})
+    expect_refusal(egocal(arguments), 2, "egocal");
+  for (const char* name :
+       {"egocal", "egocal-player", "egocal-pairing", "egocal-fast", "egocal-global", "egocal-monitor"}) {
+    EXPECT_EQ(program(name, "--help").code, 0) << name;
+    EXPECT_THAT(program(name, "--version").out, HasSubstr("egocal")) << name;
+  }
+}
+
+TEST_F(Commands, BadLogsAndRigsAreRefused) {
+  ASSERT_EQ(egocal("simulate --out " + path("d.log") + " --rig-out " + path("d.toml") + " --poses 200").code,
+            0);
+  expect_refusal(egocal("solve --log " + path("d.log") + " ODOMETRY_LIDAR OTHER"), 1,
+                 "OTHER: no such channel in the log; there are: ODOMETRY_CAMERA, ODOMETRY_LIDAR");
+  expect_refusal(egocal("solve --log " + file("text.log", "this is no log at all") + " A B"), 1,
+                 "is not an LCM log");
+  expect_refusal(egocal("log info " + path("none.log")), 1, "none.log: cannot be opened");
+
+  std::string misspelt = read(path("d.toml"));
+  misspelt.replace(misspelt.find("channel"), 7, "chanel_");
+  const std::string rig = file("misspelt.toml", misspelt);
+  expect_refusal(egocal("up " + rig), 1, "misspelt.toml:");
+  expect_refusal(program("egocal-pairing", "--rig " + rig), 1, "chanel_");
+
+  // cut in the middle of an event, and a damaged one in the middle: the rest is used, the loss is named
+  std::string log = read(path("d.log"));
+  log.resize(log.size() - 20);
+  log[log.size() / 2] = 'X';
+  log[log.size() / 2 + 130] = 'X';
+  const std::string cut = file("cut.log", log);
+  const Outcome check = egocal("log check " + cut);
+  EXPECT_EQ(check.code, 1);
+  EXPECT_THAT(check.err, HasSubstr("cut off at the end"));
+  EXPECT_GT(solved("--log " + cut + " ODOMETRY_LIDAR ODOMETRY_CAMERA --stride 1")["pairs"], 150);
+  ASSERT_EQ(egocal("log repair " + cut + " --out " + path("mended.log")).code, 0);
+  EXPECT_EQ(egocal("log check " + path("mended.log")).code, 0);
+}
+
+TEST_F(Commands, NothingHalfWrittenIsLeft) {
+  expect_refusal(egocal("simulate --out " + path("no/such/place.log")), 1, "cannot be written");
+  ASSERT_EQ(egocal("simulate --out " + path("d.log") + " --rig-out " + path("d.toml") + " --poses 20").code,
+            0);
+  const std::string bad = file("bad.tum", good_line + "1001 0 0\n");
+  expect_refusal(egocal("log create " + path("d.toml") + " --from lidar=" + bad + " --from camera=" + bad +
+                        " --out " + path("never.log")),
+                 1, "bad.tum:2");
+  EXPECT_FALSE(fs::exists(path("never.log")));
+  EXPECT_FALSE(fs::exists(path("never.log.part")));
+}
+
+TEST_F(Commands, RealDrivesGiveWhatTheyShould) {
+  if (!fs::exists(EGOCAL_DATA_DIR))
+    GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
+  const std::string kitti =
+      EGOCAL_DATA_DIR "/kitti_07/velodyne_pylidar.tum " EGOCAL_DATA_DIR
+                      "/kitti_07/cam0_orbslam2.tum --truth 0.333504767535,-0.00479610810717,-0.0755785517707,"
+                      "0.499924473812,-0.499145921532,0.504084765332,-0.496817289214 --weights equal ";
+  const json spatial = solved(kitti);
+  EXPECT_EQ(spatial["pairs"], 1100);
+  EXPECT_NEAR(spatial["error_rotation_deg"], 0.278, 0.0006);
+  EXPECT_NEAR(spatial["error_translation_m"], 0.1902, 0.0001);
+  const json planar =
+      solved(kitti +
+             "--planar --plane-a -1.220921993720055186e-02,2.798845739362088372e-03,9.999215476281387849e-01,"
+             "-1.779603641715662210 --plane-b -6.613857662736873089e-03,-9.998207740635888241e-01,"
+             "-1.773912730951216279e-02,-1.684677553916568593");
+  EXPECT_NEAR(planar["error_rotation_deg"], 0.262, 0.0006);
+  EXPECT_NEAR(planar["error_translation_m"], 0.1434, 0.0001);
+  const json euroc =
+      solved(EGOCAL_DATA_DIR "/euroc_v2_01/body_gt.tum " EGOCAL_DATA_DIR
+                             "/euroc_v2_01/body_vio.tum --truth 0,0,0,1,0,0,0 --weights equal");
+  EXPECT_NEAR(euroc["error_rotation_deg"], 0.184, 0.001);
+  EXPECT_NEAR(euroc["error_translation_m"], 0.0185, 0.0001);
+}
+
+}  // namespace
