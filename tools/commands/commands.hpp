@@ -13,5 +13,6 @@ void add_solve(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_log(CLI::App& program);
 void add_up(CLI::App& program);
+void add_export(CLI::App& program);
 
 }  // namespace egocal::tools

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "egocal/error.hpp"
+#include "egocal/io/extrinsic_text.hpp"
+
+namespace egocal {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr ExtrinsicFormat formats[] = {ExtrinsicFormat::yaml, ExtrinsicFormat::ros, ExtrinsicFormat::urdf,
+                                       ExtrinsicFormat::kalibr};
+
+NamedExtrinsic example() {
+  NamedExtrinsic extrinsic;
+  extrinsic.parent = "lidar";
+  extrinsic.child = "camera";
+  extrinsic.T_parent_child = {Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.125, -0.25, 2.0}};
+  extrinsic.certified = true;
+  extrinsic.pairs = 1234;
+  return extrinsic;
+}
+
+TEST(ExtrinsicText, EveryFormatNamesFramesAndQuaternionOrder) {
+  for (const ExtrinsicFormat format : formats) {
+    const std::string text = extrinsic_text(example(), format);
+    EXPECT_THAT(text, HasSubstr("lidar")) << name(format);
+    EXPECT_THAT(text, HasSubstr("camera")) << name(format);
+    EXPECT_EQ(extrinsic_format_from_name(name(format)), format);
+  }
+  EXPECT_FALSE(extrinsic_format_from_name("xml"));
+  EXPECT_THAT(extrinsic_text(example(), ExtrinsicFormat::ros), HasSubstr("0.125 -0.25 2"));
+  EXPECT_THAT(extrinsic_text(example(), ExtrinsicFormat::urdf), HasSubstr("xyz=\"0.125 -0.25 2\""));
+}
+
+TEST(ExtrinsicText, RosTakesTheScalarLast) {
+  NamedExtrinsic extrinsic = example();
+  extrinsic.T_parent_child.rotation = Eigen::Quaterniond(0.8, 0.6, 0, 0);
+  const std::string text = extrinsic_text(extrinsic, ExtrinsicFormat::ros);
+  const std::size_t x = text.find("0.6"), w = text.find("0.8");
+  ASSERT_NE(x, std::string::npos);
+  ASSERT_NE(w, std::string::npos);
+  EXPECT_LT(x, w);
+}
+
+TEST(ExtrinsicText, KalibrHasTheInverse) {
+  // T_cam_imu takes points of the imu (our parent) to the camera (our child): the inverse of T_parent_child
+  NamedExtrinsic extrinsic = example();
+  extrinsic.T_parent_child = {Eigen::Quaterniond::Identity(), {1, 2, 3}};
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::kalibr), HasSubstr("-1"));
+}
+
+TEST(ExtrinsicText, NobodyMountsASensorAtNan) {
+  NamedExtrinsic extrinsic = example();
+  extrinsic.T_parent_child.translation.y() = std::numeric_limits<double>::quiet_NaN();
+  for (const ExtrinsicFormat format : formats) EXPECT_THROW(extrinsic_text(extrinsic, format), Error);
+}
+
+}  // namespace
+}  // namespace egocal
