@@ -3,6 +3,8 @@
 #include "pairing/pairing.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <exception>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/glue.hpp"
@@ -11,242 +13,231 @@ namespace egocal::services {
 
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr int acknowledge_every = 16;
-constexpr std::size_t max_early_poses = 4096;
+/// An acknowledgement that nobody can be waiting for yet is put off this long: more may come.
+constexpr auto acknowledge_delay = 300us;
 /// Messages of one channel that may wait: more than any player has on the way.
 constexpr int queue_capacity = 4096;
 constexpr std::int64_t silence_us = 500'000;
+/// What is to be sent again comes within this time.
+constexpr std::int64_t patience_us = 1'000'000;
+/// Problems of one pair are no closer than this: under a flood most would be superfluous.
+constexpr std::int64_t problem_distance_us = 2'000;
+constexpr std::size_t max_known_runs = 1024;
 
 }  // namespace
 
-PairSession::PairSession(bus::Loop& loop, const bus::Rig& rig, const bus::PairConfig& config)
+Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
+                 std::unique_ptr<SavedState> saved)
     : loop_(loop),
-      config_(config),
-      options_(bus::drive_options(rig, config)),
-      motion_channel_(bus::motion_channel(config.a, config.b)),
-      problem_channel_(bus::problem_channel(config.a, config.b)),
-      host_(bus::host_name()),
-      drive_(options_) {}
-
-void PairSession::begin(std::int64_t time_us) {
-  // session numbers only grow, so that the newest problem is known by it
-  session_ = std::max(time_us, last_session_ + 1);
-  last_session_ = session_;
-  drive_ = Drive(options_);
-  seq_ = 0;
-  early_.clear();
-  fresh_ = false;
-}
-
-void PairSession::reset() {
-  session_ = -1;
-  restarted_by_.reset();
-}
-
-void PairSession::timeline_restarts(Side side) {
-  const bool second_of_both = session_ >= 0 && restarted_by_ && *restarted_by_ != side &&
-                              drive_.counts().synchronised == 0 && early_.size() < max_early_poses;
-  if (!second_of_both) {
-    session_ = -1;
-    restarted_by_ = side;
-    return;
-  }
-  // the other stream began anew shortly before: same session, without what this one still sent of the old
-  // timeline
-  drive_ = Drive(options_);
-  std::erase_if(early_, [side](const EarlyPose& early) { return early.side == side; });
-  for (const EarlyPose& early : early_) drive_.push(early.side, early.pose);
-  restarted_by_.reset();
-}
-
-void PairSession::push(Side side, const Sample& sample) {
-  if (sample.begins_anew) timeline_restarts(side);
-  if (paused_) return;
-  if (session_ < 0) begin(sample.pose.time_us);
-  received_mono_us_ = sample.mono_us;
-  accumulate(side, sample.pose);
-}
-
-void PairSession::accumulate(Side side, const StampedPose& pose) {
-  if (restarted_by_) {
-    if (drive_.counts().synchronised > 0) {
-      restarted_by_.reset();
-      early_ = {};
-    } else if (early_.size() < max_early_poses) {
-      early_.push_back({side, pose});
-    }
-  }
-  for (const MotionPair& pair : drive_.push(side, pose)) {
-    motion_pair_t message = bus::to_message(pair);
-    message.session = session_;
-    message.seq = ++seq_;
-    message.stride = drive_.choice().stride;
-    loop_.publish(motion_channel_, message);
-    fresh_ = true;
-  }
-}
-
-void PairSession::publish(bool repeat) {
-  if (session_ < 0 || seq_ == 0 || !(fresh_ || repeat)) return;
-  problem_t message = bus::to_message(drive_.problem());
-  message.utime = drive_.newest_us().value_or(session_);
-  message.session = session_;
-  message.seq = seq_;
-  message.sensor_a = config_.a;
-  message.sensor_b = config_.b;
-  message.stride = drive_.choice().stride;
-  message.choice = drive_.choice().reason;
-  if (config_.truth) {
-    message.has_truth = 1;
-    bus::set_pose(to_dual_quaternion(*config_.truth), message.truth_pos, message.truth_quat);
-  }
-  message.time_offset = options_.time_offset;
-  const DriveCounts& counts = drive_.counts();
-  message.matched = static_cast<std::int64_t>(counts.matched);
-  for (const std::uint64_t rejected : counts.rejected)
-    message.rejected += static_cast<std::int64_t>(rejected);
-  message.host = host_;
-  message.received_mono_us = fresh_ ? received_mono_us_ : 0;
-  loop_.publish(problem_channel_, message);
-  ++sent_;
-  fresh_ = false;
-}
-
-void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
-  const DriveCounts& counts = drive_.counts();
-  counters["matched"] += static_cast<std::int64_t>(counts.matched);
-  counters["out"] += sent_;
-  for (std::size_t i = 0; i < counts.rejected.size(); ++i)
-    if (counts.rejected[i] > 0)
-      counters["rejected: " + std::string(name(static_cast<Rejection>(i)))] +=
-          static_cast<std::int64_t>(counts.rejected[i]);
-}
-
-Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig)
-    : loop_(loop), heartbeat_(heartbeat) {
-  for (const bus::Sensor& sensor : rig.sensors) {
-    channels_.push_back(std::make_unique<Channel>(sensor, rig.reorder_window));
-    Channel* channel = channels_.back().get();
+      heartbeat_(heartbeat),
+      saved_(std::move(saved)),
+      accumulation_(saved_ ? saved_->restore() : Accumulation(rig)),
+      arrivals_(rig.sensors.size()),
+      published_mono_us_(rig.pairs.size()) {
+  for (std::size_t i = 0; i < rig.sensors.size(); ++i)
     loop_.subscribe_bytes(
-        sensor.channel, [this, channel](const bus::Arrival& arrival) { take(*channel, arrival); },
+        rig.sensors[i].channel,
+        [this, i](const bus::Arrival& arrival) { take(static_cast<std::uint16_t>(i), arrival); },
         queue_capacity);
-  }
   for (const bus::PairConfig& pair : rig.pairs)
-    pairs_.push_back(std::make_unique<PairSession>(loop, rig, pair));
+    channels_.push_back({bus::problem_channel(pair.a, pair.b), bus::motion_channel(pair.a, pair.b)});
   hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
+  heartbeat_.on_status([this](const status_t& status) { hear(status); });
   heartbeat_.before_publish([this] { acknowledge(); });
   loop_.after_batch([this](bool caught_up) { after_batch(caught_up); });
-  loop_.every(std::chrono::seconds(1), [this] { every_second(); });
+  loop_.every(100ms, [this] { watch_gaps(); });
+  loop_.every(1s, [this] { every_second(); });
   heartbeat_.set_state("running");
+  if (saved_ && saved_->restored()) {
+    patient_ = true;
+    settle_until_mono_us_ = bus::mono_us() + patience_us;
+    heartbeat_.counter("restored") = 1;
+    every_second();
+    heartbeat_.publish();  // from where senders have to go on
+  }
 }
 
-void Pairing::take(Channel& channel, const bus::Arrival& arrival) {
-  ++channel.count;
+Pairing::~Pairing() {
+  if (!saved_) return;
+  try {
+    saved_->snapshot(accumulation_);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "egocal-pairing: %s\n", error.what());
+  }
+}
+
+void Pairing::feed(const Input& input) {
+  if (saved_) saved_->note(input);
+  accumulation_.apply(input);
+}
+
+void Pairing::save() {
+  if (!saved_) return;
+  try {
+    saved_->save(accumulation_);
+    save_error_.clear();
+  } catch (const Error& error) {
+    // better to go on without than to stand still; every attempt is a whole snapshot from now on
+    if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", error.what());
+    save_error_ = error.what();
+  }
+}
+
+void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
+  ++arrivals_[channel].count;
+  arrivals_[channel].heard_mono_us = arrival.mono_us;
   ++unacknowledged_;
-  channel.heard_mono_us = arrival.mono_us;
-  ++heartbeat_.counter("in");
-  Sample sample;
-  sample.mono_us = arrival.mono_us;
-  bool decoded = false;
-  bus::Checked<StampedPose> pose;
-  if (channel.sensor.type == bus::OdometryType::pose) {
-    bot_core::pose_t message{};
-    decoded = bus::decode(arrival.bytes, message);
-    if (decoded) pose = bus::to_stamped_pose(message);
-  } else {
-    odometry_t message{};
-    decoded = bus::decode(arrival.bytes, message);
-    if (decoded) pose = bus::to_stamped_pose(message);
-    sample.seq = message.seq;
-  }
-  if (!decoded) {
-    loop_.count_undecodable(channel.sensor.channel);
-  } else if (!pose) {
-    heartbeat_.reject(pose.reason);
-  } else {
-    sample.pose = *pose.value;
-    channel.utime = sample.pose.time_us;
-    route(channel, channel.stream.push(sample));
-  }
+  feed({Input::Kind::message, channel, arrival.bytes, arrival.mono_us});
   if (unacknowledged_ >= acknowledge_every && leads()) heartbeat_.publish();
 }
 
-void Pairing::route(const Channel& channel, const std::vector<Sample>& samples) {
-  for (const Sample& sample : samples)
-    for (const auto& pair : pairs_) {
-      if (pair->config().a == channel.sensor.name) pair->push(Side::a, sample);
-      if (pair->config().b == channel.sensor.name) pair->push(Side::b, sample);
-    }
+void Pairing::after_batch(bool caught_up) {
+  save();
+  if (!leads()) {
+    accumulation_.take_motions();
+    return;
+  }
+  publish_new_problems();
+  publish_motions();
+  // somebody may be waiting for it: a player that keeps in step
+  if (caught_up && unacknowledged_ > 0 && !acknowledge_timer_ && heartbeat_.alive("player"))
+    acknowledge_timer_ = loop_.after(acknowledge_delay, [this] {
+      acknowledge_timer_.reset();
+      if (unacknowledged_ > 0 && leads()) heartbeat_.publish();
+    });
 }
 
-void Pairing::after_batch(bool caught_up) {
-  if (!leads()) return;
-  for (const auto& pair : pairs_) pair->publish(false);
-  // somebody may be waiting for it: a player that keeps in step
-  if (caught_up && unacknowledged_ > 0 && heartbeat_.alive("player")) heartbeat_.publish();
+void Pairing::publish_new_problems() {
+  const std::int64_t now = bus::mono_us();
+  std::int64_t wait = problem_distance_us;
+  bool later = false;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if (!accumulation_.pairs()[i].fresh()) continue;
+    const std::int64_t due = published_mono_us_[i] + problem_distance_us;
+    if (now >= due) {
+      publish_problem(i);
+    } else {
+      later = true;
+      wait = std::min(wait, due - now);
+    }
+  }
+  if (later && !publish_timer_)
+    publish_timer_ = loop_.after(std::chrono::microseconds(wait), [this] {
+      publish_timer_.reset();
+      save();
+      if (leads()) publish_new_problems();
+    });
+}
+
+void Pairing::publish_problem(std::size_t pair) {
+  const std::optional<problem_t> message = accumulation_.pairs()[pair].message();
+  if (!message) return;
+  loop_.publish(channels_[pair].problem, *message);
+  published_mono_us_[pair] = bus::mono_us();
+  ++sent_;
+}
+
+void Pairing::publish_all_problems() {
+  save();
+  for (std::size_t i = 0; i < channels_.size(); ++i) publish_problem(i);
+}
+
+void Pairing::publish_motions() {
+  for (const MotionOut& motion : accumulation_.take_motions())
+    loop_.publish(channels_[motion.pair].motion, motion.message);
+}
+
+/// Ten times a second: what is missing and does not come.
+void Pairing::watch_gaps() {
+  const std::int64_t now = bus::mono_us();
+  const bool patient = now < settle_until_mono_us_ || heartbeat_.alive("player");
+  if (patient != patient_) feed({patient ? Input::Kind::patient : Input::Kind::impatient});
+  patient_ = patient;
+  for (std::uint16_t i = 0; i < arrivals_.size(); ++i) {
+    Arrivals& arrivals = arrivals_[i];
+    const Stream& stream = accumulation_.stream(i);
+    if (!stream.waiting()) {
+      arrivals.gap_mono_us = 0;
+      if (stream.settling() && now > settle_until_mono_us_) feed({Input::Kind::give_up, i});
+    } else if (arrivals.gap_mono_us == 0 || arrivals.expected != stream.expected()) {
+      arrivals.gap_mono_us = now;
+      arrivals.expected = stream.expected();
+    } else if (patient_ || stream.settling() ? now - arrivals.gap_mono_us > patience_us
+                                             : now - arrivals.heard_mono_us > silence_us) {
+      feed({Input::Kind::give_up, i});
+    }
+  }
+  after_batch(true);
 }
 
 void Pairing::every_second() {
-  const std::int64_t now = bus::mono_us();
-  for (const auto& channel : channels_)
-    if (channel->stream.waiting() && now - channel->heard_mono_us > silence_us)
-      route(*channel, channel->stream.flush());
   const std::optional<bus::Peer> elder = heartbeat_.elder_namesake();
   waits_for_elder_ = elder.has_value();
   heartbeat_.set_state(elder ? "waiting" : paused_ ? "paused" : "running");
   heartbeat_.set_error(elder ? "an older process has this name and goes on: pid " +
                                    std::to_string(elder->pid) + " on " + elder->host
-                             : "");
-  if (leads())
-    for (const auto& pair : pairs_) pair->publish(true);
+                       : !save_error_.empty() ? save_error_
+                       : saved_               ? saved_->refused()
+                                              : "");
+  paused_ = std::all_of(accumulation_.pairs().begin(), accumulation_.pairs().end(),
+                        [](const PairSession& pair) { return pair.paused(); });
+  if (leads()) publish_all_problems();
+}
+
+/// Whoever starts need not wait for the second to be over.
+void Pairing::hear(const status_t& status) {
+  const bool player = status.role == "player";
+  if ((status.role != "fast" && status.role != "global" && !player) || status.state == "ended" ||
+      known_runs_.contains(status.run) || known_runs_.size() >= max_known_runs)
+    return;  // a flood of invented ones gains nothing
+  known_runs_.insert(status.run);
+  if (!leads()) return;
+  if (player)
+    heartbeat_.publish();
+  else
+    publish_all_problems();
 }
 
 void Pairing::obey(Verb verb, const command_t& command) {
   bool any = false;
-  for (const auto& pair : pairs_) {
-    if (!means(command, pair->config().a, pair->config().b)) continue;
-    if (verb == Verb::reset && command.session != 0 && command.session != pair->session()) continue;
+  for (std::uint16_t i = 0; i < channels_.size(); ++i) {
+    const PairSession& pair = accumulation_.pairs()[i];
+    if (!means(command, pair.config().a, pair.config().b)) continue;
+    if (verb == Verb::reset && command.session != 0 && command.session != pair.session()) continue;
     any = true;
-    if (verb == Verb::reset)
-      pair->reset();
-    else
-      pair->pause(verb == Verb::pause);
+    feed({verb == Verb::reset   ? Input::Kind::new_session
+          : verb == Verb::pause ? Input::Kind::pause
+                                : Input::Kind::resume,
+          i});
   }
   if (!any) {
     heartbeat_.reject("command for another session or pair");
     return;
   }
   ++heartbeat_.counter("commands");
-  if (verb != Verb::reset)
-    paused_ = std::all_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair->paused(); });
+  paused_ = std::all_of(accumulation_.pairs().begin(), accumulation_.pairs().end(),
+                        [](const PairSession& pair) { return pair.paused(); });
   heartbeat_.set_state(paused_ ? "paused" : "running");
 }
 
 void Pairing::acknowledge() {
+  save();
   std::map<std::string, std::int64_t> counters;
-  for (const auto& pair : pairs_) pair->count(counters);
-  StreamCounts sum;
-  for (const auto& channel : channels_) {
-    const StreamCounts& counts = channel->stream.counts();
-    sum.lost += counts.lost;
-    sum.duplicate += counts.duplicate;
-    sum.out_of_order += counts.out_of_order;
-    sum.jump += counts.jump;
-  }
-  counters["lost"] = sum.lost;
-  counters["rejected: duplicate"] = sum.duplicate;
-  counters["rejected: too late"] = sum.out_of_order;
-  counters["rejected: time or number jumps"] = sum.jump;
+  accumulation_.count(counters);
+  counters["out"] = sent_;
   for (const auto& [name, value] : counters) heartbeat_.counter(name) = value;
 
   std::vector<acknowledgement_t>& acknowledgements = heartbeat_.acknowledgements();
   acknowledgements.clear();
   if (!leads()) return;
-  for (const auto& channel : channels_) {
+  for (std::size_t i = 0; i < arrivals_.size(); ++i) {
     acknowledgement_t& entry = acknowledgements.emplace_back();
-    entry.channel = channel->sensor.channel;
-    entry.utime = channel->utime;
-    entry.count = channel->count;
+    entry.channel = accumulation_.sensor(i).channel;
+    entry.utime = accumulation_.complete_until(i);
+    entry.count = arrivals_[i].count;
   }
   unacknowledged_ = 0;
 }

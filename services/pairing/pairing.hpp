@@ -3,92 +3,71 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/rig.hpp"
-#include "egocal/pairing/drive.hpp"
-#include "pairing/stream.hpp"
+#include "pairing/accumulation.hpp"
+#include "pairing/saved_state.hpp"
 #include "program/commands.hpp"
 
 namespace egocal::services {
 
-/// One sensor pair: its sessions, and what goes out about them.
-class PairSession {
- public:
-  PairSession(bus::Loop& loop, const bus::Rig& rig, const bus::PairConfig& config);
-
-  const bus::PairConfig& config() const { return config_; }
-  std::int64_t session() const { return session_; }
-
-  void push(Side side, const Sample& sample);
-  /// The next pose begins a new session.
-  void reset();
-  void pause(bool paused) { paused_ = paused; }
-  bool paused() const { return paused_; }
-
-  /// Sends the problem if it is new; repeat: also if it is not, for late listeners.
-  void publish(bool repeat);
-  void count(std::map<std::string, std::int64_t>& counters) const;
-
- private:
-  struct EarlyPose {
-    Side side;
-    StampedPose pose;
-  };
-  void begin(std::int64_t time_us);
-  void timeline_restarts(Side side);
-  void accumulate(Side side, const StampedPose& pose);
-
-  bus::Loop& loop_;
-  bus::PairConfig config_;
-  DriveOptions options_;
-  std::string motion_channel_, problem_channel_, host_;
-  Drive drive_;
-  std::int64_t session_ = -1;  // -1: none has begun
-  std::int64_t last_session_ = -1;
-  std::int64_t seq_ = 0;
-  // Until the two streams have met, so that the second one's restart does not cost the first one's poses.
-  std::optional<Side> restarted_by_;
-  std::vector<EarlyPose> early_;
-  bool paused_ = false;
-  bool fresh_ = false;
-  std::int64_t sent_ = 0;  // problems
-  std::int64_t received_mono_us_ = 0;
-};
-
-/// egocal-pairing: from the sensors' poses to problem_t.
+/// egocal-pairing: from the sensors' poses to problem_t. Nothing leaves the process, neither a problem nor an
+/// acknowledgement, before the inputs behind it are in the state file.
 class Pairing {
  public:
-  Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig);
+  /// saved: may be null, then everything is lost with the process.
+  Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, std::unique_ptr<SavedState> saved);
+  /// With a last snapshot.
+  ~Pairing();
+  Pairing(const Pairing&) = delete;
+  Pairing& operator=(const Pairing&) = delete;
 
  private:
   struct Channel {
-    Channel(const bus::Sensor& config, double reorder_window) : sensor(config), stream(reorder_window) {}
-    bus::Sensor sensor;
-    Stream stream;
-    std::int64_t count = 0;  // taken in or rejected since the start of the process
-    std::int64_t utime = 0;
-    std::int64_t heard_mono_us = 0;
+    std::string problem, motion;  // of a pair
+  };
+  struct Arrivals {  // of a sensor
+    std::int64_t count = 0;          // since the start of the process
+    std::int64_t heard_mono_us = 0;  // the last one
+    std::int64_t gap_mono_us = 0;    // since when something is missing; 0: nothing is
+    std::int64_t expected = -1;      // its number
   };
 
-  void take(Channel& channel, const bus::Arrival& arrival);
-  void route(const Channel& channel, const std::vector<Sample>& samples);
+  void feed(const Input& input);
+  void save();
+  void take(std::uint16_t channel, const bus::Arrival& arrival);
   void after_batch(bool caught_up);
+  void publish_new_problems();
+  void publish_problem(std::size_t pair);
+  void publish_all_problems();
+  void publish_motions();
+  void watch_gaps();
   void every_second();
   void obey(Verb verb, const command_t& command);
   void acknowledge();
+  void hear(const status_t& status);
   bool leads() const { return !waits_for_elder_; }
 
   bus::Loop& loop_;
   bus::Heartbeat& heartbeat_;
-  std::vector<std::unique_ptr<Channel>> channels_;
-  std::vector<std::unique_ptr<PairSession>> pairs_;
+  std::unique_ptr<SavedState> saved_;
+  Accumulation accumulation_;
+  std::vector<Arrivals> arrivals_;
+  std::vector<Channel> channels_;                // of the pairs
+  std::vector<std::int64_t> published_mono_us_;  // each pair's problem
+  std::optional<bus::Loop::TimerId> publish_timer_, acknowledge_timer_;
+  std::set<std::int64_t> known_runs_;  // of solvers and players
+  std::int64_t settle_until_mono_us_ = 0;
+  std::int64_t sent_ = 0;  // problems
+  std::string save_error_;
   int unacknowledged_ = 0;
+  bool patient_ = false;
   bool paused_ = false;
   bool waits_for_elder_ = false;
 };

@@ -25,106 +25,172 @@ bool follows(const Sample& x, const Sample& y) {
   return y.seq > x.seq && y.seq - x.seq <= largest_number_step;
 }
 
+bool has_time(const std::map<std::int64_t, Sample>& samples, std::int64_t time_us) {
+  return std::any_of(samples.begin(), samples.end(),
+                     [time_us](const auto& entry) { return entry.second.pose.time_us == time_us; });
+}
+
 }  // namespace
 
 Stream::Stream(double reorder_window_s)
     : reorder_window_us_(static_cast<std::int64_t>(reorder_window_s * 1e6)) {
-  recent_.fill(-1);
+  state_.recent.fill(-1);
 }
 
 bool Stream::known(std::int64_t time_us) const {
-  return std::find(recent_.begin(), recent_.end(), time_us) != recent_.end() ||
-         std::any_of(early_.begin(), early_.end(),
-                     [time_us](const auto& entry) { return entry.second.pose.time_us == time_us; });
+  return std::find(state_.recent.begin(), state_.recent.end(), time_us) != state_.recent.end() ||
+         has_time(state_.early, time_us);
 }
 
 bool Stream::plausible(const Sample& sample) const {
-  if (!newest_us_) return true;
-  const std::int64_t limit = std::max(second_us, 4 * period_us_);
-  const std::int64_t newest = early_.empty() ? *newest_us_ : early_.rbegin()->second.pose.time_us;
-  if (sample.pose.time_us < *newest_us_ - limit || sample.pose.time_us > newest + limit) return false;
-  return sample.seq < 0 || !next_seq_ || std::abs(sample.seq - *next_seq_) <= largest_number_step;
+  if (!state_.newest_us) return true;
+  const std::int64_t limit = std::max(second_us, 4 * state_.period_us);
+  const std::int64_t newest =
+      state_.early.empty() ? *state_.newest_us : state_.early.rbegin()->second.pose.time_us;
+  // numbers that are missing take their time
+  std::int64_t ahead = 0;
+  if (sample.seq >= 0 && state_.next_seq) {
+    ahead = sample.seq - *state_.next_seq;
+    if (std::abs(ahead) > largest_number_step) return false;
+  }
+  return sample.pose.time_us >= *state_.newest_us - limit &&
+         sample.pose.time_us <= newest + limit + std::max<std::int64_t>(0, ahead) * state_.period_us;
 }
 
 void Stream::release(Sample sample, std::vector<Sample>& out) {
-  if (newest_us_ && sample.pose.time_us <= *newest_us_) {
-    ++counts_.out_of_order;
+  if (state_.newest_us && sample.pose.time_us <= *state_.newest_us) {
+    ++state_.counts.out_of_order;
     return;
   }
-  if (newest_us_) period_us_ = sample.pose.time_us - *newest_us_;
-  newest_us_ = sample.pose.time_us;
-  recent_[recent_next_] = sample.pose.time_us;
-  recent_next_ = (recent_next_ + 1) % recent_.size();
+  if (state_.newest_us) state_.period_us = sample.pose.time_us - *state_.newest_us;
+  state_.newest_us = sample.pose.time_us;
+  state_.recent[state_.recent_next] = sample.pose.time_us;
+  state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
   out.push_back(std::move(sample));
 }
 
 void Stream::release_early(std::vector<Sample>& out, bool give_up) {
-  while (!early_.empty()) {
-    const auto first = early_.begin();
+  while (!state_.early.empty()) {
+    const auto first = state_.early.begin();
     const bool waited_enough =
-        early_.rbegin()->second.pose.time_us - first->second.pose.time_us >= reorder_window_us_ ||
-        early_.size() > max_early;
-    if (first->first != *next_seq_) {
+        (!state_.patient && state_.early.rbegin()->second.pose.time_us - first->second.pose.time_us >=
+                                reorder_window_us_) ||
+        state_.early.size() > max_early;
+    if (first->first != *state_.next_seq) {
       if (!give_up && !waited_enough) return;
-      counts_.lost += first->first - *next_seq_;
+      state_.counts.lost += first->first - *state_.next_seq;
     }
-    next_seq_ = first->first + 1;
+    state_.next_seq = first->first + 1;
     release(first->second, out);
-    early_.erase(first);
+    state_.early.erase(first);
+    // a damaged number may have put one far ahead that will not be of use there
+    state_.counts.out_of_order += static_cast<std::int64_t>(std::erase_if(state_.early, [this](const auto& entry) {
+      return entry.second.pose.time_us <= *state_.newest_us;
+    }));
   }
 }
 
+void Stream::give_up_first_gap(std::vector<Sample>& out) {
+  const std::int64_t first = state_.early.begin()->first;
+  state_.counts.lost += first - *state_.next_seq;
+  state_.next_seq = first;
+  release_early(out, false);
+}
+
 std::vector<Sample> Stream::flush() {
-  std::vector<Sample> out;
+  std::vector<Sample> out = settled();
   release_early(out, true);
   return out;
 }
 
 std::vector<Sample> Stream::take_candidates() {
-  std::vector<Sample> out = flush();
-  const bool backwards = candidates_.front().pose.time_us <= *newest_us_;
+  std::vector<Sample> out;
+  release_early(out, true);
+  const bool backwards = state_.candidates.front().pose.time_us <= *state_.newest_us;
   if (backwards) {
-    newest_us_.reset();
-    recent_.fill(-1);
-    candidates_.front().begins_anew = true;
+    state_.newest_us.reset();
+    state_.recent.fill(-1);
+    state_.candidates.front().begins_anew = true;
   }
-  next_seq_.reset();
-  for (Sample& sample : std::exchange(candidates_, {})) {
-    if (next_seq_ && sample.seq > *next_seq_) counts_.lost += sample.seq - *next_seq_;
-    if (sample.seq >= 0) next_seq_ = sample.seq + 1;
+  state_.next_seq.reset();
+  for (Sample& sample : std::exchange(state_.candidates, {})) {
+    if (state_.next_seq && sample.seq > *state_.next_seq)
+      state_.counts.lost += sample.seq - *state_.next_seq;
+    if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
     release(std::move(sample), out);
   }
   return out;
 }
 
-std::vector<Sample> Stream::push(Sample sample) {
-  if (known(sample.pose.time_us)) {
-    ++counts_.duplicate;
+void Stream::settle() {
+  state_.settling = state_.newest_us && !state_.next_seq;
+}
+
+std::vector<Sample> Stream::settled() {
+  state_.settling = false;
+  std::vector<Sample> out;
+  for (auto& [time_us, sample] : std::exchange(state_.held, {})) {
+    std::vector<Sample> more = put_in_order(std::move(sample));
+    std::move(more.begin(), more.end(), std::back_inserter(out));
+  }
+  return out;
+}
+
+std::vector<Sample> Stream::hold(Sample sample) {
+  const std::int64_t time_us = sample.pose.time_us;
+  const bool backwards = time_us <= *state_.newest_us;
+  const bool again = state_.held.contains(time_us);
+  if (!backwards && !again && state_.held.size() < max_early) {
+    state_.held.emplace(time_us, std::move(sample));
     return {};
   }
+  if (backwards && known(time_us)) {  // the sender has begun a little before what is missing
+    ++state_.counts.duplicate;
+    return {};
+  }
+  std::vector<Sample> out = settled();
+  std::vector<Sample> more = put_in_order(std::move(sample));
+  std::move(more.begin(), more.end(), std::back_inserter(out));
+  return out;
+}
+
+std::vector<Sample> Stream::push(Sample sample) {
+  if (state_.settling && sample.seq < 0) return hold(std::move(sample));
+  return put_in_order(std::move(sample));
+}
+
+std::vector<Sample> Stream::put_in_order(Sample sample) {
+  if (known(sample.pose.time_us)) {
+    ++state_.counts.duplicate;
+    std::vector<Sample> out;
+    if (state_.patient && !state_.early.empty() &&
+        state_.early.begin()->second.pose.time_us == sample.pose.time_us)
+      give_up_first_gap(out);
+    return out;
+  }
   if (!plausible(sample)) {
-    if (!candidates_.empty() && !follows(candidates_.back(), sample)) {
-      counts_.jump += static_cast<std::int64_t>(candidates_.size());
-      candidates_.clear();
+    if (!state_.candidates.empty() && !follows(state_.candidates.back(), sample)) {
+      state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
+      state_.candidates.clear();
     }
-    candidates_.push_back(std::move(sample));
-    if (candidates_.size() < confirmations) return {};
+    state_.candidates.push_back(std::move(sample));
+    if (state_.candidates.size() < confirmations) return {};
     return take_candidates();
   }
-  counts_.jump += static_cast<std::int64_t>(candidates_.size());
-  candidates_.clear();
+  state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
+  state_.candidates.clear();
 
   std::vector<Sample> out;
-  if (sample.seq < 0 || !next_seq_) {
-    if (sample.seq >= 0) next_seq_ = sample.seq + 1;
+  if (sample.seq < 0 || !state_.next_seq) {
+    if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
     release(std::move(sample), out);
-  } else if (sample.seq < *next_seq_) {
-    ++counts_.out_of_order;
-    if (counts_.lost > 0) --counts_.lost;
+  } else if (sample.seq < *state_.next_seq) {
+    ++state_.counts.out_of_order;
+    if (state_.counts.lost > 0) --state_.counts.lost;
   } else {
     const std::int64_t seq = sample.seq;
-    if (!early_.emplace(seq, std::move(sample)).second) {
-      ++counts_.duplicate;
+    if (!state_.early.emplace(seq, std::move(sample)).second) {
+      ++state_.counts.duplicate;
       return out;
     }
     release_early(out, false);

@@ -27,13 +27,29 @@ struct StreamCounts {
   std::int64_t jump = 0;          ///< time or number far off, and nothing followed there
 };
 
+/// Everything that a Stream remembers.
+struct StreamState {
+  std::optional<std::int64_t> newest_us;
+  std::int64_t period_us = 0;
+  std::optional<std::int64_t> next_seq;
+  std::map<std::int64_t, Sample> early;     ///< by number, behind a gap
+  std::vector<Sample> candidates;           ///< for a jump
+  std::array<std::int64_t, 64> recent{};    ///< times released last
+  std::uint64_t recent_next = 0;            ///< in recent
+  bool patient = false;                     ///< see be_patient()
+  bool settling = false;                    ///< see settle()
+  std::map<std::int64_t, Sample> held;      ///< by time, while settling
+  StreamCounts counts;
+};
+
 /// Puts the messages of one odometry channel in order. Its clock is the time inside the messages.
 ///
-/// - A gap in the numbers is waited for until reorder_window of measured time has gone by.
+/// - A gap in the numbers is waited for until reorder_window of measured time has gone by, or for as long as
+///   it is patient.
 /// - Time or number far off (more than a second and four periods; 1000 numbers): kept back until three
-/// messages in a row go
-///   on from there, for one damaged message must not end a session. If time then turns out to run backwards
-///   (a log that was started again, a clock that was set), a new timeline begins; nothing of it is lost.
+///   messages in a row go on from there, for one damaged message must not end a session. If time then turns
+///   out to run backwards (a log that was started again, a clock that was set), a new timeline begins;
+///   nothing of it is lost.
 class Stream {
  public:
   explicit Stream(double reorder_window_s);
@@ -42,25 +58,39 @@ class Stream {
   std::vector<Sample> push(Sample sample);
   /// Gives up waiting: nothing has come for long.
   std::vector<Sample> flush();
-  bool waiting() const { return !early_.empty(); }
-  const StreamCounts& counts() const { return counts_; }
+  /// Something is missing before what is held back.
+  bool waiting() const { return !state_.early.empty() || !state_.held.empty(); }
+  std::size_t held_back() const { return state_.early.size() + state_.held.size(); }
+  /// The number that it waits for or expects next; -1: none.
+  std::int64_t expected() const { return state_.next_seq.value_or(-1); }
+  std::optional<std::int64_t> newest_us() const { return state_.newest_us; }
+  const StreamCounts& counts() const { return state_.counts; }
+
+  /// While the sender sends again what is missing, however long that takes in measured time, it is waited
+  /// for: until flush(), or until the first message behind the gap comes a second time, for then the sender
+  /// has been there again and had nothing for the gap.
+  void be_patient(bool patient) { state_.patient = patient; }
+  bool settling() const { return state_.settling; }
+  /// After an interruption: messages without numbers are collected, and put in order when one of them comes
+  /// a second time, or by flush().
+  void settle();
+
+  const StreamState& state() const { return state_; }
+  void restore(StreamState state) { state_ = std::move(state); }
 
  private:
   bool plausible(const Sample& sample) const;
   bool known(std::int64_t time_us) const;
+  std::vector<Sample> put_in_order(Sample sample);
+  std::vector<Sample> hold(Sample sample);
+  std::vector<Sample> settled();
   void release(Sample sample, std::vector<Sample>& out);
   void release_early(std::vector<Sample>& out, bool give_up);
+  void give_up_first_gap(std::vector<Sample>& out);
   std::vector<Sample> take_candidates();
 
   std::int64_t reorder_window_us_;
-  std::optional<std::int64_t> newest_us_;
-  std::int64_t period_us_ = 0;
-  std::optional<std::int64_t> next_seq_;
-  std::map<std::int64_t, Sample> early_;  // by number, behind a gap
-  std::vector<Sample> candidates_;        // for a jump
-  std::array<std::int64_t, 64> recent_{};
-  std::size_t recent_next_ = 0;
-  StreamCounts counts_;
+  StreamState state_;
 };
 
 }  // namespace egocal::services

@@ -3,8 +3,13 @@
 #include "player/in_flight.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace egocal::services {
+
+namespace {
+const std::string held_back_prefix = "held back: ";
+}
 
 std::optional<std::int64_t> utime_of(const bus::LogEvent& event) {
   // both types begin with the fingerprint and then utime, 8 bytes each, big endian
@@ -20,27 +25,36 @@ void InFlight::sent(const bus::LogEvent& event) {
   channel->second.messages.push_back({order_++, utime_of(event).value_or(0), event});
 }
 
-bool InFlight::acknowledged(const status_t& pairing) {
+InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
   const bool new_process = run_ != pairing.run;
   const bool first = !run_;
-  bool progress = new_process;
+  Progress progress{new_process, false};
   run_ = pairing.run;
+  std::set<std::string> held_back;
+  for (const counter_t& counter : pairing.counters)
+    if (counter.value > 0 && counter.name.starts_with(held_back_prefix))
+      held_back.insert(counter.name.substr(held_back_prefix.size()));
   for (const acknowledgement_t& acknowledgement : pairing.acknowledgements) {
     Channel& channel = channels_[acknowledgement.channel];
-    // a new process counts from zero; what the first one had counted before we spoke was not ours
-    const std::int64_t before = new_process ? (first ? acknowledgement.count : 0) : channel.count;
-    std::int64_t taken = std::max<std::int64_t>(0, acknowledgement.count - before);
+    if (new_process) channel.sent_again_at.reset();
+    const bool news =
+        new_process || acknowledgement.count != channel.count || acknowledgement.utime != channel.utime;
     channel.count = acknowledgement.count;
-    const bool time_moved = acknowledgement.utime != channel.utime && !first;
     channel.utime = acknowledgement.utime;
-    // Counted messages arrived in order; where some were lost the time says which ones are through.
-    while (!channel.messages.empty() &&
-           (taken > 0 || (time_moved && channel.messages.front().utime <= acknowledgement.utime))) {
-      channel.messages.pop_front();
-      --taken;
-      progress = true;
+    const auto through =
+        std::find_if(channel.messages.begin(), channel.messages.end(),
+                     [&](const Message& message) { return message.utime == acknowledgement.utime; });
+    if (news && through != channel.messages.end()) {
+      channel.messages.erase(channel.messages.begin(), through + 1);
+      progress.any = true;
+    }
+    if (held_back.contains(acknowledgement.channel) && !channel.messages.empty() &&
+        channel.sent_again_at != acknowledgement.utime) {
+      channel.sent_again_at = acknowledgement.utime;
+      progress.send_again = true;
     }
   }
+  if (new_process && !first && count() > 0) progress.send_again = true;
   return progress;
 }
 

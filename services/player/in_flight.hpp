@@ -21,8 +21,13 @@ class InFlight {
  public:
   /// Takes note of a message that was sent. Of channels that pairing does not listen to nothing is kept.
   void sent(const bus::LogEvent& event);
-  /// A status of pairing. True if it acknowledged something new, or is that of a new process.
-  bool acknowledged(const status_t& pairing);
+  struct Progress {
+    bool any = false;         ///< something new was acknowledged, or it is a new process
+    bool send_again = false;  ///< all(): a new process has them not, or one before what it has is missing
+  };
+  /// A status of pairing. Its acknowledgements name the newest message before which nothing is missing; the
+  /// counter "held back: <channel>" says that something came behind a gap.
+  Progress acknowledged(const status_t& pairing);
 
   bool heard() const { return run_.has_value(); }  ///< any pairing process, ever
   std::size_t count() const;                       ///< messages on the way
@@ -37,8 +42,8 @@ class InFlight {
     bus::LogEvent event;
   };
   struct Channel {
-    std::int64_t count = 0;  ///< messages that pairing has counted
-    std::int64_t utime = 0;
+    std::int64_t count = 0, utime = 0;          ///< of the last acknowledgement
+    std::optional<std::int64_t> sent_again_at;  ///< utime of an acknowledgement with something held back
     std::deque<Message> messages;
   };
   std::map<std::string, Channel> channels_;

@@ -65,14 +65,14 @@ void Player::hear(const status_t& status) {
   if (status.role != "pairing" || status.state == "waiting" || status.state == "ended") return;
   const std::int64_t now = bus::mono_us();
   const bool first = !in_flight_.heard();
-  const std::size_t before = in_flight_.count();
-  if (!in_flight_.acknowledged(status)) return;
-  progress_mono_us_ = now;
-  alone_ = false;
-  if (first) anchor();
-  // a new process has none of what the old one had not acknowledged
-  if (!first && in_flight_.count() == before && before > 0) send_again();
-  play();
+  const InFlight::Progress progress = in_flight_.acknowledged(status);
+  if (progress.any) {
+    progress_mono_us_ = now;
+    alone_ = false;
+    if (first) anchor();
+  }
+  if (progress.send_again) send_again();
+  if (progress.any) play();
 }
 
 void Player::hear(const command_t& command) {

@@ -25,6 +25,7 @@
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/steady_sender.hpp"
 
 namespace egocal {
 namespace {
@@ -132,18 +133,22 @@ class Processes : public testing::Test {
 
   /// Sends events in step with pairing's acknowledgements, as a player does.
   void play(const std::vector<Event>& what) {
-    if (!player)
-      player = std::make_unique<bus::Heartbeat>(*loop, bus::Identity{"test-player", "player", "0"}, 3s);
-    player->set_state("running");
-    player->publish();
-    const std::int64_t before = acknowledged();
-    std::int64_t sent = 0;
+    if (!player) player = std::make_unique<test::SteadySender>(*loop);
+    std::size_t number = 0;
+    const auto until_sender = [&](const std::function<bool()>& condition) {
+      return until(
+          [&] {
+            player->watch_over();
+            return condition();
+          },
+          20s);
+    };
     for (const Event& event : what) {
-      loop->publish(channel(event.side), bus::to_message(event.pose, event.seq));
-      ++sent;
-      ASSERT_TRUE(until([&] { return sent - (acknowledged() - before) < 32; }, 5s)) << "at message " << sent;
+      ASSERT_TRUE(until_sender([&] { return player->ready(); })) << "at message " << number;
+      player->send(channel(event.side), bus::encode(bus::to_message(event.pose, event.seq)));
+      ++number;
     }
-    ASSERT_TRUE(until([&] { return acknowledged() - before == sent; }, 5s));
+    ASSERT_TRUE(until_sender([&] { return player->all_taken(); }));
   }
 
   /// Of the poses as the wire carries them, so that the statistics are the same bits.
@@ -199,7 +204,7 @@ class Processes : public testing::Test {
   std::filesystem::path folder;
   std::string rig_file;
   std::unique_ptr<bus::Loop> loop;
-  std::unique_ptr<bus::Heartbeat> player;
+  std::unique_ptr<test::SteadySender> player;
   std::map<std::string, ChildProcess> processes;
   std::optional<problem_t> problem;
   std::map<std::string, calibration_t> answers;
@@ -363,6 +368,7 @@ TEST_F(Processes, TheFastSolverGoesOnWithoutTheGlobalOneAndSaysSo) {
   start("egocal-fast");
   const auto trajectories = drive(300);
   play(events(trajectories));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }, 5s));
   ASSERT_TRUE(answered("egocal-fast"));
   expect_answer("egocal-fast", offline(trajectories));
   EXPECT_THAT(statuses["egocal-fast"].last_error, testing::HasSubstr("no global solver"));

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "egocal/bus/decode.hpp"
+#include "egocal/bus/rig.hpp"
+#include "pairing/pair_session.hpp"
+#include "pairing/stream.hpp"
+
+namespace egocal::services {
+
+/// Whatever changes what has been accumulated. The same inputs in the same order give the same bits: a
+/// snapshot and the inputs since then are enough to go on from.
+struct Input {
+  enum class Kind : std::uint8_t {
+    message,     ///< of a channel, as it came
+    give_up,     ///< a channel: waits no longer for what is missing
+    patient,     ///< all channels: what is missing will be sent again
+    impatient,   ///< all channels: it will not
+    new_session,  ///< a pair: the next pose begins one
+    pause,        ///< a pair
+    resume        ///< a pair
+  };
+  Kind kind = Kind::message;
+  std::uint16_t index = 0;   ///< of the channel or pair in the rig
+  bus::Bytes bytes{};        ///< of a message
+  std::int64_t mono_us = 0;  ///< arrival; nothing that is accumulated depends on it
+};
+
+struct ChannelState {
+  StreamState stream;
+  std::int64_t utime = 0;  ///< of the message taken in last, whatever became of it (time_in())
+  std::int64_t in = 0;
+  std::int64_t undecodable = 0;
+};
+
+struct AccumulationState {
+  std::vector<ChannelState> channels;  ///< as the rig's sensors
+  std::vector<PairState> pairs;        ///< as the rig's pairs
+  std::map<std::string, std::int64_t> rejected;
+};
+
+/// Everything that egocal-pairing knows, without LCM and without a clock.
+class Accumulation {
+ public:
+  explicit Accumulation(const bus::Rig& rig);
+
+  void apply(const Input& input);
+  /// The motion pairs that were completed since the last call.
+  std::vector<MotionOut> take_motions() { return std::exchange(motions_, {}); }
+
+  AccumulationState state() const;
+  void restore(AccumulationState state);
+  /// After an interruption: senders will go back to what they have not been acknowledged.
+  void settle();
+
+  const std::vector<PairSession>& pairs() const { return pairs_; }
+  std::vector<PairSession>& pairs() { return pairs_; }
+  std::size_t channels() const { return channels_.size(); }
+  const bus::Sensor& sensor(std::size_t channel) const { return channels_[channel].sensor; }
+  const Stream& stream(std::size_t channel) const { return channels_[channel].stream; }
+  /// Time of the newest message before which nothing is missing [us]; for acknowledgements.
+  std::int64_t complete_until(std::size_t channel) const;
+  void count(std::map<std::string, std::int64_t>& counters) const;
+
+ private:
+  struct Channel {
+    bus::Sensor sensor;
+    Stream stream;
+    ChannelState state;  // without the stream's
+  };
+  void take(Channel& channel, const Input& input);
+  void route(const Channel& channel, const std::vector<Sample>& samples);
+
+  std::vector<Channel> channels_;
+  std::vector<PairSession> pairs_;
+  std::map<std::string, std::int64_t> rejected_;
+  std::vector<MotionOut> motions_;
+};
+
+/// Both odometry types begin with the fingerprint and then utime, 8 bytes each, big endian: what a player
+/// knows a message by, even a damaged one. 0: too short.
+std::int64_t time_in(bus::Bytes message);
+
+}  // namespace egocal::services

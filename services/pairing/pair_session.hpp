@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "egocal/bus/decode.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/pairing/drive.hpp"
+#include "pairing/stream.hpp"
+
+namespace egocal::services {
+
+struct EarlyPose {
+  Side side = Side::a;
+  StampedPose pose;
+};
+
+/// What one sensor pair has accumulated.
+struct PairState {
+  DriveState drive;
+  std::int64_t session = -1;  ///< -1: none has begun
+  std::int64_t last_session = -1;
+  std::int64_t seq = 0;
+  /// Until the two streams have met, so that the second one's restart does not cost the first one's poses.
+  std::optional<Side> restarted_by;
+  std::vector<EarlyPose> early;
+  bool paused = false;
+};
+
+/// A motion pair on its way to the bus.
+struct MotionOut {
+  std::size_t pair = 0;  ///< in the rig
+  motion_pair_t message{};
+};
+
+/// One sensor pair: its sessions, and what is known about them.
+class PairSession {
+ public:
+  PairSession(const bus::Rig& rig, std::size_t index);
+
+  const bus::PairConfig& config() const { return config_; }
+  std::int64_t session() const { return state_.session; }
+
+  void push(Side side, const Sample& sample, std::vector<MotionOut>& out);
+  /// The next pose begins a new session.
+  void reset();
+  void pause(bool paused) { state_.paused = paused; }
+  bool paused() const { return state_.paused; }
+
+  /// Something new is in the problem since the last message().
+  bool fresh() const { return fresh_; }
+  /// The problem as it stands; empty where there is none yet.
+  std::optional<problem_t> message();
+  void count(std::map<std::string, std::int64_t>& counters) const;
+
+  PairState state() const;
+  void restore(PairState state);
+
+ private:
+  void begin(std::int64_t time_us);
+  void timeline_restarts(Side side);
+  void accumulate(Side side, const StampedPose& pose, std::vector<MotionOut>& out);
+
+  std::size_t index_;
+  bus::PairConfig config_;
+  DriveOptions options_;
+  std::string host_;
+  Drive drive_;
+  PairState state_;  // without the drive's
+  bool fresh_ = false;
+  std::int64_t received_mono_us_ = 0;
+};
+
+}  // namespace egocal::services

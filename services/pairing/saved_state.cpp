@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pairing/saved_state.hpp"
+
+#include <cinttypes>
+#include <cstdio>
+#include <exception>
+#include <utility>
+
+#include "pairing/state_fields.hpp"
+
+namespace egocal::services {
+
+namespace {
+
+/// So many bytes of inputs are taken in again within a fraction of a second.
+constexpr std::uint64_t most_added = 4 << 20;
+
+/// Whose state it is: what is accumulated means nothing to another rig, nor to another version of the
+/// mathematics.
+std::string identity(const bus::Rig& rig) {
+  std::string text =
+      "egocal-pairing " EGOCAL_VERSION ", layout " + std::to_string(state_layout) + "\n";
+  char line[300];
+  for (const bus::Sensor& sensor : rig.sensors) {
+    std::snprintf(line, sizeof line, "sensor %s on %s, %s, reorder_window %g\n", sensor.name.c_str(),
+                  sensor.channel.c_str(),
+                  sensor.type == bus::OdometryType::pose ? "bot_core.pose_t" : "egocal.odometry_t",
+                  rig.reorder_window);
+    text += line;
+  }
+  for (const bus::PairConfig& pair : rig.pairs) {
+    Writer settings;
+    settings(bus::drive_options(rig, pair));
+    std::snprintf(line, sizeof line, "pair %s %s with settings %016" PRIx64 "\n", pair.a.c_str(),
+                  pair.b.c_str(), checksum(settings.bytes()));
+    text += line;
+  }
+  return text;
+}
+
+void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
+  Reader reader(inputs);
+  while (!reader.done()) {
+    Input input;
+    std::uint32_t size = 0;
+    reader(input.kind, input.index, size);
+    input.bytes = reader.view(size);
+    accumulation.apply(input);
+    accumulation.take_motions();  // whoever wanted them has them
+  }
+}
+
+}  // namespace
+
+SavedState::SavedState(const std::string& file, const bus::Rig& rig)
+    : rig_(rig), file_(file, identity(rig)) {}
+
+Accumulation SavedState::restore() {
+  Accumulation accumulation(rig_);
+  if (const std::optional<StateFile::Content> content = file_.read()) {
+    try {
+      AccumulationState state;
+      Reader reader(content->snapshot);
+      reader(state);
+      if (!reader.done()) throw Error("is damaged");
+      accumulation.restore(std::move(state));
+      for (const std::vector<std::byte>& inputs : content->additions) apply_all(inputs, accumulation);
+      accumulation.settle();
+      restored_ = true;
+    } catch (const std::exception& error) {
+      file_.refuse(error.what());
+      accumulation = Accumulation(rig_);
+    }
+  }
+  snapshot(accumulation);
+  return accumulation;
+}
+
+void SavedState::note(const Input& input) {
+  if (broken_) return;
+  inputs_(input.kind, input.index, static_cast<std::uint32_t>(input.bytes.size()));
+  inputs_.raw(input.bytes.data(), input.bytes.size());
+}
+
+void SavedState::save(const Accumulation& accumulation) {
+  if (broken_ || file_.added() >= most_added) return snapshot(accumulation);
+  if (inputs_.bytes().empty()) return;
+  broken_ = true;
+  file_.add(inputs_.bytes());
+  inputs_.clear();
+  broken_ = false;
+}
+
+void SavedState::snapshot(const Accumulation& accumulation) {
+  inputs_.clear();
+  broken_ = true;
+  Writer writer;
+  writer(accumulation.state());
+  file_.snapshot(writer.bytes());
+  broken_ = false;
+}
+
+}  // namespace egocal::services

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What of each struct goes into a state file: everything. The structured bindings do not compile where a
+// struct gains or loses a field, so that none is forgotten. Whoever changes one raises state_layout.
+#pragma once
+
+#include "egocal/pairing/drive.hpp"
+#include "pairing/accumulation.hpp"
+#include "pairing/archive.hpp"
+
+namespace egocal {
+
+void fields(auto& archive, services::Is<DualQuaternion> auto& value) {
+  auto& [real, dual] = value;
+  archive(real, dual);
+}
+
+void fields(auto& archive, services::Is<StampedPose> auto& value) {
+  auto& [time_us, pose] = value;
+  archive(time_us, pose);
+}
+
+void fields(auto& archive, services::Is<Balance> auto& value) {
+  auto& [rotation, translation] = value;
+  archive(rotation, translation);
+}
+
+void fields(auto& archive, services::Is<Statistics> auto& value) {
+  auto& [dual_rows, weight, count] = value;
+  archive(dual_rows, weight, count);
+}
+
+void fields(auto& archive, services::Is<GroundPlane> auto& value) {
+  auto& [normal, distance] = value;
+  archive(normal, distance);
+}
+
+void fields(auto& archive, services::Is<DriveOptions> auto& value) {
+  auto& [mode, plane_a, plane_b, stride, balance, time_offset, max_gap, gate, prior] = value;
+  archive(mode, plane_a, plane_b, stride, balance, time_offset, max_gap, gate, prior);
+}
+
+inline void fields(services::Writer& archive, const BlockStatistics& value) {
+  archive(value.blocks());
+}
+inline void fields(services::Reader& archive, BlockStatistics& value) {
+  std::vector<Statistics> blocks;
+  archive(blocks);
+  value = BlockStatistics(std::move(blocks));
+}
+
+void fields(auto& archive, services::Is<DriveCounts> auto& value) {
+  auto& [poses_a, poses_b, synchronised, matched, rejected] = value;
+  archive(poses_a, poses_b, synchronised, matched, rejected);
+}
+
+void fields(auto& archive, services::Is<Choice> auto& value) {
+  auto& [stride, balance, reason] = value;
+  archive(stride, balance, reason);
+}
+
+void fields(auto& archive, services::Is<DriveState::Instant> auto& value) {
+  auto& [time_us, a, b, chain] = value;
+  archive(time_us, a, b, chain);
+}
+
+void fields(auto& archive, services::Is<DriveState::PerStride> auto& value) {
+  auto& [stride, statistics] = value;
+  archive(stride, statistics);
+}
+
+void fields(auto& archive, services::Is<DriveState> auto& value) {
+  auto& [counts, choice, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
+         angle_residuals, slide_residuals, length_residuals] = value;
+  archive(counts, choice, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
+          angle_residuals, slide_residuals, length_residuals);
+}
+
+namespace services {
+
+/// Of the fields in this file.
+constexpr int state_layout = 1;
+
+void fields(auto& archive, Is<Sample> auto& value) {
+  auto& [pose, seq, mono_us, begins_anew] = value;
+  archive(pose, seq, mono_us, begins_anew);
+}
+
+void fields(auto& archive, Is<StreamCounts> auto& value) {
+  auto& [lost, duplicate, out_of_order, jump] = value;
+  archive(lost, duplicate, out_of_order, jump);
+}
+
+void fields(auto& archive, Is<StreamState> auto& value) {
+  auto& [newest_us, period_us, next_seq, early, candidates, recent, recent_next, patient, settling, held,
+         counts] = value;
+  archive(newest_us, period_us, next_seq, early, candidates, recent, recent_next, patient, settling, held,
+          counts);
+}
+
+void fields(auto& archive, Is<EarlyPose> auto& value) {
+  auto& [side, pose] = value;
+  archive(side, pose);
+}
+
+void fields(auto& archive, Is<PairState> auto& value) {
+  auto& [drive, session, last_session, seq, restarted_by, early, paused] = value;
+  archive(drive, session, last_session, seq, restarted_by, early, paused);
+}
+
+void fields(auto& archive, Is<ChannelState> auto& value) {
+  auto& [stream, utime, in, undecodable] = value;
+  archive(stream, utime, in, undecodable);
+}
+
+void fields(auto& archive, Is<AccumulationState> auto& value) {
+  auto& [channels, pairs, rejected] = value;
+  archive(channels, pairs, rejected);
+}
+
+}  // namespace services
+
+}  // namespace egocal
