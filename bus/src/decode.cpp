@@ -92,7 +92,7 @@ bool lengths_fit(const problem_t*, Bytes bytes) {
   walk.skip(1 + 2 * 32 + 2 * 8 + 4);
   walk.string();
   walk.skip(statistics_size * walk.count(statistics_size));
-  walk.skip(2 * (1 + 24 + 32) + 4 * 8);
+  walk.skip(2 * (1 + 24 + 32) + 5 * 8);
   walk.string();
   walk.skip(8);
   return walk.done();

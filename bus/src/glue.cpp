@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "egocal/error.hpp"
+#include "egocal/problem/blocks.hpp"
 
 namespace egocal::bus {
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double largest_distance = 1e9;  // [m]; beyond it doubles know no micrometres
 constexpr std::int64_t year_2100_us = 4'102'444'800'000'000;
-constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_blocks;
+constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_kept;
 
 template <std::size_t n>
 bool finite(const double (&values)[n]) {
@@ -129,7 +130,8 @@ bot_core::pose_t to_pose_message(const StampedPose& pose) {
 
 Checked<Problem> to_problem(const problem_t& message) {
   if (!plausible_time(message.utime)) return {{}, "time out of range"};
-  if (message.session < 0 || message.seq < 0 || message.matched < 0 || message.rejected < 0)
+  if (message.session < 0 || message.seq < 0 || message.matched < 0 || message.left_out < 0 ||
+      message.rejected < 0)
     return {{}, "negative count"};
   if (!plausible_name(message.sensor_a) || !plausible_name(message.sensor_b)) return {{}, "sensor name"};
   if (!plausible_text(message.choice) || !plausible_text(message.host)) return {{}, "text too long"};

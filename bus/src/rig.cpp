@@ -191,7 +191,7 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
       // equal weights are the paper's plain method, as in `egocal solve`: steps of one, none left out
       if (in.choice("weights", {"auto", "equal"}) == "equal") {
         pair.balance = Balance{};
-        pair.gate = false;
+        pair.robust = false;
         if (!in.has("stride")) pair.stride = 1;
       }
     } else {
@@ -282,7 +282,7 @@ DriveOptions drive_options(const Rig& rig, const PairConfig& pair) {
   options.stride = pair.stride;
   options.balance = pair.balance;
   options.time_offset = pair.time_offset;
-  options.gate = pair.gate;
+  options.robust = pair.robust;
   options.max_gap = rig.max_gap;
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
   return options;

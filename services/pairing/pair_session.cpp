@@ -94,6 +94,7 @@ std::optional<problem_t> PairSession::message() {
   message.time_offset = options_.time_offset;
   const DriveCounts& counts = drive_.counts();
   message.matched = static_cast<std::int64_t>(counts.matched);
+  message.left_out = static_cast<std::int64_t>(counts.left_out);
   for (const std::uint64_t rejected : counts.rejected)
     message.rejected += static_cast<std::int64_t>(rejected);
   message.host = host_;
@@ -105,6 +106,7 @@ std::optional<problem_t> PairSession::message() {
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
   const DriveCounts& counts = drive_.counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
+  counters["left out"] += static_cast<std::int64_t>(counts.left_out);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
       counters["rejected: " + std::string(name(static_cast<Rejection>(i)))] +=

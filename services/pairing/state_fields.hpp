@@ -36,22 +36,71 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
 }
 
 void fields(auto& archive, services::Is<DriveOptions> auto& value) {
-  auto& [mode, plane_a, plane_b, stride, balance, time_offset, max_gap, gate, prior] = value;
-  archive(mode, plane_a, plane_b, stride, balance, time_offset, max_gap, gate, prior);
+  auto& [mode, plane_a, plane_b, stride, balance, time_offset, max_gap, robust, prior] = value;
+  archive(mode, plane_a, plane_b, stride, balance, time_offset, max_gap, robust, prior);
 }
 
-inline void fields(services::Writer& archive, const BlockStatistics& value) {
-  archive(value.blocks());
+void fields(auto& archive, services::Is<MotionPair> auto& value) {
+  auto& [a, b, begin_us, end_us, eta] = value;
+  archive(a, b, begin_us, end_us, eta);
 }
-inline void fields(services::Reader& archive, BlockStatistics& value) {
-  std::vector<Statistics> blocks;
-  archive(blocks);
-  value = BlockStatistics(std::move(blocks));
+
+void fields(auto& archive, services::Is<BlockStatistics::Block> auto& value) {
+  auto& [statistics, left_out] = value;
+  archive(statistics, left_out);
+}
+
+void fields(auto& archive, services::Is<BlockStatistics::State> auto& value) {
+  auto& [blocks, pairs_per_block] = value;
+  archive(blocks, pairs_per_block);
+}
+
+void fields(auto& archive, services::Is<ResidualScale> auto& value) {
+  auto& [absolute, relative] = value;
+  archive(absolute, relative);
+}
+
+void fields(auto& archive, services::Is<Agreement> auto& value) {
+  auto& [q, scale] = value;
+  archive(q, scale);
+}
+
+void fields(auto& archive, services::Is<RobustStatistics::State> auto& value) {
+  auto& [blocks, waiting, agreement, in_a_row, next_look, given] = value;
+  archive(blocks, waiting, agreement, in_a_row, next_look, given);
+}
+
+/// Classes whose whole state is a struct.
+template <class T>
+concept Stateful = std::same_as<T, BlockStatistics> || std::same_as<T, RobustStatistics>;
+inline void fields(services::Writer& archive, const Stateful auto& value) {
+  archive(value.state());
+}
+template <Stateful T>
+void fields(services::Reader& archive, T& value) {
+  typename T::State state;
+  archive(state);
+  value = T(std::move(state));
+}
+
+void fields(auto& archive, services::Is<TypicalDifference::Seen> auto& value) {
+  auto& [size, difference] = value;
+  archive(size, difference);
+}
+
+void fields(auto& archive, services::Is<TypicalDifference> auto& value) {
+  auto& [newest, constant, growing] = value;
+  archive(newest, constant, growing);
+}
+
+void fields(auto& archive, services::Is<CongruenceScale> auto& value) {
+  auto& [angle, slide, length, lever, arm, taught, doubted] = value;
+  archive(angle, slide, length, lever, arm, taught, doubted);
 }
 
 void fields(auto& archive, services::Is<DriveCounts> auto& value) {
-  auto& [poses_a, poses_b, synchronised, matched, rejected] = value;
-  archive(poses_a, poses_b, synchronised, matched, rejected);
+  auto& [poses_a, poses_b, synchronised, matched, left_out, rejected] = value;
+  archive(poses_a, poses_b, synchronised, matched, left_out, rejected);
 }
 
 void fields(auto& archive, services::Is<Choice> auto& value) {
@@ -71,15 +120,15 @@ void fields(auto& archive, services::Is<DriveState::PerStride> auto& value) {
 
 void fields(auto& archive, services::Is<DriveState> auto& value) {
   auto& [counts, choice, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
-         angle_residuals, slide_residuals, length_residuals] = value;
+         congruence, doubtful] = value;
   archive(counts, choice, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
-          angle_residuals, slide_residuals, length_residuals);
+          congruence, doubtful);
 }
 
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 1;
+constexpr int state_layout = 2;
 
 void fields(auto& archive, Is<Sample> auto& value) {
   auto& [pose, seq, mono_us, begins_anew] = value;

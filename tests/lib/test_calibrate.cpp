@@ -5,6 +5,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/calibrate.hpp"
+#include "egocal/problem/blocks.hpp"
 
 namespace egocal {
 namespace {
@@ -26,7 +27,7 @@ struct Drive {
   Problem next(std::size_t i) {
     blocks.add(pairs[i]);
     Problem problem;
-    problem.blocks = blocks.blocks();
+    problem.blocks = blocks.kept();
     return problem;
   }
 };

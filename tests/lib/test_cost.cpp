@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "../support/random_motion.hpp"
+#include "egocal/problem/blocks.hpp"
 #include "egocal/problem/constraints.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/dual.hpp"
@@ -99,43 +100,9 @@ TEST(Cost, AMillionPairsLoseNothing) {
     one.add(pair);
     exact += one.dual_rows.cast<long double>() * 1000.0L;
   }
-  const Statistics all = total(blocks.blocks());
+  const Statistics all = total(blocks.kept());
   EXPECT_EQ(all.count, 1000000u);
   EXPECT_LT((all.dual_rows.cast<long double>() - exact).cwiseAbs().maxCoeff() / exact.trace(), 1e-13L);
-}
-
-TEST(BlockStatistics, StayBoundedMergeNeighboursAndKeepTheSum) {
-  Random random(7);
-  BlockStatistics blocks;
-  Statistics sum;
-  for (const MotionPair& pair : random_pairs(T_a_b, {.pairs = 5000, .noise = 0.1}, random)) {
-    blocks.add(pair);
-    sum.add(pair);
-    ASSERT_LE(blocks.blocks().size(), BlockStatistics::max_blocks);
-    for (std::size_t i = 0; i + 1 < blocks.blocks().size(); ++i)
-      ASSERT_EQ(blocks.blocks()[i].count, blocks.pairs_per_block());
-    ASSERT_EQ(total(blocks.blocks()).count, sum.count);
-  }
-  EXPECT_GE(blocks.blocks().size(), BlockStatistics::max_blocks / 2);
-  EXPECT_LT((total(blocks.blocks()).dual_rows - sum.dual_rows).cwiseAbs().maxCoeff(),
-            1e-12 * sum.dual_rows.trace());
-}
-
-TEST(BlockStatistics, GoOnFromAMessageBitForBit) {
-  Random random(8);
-  const auto pairs = random_pairs(T_a_b, {.pairs = 777, .noise = 0.1}, random);
-  for (const std::size_t cut : {1u, 31u, 32u, 33u, 64u, 65u, 500u}) {
-    BlockStatistics whole, first;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      whole.add(pairs[i]);
-      if (i < cut) first.add(pairs[i]);
-    }
-    BlockStatistics second(first.blocks());
-    for (std::size_t i = cut; i < pairs.size(); ++i) second.add(pairs[i]);
-    ASSERT_EQ(second.blocks().size(), whole.blocks().size());
-    for (std::size_t i = 0; i < whole.blocks().size(); ++i)
-      ASSERT_EQ(second.blocks()[i].dual_rows, whole.blocks()[i].dual_rows) << "cut " << cut << " block " << i;
-  }
 }
 
 TEST(Constraints, LagrangianIsTheQuadraticFormOf21) {

@@ -8,6 +8,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
+#include "egocal/problem/blocks.hpp"
 
 namespace egocal {
 namespace {
@@ -24,7 +25,7 @@ Problem problem_of(const std::vector<MotionPair>& pairs) {
   BlockStatistics blocks;
   for (const MotionPair& pair : pairs) blocks.add(pair);
   Problem problem;
-  problem.blocks = blocks.blocks();
+  problem.blocks = blocks.kept();
   return problem;
 }
 

@@ -28,7 +28,7 @@ DriveOptions equal_weights() {
   DriveOptions options;
   options.stride = 1;
   options.balance = Balance{};
-  options.gate = false;
+  options.robust = false;
   return options;
 }
 

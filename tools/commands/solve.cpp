@@ -54,7 +54,7 @@ CalibrationOptions understood(const Options& options) {
   // equal weights are the paper's plain method: every motion of one step, none left out
   if (options.weights == "equal") {
     result.drive.balance = Balance{};
-    result.drive.gate = false;
+    result.drive.robust = false;
     if (options.stride.empty()) result.drive.stride = 1;
   } else if (options.weights != "auto") {
     result.drive.balance = balance("--weights", options.weights);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/data_set.hpp"
+#include "egocal/problem/blocks.hpp"
 
 #include <algorithm>
 
@@ -40,7 +41,7 @@ Problem problem_of(const DataSet& data, Mode mode, std::size_t count) {
   }
   BlockStatistics blocks;
   for (const MotionPair& pair : pairs) blocks.add(pair);
-  problem.blocks = blocks.blocks();
+  problem.blocks = blocks.kept();
   return problem;
 }
 

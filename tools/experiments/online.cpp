@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/online.hpp"
+#include "egocal/problem/blocks.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
   for (std::size_t i = 0; i < count; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     blocks.add(pairs[i]);
-    problem.blocks = blocks.blocks();
+    problem.blocks = blocks.kept();
     const OnlineStep step = calibrate(problem, pairs[i].end_us, state, options);
     const auto end = std::chrono::steady_clock::now();
     state = step.state;

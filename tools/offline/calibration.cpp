@@ -15,6 +15,7 @@
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/pairing/selection.hpp"
+#include "egocal/robust/robust_statistics.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
 #include "egocal/solvers/sdp.hpp"
@@ -88,16 +89,22 @@ std::vector<MotionPair> read_pairs(const CalibrationOptions& options, Calibratio
       pair.b = planar_motion(pair.b, G_b);
     }
   }
-  BlockStatistics statistics;
-  for (const MotionPair& pair : pairs) statistics.add(pair);
-  result.problem.blocks = statistics.blocks();
-  result.counts.matched = pairs.size();
+  result.problem.balance = options.drive.balance.value_or(Balance{});
+  RobustStatistics statistics;
+  for (const MotionPair& pair : pairs) {
+    statistics.add(pair, result.problem, options.drive.robust);
+    if (options.drive.robust && statistics.look_is_due()) statistics.look(result.problem);
+  }
+  if (options.drive.robust) statistics.look(result.problem);
+  result.problem.blocks = statistics.kept();
+  result.counts.matched = statistics.kept_pairs();
+  result.counts.left_out = statistics.left_out_pairs();
   result.choice.balance = options.drive.balance.value_or(Balance{});
   result.choice.reason = "fixed";
   if (!options.drive.balance) {
     std::vector<Candidate> candidates;
     for (const double translation : {1.0, 0.1, 0.01, 0.001})
-      candidates.push_back({1, {1, translation}, &result.problem.blocks});
+      candidates.push_back({1, {1, translation}, result.problem.blocks});
     result.choice.reason = "too few motions to choose";
     if (const auto selection = select(result.problem, candidates, std::nullopt)) {
       result.choice.balance = candidates[selection->index].balance;

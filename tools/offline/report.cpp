@@ -84,6 +84,7 @@ std::string report_json(const CalibrationResult& result, const std::optional<Pos
                                     {"stddev", result.time_offset->stddev},
                                     {"correlation", result.time_offset->correlation}};
   json["synchronised"] = result.counts.synchronised;
+  json["left_out"] = result.counts.left_out;
   json["rejected"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
     json["rejected"][std::string(name(static_cast<Rejection>(i)))] = result.counts.rejected[i];
@@ -107,6 +108,8 @@ std::string report_text(const CalibrationResult& result, const std::optional<Pos
       fmt::format("\nmotions       {} pairs, stride {}, weights rotation : translation = {:g} : {:g} ({})\n",
                   total(result.problem.blocks).count, result.choice.stride, result.choice.balance.rotation,
                   result.choice.balance.translation, result.choice.reason);
+  if (result.counts.left_out > 0)
+    text += fmt::format("left out      {} more pairs contradict these\n", result.counts.left_out);
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
     if (stream)
       text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,

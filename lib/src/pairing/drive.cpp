@@ -30,11 +30,12 @@ constexpr double most_rotation = 170 * std::numbers::pi / 180;
 constexpr double balances[] = {1, 0.1, 0.01, 0.001};
 /// The first choice is made after so many instants, each further one after a quarter more.
 constexpr std::uint64_t first_choice = 64;
-/// Steps that the gate's scale is taken from.
-constexpr std::size_t gate_memory = 401, gate_least = 41;
-/// Real odometry has heavy tails that belong to it; only what is grossly wrong is left out, for a step that
-/// is left out also breaks every longer motion across it.
-constexpr double gate_sigmas = 40;
+/// A pose whose motion is further from congruent than `doubt` waits for the next ones to speak for it; real
+/// odometry has heavy tails that belong to it, so between poses that others speak for only what is grossly
+/// wrong ends a chain [sigmas].
+constexpr double doubt = 10, break_chain = 40;
+/// Poses that wait for others to speak for them.
+constexpr std::size_t most_doubtful = 5;
 
 std::int64_t median_period(const std::deque<StampedPose>& poses) {
   std::vector<std::int64_t> periods;
@@ -43,21 +44,6 @@ std::int64_t median_period(const std::deque<StampedPose>& poses) {
   std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
                    periods.end());
   return periods[periods.size() / 2];
-}
-
-double median(std::deque<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-bool fits(double residual, double floor, const std::deque<double>& residuals) {
-  return residuals.size() < gate_least || residual <= gate_sigmas * 1.4826 * median(residuals) + floor;
-}
-
-void remember(double residual, std::deque<double>& residuals) {
-  residuals.push_back(residual);
-  if (residuals.size() > gate_memory) residuals.pop_front();
 }
 
 DualQuaternion motion_between(const DualQuaternion& from, const DualQuaternion& to) {
@@ -139,6 +125,7 @@ std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
 std::vector<MotionPair> Drive::finish() {
   if (!state_.keys && !state_.waiting[0].empty() && !state_.waiting[1].empty()) decide_keys();
   std::vector<MotionPair> pairs = state_.keys ? synchronise() : std::vector<MotionPair>{};
+  for (; !state_.doubtful.empty(); state_.doubtful.pop_front()) reject(Rejection::screw_congruence);
   if (state_.keys) {
     auto& keys = state_.waiting[index(*state_.keys)];
     while (!keys.empty()) {
@@ -195,60 +182,89 @@ std::vector<MotionPair> Drive::synchronise() {
     Instant instant{key.time_us, key.pose, other, 0};
     if (*state_.keys == Side::b) std::swap(instant.a, instant.b);
     keys.pop_front();
-    add_instant(instant, pairs);
+    judge(instant, pairs);
   }
   return pairs;
 }
 
-/// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
-/// length. A step that does not is a jump, a frozen pose or a lost track of one of them.
-bool Drive::step_is_congruent(const Instant& from, const Instant& to) {
-  const Screw a = screw_of(motion_between(from.a, to.a)), b = screw_of(motion_between(from.b, to.b));
-  // the slide along an axis means something only where there is one; without, both go the same way the same
-  // distance
-  const bool turns = std::min(a.angle, b.angle) > 0.02;
-  const double angle = std::abs(a.angle - b.angle);
-  const double length =
-      turns
-          ? std::abs(a.slide - b.slide)
-          : std::abs(motion_between(from.a, to.a).dual.norm() - motion_between(from.b, to.b).dual.norm()) * 2;
-  auto& lengths = turns ? state_.slide_residuals : state_.length_residuals;
-  const bool congruent = fits(angle, 1e-6, state_.angle_residuals) && fits(length, 1e-5, lengths);
-  // the scale follows what is rejected too: half of it may be wrong, and a new regime is learnt
-  remember(angle, state_.angle_residuals);
-  remember(length, lengths);
-  return congruent;
-}
-
-void Drive::add_instant(const Instant& given, std::vector<MotionPair>& pairs) {
-  Instant instant = given;
-  if (options_.gate && !state_.instants.empty() && !step_is_congruent(state_.instants.back(), instant)) {
-    ++state_.chain;
+/// A pose that jumped, froze or was tracked wrongly makes incongruent motions with its neighbours, while
+/// those are congruent with each other: it alone is left out. Three poses that agree with each other and not
+/// with those before (tracking lost and found again elsewhere) begin a new chain; two might be a glitch that
+/// passes.
+void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
+  ++state_.counts.synchronised;
+  auto& doubtful = state_.doubtful;
+  if (!options_.robust || state_.instants.empty()) return accept(instant, pairs);
+  const auto difference = [&](const Instant& from, const Instant& to) {
+    const double steps =
+        static_cast<double>(to.time_us - from.time_us) / static_cast<double>(state_.period_us);
+    return incongruence(motion_between(from.a, to.a), motion_between(from.b, to.b), state_.congruence) /
+           std::sqrt(std::max(1.0, steps));
+  };
+  const auto teach = [&](const Instant& from, bool doubted) {
+    learn(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted, state_.congruence);
+  };
+  const Instant newest = state_.instants.back();
+  if (difference(newest, instant) <= doubt) {
+    if (doubtful.empty()) teach(newest, false);
+    return speak_for({}, instant, pairs);
+  }
+  for (std::size_t i = 0; i < doubtful.size(); ++i) {
+    if (difference(doubtful[i], instant) > doubt) continue;
+    if (difference(newest, doubtful[i]) <= break_chain) return speak_for({doubtful[i]}, instant, pairs);
+    for (std::size_t k = 0; k < i; ++k) {
+      if (difference(doubtful[k], doubtful[i]) > doubt) continue;
+      ++state_.chain;
+      reject(Rejection::screw_congruence);
+      return speak_for({doubtful[k], doubtful[i]}, instant, pairs);
+    }
+  }
+  teach(doubtful.empty() ? newest : doubtful.back(), true);
+  doubtful.push_back(instant);
+  if (doubtful.size() > most_doubtful) {
+    doubtful.pop_front();
     reject(Rejection::screw_congruence);
   }
+}
+
+/// The instant and the doubtful ones that it agrees with are good; the other doubtful ones are not.
+void Drive::speak_for(const std::vector<Instant>& witnesses, const Instant& instant,
+                      std::vector<MotionPair>& pairs) {
+  for (std::size_t wrong = state_.doubtful.size() - witnesses.size(); wrong > 0; --wrong)
+    reject(Rejection::screw_congruence);
+  state_.doubtful.clear();
+  for (const Instant& witness : witnesses) accept(witness, pairs);
+  accept(instant, pairs);
+}
+
+void Drive::accept(Instant instant, std::vector<MotionPair>& pairs) {
   instant.chain = state_.chain;
-  ++state_.counts.synchronised;
   state_.instants.push_back(instant);
   const auto longest = static_cast<std::size_t>(state_.strides.back().stride);
   while (state_.instants.size() > longest + 1) state_.instants.pop_front();
 
-  for (auto& [stride, statistics] : state_.strides) {
-    const auto steps = static_cast<std::size_t>(stride);
+  const Problem problem = empty_problem();
+  for (DriveState::PerStride& entry : state_.strides) {
+    const auto steps = static_cast<std::size_t>(entry.stride);
     if (state_.instants.size() <= steps) continue;
-    const bool chosen = stride == state_.choice.stride;
+    const bool chosen = entry.stride == state_.choice.stride;
     const std::optional<MotionPair> pair =
-        motion(state_.instants[state_.instants.size() - 1 - steps], instant, stride, chosen);
+        motion(state_.instants[state_.instants.size() - 1 - steps], instant, entry.stride, chosen);
     if (!pair) continue;
-    statistics.add(*pair);
+    entry.statistics.add(*pair, problem, options_.robust);
     if (!chosen) continue;
     pairs.push_back(*pair);
+    if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem);
   }
   if (state_.counts.synchronised >= state_.next_choice) {
     choose();
     state_.next_choice = state_.counts.synchronised + state_.counts.synchronised / 4;
   }
-  for (const auto& [stride, statistics] : state_.strides)
-    if (stride == state_.choice.stride) state_.counts.matched = total(statistics.blocks()).count;
+  for (const auto& entry : state_.strides) {
+    if (entry.stride != state_.choice.stride) continue;
+    state_.counts.matched = entry.statistics.kept_pairs();
+    state_.counts.left_out = entry.statistics.left_out_pairs();
+  }
 }
 
 std::optional<MotionPair> Drive::motion(const Instant& from, const Instant& to, int stride,
@@ -272,21 +288,20 @@ std::optional<MotionPair> Drive::motion(const Instant& from, const Instant& to, 
 
 void Drive::choose() {
   if (options_.stride && options_.balance) return;
+  const Problem problem = empty_problem();
   std::vector<Candidate> candidates;
   std::optional<std::size_t> current;
-  for (const auto& [stride, statistics] : state_.strides)
+  for (DriveState::PerStride& entry : state_.strides) {
+    if (options_.robust) entry.statistics.look(problem);
     for (const double translation : balances) {
       const Balance balance = options_.balance.value_or(Balance{1, translation});
-      if (stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
+      if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
           balance.translation == state_.choice.balance.translation)
         current = candidates.size();
-      candidates.push_back({stride, balance, &statistics.blocks()});
+      candidates.push_back({entry.stride, balance, entry.statistics.kept()});
       if (options_.balance) break;
     }
-  Problem problem;
-  problem.mode = options_.mode;
-  problem.plane_a = options_.plane_a;
-  problem.plane_b = options_.plane_b;
+  }
   const std::optional<Selection> selection = select(problem, candidates, current);
   if (!selection) return;
   const Candidate& chosen = candidates[selection->index];
@@ -299,15 +314,20 @@ void Drive::choose() {
   state_.choice.reason = text;
 }
 
-Problem Drive::problem() const {
+Problem Drive::empty_problem() const {
   Problem problem;
   problem.mode = options_.mode;
   problem.plane_a = options_.plane_a;
   problem.plane_b = options_.plane_b;
   problem.balance = state_.choice.balance;
   problem.prior = options_.prior;
+  return problem;
+}
+
+Problem Drive::problem() const {
+  Problem problem = empty_problem();
   for (const auto& [stride, statistics] : state_.strides)
-    if (stride == state_.choice.stride) problem.blocks = statistics.blocks();
+    if (stride == state_.choice.stride) problem.blocks = statistics.kept();
   return problem;
 }
 

@@ -60,15 +60,18 @@ std::optional<Spread> spread(const Problem& problem, int stride) {
 std::optional<Selection> select(const Problem& problem, std::span<const Candidate> candidates,
                                 std::optional<std::size_t> current) {
   constexpr double hysteresis = 0.1;
+  // What the spread does not see (stamps, interpolation) weighs less in longer motions.
+  constexpr double longer = 0.075;
   std::optional<Selection> best;
   double best_score = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Problem trial = problem;
     trial.balance = candidates[i].balance;
-    trial.blocks = *candidates[i].blocks;
+    trial.blocks = candidates[i].blocks;
     const std::optional<Spread> here = spread(trial, candidates[i].stride);
     if (!here) continue;
-    const double here_score = score(*here) - (current == i ? 2 * hysteresis : 0);
+    const double here_score =
+        score(*here) - longer * std::log2(candidates[i].stride) - (current == i ? 2 * hysteresis : 0);
     const bool better = !best || here->directions > best->spread.directions ||
                         (here->directions == best->spread.directions && here_score < best_score);
     if (!better) continue;

@@ -100,7 +100,7 @@ OffsetCost cost_at(const Trajectory& a, const Trajectory& b, double offset, int 
   options.balance = Balance{1, 0.01};
   options.time_offset = offset;
   options.max_gap = max_gap;
-  options.gate = false;
+  options.robust = false;
   const DriveResult result = run_drive(options, a, b);
   const Problem problem = result.drive.problem();
   const double count = static_cast<double>(total(problem.blocks).count);

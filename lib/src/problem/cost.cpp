@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/problem/cost.hpp"
 
-#include <algorithm>
-
 #include "egocal/problem/problem.hpp"
 
 namespace egocal {
@@ -107,25 +105,6 @@ Matrix8d cost_matrix(const Statistics& statistics, const Balance& balance) {
   Q.topLeftCorner<4, 4>() +=
       balance.rotation / statistics.weight * statistics.dual_rows.bottomRightCorner<4, 4>();
   return Q;
-}
-
-BlockStatistics::BlockStatistics(std::vector<Statistics> blocks) : blocks_(std::move(blocks)) {
-  if (!blocks_.empty()) pairs_per_block_ = std::max<std::uint64_t>(1, blocks_.front().count);
-}
-
-void BlockStatistics::add(const MotionPair& pair) {
-  if (blocks_.empty() || blocks_.back().count >= pairs_per_block_) {
-    if (blocks_.size() == max_blocks) {
-      for (std::size_t i = 0; i < max_blocks / 2; ++i) {
-        blocks_[i] = blocks_[2 * i];
-        blocks_[i] += blocks_[2 * i + 1];
-      }
-      blocks_.resize(max_blocks / 2);
-      pairs_per_block_ *= 2;
-    }
-    blocks_.emplace_back();
-  }
-  blocks_.back().add(pair);
 }
 
 Statistics total(const std::vector<Statistics>& blocks) {

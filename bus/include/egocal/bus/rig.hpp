@@ -31,7 +31,7 @@ struct PairConfig {
   std::optional<Pose> nominal;     ///< mounting drawing: the prior in unobservable directions
   std::optional<int> stride;       ///< empty: auto
   std::optional<Balance> balance;  ///< empty: auto
-  bool gate = true;                ///< leave out steps that are not screw congruent
+  bool robust = true;              ///< leave out what is not screw congruent or contradicts the rest
   double time_offset = 0;          ///< [s] added to the stamps of b
 };
 

@@ -10,8 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/problem.hpp"
+#include "egocal/robust/robust_statistics.hpp"
 
 namespace egocal {
 
@@ -20,10 +22,11 @@ struct DriveOptions {
   Mode mode = Mode::spatial;
   GroundPlane plane_a{}, plane_b{};  ///< planar mode
   std::optional<int> stride{};  ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
-  std::optional<Balance> balance{};       ///< empty: chosen by the jack-knife
-  double time_offset = 0;                 ///< added to the stamps of b before pairing [s]
-  double max_gap = 0.5;                   ///< poses further apart are never interpolated between [s]
-  bool gate = true;                       ///< leave out steps whose two motions are not screw congruent
+  std::optional<Balance> balance{};  ///< empty: chosen by the jack-knife
+  double time_offset = 0;            ///< added to the stamps of b before pairing [s]
+  double max_gap = 0.5;              ///< poses further apart are never interpolated between [s]
+  bool robust =
+      true;  ///< leave out poses that are not screw congruent and motions that contradict the others
   std::optional<DualQuaternion> prior{};  ///< handed on to the problem
 };
 
@@ -33,7 +36,7 @@ enum class Rejection {
   out_of_order,      ///< not newer than the newest of its stream
   no_partner,        ///< the other stream has no pose on one side of it (before its start, after its end)
   gap,               ///< the neighbours in the other stream, or the two ends of the motion, are too far apart
-  screw_congruence,  ///< the two motions differ in angle or slide by more than noise explains
+  screw_congruence,  ///< the motions to and from a pose differ in angle or slide by more than noise explains
   too_much_rotation,  ///< so near to half a turn that the sign of its quaternion is a guess
   count_
 };
@@ -43,6 +46,8 @@ struct DriveCounts {
   std::uint64_t poses_a = 0, poses_b = 0;  ///< handed in
   std::uint64_t synchronised = 0;          ///< instants for which both poses are known
   std::uint64_t matched = 0;               ///< motion pairs in the statistics (of the chosen stride)
+  std::uint64_t left_out =
+      0;  ///< motion pairs (of the chosen stride) that contradict the others; may come back
   std::array<std::uint64_t, static_cast<std::size_t>(Rejection::count_)> rejected{};
 };
 
@@ -64,7 +69,7 @@ struct DriveState {
   };
   struct PerStride {
     int stride = 1;
-    BlockStatistics statistics;
+    RobustStatistics statistics;
   };
 
   DriveCounts counts;
@@ -76,16 +81,16 @@ struct DriveState {
   std::deque<Instant> instants;                    ///< the newest, as many as the longest motion needs
   std::uint64_t chain = 0;
   std::vector<PerStride> strides;
-  std::uint64_t next_choice = 0;        ///< number of instants at which to choose again
-  std::deque<double> angle_residuals;   ///< of the newest steps, for the gate [rad]
-  std::deque<double> slide_residuals;   ///< of steps that turn [m]
-  std::deque<double> length_residuals;  ///< of those that do not [m]
+  std::uint64_t next_choice = 0;  ///< number of instants at which to choose again
+  CongruenceScale congruence;     ///< what differences between the motions are typical
+  std::deque<Instant> doubtful;   ///< newer than instants, not congruent with the newest of them
 };
 
 /// From two streams of poses to the problem, one pose at a time: synchronises by screw interpolation of the
-/// faster stream at the stamps of the slower one, forms motions, gates them, accumulates them in blocks for
-/// every stride under consideration, and chooses stride and balance. Used offline and by egocal-pairing
-/// alike; the result depends on the poses of each stream alone, not on how the two streams interleave.
+/// faster stream at the stamps of the slower one, leaves out poses that are not screw congruent, forms
+/// motions, accumulates them in blocks for every stride under consideration, leaves out blocks that
+/// contradict the others, and chooses stride and balance. Used offline and by egocal-pairing alike; the
+/// result depends on the poses of each stream alone, not on how the two streams interleave.
 class Drive {
  public:
   explicit Drive(DriveOptions options);
@@ -109,8 +114,11 @@ class Drive {
   void reject(Rejection reason) { ++state_.counts.rejected[static_cast<std::size_t>(reason)]; }
   void decide_keys();
   std::vector<MotionPair> synchronise();
-  bool step_is_congruent(const DriveState::Instant& from, const DriveState::Instant& to);
-  void add_instant(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
+  void judge(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
+  void speak_for(const std::vector<DriveState::Instant>& witnesses, const DriveState::Instant& instant,
+                 std::vector<MotionPair>& pairs);
+  void accept(DriveState::Instant instant, std::vector<MotionPair>& pairs);
+  Problem empty_problem() const;
   std::optional<MotionPair> motion(const DriveState::Instant& from, const DriveState::Instant& to, int stride,
                                    bool count_rejections);
   void choose();

@@ -14,7 +14,7 @@ namespace egocal {
 struct Candidate {
   int stride = 1;
   Balance balance;
-  const std::vector<Statistics>* blocks = nullptr;
+  std::vector<Statistics> blocks;
 };
 
 /// Spread of the answers when each of several consecutive parts of the drive is left out.

@@ -45,26 +45,6 @@ struct Statistics {
 /// Q of (16): normalised so that the eta sum to one. Zero where there are no pairs.
 Matrix8d cost_matrix(const Statistics& statistics, const Balance& balance = {});
 
-/// Statistics in consecutive blocks of equal length, for the jack-knife: bounded however long the drive. When
-/// max_blocks are full, neighbours are merged and blocks become twice as long.
-class BlockStatistics {
- public:
-  static constexpr std::size_t max_blocks = 32;
-
-  BlockStatistics() = default;
-  /// As carried by a message; the last block may be unfinished. pairs_per_block is that of the first block.
-  explicit BlockStatistics(std::vector<Statistics> blocks);
-
-  void add(const MotionPair& pair);
-  /// Between 1 and max_blocks of them; never empty ones.
-  const std::vector<Statistics>& blocks() const { return blocks_; }
-  std::uint64_t pairs_per_block() const { return pairs_per_block_; }
-
- private:
-  std::vector<Statistics> blocks_;
-  std::uint64_t pairs_per_block_ = 1;
-};
-
 /// The sum of the blocks, in their order.
 Statistics total(const std::vector<Statistics>& blocks);
 

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "egocal/geometry/dual_quaternion.hpp"
+
+namespace egocal {
+
+/// How much two measurements of one quantity typically differ: constant + growing * size, learnt from the
+/// newest of them.
+struct TypicalDifference {
+  struct Seen {
+    double size = 0;        ///< the smaller of the two, for an outlier makes one of them large
+    double difference = 0;  ///< absolute
+  };
+  std::deque<Seen> newest;
+  double constant = 0;  ///< standard deviation at size 0, in the unit of the quantity
+  double growing = 0;   ///< per unit of size
+};
+
+/// What is typical of a pair of sensors. Noise may be the same for every motion or grow with it, and a drive
+/// may begin at rest.
+struct CongruenceScale {
+  TypicalDifference angle;   ///< of the screw angles [rad]
+  TypicalDifference slide;   ///< of the slides along the screw axes, of motions that turn [m]
+  TypicalDifference length;  ///< of the lengths [m]
+  TypicalDifference
+      lever;       ///< of the lengths again, by angle: turning sensors apart go different ways [m, rad]
+  double arm = 0;  ///< difference of the lengths that turning explains, per angle [m/rad]
+  std::uint64_t taught = 0, doubted = 0;  ///< motions
+};
+
+/// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
+/// length, whatever the extrinsic. How far a and b (over the same time) are from that, in standard deviations
+/// of the typical difference; 0 while nothing is known of what is typical.
+double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale);
+
+/// Learns what is typical. Of motions that were doubted only one in eight teaches: they may be wrong, or the
+/// beginning of another regime.
+void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale);
+
+}  // namespace egocal

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "egocal/problem/cost.hpp"
+
+namespace egocal {
+
+/// Statistics in consecutive blocks of equal length, bounded however long the drive: when max_blocks are
+/// full, neighbours are merged and blocks become twice as long. Blocks can be left out, as contradicting the
+/// others; those merge among themselves, so that nothing is lost and a verdict can be revised.
+class BlockStatistics {
+ public:
+  static constexpr std::size_t max_blocks = 64;
+  /// As many as kept() returns at most: what a message carries and the jack-knife leaves out one by one.
+  static constexpr std::size_t max_kept = 32;
+
+  struct Block {
+    Statistics statistics;
+    bool left_out = false;
+  };
+  /// All there is; continuing from a copy gives the same bits.
+  struct State {
+    std::vector<Block> blocks;  ///< never empty ones
+    std::uint64_t pairs_per_block = 1;
+  };
+
+  BlockStatistics() = default;
+  explicit BlockStatistics(State state) : state_(std::move(state)) {}
+
+  /// To the newest block of that verdict.
+  void add(const MotionPair& pair, bool left_out = false);
+  /// One verdict a block.
+  void leave_out(const std::vector<bool>& verdicts);
+
+  /// The blocks that are not left out, neighbours joined where there are more than max_kept.
+  std::vector<Statistics> kept() const;
+  std::uint64_t kept_pairs() const;
+  const State& state() const { return state_; }
+
+ private:
+  State state_;
+};
+
+}  // namespace egocal

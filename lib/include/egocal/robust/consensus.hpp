@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "egocal/problem/problem.hpp"
+
+namespace egocal {
+
+/// What "fits" means, learnt from the data: noise may be the same for every motion, or grow with it.
+struct ResidualScale {
+  double absolute = 0;  ///< typical mean squared residual of a part (16)
+  double relative = 0;  ///< typical ratio of it to the mean squared size of the part's motions
+};
+
+/// What the parts that agree agree on.
+struct Agreement {
+  DualQuaternion q;  ///< minimiser of (18) over them (planar mode: T_p)
+  ResidualScale scale;
+};
+
+/// Which parts of a drive agree on one extrinsic.
+struct Consensus {
+  Agreement agreement;
+  std::vector<bool> left_out;  ///< per part
+};
+
+/// Truncated least squares over parts of a drive (single motions or runs of them): the extrinsic for which
+/// the sum of min(residual, limit) is smallest. A single large residual then counts no more than any other,
+/// and up to nearly half of the motion may be wrong, even if the wrong parts agree among themselves. Started
+/// by graduated non-convexity (Geman-McClure weights that sharpen step by step, each step solved globally)
+/// and from every contiguous eighth, quarter and half of the drive. Nothing is judged against an earlier
+/// answer, so motion that shows a new direction is never taken for an outlier. problem: mode, planes and
+/// balance; its blocks are not looked at. Empty where the parts are too few to outvote one another (16), or
+/// do not move. Deterministic.
+std::optional<Consensus> find_consensus(const Problem& problem, std::span<const Statistics> parts);
+
+/// How far a part is from agreeing, as a multiple of the limit (squared): above 1 it is left out.
+double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement);
+
+}  // namespace egocal

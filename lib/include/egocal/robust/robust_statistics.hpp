@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "egocal/problem/blocks.hpp"
+#include "egocal/robust/consensus.hpp"
+
+namespace egocal {
+
+/// Statistics without the motion pairs that contradict the others. A pair that disagrees with the consensus
+/// of all before it waits apart (in a block of its own kind once many wait). The consensus is looked for
+/// anew, over all blocks and every waiting pair, when several in a row disagree (they may be the first to
+/// show a new direction) and when asked to. What agrees then comes back. Bounded; nothing is thrown away.
+class RobustStatistics {
+ public:
+  static constexpr std::size_t most_waiting = 128;
+
+  /// All there is; continuing from a copy gives the same bits.
+  struct State {
+    BlockStatistics blocks;
+    std::deque<MotionPair> waiting;
+    std::optional<Agreement> agreement;
+    std::uint64_t in_a_row = 0;    ///< newest pairs that all disagreed
+    std::uint64_t next_look = 16;  ///< pairs given at which the consensus is looked for again
+    std::uint64_t given = 0;       ///< pairs
+  };
+
+  RobustStatistics() = default;
+  explicit RobustStatistics(State state) : state_(std::move(state)) {}
+
+  /// problem: mode, planes and balance in force. judge: false takes everything in.
+  void add(const MotionPair& pair, const Problem& problem, bool judge = true);
+  /// Looks for the consensus now.
+  void look(const Problem& problem);
+  /// The drive has grown by an eighth since the last look.
+  bool look_is_due() const { return state_.given >= state_.next_look; }
+
+  std::vector<Statistics> kept() const { return state_.blocks.kept(); }
+  std::uint64_t kept_pairs() const { return state_.blocks.kept_pairs(); }
+  std::uint64_t left_out_pairs() const { return state_.given - kept_pairs(); }
+  const State& state() const { return state_; }
+
+ private:
+  State state_;
+};
+
+}  // namespace egocal

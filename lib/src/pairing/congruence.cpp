@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/congruence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace egocal {
+
+namespace {
+
+using Seen = TypicalDifference::Seen;
+
+/// Below this angle a motion has no axis to slide along [rad].
+constexpr double least_turn = 0.02;
+/// Differences that are never worth a word: rounding of what sensors send [rad, m].
+constexpr double angle_floor = 1e-6, length_floor = 1e-5;
+/// Memory, in motions, and how many of them make a first and every further estimate.
+constexpr std::size_t memory = 1024, first_estimate = 24;
+constexpr std::uint64_t estimate_every = 16;
+constexpr std::uint64_t doubted_that_teach = 8;
+/// Odometry whose noise were a larger part of the motion would not be any.
+constexpr double most_growing = 0.2;
+/// Sensors are not further apart [m].
+constexpr double longest_arm = 10;
+struct Difference {
+  Seen angle, slide, length;
+  bool turns;
+};
+
+double translation_of(const DualQuaternion& motion) {
+  return 2 * motion.dual.norm();
+}
+
+Difference difference(const DualQuaternion& a, const DualQuaternion& b) {
+  const Screw screw_a = screw_of(a), screw_b = screw_of(b);
+  const double angle = std::min(screw_a.angle, screw_b.angle);
+  const double length_a = translation_of(a), length_b = translation_of(b),
+               length = std::min(length_a, length_b);
+  return {{angle, std::abs(screw_a.angle - screw_b.angle)},
+          {length, std::abs(screw_a.slide - screw_b.slide)},
+          {length, std::abs(length_a - length_b)},
+          angle > least_turn};
+}
+
+/// Standard deviation of most of the values (absolute ones). A lower quartile to begin with, for with a fifth
+/// of the poses wrong more than a third of the motions are, and if interpolated nearly two thirds; then the
+/// median of what is near.
+double robust_deviation(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  double deviation = 3.1386 * values[values.size() / 4];
+  for (int i = 0; i < 3; ++i) {
+    const auto near = std::upper_bound(values.begin(), values.end(), 4 * deviation) - values.begin();
+    deviation = 1.4826 * values[static_cast<std::size_t>(near / 2)];
+  }
+  return deviation;
+}
+
+/// The smaller half of the motions, then the larger.
+std::pair<std::vector<Seen>, std::vector<Seen>> halves(const std::deque<Seen>& newest) {
+  std::vector<Seen> small(newest.begin(), newest.end());
+  const auto half = small.begin() + static_cast<std::ptrdiff_t>(small.size() / 2);
+  std::nth_element(small.begin(), half, small.end(),
+                   [](const Seen& x, const Seen& y) { return x.size < y.size; });
+  std::vector<Seen> large(half, small.end());
+  small.erase(half, small.end());
+  return {std::move(small), std::move(large)};
+}
+
+double robust_deviation(const std::vector<Seen>& seen) {
+  std::vector<double> differences;
+  for (const Seen& one : seen) differences.push_back(one.difference);
+  return robust_deviation(std::move(differences));
+}
+
+/// The smaller half shows what there is without motion, the larger half what grows with it.
+void estimate(TypicalDifference& typical) {
+  if (typical.newest.size() < 4) return;
+  const auto [small, large] = halves(typical.newest);
+  double size = 0;
+  for (const Seen& one : large) size += one.size / static_cast<double>(large.size());
+  typical.constant = robust_deviation(small);
+  typical.growing =
+      size > 0 ? std::clamp((robust_deviation(large) - typical.constant) / size, 0.0, most_growing) : 0;
+}
+
+/// From the motions that turn more than others: three times the median covers the directions in between.
+double arm_of(const TypicalDifference& lever) {
+  std::vector<double> arms;
+  for (const Seen& one : halves(lever.newest).second)
+    if (one.size > 0) arms.push_back(one.difference / one.size);
+  if (arms.empty()) return 0;
+  std::nth_element(arms.begin(), arms.begin() + static_cast<std::ptrdiff_t>(arms.size() / 2), arms.end());
+  return std::min(longest_arm, 3 * arms[arms.size() / 2]);
+}
+
+void remember(const Seen& seen, TypicalDifference& typical) {
+  typical.newest.push_back(seen);
+  if (typical.newest.size() > memory) typical.newest.pop_front();
+}
+
+double sigmas(const Seen& seen, const TypicalDifference& typical, double floor) {
+  if (typical.newest.size() < first_estimate) return 0;
+  return seen.difference / (typical.constant + typical.growing * seen.size + floor);
+}
+
+}  // namespace
+
+double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale) {
+  if (scale.taught < first_estimate) return 0;
+  const Difference d = difference(a, b);
+  const double unexplained = std::max(0.0, d.length.difference - scale.arm * d.angle.size);
+  return std::max({sigmas(d.angle, scale.angle, angle_floor),
+                   d.turns ? sigmas(d.slide, scale.slide, length_floor) : 0,
+                   sigmas({d.length.size, unexplained}, scale.length, length_floor)});
+}
+
+void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale) {
+  if (doubted && ++scale.doubted % doubted_that_teach != 0) return;
+  const Difference d = difference(a, b);
+  remember(d.angle, scale.angle);
+  if (d.turns) remember(d.slide, scale.slide);
+  remember(d.length, scale.length);
+  remember({d.angle.size, d.length.difference}, scale.lever);
+  ++scale.taught;
+  if (scale.taught != first_estimate && (scale.taught < first_estimate || scale.taught % estimate_every != 0))
+    return;
+  for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical);
+  scale.arm = arm_of(scale.lever);
+}
+
+}  // namespace egocal

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/problem/blocks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace egocal {
+
+namespace {
+
+using Block = BlockStatistics::Block;
+
+/// Every two neighbours of the same verdict as one, where the first of them was.
+std::vector<Block> merged(const std::vector<Block>& blocks) {
+  std::vector<Block> result;
+  std::array<std::optional<std::size_t>, 2> single;  // of either verdict, waits for its neighbour
+  for (const Block& block : blocks) {
+    std::optional<std::size_t>& partner = single[block.left_out ? 1 : 0];
+    if (partner) {
+      result[*partner].statistics += block.statistics;
+      partner.reset();
+    } else {
+      partner = result.size();
+      result.push_back(block);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void BlockStatistics::add(const MotionPair& pair, bool left_out) {
+  const auto newest = [&] {
+    return std::find_if(state_.blocks.rbegin(), state_.blocks.rend(),
+                        [&](const Block& block) { return block.left_out == left_out; });
+  };
+  const auto full = [&](const auto& block) {
+    return block == state_.blocks.rend() || block->statistics.count >= state_.pairs_per_block;
+  };
+  if (full(newest()) && state_.blocks.size() == max_blocks) {
+    state_.blocks = merged(state_.blocks);
+    state_.pairs_per_block *= 2;
+  }
+  if (full(newest())) state_.blocks.push_back({{}, left_out});
+  newest()->statistics.add(pair);
+}
+
+void BlockStatistics::leave_out(const std::vector<bool>& verdicts) {
+  for (std::size_t i = 0; i < state_.blocks.size(); ++i) state_.blocks[i].left_out = verdicts.at(i);
+}
+
+std::vector<Statistics> BlockStatistics::kept() const {
+  std::vector<Statistics> kept;
+  for (const Block& block : state_.blocks)
+    if (!block.left_out) kept.push_back(block.statistics);
+  if (kept.size() <= max_kept) return kept;
+  std::vector<Statistics> joined;
+  for (std::size_t i = 0; i < kept.size(); i += 2) {
+    joined.push_back(kept[i]);
+    if (i + 1 < kept.size()) joined.back() += kept[i + 1];
+  }
+  return joined;
+}
+
+std::uint64_t BlockStatistics::kept_pairs() const {
+  std::uint64_t count = 0;
+  for (const Block& block : state_.blocks)
+    if (!block.left_out) count += block.statistics.count;
+  return count;
+}
+
+}  // namespace egocal

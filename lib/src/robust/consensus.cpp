@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/robust/consensus.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+
+namespace egocal {
+
+namespace {
+
+constexpr std::size_t least_parts = 16;
+/// A part is left out when its mean squared residual is so many times the typical one, by both scales. Real
+/// odometry has heavy tails that belong to it; what is grossly wrong is wrong by the size of the motion. The
+/// mean of many is steadier than one.
+double limit(std::uint64_t motions) {
+  constexpr double of_many = 6, of_one = 200;
+  return of_many + (of_one - of_many) / static_cast<double>(motions);
+}
+/// Nothing better than a hundredth of the motion is expected of odometry, squared.
+constexpr double least_relative = 1e-4;
+/// Residuals smaller than this part of the motion are rounding.
+constexpr double rounding = 1e-9;
+/// Starting points besides the contiguous ones, and how many of all are followed to their end.
+constexpr std::size_t draws_of_pieces = 16, draws_of_parts = 32, most_settled = 8;
+/// So much of the motion must agree; the scale is doubled so often until it does.
+constexpr double majority = 0.55;
+constexpr int most_relaxed = 8;
+
+/// Mean squared size of a part's motions in the metric of the cost (16): what a wrong extrinsic of the same
+/// scale costs.
+double squared_size(const Matrix8d& Q) {
+  return Q.topLeftCorner<4, 4>().trace();
+}
+
+struct Part {
+  Matrix8d Q;     ///< (16) of this part alone
+  double weight;  ///< of its motions
+  double size;    ///< squared_size
+  double limit;   ///< of the excess over typical
+};
+
+struct Fit {
+  DualQuaternion q;
+  std::vector<double> residuals;  ///< mean squared, per part
+};
+
+double weighted_median(std::vector<std::pair<double, double>> values_weights) {
+  std::sort(values_weights.begin(), values_weights.end());
+  double total = 0, sum = 0;
+  for (const auto& entry : values_weights) total += entry.second;
+  for (const auto& [value, weight] : values_weights) {
+    sum += weight;
+    if (2 * sum >= total) return value;
+  }
+  return 0;
+}
+
+double excess(double residual, double size, const ResidualScale& scale) {
+  return std::min(residual / scale.absolute, residual / (size * std::max(scale.relative, least_relative)));
+}
+
+class Search {
+ public:
+  Search(const Problem& problem, std::span<const Statistics> statistics) : mode_(problem.mode) {
+    for (const Statistics& part : statistics) {
+      const Matrix8d Q = cost_matrix(part, problem.balance);
+      parts_.push_back({Q, part.weight, squared_size(Q), limit(part.count)});
+      all_ += part.weight * parts_.back().size;
+    }
+  }
+
+  /// Motion there is, in all [weight times squared size].
+  double motion() const { return all_; }
+
+  Fit fit(const std::vector<double>& factors) const {
+    Matrix8d Q = Matrix8d::Zero();
+    double weight = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (!(factors[i] > 0)) continue;
+      Q += factors[i] * parts_[i].weight * parts_[i].Q;
+      weight += factors[i] * parts_[i].weight;
+    }
+    Q /= weight;
+    Fit fit{mode_ == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q, {}};
+    for (const Part& part : parts_) fit.residuals.push_back(std::max(0.0, cost(part.Q, fit.q)));
+    return fit;
+  }
+
+  /// Medians over the motion, not over time: a vehicle may stand for most of it.
+  ResidualScale scale_of(const Fit& fit) const {
+    std::vector<std::pair<double, double>> absolute, relative;
+    double weight = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const double motion = parts_[i].weight * parts_[i].size;
+      weight += parts_[i].weight;
+      if (!(motion > 0)) continue;
+      absolute.emplace_back(fit.residuals[i], motion);
+      relative.emplace_back(fit.residuals[i] / parts_[i].size, motion);
+    }
+    return {std::max(weighted_median(std::move(absolute)), rounding * rounding * all_ / weight),
+            std::max(weighted_median(std::move(relative)), rounding * rounding)};
+  }
+
+  double excess_of(const Fit& fit, std::size_t i, const ResidualScale& scale) const {
+    return parts_[i].size > 0 ? excess(fit.residuals[i], parts_[i].size, scale) : 0;
+  }
+
+  double truncated_cost(const Fit& fit, const ResidualScale& scale) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      sum += parts_[i].weight * std::min(1.0, excess_of(fit, i, scale) / parts_[i].limit);
+    return sum;
+  }
+
+  std::vector<double> agreeing(const Fit& fit, const ResidualScale& scale) const {
+    std::vector<double> factors;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      factors.push_back(excess_of(fit, i, scale) <= parts_[i].limit ? 1 : 0);
+    return factors;
+  }
+
+  double motion_of(const std::vector<double>& factors) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) sum += factors[i] * parts_[i].weight * parts_[i].size;
+    return sum;
+  }
+
+  /// Solve over what agrees, until the same agree again.
+  Fit settled(Fit fit, const ResidualScale& scale) const {
+    std::vector<double> factors = agreeing(fit, scale);
+    for (int i = 0; i < 10 && motion_of(factors) > 0; ++i) {
+      fit = this->fit(factors);
+      std::vector<double> next = agreeing(fit, scale);
+      if (next == factors) break;
+      factors = std::move(next);
+    }
+    return fit;
+  }
+
+  /// Graduated non-convexity (Yang et al. 2020) for the Geman-McClure loss: from the convex problem, all
+  /// parts counting, to the sharp one.
+  Fit graduated(Fit fit, const ResidualScale& scale) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      largest = std::max(largest, excess_of(fit, i, scale) / parts_[i].limit);
+    for (double mu = 2 * largest; mu > 1; mu /= 2) {
+      std::vector<double> factors;
+      for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const double w = mu / (excess_of(fit, i, scale) / parts_[i].limit + mu);
+        factors.push_back(w * w);
+      }
+      fit = this->fit(factors);
+    }
+    return fit;
+  }
+
+  std::size_t size() const { return parts_.size(); }
+
+ private:
+  Mode mode_;
+  std::vector<Part> parts_;
+  double all_ = 0;
+};
+
+/// Fits of the whole, of its contiguous halves, quarters, eighths and sixteenths, of three sixteenths drawn
+/// together (one may be free of what is wrong and yet too short to show every direction), and of four parts
+/// (what is wrong may be everywhere).
+std::vector<Fit> starting_points(const Search& search) {
+  std::vector<Fit> starts;
+  const std::size_t n = search.size();
+  for (const std::size_t pieces : {1u, 2u, 4u, 8u, 16u})
+    for (std::size_t k = 0; k < pieces; ++k) {
+      std::vector<double> factors(n, 0.0);
+      std::fill(factors.begin() + static_cast<std::ptrdiff_t>(k * n / pieces),
+                factors.begin() + static_cast<std::ptrdiff_t>((k + 1) * n / pieces), 1.0);
+      starts.push_back(search.fit(factors));
+    }
+  std::uint64_t drawn = 1;
+  const auto draw = [&](std::size_t below) {
+    drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
+    return static_cast<std::size_t>((drawn >> 33) % below);
+  };
+  for (std::size_t i = 0; i < draws_of_pieces; ++i) {
+    std::vector<double> factors(n, 0.0);
+    for (int piece = 0; piece < 3; ++piece) {
+      const std::size_t k = draw(16);
+      std::fill(factors.begin() + static_cast<std::ptrdiff_t>(k * n / 16),
+                factors.begin() + static_cast<std::ptrdiff_t>((k + 1) * n / 16), 1.0);
+    }
+    starts.push_back(search.fit(factors));
+  }
+  for (std::size_t i = 0; i < draws_of_parts; ++i) {
+    std::vector<double> factors(n, 0.0);
+    for (int part = 0; part < 4; ++part) factors[draw(n)] = 1;
+    starts.push_back(search.fit(factors));
+  }
+  return starts;
+}
+
+double product(const ResidualScale& scale) {
+  return scale.absolute * scale.relative;
+}
+
+}  // namespace
+
+std::optional<Consensus> find_consensus(const Problem& problem, std::span<const Statistics> parts) {
+  if (parts.size() < least_parts) return std::nullopt;
+  const Search search(problem, parts);
+  if (!(search.motion() > 0)) return std::nullopt;
+
+  std::vector<Fit> starts = starting_points(search);
+  // the tightest fit of half of the motion says what typical is
+  ResidualScale scale = search.scale_of(starts.front());
+  const auto tighten = [&](const Fit& fit) {
+    const ResidualScale here = search.scale_of(fit);
+    if (product(here) < product(scale)) scale = here;
+  };
+  for (const Fit& start : starts) tighten(start);
+  starts.push_back(search.graduated(starts.front(), scale));
+  tighten(starts.back());
+
+  Fit best = starts.front();
+  for (int round = 0; round < 2; ++round) {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      order.emplace_back(search.truncated_cost(starts[i], scale), i);
+    std::sort(order.begin(), order.end());
+    double least = search.truncated_cost(best, scale);
+    for (std::size_t i = 0; i < std::min(order.size(), most_settled); ++i) {
+      Fit here = search.settled(starts[order[i].second], scale);
+      const double cost = search.truncated_cost(here, scale);
+      if (cost < least) {
+        least = cost;
+        best = std::move(here);
+      }
+    }
+    tighten(best);
+  }
+  // the tightest fit may have been tight by chance, on less than a majority
+  best = search.settled(std::move(best), scale);
+  std::vector<double> factors = search.agreeing(best, scale);
+  for (int i = 0; i < most_relaxed && search.motion_of(factors) < majority * search.motion(); ++i) {
+    scale.absolute *= 2;
+    scale.relative *= 2;
+    best = search.settled(std::move(best), scale);
+    factors = search.agreeing(best, scale);
+  }
+  if (search.motion_of(factors) < majority * search.motion()) return std::nullopt;
+  Consensus consensus{{best.q, scale}, {}};
+  for (const double factor : factors) consensus.left_out.push_back(factor == 0);
+  return consensus;
+}
+
+double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement) {
+  const Matrix8d Q = cost_matrix(part, balance);
+  const double size = squared_size(Q);
+  if (!(size > 0)) return 0;
+  return excess(std::max(0.0, cost(Q, agreement.q)), size, agreement.scale) / limit(part.count);
+}
+
+}  // namespace egocal

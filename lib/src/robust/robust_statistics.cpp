@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/robust/robust_statistics.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace egocal {
+
+namespace {
+
+/// So many pairs in a row that disagree, and every doubling of it, are worth a look.
+constexpr std::uint64_t suspicious_run = 4;
+
+Statistics of_one(const MotionPair& pair) {
+  Statistics statistics;
+  statistics.add(pair);
+  return statistics;
+}
+
+}  // namespace
+
+void RobustStatistics::add(const MotionPair& pair, const Problem& problem, bool judge) {
+  ++state_.given;
+  if (!judge) return state_.blocks.add(pair);
+  const bool disagrees =
+      state_.agreement && disagreement(of_one(pair), problem.balance, *state_.agreement) > 1;
+  if (disagrees) {
+    state_.waiting.push_back(pair);
+    if (state_.waiting.size() > most_waiting) {
+      state_.blocks.add(state_.waiting.front(), true);
+      state_.waiting.pop_front();
+    }
+    ++state_.in_a_row;
+  } else {
+    state_.blocks.add(pair);
+    state_.in_a_row = 0;
+  }
+  if (state_.in_a_row >= suspicious_run && std::has_single_bit(state_.in_a_row)) look(problem);
+}
+
+void RobustStatistics::look(const Problem& problem) {
+  state_.next_look = state_.given + std::max<std::uint64_t>(1, state_.given / 8);
+  const auto& blocks = state_.blocks.state().blocks;
+  std::vector<Statistics> parts;
+  for (const BlockStatistics::Block& block : blocks) parts.push_back(block.statistics);
+  for (const MotionPair& pair : state_.waiting) parts.push_back(of_one(pair));
+  const std::optional<Consensus> consensus = find_consensus(problem, parts);
+  if (!consensus) return;  // what was agreed on before stands
+  const std::vector<bool>& left_out = consensus->left_out;
+  state_.agreement = consensus->agreement;
+  const auto first_waiting = left_out.begin() + static_cast<std::ptrdiff_t>(blocks.size());
+  state_.blocks.leave_out({left_out.begin(), first_waiting});
+  std::deque<MotionPair> waiting;
+  for (std::size_t i = 0; i < state_.waiting.size(); ++i) {
+    if (first_waiting[static_cast<std::ptrdiff_t>(i)])
+      waiting.push_back(state_.waiting[i]);
+    else
+      state_.blocks.add(state_.waiting[i]);
+  }
+  state_.waiting = std::move(waiting);
+}
+
+}  // namespace egocal

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "../support/random_motion.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/online/answer.hpp"
+#include "egocal/robust/robust_statistics.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::displacement;
+using testing::Random;
+using testing::random_pairs;
+
+const DualQuaternion T_a_b = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
+/// As different as a swapped axis makes it.
+const DualQuaternion another = T_a_b * displacement({1.57, 0, 0}, {0, 0, 0});
+
+Statistics of_one(const MotionPair& pair) {
+  Statistics statistics;
+  statistics.add(pair);
+  return statistics;
+}
+
+/// Pairs in a random order of which `wrong` (a part) follow another extrinsic, all the same one.
+std::vector<MotionPair> contradictory(double wrong, double noise, std::uint64_t seed,
+                                      std::uint64_t count = 200) {
+  Random random(seed);
+  const auto good = random_pairs(T_a_b, {.pairs = count, .noise = noise}, random);
+  const auto bad = random_pairs(another, {.pairs = count, .noise = noise}, random);
+  std::vector<MotionPair> pairs;
+  for (std::size_t i = 0; i < count; ++i) pairs.push_back(random.uniform() < wrong ? bad[i] : good[i]);
+  return pairs;
+}
+
+std::vector<bool> wrong_ones(const std::vector<MotionPair>& pairs) {
+  std::vector<bool> wrong;
+  for (const MotionPair& pair : pairs)
+    wrong.push_back((pair.a * T_a_b).vec().cwiseAbs().isApprox((T_a_b * pair.b).vec().cwiseAbs(), 0.2) ==
+                    false);
+  return wrong;
+}
+
+TEST(Consensus, TheMajorityIsFoundEvenAgainstAMinorityThatAgrees) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto pairs = contradictory(0.35, 0.01, seed);
+    std::vector<Statistics> parts;
+    for (const MotionPair& pair : pairs) parts.push_back(of_one(pair));
+    const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
+    ASSERT_TRUE(consensus) << seed;
+    const ExtrinsicError error = extrinsic_error(T_a_b, consensus->agreement.q);
+    EXPECT_LT(error.rotation, 0.02) << seed;
+    EXPECT_LT(error.translation, 0.15) << seed;
+    // the same pairs that were made wrong, but for a few that are too small to tell
+    const std::vector<bool> wrong = wrong_ones(pairs);
+    int differ = 0;
+    for (std::size_t i = 0; i < wrong.size(); ++i) differ += wrong[i] != consensus->left_out[i];
+    EXPECT_LT(differ, 20) << seed;
+  }
+}
+
+TEST(Consensus, CleanMotionIsNeverLeftOut) {
+  for (const testing::Motion motion : {testing::Motion::free, testing::Motion::dominant_axis})
+    for (const double noise : {0.0, 0.001, 0.01, 0.1})
+      for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        Random random(seed);
+        std::vector<Statistics> parts;
+        for (const MotionPair& pair :
+             random_pairs(T_a_b, {.motion = motion, .pairs = 150, .noise = noise}, random))
+          parts.push_back(of_one(pair));
+        const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
+        ASSERT_TRUE(consensus);
+        EXPECT_EQ(std::count(consensus->left_out.begin(), consensus->left_out.end(), true), 0)
+            << noise << " " << seed;
+      }
+}
+
+TEST(Consensus, TooFewPartsOrNoMotionHaveNone) {
+  Random random(1);
+  std::vector<Statistics> parts;
+  for (const MotionPair& pair : random_pairs(T_a_b, {.pairs = 15}, random)) parts.push_back(of_one(pair));
+  EXPECT_FALSE(find_consensus(Problem{}, parts));
+  EXPECT_FALSE(find_consensus(Problem{}, std::vector<Statistics>(40, of_one({}))));
+  EXPECT_FALSE(find_consensus(Problem{}, std::vector<Statistics>(40)));
+}
+
+/// A long way straight on, then the first turn: it contradicts whatever roll was guessed before, and is
+/// right.
+TEST(RobustStatistics, TheFirstTurnIsNotAnOutlier) {
+  Random random(3);
+  RobustStatistics statistics;
+  const Problem problem;
+  std::uint64_t turns = 0;
+  const auto add = [&](const DualQuaternion& b) {
+    const DualQuaternion noisy = b * displacement(random.normal3(1e-4), random.normal3(1e-3));
+    statistics.add({T_a_b * b * conjugate(T_a_b), noisy}, problem);
+    if (statistics.look_is_due()) statistics.look(problem);
+  };
+  for (int i = 0; i < 500; ++i) add(displacement({0, 0, 0}, {1, 0, 0}));
+  for (int i = 0; i < 20; ++i) {
+    add(displacement({0, 0, 0.1}, {1, 0.05, 0}));
+    ++turns;
+    EXPECT_TRUE(i < 3 || statistics.left_out_pairs() == 0) << "turning step " << i;
+  }
+  EXPECT_EQ(statistics.kept_pairs(), 500 + turns);
+}
+
+TEST(RobustStatistics, OutliersInARandomOrderCostNothing) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    Problem robust, plain, clean;
+    RobustStatistics statistics;
+    BlockStatistics all, good;
+    for (const MotionPair& pair : contradictory(0.2, 0.01, seed, 500)) {
+      statistics.add(pair, robust);
+      if (statistics.look_is_due()) statistics.look(robust);
+      all.add(pair);
+    }
+    for (const MotionPair& pair : contradictory(0, 0.01, seed, 500)) good.add(pair);
+    robust.blocks = statistics.kept();
+    plain.blocks = all.kept();
+    clean.blocks = good.kept();
+    const auto error = [](const Problem& problem) {
+      return extrinsic_error(T_a_b, solve(problem, Method::dual).T_a_b);
+    };
+    EXPECT_LT(error(robust).rotation, 2 * error(clean).rotation + 1e-3) << seed;
+    EXPECT_LT(error(robust).translation, 2 * error(clean).translation + 1e-2) << seed;
+    EXPECT_GT(error(plain).rotation, 20 * error(robust).rotation) << seed;
+    EXPECT_EQ(statistics.kept_pairs() + statistics.left_out_pairs(), 500u);
+  }
+}
+
+/// A minority is outvoted, whichever came first: 150 wrong ones, then 400 right ones.
+TEST(RobustStatistics, AWrongBeginningIsOutvotedLater) {
+  RobustStatistics statistics;
+  Problem problem;
+  const auto add = [&](const std::vector<MotionPair>& pairs) {
+    for (const MotionPair& pair : pairs) {
+      statistics.add(pair, problem);
+      if (statistics.look_is_due()) statistics.look(problem);
+    }
+  };
+  add(contradictory(1, 0.01, 1, 150));
+  problem.blocks = statistics.kept();
+  EXPECT_LT(extrinsic_error(another, solve(problem, Method::dual).T_a_b).rotation, 0.01);
+  problem.blocks.clear();
+  add(contradictory(0, 0.01, 2, 400));
+  statistics.look(problem);
+  problem.blocks = statistics.kept();
+  EXPECT_LT(extrinsic_error(T_a_b, solve(problem, Method::dual).T_a_b).rotation, 0.01);
+  EXPECT_NEAR(static_cast<double>(statistics.left_out_pairs()), 150, 30);
+}
+
+TEST(RobustStatistics, AreBoundedAndContinueFromTheirStateBitForBit) {
+  const auto pairs = contradictory(0.3, 0.01, 5, 2000);
+  const auto run = [&](std::size_t cut) {
+    RobustStatistics statistics;
+    const Problem problem;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (i == cut) statistics = RobustStatistics(statistics.state());
+      statistics.add(pairs[i], problem);
+      if (statistics.look_is_due()) statistics.look(problem);
+      EXPECT_LE(statistics.state().waiting.size(), RobustStatistics::most_waiting);
+      EXPECT_LE(statistics.state().blocks.state().blocks.size(), BlockStatistics::max_blocks);
+    }
+    return total(statistics.kept());
+  };
+  const Statistics expected = run(pairs.size());
+  for (const std::size_t cut : {1u, 17u, 100u, 1999u}) EXPECT_EQ(run(cut).dual_rows, expected.dual_rows);
+}
+
+}  // namespace
+}  // namespace egocal

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Drives with a fifth of the poses of one stream grossly wrong: the error must stay near that of a drive in
+// which those poses are simply not there. No method can do better than that.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+#include "../support/corruption.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/online/answer.hpp"
+#include "egocal/pairing/drive.hpp"
+#include "egocal/simulation/simulation.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::corrupted;
+using testing::Corruption;
+using testing::corruptions;
+
+struct Streams {
+  DualQuaternion T;
+  Trajectory a, b;
+  DriveOptions options;
+};
+
+ExtrinsicError error_of(const Streams& data, const Trajectory& a, const Trajectory& b) {
+  const Answer answer = solve(run_drive(data.options, a, b).drive.problem(), Method::dual);
+  EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
+  const ExtrinsicError error = extrinsic_error(data.T, answer.T_a_b);
+  return {.translation = error.translation * 100, .rotation = error.rotation * 180 / std::numbers::pi};
+}
+
+/// Errors [cm, deg] with the corruption in a, then in b.
+std::array<ExtrinsicError, 2> errors_of(const Streams& data, Corruption corruption, std::uint64_t seed) {
+  return {error_of(data, corrupted(data.a, corruption, seed), data.b),
+          error_of(data, data.a, corrupted(data.b, corruption, seed))};
+}
+
+Streams simulated(Terrain terrain, std::uint64_t seed) {
+  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
+  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.relative_noise = 0.01;
+  options.seed = seed;
+  options.T_vehicle_sensor = {T_v_a, T_v_b};
+  auto trajectories = simulate(options);
+  return {to_dual_quaternion(inverse(T_v_a) * T_v_b), trajectories[0], trajectories[1], {}};
+}
+
+/// Each error is a draw of its own, so medians over seeds are compared, and a single one only roughly.
+TEST(Outliers, AFifthOfThePosesWrongAtMostDoublesTheError) {
+  constexpr std::uint64_t seeds = 3;
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    const auto median_and_worst = [&](auto error) {
+      std::vector<double> values;
+      for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+        for (const double value : error(seed)) values.push_back(value);
+      std::sort(values.begin(), values.end());
+      return std::pair{values[values.size() / 2], values.back()};
+    };
+    const auto [clean, worst_clean] = median_and_worst([&](std::uint64_t seed) {
+      const Streams data = simulated(terrain, seed);
+      const double one = error_of(data, data.a, data.b).rotation;
+      return std::array{one, one};
+    });
+    for (const Corruption corruption : corruptions) {
+      const auto [median, worst] = median_and_worst([&](std::uint64_t seed) {
+        const auto errors = errors_of(simulated(terrain, seed), corruption, seed);
+        return std::array{errors[0].rotation, errors[1].rotation};
+      });
+      EXPECT_LE(median, 2 * clean) << name(corruption);
+      EXPECT_LE(worst, 3 * worst_clean) << name(corruption);
+    }
+  }
+}
+
+class RealOutliers : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(EGOCAL_DATA_DIR))
+      GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
+  }
+  static Trajectory read(const std::string& name) {
+    return read_trajectory(std::string(EGOCAL_DATA_DIR "/") + name);
+  }
+  /// At most twice the larger of the errors of the clean run and of one in which a fifth is missing.
+  static void check(const Streams& data) {
+    const ExtrinsicError clean = error_of(data, data.a, data.b);
+    const auto missing = errors_of(data, Corruption::missing, 7);
+    const double degrees = 2 * std::max({clean.rotation, missing[0].rotation, missing[1].rotation});
+    const double centimetres =
+        2 * std::max({clean.translation, missing[0].translation, missing[1].translation});
+    for (const Corruption corruption : corruptions)
+      for (const ExtrinsicError& error : errors_of(data, corruption, 7)) {
+        EXPECT_LE(error.rotation, degrees) << name(corruption);
+        EXPECT_LE(error.translation, centimetres) << name(corruption);
+      }
+  }
+};
+
+TEST_F(RealOutliers, Kitti) {
+  const DualQuaternion truth = to_dual_quaternion(
+      {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
+       {0.333504767535, -0.00479610810717, -0.0755785517707}});
+  Streams data{truth, read("kitti_07/velodyne_pylidar.tum"), read("kitti_07/cam0_orbslam2.tum"), {}};
+  check(data);
+  data.options.mode = Mode::planar;
+  data.options.plane_a = {{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
+                          -1.779603641715662210};
+  data.options.plane_b = {{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
+                          -1.684677553916568593};
+  check(data);
+}
+
+TEST_F(RealOutliers, HandheldAtDifferentRates) {
+  check({{}, read("euroc_v2_01/body_gt.tum"), read("euroc_v2_01/body_vio.tum"), {}});
+}
+
+}  // namespace
+}  // namespace egocal
