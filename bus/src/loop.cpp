@@ -54,6 +54,13 @@ void require_route(const std::string& url) {
   if (result < 0) throw Error("no multicast to " + address + ": " + std::strerror(reason) + remedy);
 }
 
+/// The kernel's default buffer holds some twenty problems: asked for more it gives up to net.core.rmem_max,
+/// twice the default without any setting.
+std::string with_receive_buffer(const std::string& url) {
+  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
+  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
+}
+
 /// Standard error kept from the terminal while liblcm sets up; what it said goes into our own message.
 class QuietStandardError {
  public:
@@ -153,7 +160,7 @@ struct Loop::Impl {
   Impl(const std::string& url, const LoopOptions& options) : signals(options.handle_signals) {
     require_route(url);
     QuietStandardError quiet;
-    lcm.emplace(url);
+    lcm.emplace(with_receive_buffer(url));
     if (!lcm->good()) throw Error("LCM does not understand the URL '" + url + "'; " + quiet.said());
     fd = lcm->getFileno();  // runs the multicast self-test
     if (fd < 0)

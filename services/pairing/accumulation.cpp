@@ -133,9 +133,10 @@ void Accumulation::restore(AccumulationState state) {
 }
 
 void Accumulation::settle() {
-  for (Channel& channel : channels_) {
-    channel.stream.be_patient(true);
-    channel.stream.settle();
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    channels_[i].state.utime = complete_until(i);
+    channels_[i].stream.be_patient(true);
+    channels_[i].stream.settle();
   }
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -26,14 +27,17 @@ template <class T>
 concept Scalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
 template <class T>
-concept Fixed = requires { typename T::Scalar; } && std::derived_from<T, Eigen::MatrixBase<T>> &&
-                T::SizeAtCompileTime != Eigen::Dynamic;
+concept Fixed = requires {
+  typename T::Scalar;
+}
+&&std::derived_from<T, Eigen::MatrixBase<T>>&& T::SizeAtCompileTime != Eigen::Dynamic;
 
 template <class T>
 concept Sequence = requires(T t) {
   t.emplace_back();
   t.clear();
-} && !std::same_as<T, std::string>;
+}
+&&!std::same_as<T, std::string>;
 
 /// The bits of values one after the other, as this machine keeps them. Structs are written field by field by
 /// an overload of fields(archive, value).
@@ -87,6 +91,12 @@ class Writer {
       put(key);
       put(value);
     }
+  }
+
+  template <class T>
+  void put(const std::set<T>& values) {
+    put(static_cast<std::uint64_t>(values.size()));
+    for (const T& value : values) put(value);
   }
 
   std::vector<std::byte> bytes_;
@@ -163,6 +173,16 @@ class Reader {
       K key{};
       get(key);
       get(values[key]);
+    }
+  }
+
+  template <class T>
+  void get(std::set<T>& values) {
+    values.clear();
+    for (std::size_t n = count(); n > 0; --n) {
+      T value{};
+      get(value);
+      values.insert(std::move(value));
     }
   }
 

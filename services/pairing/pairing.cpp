@@ -150,12 +150,17 @@ void Pairing::publish_motions() {
     loop_.publish(channels_[motion.pair].motion, motion.message);
 }
 
-/// Ten times a second: what is missing and does not come.
-void Pairing::watch_gaps() {
-  const std::int64_t now = bus::mono_us();
-  const bool patient = now < settle_until_mono_us_ || heartbeat_.alive("player");
+/// A player sends again what is missing.
+void Pairing::be_patient_if_it_helps() {
+  const bool patient = bus::mono_us() < settle_until_mono_us_ || heartbeat_.alive("player");
   if (patient != patient_) feed({patient ? Input::Kind::patient : Input::Kind::impatient});
   patient_ = patient;
+}
+
+/// Ten times a second: what is missing and does not come.
+void Pairing::watch_gaps() {
+  be_patient_if_it_helps();
+  const std::int64_t now = bus::mono_us();
   for (std::uint16_t i = 0; i < arrivals_.size(); ++i) {
     Arrivals& arrivals = arrivals_[i];
     const Stream& stream = accumulation_.stream(i);
@@ -194,6 +199,7 @@ void Pairing::hear(const status_t& status) {
       known_runs_.contains(status.run) || known_runs_.size() >= max_known_runs)
     return;  // a flood of invented ones gains nothing
   known_runs_.insert(status.run);
+  if (player) be_patient_if_it_helps();
   if (!leads()) return;
   if (player)
     heartbeat_.publish();

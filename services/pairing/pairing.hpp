@@ -32,7 +32,7 @@ class Pairing {
   struct Channel {
     std::string problem, motion;  // of a pair
   };
-  struct Arrivals {  // of a sensor
+  struct Arrivals {                  // of a sensor
     std::int64_t count = 0;          // since the start of the process
     std::int64_t heard_mono_us = 0;  // the last one
     std::int64_t gap_mono_us = 0;    // since when something is missing; 0: nothing is
@@ -47,6 +47,7 @@ class Pairing {
   void publish_problem(std::size_t pair);
   void publish_all_problems();
   void publish_motions();
+  void be_patient_if_it_helps();
   void watch_gaps();
   void every_second();
   void obey(Verb verb, const command_t& command);

@@ -141,10 +141,10 @@ void fields(auto& archive, Is<StreamCounts> auto& value) {
 }
 
 void fields(auto& archive, Is<StreamState> auto& value) {
-  auto& [newest_us, period_us, next_seq, early, candidates, recent, recent_next, patient, settling, held,
-         counts] = value;
-  archive(newest_us, period_us, next_seq, early, candidates, recent, recent_next, patient, settling, held,
-          counts);
+  auto& [newest_us, period_us, next_seq, lost, early, candidates, recent, recent_next, patient, gap,
+         gap_repeats, settling, held, counts] = value;
+  archive(newest_us, period_us, next_seq, lost, early, candidates, recent, recent_next, patient, gap,
+          gap_repeats, settling, held, counts);
 }
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {

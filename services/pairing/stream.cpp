@@ -16,6 +16,7 @@ constexpr std::int64_t largest_step_us =
 constexpr std::int64_t largest_number_step = 1000;
 constexpr std::size_t confirmations = 3;
 constexpr std::size_t max_early = 1000;
+constexpr std::int32_t repeats_of_nothing = 2;
 
 /// y may be the message after x, or a few later.
 bool follows(const Sample& x, const Sample& y) {
@@ -28,6 +29,13 @@ bool follows(const Sample& x, const Sample& y) {
 bool has_time(const std::map<std::int64_t, Sample>& samples, std::int64_t time_us) {
   return std::any_of(samples.begin(), samples.end(),
                      [time_us](const auto& entry) { return entry.second.pose.time_us == time_us; });
+}
+
+/// Of all that wait: a damaged number may be the highest with an early time.
+std::int64_t newest_time(const std::map<std::int64_t, Sample>& samples) {
+  std::int64_t newest = samples.begin()->second.pose.time_us;
+  for (const auto& [number, sample] : samples) newest = std::max(newest, sample.pose.time_us);
+  return newest;
 }
 
 }  // namespace
@@ -45,8 +53,7 @@ bool Stream::known(std::int64_t time_us) const {
 bool Stream::plausible(const Sample& sample) const {
   if (!state_.newest_us) return true;
   const std::int64_t limit = std::max(second_us, 4 * state_.period_us);
-  const std::int64_t newest =
-      state_.early.empty() ? *state_.newest_us : state_.early.rbegin()->second.pose.time_us;
+  const std::int64_t newest = state_.early.empty() ? *state_.newest_us : newest_time(state_.early);
   // numbers that are missing take their time
   std::int64_t ahead = 0;
   if (sample.seq >= 0 && state_.next_seq) {
@@ -69,31 +76,34 @@ void Stream::release(Sample sample, std::vector<Sample>& out) {
   out.push_back(std::move(sample));
 }
 
+/// What comes after all is known to be late, however old it is, and is no longer counted as lost.
+void Stream::give_up_until(std::int64_t number) {
+  state_.counts.lost += number - *state_.next_seq;
+  for (; *state_.next_seq < number; ++*state_.next_seq) state_.lost.insert(*state_.next_seq);
+  while (state_.lost.size() > max_early) state_.lost.erase(state_.lost.begin());
+}
+
 void Stream::release_early(std::vector<Sample>& out, bool give_up) {
   while (!state_.early.empty()) {
     const auto first = state_.early.begin();
-    const bool waited_enough =
-        (!state_.patient && state_.early.rbegin()->second.pose.time_us - first->second.pose.time_us >=
-                                reorder_window_us_) ||
-        state_.early.size() > max_early;
     if (first->first != *state_.next_seq) {
+      const bool waited_enough =
+          state_.early.size() > max_early ||
+          (!state_.patient && newest_time(state_.early) - first->second.pose.time_us >= reorder_window_us_);
       if (!give_up && !waited_enough) return;
-      state_.counts.lost += first->first - *state_.next_seq;
+      give_up_until(first->first);
     }
     state_.next_seq = first->first + 1;
     release(first->second, out);
     state_.early.erase(first);
     // a damaged number may have put one far ahead that will not be of use there
-    state_.counts.out_of_order += static_cast<std::int64_t>(std::erase_if(state_.early, [this](const auto& entry) {
-      return entry.second.pose.time_us <= *state_.newest_us;
-    }));
+    state_.counts.out_of_order += static_cast<std::int64_t>(std::erase_if(
+        state_.early, [this](const auto& entry) { return entry.second.pose.time_us <= *state_.newest_us; }));
   }
 }
 
 void Stream::give_up_first_gap(std::vector<Sample>& out) {
-  const std::int64_t first = state_.early.begin()->first;
-  state_.counts.lost += first - *state_.next_seq;
-  state_.next_seq = first;
+  give_up_until(state_.early.begin()->first);
   release_early(out, false);
 }
 
@@ -110,12 +120,12 @@ std::vector<Sample> Stream::take_candidates() {
   if (backwards) {
     state_.newest_us.reset();
     state_.recent.fill(-1);
+    state_.lost.clear();
     state_.candidates.front().begins_anew = true;
   }
   state_.next_seq.reset();
   for (Sample& sample : std::exchange(state_.candidates, {})) {
-    if (state_.next_seq && sample.seq > *state_.next_seq)
-      state_.counts.lost += sample.seq - *state_.next_seq;
+    if (state_.next_seq && sample.seq > *state_.next_seq) give_up_until(sample.seq);
     if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
     release(std::move(sample), out);
   }
@@ -123,7 +133,9 @@ std::vector<Sample> Stream::take_candidates() {
 }
 
 void Stream::settle() {
-  state_.settling = state_.newest_us && !state_.next_seq;
+  state_.settling = !state_.next_seq;
+  state_.gap_repeats = 0;
+  state_.held.clear();  // not acknowledged yet: they come again, in order
 }
 
 std::vector<Sample> Stream::settled() {
@@ -138,7 +150,7 @@ std::vector<Sample> Stream::settled() {
 
 std::vector<Sample> Stream::hold(Sample sample) {
   const std::int64_t time_us = sample.pose.time_us;
-  const bool backwards = time_us <= *state_.newest_us;
+  const bool backwards = state_.newest_us && time_us <= *state_.newest_us;
   const bool again = state_.held.contains(time_us);
   if (!backwards && !again && state_.held.size() < max_early) {
     state_.held.emplace(time_us, std::move(sample));
@@ -155,7 +167,7 @@ std::vector<Sample> Stream::hold(Sample sample) {
 }
 
 std::vector<Sample> Stream::push(Sample sample) {
-  if (state_.settling && sample.seq < 0) return hold(std::move(sample));
+  if (state_.settling) return hold(std::move(sample));
   return put_in_order(std::move(sample));
 }
 
@@ -164,9 +176,17 @@ std::vector<Sample> Stream::put_in_order(Sample sample) {
     ++state_.counts.duplicate;
     std::vector<Sample> out;
     if (state_.patient && !state_.early.empty() &&
-        state_.early.begin()->second.pose.time_us == sample.pose.time_us)
-      give_up_first_gap(out);
+        state_.early.begin()->second.pose.time_us == sample.pose.time_us) {
+      if (std::exchange(state_.gap, *state_.next_seq) != state_.gap) state_.gap_repeats = 0;
+      if (++state_.gap_repeats == repeats_of_nothing) give_up_first_gap(out);
+    }
     return out;
+  }
+  if (sample.seq >= 0 && state_.newest_us && sample.pose.time_us < *state_.newest_us &&
+      state_.lost.erase(sample.seq) > 0) {
+    ++state_.counts.out_of_order;
+    --state_.counts.lost;
+    return {};
   }
   if (!plausible(sample)) {
     if (!state_.candidates.empty() && !follows(state_.candidates.back(), sample)) {
@@ -186,7 +206,6 @@ std::vector<Sample> Stream::put_in_order(Sample sample) {
     release(std::move(sample), out);
   } else if (sample.seq < *state_.next_seq) {
     ++state_.counts.out_of_order;
-    if (state_.counts.lost > 0) --state_.counts.lost;
   } else {
     const std::int64_t seq = sample.seq;
     if (!state_.early.emplace(seq, std::move(sample)).second) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "egocal/pairing/trajectory.hpp"
@@ -32,13 +33,16 @@ struct StreamState {
   std::optional<std::int64_t> newest_us;
   std::int64_t period_us = 0;
   std::optional<std::int64_t> next_seq;
-  std::map<std::int64_t, Sample> early;     ///< by number, behind a gap
-  std::vector<Sample> candidates;           ///< for a jump
-  std::array<std::int64_t, 64> recent{};    ///< times released last
-  std::uint64_t recent_next = 0;            ///< in recent
-  bool patient = false;                     ///< see be_patient()
-  bool settling = false;                    ///< see settle()
-  std::map<std::int64_t, Sample> held;      ///< by time, while settling
+  std::set<std::int64_t> lost;            ///< the newest numbers that were given up
+  std::map<std::int64_t, Sample> early;   ///< by number, behind a gap
+  std::vector<Sample> candidates;         ///< for a jump
+  std::array<std::int64_t, 64> recent{};  ///< times released last
+  std::uint64_t recent_next = 0;          ///< in recent
+  bool patient = false;                   ///< see be_patient()
+  std::int64_t gap = -1;                  ///< the number last missed by a sender that went back,
+  std::int32_t gap_repeats = 0;           ///< and how often
+  bool settling = false;                  ///< see settle()
+  std::map<std::int64_t, Sample> held;    ///< by time, while settling
   StreamCounts counts;
 };
 
@@ -67,12 +71,12 @@ class Stream {
   const StreamCounts& counts() const { return state_.counts; }
 
   /// While the sender sends again what is missing, however long that takes in measured time, it is waited
-  /// for: until flush(), or until the first message behind the gap comes a second time, for then the sender
-  /// has been there again and had nothing for the gap.
+  /// for: until flush(), or until the first message behind the gap has come twice again, for then the sender
+  /// has been there twice and had nothing for the gap.
   void be_patient(bool patient) { state_.patient = patient; }
   bool settling() const { return state_.settling; }
-  /// After an interruption: messages without numbers are collected, and put in order when one of them comes
-  /// a second time, or by flush().
+  /// After an interruption: the messages of a stream without numbers, or of one not heard before, are
+  /// collected, and put in order when one of them comes a second time, or by flush().
   void settle();
 
   const StreamState& state() const { return state_; }
@@ -85,6 +89,7 @@ class Stream {
   std::vector<Sample> hold(Sample sample);
   std::vector<Sample> settled();
   void release(Sample sample, std::vector<Sample>& out);
+  void give_up_until(std::int64_t number);
   void release_early(std::vector<Sample>& out, bool give_up);
   void give_up_first_gap(std::vector<Sample>& out);
   std::vector<Sample> take_candidates();

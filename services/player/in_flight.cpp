@@ -9,7 +9,9 @@ namespace egocal::services {
 
 namespace {
 const std::string held_back_prefix = "held back: ";
-}
+/// After so many times without success pairing takes it that there is nothing to fill the gap with.
+constexpr int most_tries = 2;
+}  // namespace
 
 std::optional<std::int64_t> utime_of(const bus::LogEvent& event) {
   // both types begin with the fingerprint and then utime, 8 bytes each, big endian
@@ -36,7 +38,7 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
       held_back.insert(counter.name.substr(held_back_prefix.size()));
   for (const acknowledgement_t& acknowledgement : pairing.acknowledgements) {
     Channel& channel = channels_[acknowledgement.channel];
-    if (new_process) channel.sent_again_at.reset();
+    if (new_process) channel.gap.reset();
     const bool news =
         new_process || acknowledgement.count != channel.count || acknowledgement.utime != channel.utime;
     channel.count = acknowledgement.count;
@@ -48,9 +50,15 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
       channel.messages.erase(channel.messages.begin(), through + 1);
       progress.any = true;
     }
+    if (channel.gap != acknowledgement.utime) {
+      channel.gap = acknowledgement.utime;
+      channel.sent_again = 0;
+      channel.next_try = acknowledgement.count;
+    }
     if (held_back.contains(acknowledgement.channel) && !channel.messages.empty() &&
-        channel.sent_again_at != acknowledgement.utime) {
-      channel.sent_again_at = acknowledgement.utime;
+        channel.sent_again < most_tries && acknowledgement.count >= channel.next_try) {
+      ++channel.sent_again;
+      channel.next_try = acknowledgement.count + static_cast<std::int64_t>(channel.messages.size());
       progress.send_again = true;
     }
   }

@@ -42,8 +42,10 @@ class InFlight {
     bus::LogEvent event;
   };
   struct Channel {
-    std::int64_t count = 0, utime = 0;          ///< of the last acknowledgement
-    std::optional<std::int64_t> sent_again_at;  ///< utime of an acknowledgement with something held back
+    std::int64_t count = 0, utime = 0;  ///< of the last acknowledgement
+    std::optional<std::int64_t> gap;    ///< utime of an acknowledgement with something held back
+    int sent_again = 0;                 ///< because of this gap
+    std::int64_t next_try = 0;          ///< count at which all that was sent again has arrived
     std::deque<Message> messages;
   };
   std::map<std::string, Channel> channels_;

@@ -103,5 +103,54 @@ TEST(Stream, MemoryIsBounded) {
   EXPECT_GT(out, 3000u);
 }
 
+TEST(Stream, APatientOneWaitsForWhatWillBeSentAgain) {
+  Stream stream(0.2);
+  stream.be_patient(true);
+  EXPECT_THAT(feed(stream, {sample(0, 0), sample(3, 3), sample(20, 20), sample(40, 40)}), ElementsAre(0));
+  EXPECT_THAT(feed(stream, {sample(1, 1), sample(2, 2), sample(3, 3)}), ElementsAre(1, 2, 3));
+  EXPECT_EQ(stream.counts().lost, 0);
+}
+
+TEST(Stream, APatientOneGivesUpWhatTheSenderDoesNotHave) {
+  Stream stream(0.2);
+  stream.be_patient(true);
+  EXPECT_THAT(feed(stream, {sample(0, 0), sample(2, 2), sample(3, 3), sample(2, 2), sample(3, 3)}),
+              ElementsAre(0));
+  EXPECT_THAT(feed(stream, {sample(2, 2), sample(3, 3)}), ElementsAre(2, 3));
+  EXPECT_EQ(stream.counts().lost, 1);
+  EXPECT_FALSE(stream.waiting());
+}
+
+TEST(Stream, WhatWasLostAndComesVeryLateBeginsNoNewTimeline) {
+  Stream stream(0.2);
+  feed(stream, {sample(0, 0), sample(1, 1)});
+  for (std::int64_t i = 6; i < 60; ++i) feed(stream, {sample(i, i)});
+  EXPECT_EQ(stream.counts().lost, 4);
+  EXPECT_THAT(feed(stream, {sample(2, 2), sample(3, 3), sample(4, 4), sample(5, 5), sample(60, 60)}),
+              ElementsAre(60));
+  EXPECT_EQ(stream.counts().lost, 0);
+  EXPECT_EQ(stream.counts().out_of_order, 4);
+}
+
+TEST(Stream, ADamagedNumberFarAheadCostsOneMessage) {
+  Stream stream(0.2);
+  feed(stream, {sample(0, 0), sample(1, 513)});
+  EXPECT_THAT(feed(stream, {sample(2, 2), sample(3, 3), sample(4, 4)}), ElementsAre(2, 3, 4));
+  EXPECT_FALSE(stream.waiting());
+  EXPECT_THAT(stream.flush(), ::testing::IsEmpty());
+  EXPECT_THAT(feed(stream, {sample(5, 5)}), ElementsAre(5));
+  EXPECT_EQ(stream.counts().lost, 1);
+}
+
+TEST(Stream, AfterAnInterruptionMessagesWithoutNumbersArePutInOrder) {
+  Stream stream(0.2);
+  feed(stream, {sample(0, -1), sample(1, -1)});
+  stream.settle();
+  EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(1, -1), sample(2, -1), sample(3, -1),
+                            sample(4, -1)}),
+              ElementsAre());
+  EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(7, -1)}), ElementsAre(2, 3, 4, 5, 6, 7));
+}
+
 }  // namespace
 }  // namespace egocal::services

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What pairing has accumulated outlives the process: to the bit, or it is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "egocal/bus/glue.hpp"
+#include "egocal/error.hpp"
+#include "egocal/simulation/simulation.hpp"
+#include "pairing/saved_state.hpp"
+#include "pairing/state_fields.hpp"
+#include "support/random_motion.hpp"
+
+namespace egocal::services {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Message {
+  std::uint16_t channel;
+  std::vector<std::byte> bytes;
+};
+
+bus::Rig rig(const std::string& type, const std::string& more = "") {
+  return bus::parse_rig("[[sensor]]\nname = \"left\"\nchannel = \"L\"\ntype = \"" + type +
+                            "\"\n[[sensor]]\nname = \"right\"\nchannel = \"R\"\ntype = \"" + type +
+                            "\"\n[[pair]]\na = \"left\"\nb = \"right\"\n" + more,
+                        "rig.toml");
+}
+
+std::vector<Message> drive(const std::string& type, int poses = 400) {
+  SimulationOptions options;
+  options.terrain = Terrain::free;
+  options.poses = poses;
+  options.relative_noise = 0.01;
+  options.T_vehicle_sensor = {Pose{}, Pose{rotation_exp({0.3, -0.2, 0.9}), {0.4, -0.8, 0.3}}};
+  const std::vector<Trajectory> trajectories = simulate(options);
+  std::vector<Message> messages;
+  for (std::size_t i = 0; i < trajectories[0].size(); ++i)
+    for (std::uint16_t k = 0; k < 2; ++k) {
+      StampedPose pose = trajectories[k][i];
+      pose.time_us += 1'600'000'000'000'000;
+      messages.push_back({k, type == "bot_core.pose_t"
+                                 ? bus::encode(bus::to_pose_message(pose))
+                                 : bus::encode(bus::to_message(pose, static_cast<std::int64_t>(i)))});
+    }
+  return messages;
+}
+
+std::vector<std::byte> pair_bits(const Accumulation& accumulation) {
+  Writer writer;
+  writer(accumulation.pairs().front().state());
+  return writer.bytes();
+}
+
+class SavedStates : public ::testing::Test {
+ protected:
+  SavedStates() {
+    char name[] = "/tmp/egocal-state-XXXXXX";
+    folder = mkdtemp(name);
+    file = folder + "/pairing.state";
+  }
+  ~SavedStates() override { std::filesystem::remove_all(folder); }
+
+  void write_state(const bus::Rig& of, std::size_t messages) {
+    const auto all = drive("egocal.odometry_t");
+    SavedState saved(file, of);
+    Accumulation accumulation = saved.restore();
+    for (std::size_t i = 0; i < messages; ++i) {
+      const Input input{Input::Kind::message, all[i].channel, all[i].bytes};
+      saved.note(input);
+      accumulation.apply(input);
+      if (i % 16 == 15) saved.save(accumulation);
+    }
+    saved.save(accumulation);
+  }
+  std::string content() const {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const std::string& bytes) const { std::ofstream(file, std::ios::binary) << bytes; }
+
+  std::string folder, file;
+};
+
+/// Killed again and again; what was not saved is sent again, with some of what was.
+TEST_F(SavedStates, GoOnWithTheSameBits) {
+  for (const std::string type : {"egocal.odometry_t", "bot_core.pose_t"}) {
+    const bus::Rig config = rig(type);
+    const auto messages = drive(type, 300);
+    Accumulation undisturbed(config);
+    for (const Message& message : messages)
+      undisturbed.apply({Input::Kind::message, message.channel, message.bytes});
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      egocal::testing::Random random(seed);
+      std::filesystem::remove(file);
+      auto saved = std::make_unique<SavedState>(file, config);
+      Accumulation accumulation = saved->restore();
+      const auto feed = [&](const Input& input) {
+        saved->note(input);
+        accumulation.apply(input);
+      };
+      std::size_t on_disk = 0;
+      for (std::size_t next = 0; next < messages.size(); ++next) {
+        feed({Input::Kind::message, messages[next].channel, messages[next].bytes});
+        if (random.uniform() < 0.2) {
+          saved->save(accumulation);
+          on_disk = next + 1;
+        }
+        if (random.uniform() < 0.01) saved->snapshot(accumulation), on_disk = next + 1;
+        if (random.uniform() > 0.02) continue;
+        saved.reset();  // killed: nothing is written at the end
+        saved = std::make_unique<SavedState>(file, config);
+        accumulation = saved->restore();
+        ASSERT_TRUE(saved->restored()) << saved->refused();
+        // what came before the new process was heard, out of order
+        std::size_t first_missing = messages.size();
+        for (std::uint16_t k = 0; k < 2; ++k) {
+          std::size_t missing = 0;
+          for (std::size_t i = 0; i < messages.size(); ++i)
+            if (messages[i].channel == k && time_in(messages[i].bytes) == accumulation.complete_until(k))
+              missing = i + 1;
+          first_missing = std::min(first_missing, missing);
+        }
+        EXPECT_LE(first_missing, on_disk);
+        for (std::size_t i = first_missing + 5; i < std::min(first_missing + 9, messages.size()); ++i)
+          feed({Input::Kind::message, messages[i].channel, messages[i].bytes});
+        next = first_missing - 1;
+      }
+      for (std::uint16_t k = 0; k < 2; ++k) feed({Input::Kind::give_up, k});
+      EXPECT_TRUE(pair_bits(accumulation) == pair_bits(undisturbed)) << type << ", seed " << seed;
+    }
+  }
+}
+
+TEST_F(SavedStates, KeepWhatIsPausedAndReset) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  write_state(config, 100);
+  {
+    SavedState saved(file, config);
+    Accumulation accumulation = saved.restore();
+    for (const Input::Kind kind : {Input::Kind::new_session, Input::Kind::pause}) {
+      saved.note({kind, 0});
+      accumulation.apply({kind, 0});
+    }
+    saved.save(accumulation);
+  }
+  SavedState saved(file, config);
+  const Accumulation accumulation = saved.restore();
+  EXPECT_TRUE(accumulation.pairs()[0].paused());
+  EXPECT_EQ(accumulation.pairs()[0].session(), -1);
+}
+
+TEST_F(SavedStates, OfAnotherRigAreRefused) {
+  write_state(rig("egocal.odometry_t"), 100);
+  SavedState saved(file, rig("egocal.odometry_t", "stride = 7\n"));
+  const Accumulation accumulation = saved.restore();
+  EXPECT_FALSE(saved.restored());
+  EXPECT_EQ(accumulation.pairs()[0].session(), -1);
+  EXPECT_THAT(saved.refused(), HasSubstr("another rig or version: it has 'pair left right"));
+  EXPECT_TRUE(std::filesystem::exists(file + ".refused"));
+}
+
+TEST_F(SavedStates, ThatAreStaleAreRefused) {
+  write_state(rig("egocal.odometry_t"), 100);
+  std::filesystem::last_write_time(file,
+                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+  SavedState saved(file, rig("egocal.odometry_t"));
+  saved.restore();
+  EXPECT_FALSE(saved.restored());
+  EXPECT_THAT(saved.refused(), HasSubstr("is stale: written 72"));
+  // a new one has taken its place
+  EXPECT_GT(std::filesystem::file_size(file), 0u);
+}
+
+TEST_F(SavedStates, WithAnyByteDamagedAreRefused) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  write_state(config, 40);
+  const std::string good = content();
+  for (std::size_t at = 24; at < good.size(); at += 137) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 0x10);
+    write(bad);
+    SavedState saved(file, config);
+    saved.restore();
+    EXPECT_FALSE(saved.restored()) << "byte " << at;
+    EXPECT_THAT(saved.refused(), HasSubstr("is damaged")) << "byte " << at;
+  }
+}
+
+TEST_F(SavedStates, CutOffAnywhereAreRefusedOrLackTheUnfinishedEnd) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  write_state(config, 40);
+  const std::string good = content();
+  std::size_t refused = 0, restored = 0;
+  for (std::size_t size = 0; size < good.size(); size += 113) {
+    write(good.substr(0, size));
+    SavedState saved(file, config);
+    const Accumulation accumulation = saved.restore();
+    ++(saved.restored() ? restored : refused);
+    if (!saved.restored()) {
+      EXPECT_THAT(saved.refused(), HasSubstr("cut off")) << size;
+      EXPECT_EQ(restored, 0u) << "a longer one is refused where a shorter one is not: " << size;
+    }
+  }
+  EXPECT_GT(refused, 2u);
+  EXPECT_GT(restored, 20u);
+}
+
+TEST_F(SavedStates, AreNeverWrittenOverWhatIsSomethingElse) {
+  write("[[sensor]]\nname = \"left\"\nchannel = \"L\"\n");
+  const std::string before = content();
+  SavedState saved(file, rig("egocal.odometry_t"));
+  EXPECT_THROW(saved.restore(), Error);
+  EXPECT_EQ(content(), before);
+}
+
+TEST_F(SavedStates, BelongToOneProcessAtATime) {
+  SavedState first(file, rig("egocal.odometry_t"));
+  EXPECT_THROW(SavedState(file, rig("egocal.odometry_t")), Error);
+  EXPECT_THROW(SavedState("/nonexistent/state", rig("egocal.odometry_t")), Error);
+}
+
+}  // namespace
+}  // namespace egocal::services
