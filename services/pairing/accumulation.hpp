@@ -18,10 +18,10 @@ namespace egocal::services {
 /// snapshot and the inputs since then are enough to go on from.
 struct Input {
   enum class Kind : std::uint8_t {
-    message,     ///< of a channel, as it came
-    give_up,     ///< a channel: waits no longer for what is missing
-    patient,     ///< all channels: what is missing will be sent again
-    impatient,   ///< all channels: it will not
+    message,      ///< of a channel, as it came
+    give_up,      ///< a channel: waits no longer for what is missing
+    patient,      ///< all channels: what is missing will be sent again
+    impatient,    ///< all channels: it will not
     new_session,  ///< a pair: the next pose begins one
     pause,        ///< a pair
     resume        ///< a pair

@@ -19,8 +19,7 @@ constexpr std::uint64_t most_added = 4 << 20;
 /// Whose state it is: what is accumulated means nothing to another rig, nor to another version of the
 /// mathematics.
 std::string identity(const bus::Rig& rig) {
-  std::string text =
-      "egocal-pairing " EGOCAL_VERSION ", layout " + std::to_string(state_layout) + "\n";
+  std::string text = "egocal-pairing " EGOCAL_VERSION ", layout " + std::to_string(state_layout) + "\n";
   char line[300];
   for (const bus::Sensor& sensor : rig.sensors) {
     std::snprintf(line, sizeof line, "sensor %s on %s, %s, reorder_window %g\n", sensor.name.c_str(),

@@ -314,7 +314,8 @@ TEST_F(Processes, EgocalPlayerSendsAgainWhatAKilledPairingMissed) {
                                   [&](const StampedPose& pose) { return pose.time_us == first; });
   ASSERT_NE(begin, trajectories[0].end());
   const auto matched = std::distance(begin, trajectories[0].end()) - 1;
-  EXPECT_TRUE(until([&] { return problem->matched == matched; }, 5s)) << problem->matched << " of " << matched;
+  EXPECT_TRUE(until([&] { return problem->matched == matched; }, 5s))
+      << problem->matched << " of " << matched;
   EXPECT_GT(counter("egocal-player", "sent again"), 0);
 }
 
