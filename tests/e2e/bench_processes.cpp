@@ -95,11 +95,12 @@ void print(const char* what, std::vector<std::int64_t> values) {
   }
   std::sort(values.begin(), values.end());
   const auto part = [&](double p) {
-    return static_cast<long long>(
-        values[std::min(values.size() - 1, static_cast<std::size_t>(p * static_cast<double>(values.size())))]);
+    return static_cast<long long>(values[std::min(
+        values.size() - 1, static_cast<std::size_t>(p * static_cast<double>(values.size())))]);
   };
-  std::printf("%s: p50 %lld us, p90 %lld us, p99 %lld us, p99.9 %lld us, most %lld us of %zu\n", what, part(0.5),
-              part(0.9), part(0.99), part(0.999), static_cast<long long>(values.back()), values.size());
+  std::printf("%s: p50 %lld us, p90 %lld us, p99 %lld us, p99.9 %lld us, most %lld us of %zu\n", what,
+              part(0.5), part(0.9), part(0.99), part(0.999), static_cast<long long>(values.back()),
+              values.size());
 }
 
 double processor_seconds(pid_t pid) {
@@ -125,16 +126,17 @@ int latency(const Options& options) {
   bool warm = false;
   for (int i = 1; i < sensors; ++i) {
     const std::string name = "s" + std::to_string(i);
-    loop.subscribe<calibration_t>(
-        bus::calibration_channel("s0", name), [&, name](const calibration_t& answer, const bus::Arrival& arrival) {
-          const auto at = sent[name].find(answer.utime);
-          if (!warm || at == sent[name].end() || answer.solver != "egocal-fast") return;
-          ++measured;
-          certified += answer.status == 0;
-          whole.push_back(arrival.mono_us - at->second);
-          if (answer.latency_us >= 0) inside.push_back(answer.latency_us);
-          sent[name].erase(at);
-        });
+    loop.subscribe<calibration_t>(bus::calibration_channel("s0", name),
+                                  [&, name](const calibration_t& answer, const bus::Arrival& arrival) {
+                                    const auto at = sent[name].find(answer.utime);
+                                    if (!warm || at == sent[name].end() || answer.solver != "egocal-fast")
+                                      return;
+                                    ++measured;
+                                    certified += answer.status == 0;
+                                    whole.push_back(arrival.mono_us - at->second);
+                                    if (answer.latency_us >= 0) inside.push_back(answer.latency_us);
+                                    sent[name].erase(at);
+                                  });
   }
   int heard = 0;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t&, const bus::Arrival&) { ++heard; });
@@ -160,12 +162,13 @@ int latency(const Options& options) {
   }
   wait_until(Clock::now() + 200ms);
   for (const auto& [name, process] : setting.processes) used += processor_seconds(process.pid());
-  std::printf("%d pairs at %g Hz, %s, %g s; %lld of %lld answers certified, %.1f %% of %d problems answered\n",
-              options.pairs, options.rate,
-              options.spread ? "sensors spread over the period" : "all sensors at the same instant",
-              options.seconds, static_cast<long long>(certified), static_cast<long long>(measured),
-              100.0 * static_cast<double>(measured) / (options.pairs * (poses - warm_up)),
-              options.pairs * (poses - warm_up));
+  std::printf(
+      "%d pairs at %g Hz, %s, %g s; %lld of %lld answers certified, %.1f %% of %d problems answered\n",
+      options.pairs, options.rate,
+      options.spread ? "sensors spread over the period" : "all sensors at the same instant", options.seconds,
+      static_cast<long long>(certified), static_cast<long long>(measured),
+      100.0 * static_cast<double>(measured) / (options.pairs * (poses - warm_up)),
+      options.pairs * (poses - warm_up));
   print("from sending the message to hearing the answer", whole);
   print("from pairing's receipt to sending the answer", inside);
   std::printf("processor time of our processes: %.0f %% of one core\n", 100 * used / options.seconds);
@@ -177,8 +180,9 @@ std::int64_t lost_and_matched(const std::string& url, const std::string& b, std:
   bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
   std::int64_t matched = -1;
   lost = -1;
-  loop.subscribe<problem_t>(bus::problem_channel("s0", b),
-                            [&](const problem_t& problem, const bus::Arrival&) { matched = problem.matched; });
+  loop.subscribe<problem_t>(
+      bus::problem_channel("s0", b),
+      [&](const problem_t& problem, const bus::Arrival&) { matched = problem.matched; });
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
     if (status.role != "pairing") return;
     for (const counter_t& counter : status.counters)
@@ -201,8 +205,9 @@ int replay(const Options& options) {
                            "s0=0,0,1.8,1,0,0,0", "--sensor", "s1=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5"});
     if (simulate.wait(300s) != 0) throw std::runtime_error("egocal simulate failed");
     // channels as egocal simulate names them, every step a motion
-    std::ofstream(setting.rig) << "[[sensor]]\nname = \"s0\"\nchannel = \"ODOMETRY_S0\"\n[[sensor]]\nname = "
-                                  "\"s1\"\nchannel = \"ODOMETRY_S1\"\n[[pair]]\na = \"s0\"\nb = \"s1\"\nstride = 1\n";
+    std::ofstream(setting.rig)
+        << "[[sensor]]\nname = \"s0\"\nchannel = \"ODOMETRY_S0\"\n[[sensor]]\nname = "
+           "\"s1\"\nchannel = \"ODOMETRY_S1\"\n[[pair]]\na = \"s0\"\nb = \"s1\"\nstride = 1\n";
     setting.start_all(options);
     std::this_thread::sleep_for(300ms);
     const auto begin = Clock::now();
@@ -212,9 +217,11 @@ int replay(const Options& options) {
     std::int64_t lost = 0;
     const std::int64_t matched = lost_and_matched(setting.url, "s1", options.motions, lost);
     const double rate = static_cast<double>(options.motions) / took.count();
-    std::printf("%lld motion pairs in %.2f s: %.0f a second; player's exit code %d, lost %lld, in the statistics %lld\n",
-                static_cast<long long>(options.motions), took.count(), rate, result,
-                static_cast<long long>(lost), static_cast<long long>(matched));
+    std::printf(
+        "%lld motion pairs in %.2f s: %.0f a second; player's exit code %d, lost %lld, in the statistics "
+        "%lld\n",
+        static_cast<long long>(options.motions), took.count(), rate, result, static_cast<long long>(lost),
+        static_cast<long long>(matched));
     for (const auto& [name, process] : setting.processes)
       std::printf("  %s: %.2f s of a processor\n", name.c_str(), processor_seconds(process.pid()));
     best = std::max(best, rate);
@@ -248,14 +255,14 @@ int endurance(const Options& options) {
   const auto poses = static_cast<std::int64_t>(options.hours * 3600 * options.rate);
   ChildProcess simulate({bin + "/egocal", "simulate", "--out", log, "--rig-out", setting.rig, "--rate",
                          std::to_string(options.rate), "--poses", std::to_string(poses), "--noise", "0.01",
-                         "--sensor", "s0=0,0,1.8,1,0,0,0", "--sensor", "s1=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5", "--sensor",
-                         "s2=-1.5,0.2,1.5,0.5,0.5,0.5,0.5"});
+                         "--sensor", "s0=0,0,1.8,1,0,0,0", "--sensor", "s1=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5",
+                         "--sensor", "s2=-1.5,0.2,1.5,0.5,0.5,0.5,0.5"});
   if (simulate.wait(600s) != 0) throw std::runtime_error("egocal simulate failed");
   setting.start_all(options);
   std::this_thread::sleep_for(500ms);
   const auto begin = Clock::now();
-  setting.processes.emplace("egocal-player",
-                            ChildProcess({bin + "/egocal-player", log, "--lcm-url", setting.url, "--speed", "0"}));
+  setting.processes.emplace(
+      "egocal-player", ChildProcess({bin + "/egocal-player", log, "--lcm-url", setting.url, "--speed", "0"}));
   std::map<std::string, Needs> early, most;
   std::vector<std::string> names;
   for (const auto& [name, process] : setting.processes) names.push_back(name);
@@ -275,8 +282,8 @@ int endurance(const Options& options) {
     }
   }
   const std::chrono::duration<double> took = Clock::now() - begin;
-  std::printf("%.2f hours of three sensors at %g Hz in %.0f s, player's exit code %d\n", options.hours, options.rate,
-              took.count(), exit_code);
+  std::printf("%.2f hours of three sensors at %g Hz in %.0f s, player's exit code %d\n", options.hours,
+              options.rate, took.count(), exit_code);
   bool flat = exit_code == 0;
   for (const std::string& name : names) {
     std::printf("  %-15s most memory in the first 5 s %ld kB, at all %ld kB; file descriptors %ld and %ld\n",
@@ -304,7 +311,8 @@ int main(int argc, char** argv) {
   CLI::App* replay = app.add_subcommand("replay", "a log at full speed");
   replay->add_option("--motions", options.motions)->capture_default_str();
   replay->add_option("--repeats", options.repeats)->capture_default_str();
-  CLI::App* endurance = app.add_subcommand("endurance", "memory and file descriptors over hours, at full speed");
+  CLI::App* endurance =
+      app.add_subcommand("endurance", "memory and file descriptors over hours, at full speed");
   endurance->add_option("--hours", options.hours)->capture_default_str();
   endurance->add_option("--rate", options.rate, "[Hz] of each sensor")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
