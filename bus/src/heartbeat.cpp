@@ -113,7 +113,7 @@ void Heartbeat::hear(const status_t& status) {
   }
   const auto now = std::chrono::steady_clock::now();
   const bool namesake = status.name == identity_.name && status.state != "ended";
-  peers_.hear(status, now);
+  if (peers_.hear(status, now) && status.version != identity_.version) ++counters_["other versions heard"];
   if (namesake && now - published_ > least_distance) publish();
   if (on_status_) on_status_(status);
 }

@@ -15,13 +15,15 @@ bool is_alive(const Peer& peer, Peers::Time now, std::chrono::nanoseconds timeou
 }
 }  // namespace
 
-void Peers::hear(const status_t& status, Time now) {
+bool Peers::hear(const status_t& status, Time now) {
   const Key key{status.name, status.host, status.run, status.pid};
+  const bool is_new = !peers_.contains(key);
   peers_[key] = {status.name, status.role, status.host, status.state, status.pid, status.run, now};
   if (peers_.size() > max_peers)
     peers_.erase(std::min_element(peers_.begin(), peers_.end(), [](const auto& x, const auto& y) {
       return x.second.heard < y.second.heard;
     }));
+  return is_new;
 }
 
 bool Peers::alive(const std::string& role, Time now, std::chrono::nanoseconds timeout) const {

@@ -19,7 +19,7 @@ constexpr int acknowledge_every = 16;
 /// An acknowledgement that nobody can be waiting for yet is put off this long: more may come.
 constexpr auto acknowledge_delay = 300us;
 /// Messages of one channel that may wait: more than any player has on the way.
-constexpr int queue_capacity = 4096;
+constexpr int queue_capacity = 1024;
 constexpr std::int64_t silence_us = 500'000;
 /// What is to be sent again comes within this time.
 constexpr std::int64_t patience_us = 1'000'000;
@@ -211,8 +211,7 @@ void Pairing::obey(Verb verb, const command_t& command) {
   bool any = false;
   for (std::uint16_t i = 0; i < channels_.size(); ++i) {
     const PairSession& pair = accumulation_.pairs()[i];
-    if (!means(command, pair.config().a, pair.config().b)) continue;
-    if (verb == Verb::reset && command.session != 0 && command.session != pair.session()) continue;
+    if (!means(command, verb, pair.config().a, pair.config().b, pair.session())) continue;
     any = true;
     feed({verb == Verb::reset   ? Input::Kind::new_session
           : verb == Verb::pause ? Input::Kind::pause
@@ -220,7 +219,7 @@ void Pairing::obey(Verb verb, const command_t& command) {
           i});
   }
   if (!any) {
-    heartbeat_.reject("command for another session or pair");
+    heartbeat_.reject(not_meant);
     return;
   }
   ++heartbeat_.counter("commands");

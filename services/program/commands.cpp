@@ -39,9 +39,11 @@ void hear_commands(bus::Loop& loop, bus::Heartbeat& heartbeat,
   });
 }
 
-bool means(const command_t& command, const std::string& sensor_a, const std::string& sensor_b) {
-  return (command.sensor_a.empty() && command.sensor_b.empty()) ||
-         (command.sensor_a == sensor_a && command.sensor_b == sensor_b);
+bool means(const command_t& command, Verb verb, const std::string& sensor_a, const std::string& sensor_b,
+           std::int64_t session) {
+  const bool pair = (command.sensor_a.empty() && command.sensor_b.empty()) ||
+                    (command.sensor_a == sensor_a && command.sensor_b == sensor_b);
+  return pair && (verb != Verb::reset || command.session == 0 || command.session == session);
 }
 
 }  // namespace egocal::services

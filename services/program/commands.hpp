@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -16,7 +17,12 @@ enum class Verb { reset, pause, resume };
 void hear_commands(bus::Loop& loop, bus::Heartbeat& heartbeat,
                    std::function<void(Verb, const command_t&)> callback);
 
-/// Whether a command means this pair: both names, or none for all pairs.
-bool means(const command_t& command, const std::string& sensor_a, const std::string& sensor_b);
+/// Whether a command means this pair: both names, or none for all pairs; and of a reset, whether it means
+/// this session.
+bool means(const command_t& command, Verb verb, const std::string& sensor_a, const std::string& sensor_b,
+           std::int64_t session);
+
+/// Why a command that means no pair at all is rejected.
+inline const std::string not_meant = "command for another session or pair";
 
 }  // namespace egocal::services

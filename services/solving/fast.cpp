@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solving/fast.hpp"
 
+#include <algorithm>
+
 #include "program/commands.hpp"
 
 namespace egocal::services {
@@ -18,13 +20,7 @@ FastSolver::FastSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
         bus::calibration_channel(config.a, config.b),
         [this, pair](const calibration_t& message, const bus::Arrival&) { hear(*pair, message); });
   }
-  hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t&) {
-    if (verb == Verb::reset)
-      for (const auto& pair : pairs_) pair->state = {};
-    else
-      paused_ = verb == Verb::pause;
-    report();
-  });
+  hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
   heartbeat_.before_publish([this] {
     std::int64_t skipped = 0;
     for (const auto& pair : pairs_) skipped += pair->inbox.skipped();
@@ -35,9 +31,25 @@ FastSolver::FastSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
   report();
 }
 
+void FastSolver::obey(Verb verb, const command_t& command) {
+  bool any = false;
+  for (const auto& pair : pairs_) {
+    if (!means(command, verb, pair->inbox.sensor_a(), pair->inbox.sensor_b(), pair->session)) continue;
+    any = true;
+    if (verb == Verb::reset)
+      pair->state = {};
+    else
+      pair->paused = verb == Verb::pause;
+  }
+  if (!any) heartbeat_.reject(not_meant);
+  report();
+}
+
 void FastSolver::report() {
   const bool fallback_missing = !heartbeat_.alive("global");
-  heartbeat_.set_state(paused_ ? "paused" : "running");
+  const bool paused =
+      std::all_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair->paused; });
+  heartbeat_.set_state(paused ? "paused" : "running");
   if (const auto elder = heartbeat_.elder_namesake())
     heartbeat_.set_error("a second process has this name: pid " + std::to_string(elder->pid) + " on " +
                          elder->host);
@@ -52,7 +64,7 @@ void FastSolver::answer_newest() {
 
 void FastSolver::answer(Pair& pair, const ReceivedProblem& received) {
   const problem_t& message = received.message;
-  if (paused_ || pair.outbox.repeat(message)) return;
+  if (pair.paused || pair.outbox.repeat(message)) return;
   if (message.session != pair.session || message.utime < pair.utime) pair.state = {};
   pair.session = message.session;
   pair.utime = message.utime;
@@ -69,10 +81,13 @@ void FastSolver::answer(Pair& pair, const ReceivedProblem& received) {
 }
 
 void FastSolver::hear(Pair& pair, const calibration_t& message) {
-  // the global answer that was asked for is where the next step starts
-  if (message.solver == heartbeat_.identity().name || message.session != pair.session ||
-      message.status != 0 || message.utime < pair.utime)
+  if (message.solver == heartbeat_.identity().name || pair.session < 0) return;
+  if (message.session != pair.session) {
+    heartbeat_.reject("answer of another session");
     return;
+  }
+  // the global answer that was asked for is where the next step starts
+  if (message.status != 0 || message.utime < pair.utime) return;
   const bus::Checked<Answer> answer = bus::to_answer(message);
   if (!answer)
     heartbeat_.reject(answer.reason);

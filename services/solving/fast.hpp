@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "egocal/online/calibrate.hpp"
+#include "program/commands.hpp"
 #include "solving/problems.hpp"
 
 namespace egocal::services {
@@ -28,18 +29,19 @@ class FastSolver {
     std::int64_t session = -1;
     std::int64_t utime = 0;
     std::int64_t seq = -1;
+    bool paused = false;
   };
 
   void answer_newest();
   void answer(Pair& pair, const ReceivedProblem& received);
   void hear(Pair& pair, const calibration_t& message);
+  void obey(Verb verb, const command_t& command);
   void report();
 
   bus::Loop& loop_;
   bus::Heartbeat& heartbeat_;
   OnlineOptions options_;
   std::vector<std::unique_ptr<Pair>> pairs_;
-  bool paused_ = false;
 };
 
 }  // namespace egocal::services

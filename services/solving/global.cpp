@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solving/global.hpp"
 
+#include <algorithm>
+
 #include "program/commands.hpp"
 
 namespace egocal::services {
@@ -16,11 +18,7 @@ GlobalSolver::GlobalSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus
         bus::calibration_channel(config.a, config.b),
         [this, pair](const calibration_t& message, const bus::Arrival&) { hear(*pair, message); });
   }
-  hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t&) {
-    if (verb == Verb::reset) return;  // nothing is remembered from problem to problem
-    paused_ = verb == Verb::pause;
-    report();
-  });
+  hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
   heartbeat_.before_publish([this] {
     std::int64_t skipped = 0;
     for (const auto& pair : pairs_) skipped += pair->inbox.skipped();
@@ -34,8 +32,22 @@ GlobalSolver::GlobalSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus
   report();
 }
 
+void GlobalSolver::obey(Verb verb, const command_t& command) {
+  bool any = false;
+  for (const auto& pair : pairs_) {
+    if (!means(command, verb, pair->inbox.sensor_a(), pair->inbox.sensor_b(), pair->session)) continue;
+    any = true;
+    // nothing to reset: nothing is remembered from problem to problem
+    if (verb != Verb::reset) pair->paused = verb == Verb::pause;
+  }
+  if (!any) heartbeat_.reject(not_meant);
+  report();
+}
+
 void GlobalSolver::report() {
-  heartbeat_.set_state(paused_ ? "paused" : always_ || !heartbeat_.alive("fast") ? "running" : "waiting");
+  const bool paused =
+      std::all_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair->paused; });
+  heartbeat_.set_state(paused ? "paused" : always_ || !heartbeat_.alive("fast") ? "running" : "waiting");
   if (const auto elder = heartbeat_.elder_namesake())
     heartbeat_.set_error("a second process has this name: pid " + std::to_string(elder->pid) + " on " +
                          elder->host);
@@ -48,8 +60,9 @@ void GlobalSolver::answer_newest() {
   const bool steps_in = always_ || !heartbeat_.alive("fast");
   for (const auto& pair : pairs_) {
     if (std::optional<ReceivedProblem> received = pair->inbox.take()) pair->unanswered = std::move(received);
-    if (!pair->unanswered || paused_ || !(steps_in || pair->asked)) continue;
+    if (!pair->unanswered || pair->paused || !(steps_in || pair->asked)) continue;
     const ReceivedProblem received = *std::exchange(pair->unanswered, std::nullopt);
+    pair->session = received.message.session;
     if (!pair->outbox.repeat(received.message))
       pair->outbox.send(solve(received.problem, method_, std::nullopt, &monotonic_ns), received.message,
                         false);

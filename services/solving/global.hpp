@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "program/commands.hpp"
 #include "solving/problems.hpp"
 
 namespace egocal::services {
@@ -22,11 +23,14 @@ class GlobalSolver {
     ProblemInbox inbox;
     AnswerOutbox outbox;
     std::optional<ReceivedProblem> unanswered;
+    std::int64_t session = -1;  // of the newest problem
+    bool paused = false;
     bool asked = false;  // by the newest answer of a fast process
   };
 
   void answer_newest();
   void hear(Pair& pair, const calibration_t& message);
+  void obey(Verb verb, const command_t& command);
   void report();
 
   bus::Loop& loop_;
@@ -34,7 +38,6 @@ class GlobalSolver {
   Method method_;
   bool always_;
   std::vector<std::unique_ptr<Pair>> pairs_;
-  bool paused_ = false;
 };
 
 }  // namespace egocal::services

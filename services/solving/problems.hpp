@@ -28,6 +28,8 @@ class ProblemInbox {
 
   /// The newest problem since the last call, if one came that stands the checks. Counts the others.
   std::optional<ReceivedProblem> take();
+  const std::string& sensor_a() const { return sensor_a_; }
+  const std::string& sensor_b() const { return sensor_b_; }
   /// Newer ones that made older ones superfluous before they were looked at.
   std::int64_t skipped() const { return newest_.skipped(); }
 

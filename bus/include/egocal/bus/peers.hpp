@@ -25,7 +25,8 @@ struct Peer {
 class Peers {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  void hear(const status_t& status, Time now);
+  /// True: not heard before.
+  bool hear(const status_t& status, Time now);
 
   /// Some process of this role is running and was heard within the timeout.
   bool alive(const std::string& role, Time now, std::chrono::nanoseconds timeout) const;
