@@ -109,15 +109,16 @@ TEST_F(Processes, EgocalPlayerSendsAgainWhatAKilledPairingMissed) {
   ASSERT_TRUE(until([&] { return statuses["egocal-player"].state == "ended"; }, 30s));
   EXPECT_EQ(replay.wait(5s), 0);
   ASSERT_TRUE(problem.has_value());
-  // the new process has everything from the first message on that the old one had not acknowledged: one
-  // session, no hole
+  // The new process begins with what the old one had not acknowledged: one session, no hole. (Without a state
+  // file its two streams may begin a few messages apart: what came before the player knew of it.)
   const std::int64_t first = problem->session;
   const auto begin = std::find_if(trajectories[0].begin(), trajectories[0].end(),
                                   [&](const StampedPose& pose) { return pose.time_us == first; });
   ASSERT_NE(begin, trajectories[0].end());
-  const auto matched = std::distance(begin, trajectories[0].end()) - 1;
-  EXPECT_TRUE(until([&] { return problem->matched == matched; }, 5s))
-      << problem->matched << " of " << matched;
+  const auto most = std::distance(begin, trajectories[0].end()) - 1;
+  EXPECT_TRUE(until([&] { return problem->matched <= most && problem->matched > most - 32; }, 5s))
+      << problem->matched << " of " << most;
+  EXPECT_EQ(counter("egocal-pairing", "lost"), 0);
   EXPECT_GT(counter("egocal-player", "sent again"), 0);
 }
 
