@@ -25,6 +25,8 @@ constexpr std::int64_t silence_us = 500'000;
 constexpr std::int64_t patience_us = 1'000'000;
 /// Problems of one pair are no closer than this: under a flood most would be superfluous.
 constexpr std::int64_t problem_distance_us = 2'000;
+/// A disk that is full is not tried more often.
+constexpr std::int64_t save_retry_us = 1'000'000;
 constexpr std::size_t max_known_runs = 1024;
 
 }  // namespace
@@ -75,7 +77,7 @@ void Pairing::feed(const Input& input) {
 }
 
 void Pairing::save() {
-  if (!saved_) return;
+  if (!saved_ || (!save_error_.empty() && bus::mono_us() < save_again_mono_us_)) return;
   try {
     saved_->save(accumulation_);
     save_error_.clear();
@@ -83,6 +85,7 @@ void Pairing::save() {
     // better to go on without than to stand still; every attempt is a whole snapshot from now on
     if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", error.what());
     save_error_ = error.what();
+    save_again_mono_us_ = bus::mono_us() + save_retry_us;
   }
 }
 

@@ -67,6 +67,7 @@ class Pairing {
   std::int64_t settle_until_mono_us_ = 0;
   std::int64_t sent_ = 0;  // problems
   std::string save_error_;
+  std::int64_t save_again_mono_us_ = 0;
   int unacknowledged_ = 0;
   bool patient_ = false;
   bool paused_ = false;
