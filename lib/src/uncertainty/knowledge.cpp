@@ -93,6 +93,36 @@ std::string spatial_hint(int hidden_translations, bool rotation_hidden,
   return "";
 }
 
+/// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen (all
+/// six of them as a rule: sizes that the compiler knows are twice as fast).
+template <int shown>
+Vector6d spatial_variance(const Problem& problem, const Statistics& all, double length,
+                          const DualQuaternion& q, const Matrix86d& T,
+                          const Eigen::Matrix<double, 6, shown, 0, 6, 6>& shown_vectors) {
+  using Tangent = Eigen::Matrix<double, 8, shown, 0, 8, 6>;
+  using Small = Eigen::Matrix<double, shown, shown, 0, 6, 6>;
+  using SmallVector = Eigen::Matrix<double, shown, 1, 0, 6, 1>;
+  const Tangent tangent = T.lazyProduct(shown_vectors);
+  const Vector8d v = q.vec();
+  Jackknife jackknife(static_cast<double>(all.count));
+  for (const Statistics& block : problem.blocks) {
+    Statistics rest = all;
+    rest.dual_rows -= block.dual_rows;
+    rest.weight -= block.weight;
+    rest.count -= block.count;
+    const Matrix8d Q_rest = detail::in_units_of(length, cost_matrix(rest, problem.balance));
+    const Matrix8d Z = lagrangian_matrix(Q_rest, least_squares_multipliers(Q_rest, q));
+    const Tangent Z_tangent = Z.lazyProduct(tangent);
+    const Small curvature = tangent.transpose().lazyProduct(Z_tangent);
+    const SmallVector slope = Z_tangent.transpose() * v;
+    const Eigen::LDLT<Small> factor(curvature);
+    Vector6d step = Vector6d::Constant(infinity);
+    if (factor.info() == Eigen::Success && factor.isPositive()) step = -shown_vectors * factor.solve(slope);
+    jackknife.leave_out(static_cast<double>(block.count), step);
+  }
+  return jackknife.variance();
+}
+
 Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {
   Knowledge result;
   result.stddev.fill(infinity);
@@ -134,30 +164,9 @@ Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, co
 
   const int shown = 6 - hidden;
   if (shown == 0 || problem.blocks.size() < least_blocks) return result;
-  // Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
-  using Basis = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-  using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
-  const Basis shown_vectors = seen.vectors.rightCols(shown);
-  const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6> tangent = T * shown_vectors;
-  const Vector8d v = q.vec();
-  Jackknife jackknife(static_cast<double>(all.count));
-  for (const Statistics& block : problem.blocks) {
-    Statistics rest = all;
-    rest.dual_rows -= block.dual_rows;
-    rest.weight -= block.weight;
-    rest.count -= block.count;
-    const Matrix8d Q_rest = detail::in_units_of(length, cost_matrix(rest, problem.balance));
-    const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6> Z_tangent =
-        lagrangian_matrix(Q_rest, least_squares_multipliers(Q_rest, q)) * tangent;
-    const Small curvature = tangent.transpose() * Z_tangent;
-    const SmallVector slope = Z_tangent.transpose() * v;
-    const Eigen::LDLT<Small> factor(curvature);
-    Vector6d step = Vector6d::Constant(infinity);
-    if (factor.info() == Eigen::Success && factor.isPositive()) step = -shown_vectors * factor.solve(slope);
-    jackknife.leave_out(static_cast<double>(block.count), step);
-  }
-  const Vector6d variance = jackknife.variance();
+  const Vector6d variance = shown == 6 ? spatial_variance<6>(problem, all, length, q, T, seen.vectors)
+                                       : spatial_variance<Eigen::Dynamic>(problem, all, length, q, T,
+                                                                          seen.vectors.rightCols(shown));
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
