@@ -176,17 +176,21 @@ int latency(const Options& options) {
 }
 
 std::int64_t lost_and_matched(const std::string& url, const std::string& b, std::int64_t expected,
-                              std::int64_t& lost) {
+                              std::int64_t& lost, std::int64_t& again) {
   bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
   std::int64_t matched = -1;
   lost = -1;
+  again = 0;
   loop.subscribe<problem_t>(
       bus::problem_channel("s0", b),
       [&](const problem_t& problem, const bus::Arrival&) { matched = problem.matched; });
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
     if (status.role != "pairing") return;
     for (const counter_t& counter : status.counters)
-      if (counter.name == "lost") lost = counter.value;
+      if (counter.name == "lost")
+        lost = counter.value;
+      else if (counter.name == "rejected: duplicate")
+        again = counter.value;
   });
   const auto end = Clock::now() + 10s;
   while (Clock::now() < end && (lost < 0 || matched < expected)) loop.run_once(10ms);
@@ -211,17 +215,18 @@ int replay(const Options& options) {
     setting.start_all(options);
     std::this_thread::sleep_for(300ms);
     const auto begin = Clock::now();
-    ChildProcess player({bin + "/egocal-player", log, "--lcm-url", setting.url, "--speed", "0"});
+    ChildProcess player({bin + "/egocal-player", log, "--lcm-url", setting.url, "--speed", "0"},
+                        setting.folder + "/player.out");
     const int result = player.wait(600s);
     const std::chrono::duration<double> took = Clock::now() - begin;
-    std::int64_t lost = 0;
-    const std::int64_t matched = lost_and_matched(setting.url, "s1", options.motions, lost);
+    std::int64_t lost = 0, again = 0;
+    const std::int64_t matched = lost_and_matched(setting.url, "s1", options.motions, lost, again);
     const double rate = static_cast<double>(options.motions) / took.count();
     std::printf(
-        "%lld motion pairs in %.2f s: %.0f a second; player's exit code %d, lost %lld, in the statistics "
-        "%lld\n",
+        "%lld motion pairs in %.2f s: %.0f a second; player's exit code %d, lost %lld, twice %lld, in the "
+        "statistics %lld\n",
         static_cast<long long>(options.motions), took.count(), rate, result, static_cast<long long>(lost),
-        static_cast<long long>(matched));
+        static_cast<long long>(again), static_cast<long long>(matched));
     for (const auto& [name, process] : setting.processes)
       std::printf("  %s: %.2f s of a processor\n", name.c_str(), processor_seconds(process.pid()));
     best = std::max(best, rate);
