@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/log_file.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -15,10 +19,11 @@ namespace {
 // both, all big endian.
 constexpr std::uint32_t sync_word = 0xEDA1DA01;
 constexpr std::size_t header_size = 28;
-constexpr std::int32_t longest_channel = 256;
+constexpr std::int32_t longest_channel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr std::int32_t largest_data = 64 << 20;
-
-using Header = std::array<unsigned char, header_size>;
+constexpr std::size_t window_size = 1 << 16;
+/// A damaged log may hold any number of names.
+constexpr std::size_t most_channels = 1000;
 
 std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
   std::uint64_t value = 0;
@@ -30,40 +35,56 @@ void put(std::vector<unsigned char>& out, std::uint64_t value, std::size_t count
   for (std::size_t i = count; i > 0; --i) out.push_back(static_cast<unsigned char>(value >> (8 * (i - 1))));
 }
 
-struct Fields {
-  std::int64_t number, time_us;
-  std::int32_t channel_size, data_size;
-  bool plausible;
-};
-
-Fields fields_of(const Header& header) {
-  Fields fields{static_cast<std::int64_t>(big_endian(&header[4], 8)),
-                static_cast<std::int64_t>(big_endian(&header[12], 8)),
-                static_cast<std::int32_t>(big_endian(&header[20], 4)),
-                static_cast<std::int32_t>(big_endian(&header[24], 4)), false};
-  fields.plausible = big_endian(header.data(), 4) == sync_word && fields.channel_size > 0 &&
-                     fields.channel_size <= longest_channel && fields.data_size >= 0 &&
-                     fields.data_size <= largest_data;
-  return fields;
-}
-
-/// The header of an event inside of another one's data.
-bool holds_event(const std::vector<std::byte>& data) {
-  for (std::size_t i = 0; i + header_size <= data.size(); ++i) {
-    Header header;
-    std::memcpy(header.data(), &data[i], header_size);
-    if (fields_of(header).plausible) return true;
-  }
-  return false;
+/// Damaged numbers may be the largest there are.
+bool follows(std::int64_t number, std::int64_t before) {
+  return static_cast<std::uint64_t>(number) == static_cast<std::uint64_t>(before) + 1;
 }
 
 }  // namespace
 
+bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
+  bool in_order = follows(number, last_);
+  if (number == 0 && has_zero_) {  // another log begins, appended to the one before
+    EventNumbers another;
+    another.before_ = missing();
+    *this = another;
+    in_order = true;
+  }
+  // Two numbers in a row bear each other out. One that comes after damaged bytes can be believed as far as
+  // these can have held the events in between; one that stands alone is damaged itself.
+  const auto most_between = static_cast<std::int64_t>(damaged_bytes / (header_size + 1)) + 1;
+  const bool close = damaged_bytes > 0 && last_ >= -1 && number > last_ && number - last_ - 1 <= most_between;
+  if (number >= 0 && number < INT64_MAX && (in_order || close)) top_ = std::max(top_, number + 1);
+  has_zero_ = has_zero_ || number == 0;
+  last_ = number;
+  ++count_;
+  return !in_order && damaged_bytes == 0;
+}
+
+void EventNumbers::cut_off() {
+  // one at least has begun there, unless that place in the count is known to be missing already
+  if (follows(top_, last_)) ++top_;
+}
+
+std::uint64_t EventNumbers::missing() const {
+  return before_ + static_cast<std::uint64_t>(std::max<std::int64_t>(0, top_ - count_));
+}
+
+struct LogReader::Place {
+  std::uint64_t offset;
+  std::int64_t number, time_us;
+  std::int32_t channel_size, data_size;
+
+  std::uint64_t data() const { return offset + header_size + static_cast<std::uint64_t>(channel_size); }
+  std::uint64_t end() const { return data() + static_cast<std::uint64_t>(data_size); }
+};
+
 LogReader::LogReader(const std::string& file)
     : file_(file), stream_(std::fopen(file.c_str(), "rb"), std::fclose) {
   if (!stream_) throw error_at(file, 0, "", "cannot be opened for reading");
-  if (fseeko(stream_.get(), 0, SEEK_END) != 0) throw error_at(file, 0, "", "cannot be read as a log");
-  size_ = static_cast<std::uint64_t>(ftello(stream_.get()));
+  const off_t end = fseeko(stream_.get(), 0, SEEK_END) == 0 ? ftello(stream_.get()) : -1;
+  if (end < 0) throw error_at(file, 0, "", "cannot be read as a log");
+  size_ = static_cast<std::uint64_t>(end);
   rewind();
   if (!next()) throw error_at(file, 0, "", "is not an LCM log: there is no event in it");
   rewind();
@@ -71,112 +92,139 @@ LogReader::LogReader(const std::string& file)
 
 void LogReader::rewind() {
   position_ = 0;
-  last_number_.reset();
+  usual_size_.clear();
+  numbers_ = {};
   damage_ = {};
-  std::fseek(stream_.get(), 0, SEEK_SET);
 }
 
-/// Is there the header of an event, and where does the event end?
-bool LogReader::header_at(std::uint64_t offset, std::uint64_t& event_size) const {
-  Header header;
-  if (offset + header_size > size_ || fseeko(stream_.get(), static_cast<off_t>(offset), SEEK_SET) != 0 ||
-      std::fread(header.data(), 1, header_size, stream_.get()) != header_size)
-    return false;
-  const Fields fields = fields_of(header);
-  event_size = header_size + static_cast<std::uint64_t>(fields.channel_size) +
-               static_cast<std::uint64_t>(fields.data_size);
-  return fields.plausible;
-}
-
-LogReader::Parse LogReader::parse(LogEvent& event) {
-  if (position_ >= size_) return Parse::end;
-  if (fseeko(stream_.get(), static_cast<off_t>(position_), SEEK_SET) != 0) return Parse::end;
-  Header header;
-  if (size_ - position_ < header_size ||
-      std::fread(header.data(), 1, header_size, stream_.get()) != header_size)
-    return Parse::damaged;
-  const Fields fields = fields_of(header);
-  if (!fields.plausible) return Parse::damaged;
-  const std::uint64_t end = position_ + header_size + static_cast<std::uint64_t>(fields.channel_size) +
-                            static_cast<std::uint64_t>(fields.data_size);
-  if (end > size_) return Parse::damaged;
-  event.number = fields.number;
-  event.time_us = fields.time_us;
-  event.channel.resize(static_cast<std::size_t>(fields.channel_size));
-  event.data.resize(static_cast<std::size_t>(fields.data_size));
-  if (std::fread(event.channel.data(), 1, event.channel.size(), stream_.get()) != event.channel.size() ||
-      std::fread(event.data.data(), 1, event.data.size(), stream_.get()) != event.data.size())
-    return Parse::damaged;
-  // A length that was damaged points into the middle of something: after an event comes another one, or the
-  // end.
-  std::uint64_t next_size = 0;
-  if (end < size_ && !header_at(end, next_size)) {
-    if (holds_event(event.data)) return Parse::damaged;
-  }
-  position_ = end;
-  return Parse::event;
-}
-
-/// From the byte after position_ to the next plausible header.
-bool LogReader::skip_to_sync() {
-  constexpr std::size_t chunk = 1 << 16;
-  std::vector<unsigned char> buffer(chunk);
-  std::uint64_t from = position_ + 1;
-  while (from + header_size <= size_) {
-    if (fseeko(stream_.get(), static_cast<off_t>(from), SEEK_SET) != 0) return false;
-    const std::size_t got = std::fread(buffer.data(), 1, chunk, stream_.get());
-    if (got < 4) return false;
-    for (std::size_t i = 0; i + 4 <= got; ++i) {
-      if (big_endian(&buffer[i], 4) != sync_word) continue;
-      std::uint64_t event_size = 0;
-      if (header_at(from + i, event_size) && from + i + event_size <= size_) {
-        position_ = from + i;
-        return true;
-      }
+/// All of these bytes of the file.
+bool LogReader::read_at(std::uint64_t offset, void* to, std::size_t size) const {
+  const auto read = [this](std::uint64_t from, void* buffer, std::size_t most) {
+    std::size_t got = 0;
+    while (got < most) {
+      const ssize_t n = pread(fileno(stream_.get()), static_cast<char*>(buffer) + got, most - got,
+                              static_cast<off_t>(from + got));
+      if (n <= 0) break;
+      got += static_cast<std::size_t>(n);
     }
-    from += got - 3;
+    return got;
+  };
+  if (offset > size_ || size > size_ - offset) return false;
+  if (size == 0) return true;
+  if (size > window_size) return read(offset, to, size) == size;
+  if (offset < window_at_ || offset + size > window_at_ + window_.size()) {
+    window_.resize(std::min<std::uint64_t>(window_size, size_ - offset));
+    window_at_ = offset;
+    window_.resize(read(offset, window_.data(), window_.size()));
+    if (size > window_.size()) return false;
   }
-  return false;
+  std::memcpy(to, &window_[offset - window_at_], size);
+  return true;
+}
+
+std::optional<LogReader::Place> LogReader::header_at(std::uint64_t offset) const {
+  std::array<unsigned char, header_size> header;
+  if (!read_at(offset, header.data(), header_size) || big_endian(header.data(), 4) != sync_word)
+    return std::nullopt;
+  const Place place{offset, static_cast<std::int64_t>(big_endian(&header[4], 8)),
+                    static_cast<std::int64_t>(big_endian(&header[12], 8)),
+                    static_cast<std::int32_t>(big_endian(&header[20], 4)),
+                    static_cast<std::int32_t>(big_endian(&header[24], 4))};
+  if (place.channel_size < 1 || place.channel_size > longest_channel || place.data_size < 0 ||
+      place.data_size > largest_data)
+    return std::nullopt;
+  return place;
+}
+
+/// The first header that begins in this part of the file.
+std::optional<LogReader::Place> LogReader::find_header(std::uint64_t from, std::uint64_t to) const {
+  std::array<unsigned char, 4096> chunk;
+  while (from < to) {
+    if (std::optional<Place> place = header_at(from)) return place;
+    ++from;
+    // on to the next byte that a sync word may begin with
+    while (from < to) {
+      const std::size_t size = std::min<std::uint64_t>(chunk.size(), to - from);
+      if (!read_at(from, chunk.data(), size)) return std::nullopt;
+      const void* found = std::memchr(chunk.data(), sync_word >> 24, size);
+      if (found) {
+        from += static_cast<std::uint64_t>(static_cast<const unsigned char*>(found) - chunk.data());
+        break;
+      }
+      from += size;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string LogReader::channel_of(const Place& place) const {
+  std::string channel(static_cast<std::size_t>(place.channel_size), '\0');
+  if (!read_at(place.offset + header_size, channel.data(), channel.size())) channel.clear();
+  return channel;
+}
+
+/// Whether its lengths, which decide where the next event is looked for, agree with what is around it.
+bool LogReader::believable(const Place& place) const {
+  if (place.end() > size_) return false;
+  const std::string channel = channel_of(place);
+  if (std::any_of(channel.begin(), channel.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    return false;
+  const std::optional<Place> next = header_at(place.end());
+  if (next && follows(next->number, place.number)) return true;
+  // Too long: it would swallow other events. Where another one begins at its end after all, or the file ends
+  // there, only the very next number betrays it: somebody may have sent a log, or a piece of one, as a
+  // message.
+  const bool ends_well = next || place.end() == size_;
+  const std::optional<Place> inner = find_header(place.offset + header_size, place.end());
+  if (inner && (!ends_well || follows(inner->number, place.number))) return false;
+  if (ends_well) return true;
+  // Too short: bytes are left before an event that is the very next one, so they are this one's own. Unless
+  // its channel had such an event before: then they came in between.
+  const std::optional<Place> other = find_header(place.end(), size_);
+  if (!other || !follows(other->number, place.number)) return true;
+  const auto usual = usual_size_.find(channel);
+  return usual != usual_size_.end() && usual->second == place.data_size;
 }
 
 std::optional<LogEvent> LogReader::next() {
-  LogEvent event;
   const std::uint64_t begin = position_;
-  while (true) {
-    switch (parse(event)) {
-      case Parse::end:
-        return std::nullopt;
-      case Parse::event: {
-        const std::uint64_t event_bytes = header_size + event.channel.size() + event.data.size();
-        const std::uint64_t skipped = position_ - event_bytes - begin;
-        if (skipped > 0) {
-          ++damage_.regions;
-          damage_.bytes += skipped;
-        }
-        // numbers that jump far are damaged themselves (or another recording begins); they say nothing of
-        // losses
-        constexpr std::int64_t most_lost = 10'000'000;
-        if (skipped > 0 && last_number_ && event.number > *last_number_ + 1 &&
-            event.number - *last_number_ < most_lost)
-          damage_.lost_events += static_cast<std::uint64_t>(event.number - *last_number_ - 1);
-        last_number_ = event.number;
-        return event;
-      }
-      case Parse::damaged:
-        if (!skip_to_sync()) {
-          damage_.truncated = true;
-          ++damage_.regions;
-          damage_.bytes += size_ - begin;
-          position_ = size_;
-          return std::nullopt;
-        }
-    }
+  std::uint64_t from = begin;
+  while (const std::optional<Place> place = find_header(from, size_)) {
+    from = place->offset + 1;
+    if (!believable(*place)) continue;
+    LogEvent event{place->number, place->time_us, channel_of(*place), {}};
+    event.data.resize(static_cast<std::size_t>(place->data_size));
+    if (!read_at(place->data(), event.data.data(), event.data.size())) break;  // the file has shrunk
+    const std::uint64_t skipped = place->offset - begin;
+    if (skipped > 0) ++damage_.regions;
+    damage_.bytes += skipped;
+    if (numbers_.take(place->number, skipped)) ++damage_.jumps;
+    damage_.lost_events = numbers_.missing();
+    if (usual_size_.size() < most_channels || usual_size_.contains(event.channel))
+      usual_size_[event.channel] = place->data_size;
+    position_ = place->end();
+    return event;
   }
+  if (begin < size_) {
+    ++damage_.regions;
+    damage_.bytes += size_ - begin;
+    damage_.truncated = true;
+    numbers_.cut_off();
+    damage_.lost_events = numbers_.missing();
+    position_ = size_;
+  }
+  return std::nullopt;
 }
 
 LogWriter::LogWriter(const std::string& file)
     : file_(file), stream_(std::fopen((file + ".part").c_str(), "wb"), std::fclose) {
   if (!stream_) throw error_at(file, 0, "", "cannot be written");
+  struct stat there {};
+  if (stat(file.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
+    stream_.reset();
+    std::remove((file + ".part").c_str());
+    throw error_at(file, 0, "", "is there and is not a file that could be replaced");
+  }
 }
 
 LogWriter::~LogWriter() {
@@ -186,6 +234,9 @@ LogWriter::~LogWriter() {
 }
 
 void LogWriter::write(std::int64_t time_us, const std::string& channel, Bytes data) {
+  if (channel.empty() || channel.size() > static_cast<std::size_t>(longest_channel) ||
+      data.size() > static_cast<std::size_t>(largest_data))
+    throw error_at(file_, 0, "", "the event on channel '" + channel + "' is larger than a log can hold");
   std::vector<unsigned char> header;
   header.reserve(header_size + channel.size());
   put(header, sync_word, 4);
@@ -200,8 +251,9 @@ void LogWriter::write(std::int64_t time_us, const std::string& channel, Bytes da
 }
 
 void LogWriter::close() {
-  const bool written = std::fflush(stream_.get()) == 0;
-  stream_.reset();
+  // on the disk before it takes the name: a power cut leaves the old file or the new one
+  const bool flushed = std::fflush(stream_.get()) == 0 && fsync(fileno(stream_.get())) == 0;
+  const bool written = std::fclose(stream_.release()) == 0 && flushed;
   const std::string part = file_ + ".part";
   if (!written || std::rename(part.c_str(), file_.c_str()) != 0) {
     std::remove(part.c_str());

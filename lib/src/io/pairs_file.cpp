@@ -28,8 +28,9 @@ std::vector<MotionPair> read_pairs(const std::string& file) {
     for (int side = 0; side < 2; ++side) {
       const DualQuaternion motion = DualQuaternion::from_vec(q[side]);
       const char* const field = side == 0 ? "a" : "b";
-      if (std::abs(motion.real.norm() - 1) > 0.01)
+      if (!(std::abs(motion.real.norm() - 1) <= 0.01))
         throw error_at(file, line.number, field, "the real part is not of length 1");
+      if (!(motion.dual.norm() <= 1e9)) throw error_at(file, line.number, field, "expected less than 1e9 m");
       if (std::abs(motion.real.dot(motion.dual)) > 0.01 * (1 + motion.dual.norm()))
         throw error_at(file, line.number, field, "real and dual part are not orthogonal: no rigid motion");
       (side == 0 ? pair.a : pair.b) = canonical_sign(normalized(motion));

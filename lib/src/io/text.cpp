@@ -17,6 +17,15 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
+/// What was found in place of something, for one line that can be read.
+std::string quoted(std::string_view text) {
+  constexpr std::size_t most = 40;
+  std::string out = "'" + std::string(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
+  std::replace_if(
+      out.begin(), out.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return out;
+}
+
 bool all_digits(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
@@ -68,12 +77,12 @@ std::vector<std::string_view> fields(std::string_view text, bool commas) {
 double number(const std::string& file, long line, const std::string& field, std::string_view text) {
   double value = 0;
   const char* begin = text.data();
-  if (!text.empty() && text.front() == '+') ++begin;
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++begin;
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw error_at(file, line, field, "expected a number, got '" + std::string(text) + "'");
+    throw error_at(file, line, field, "expected a number, got " + quoted(text));
   if (!std::isfinite(value))
-    throw error_at(file, line, field, "expected a finite number, got '" + std::string(text) + "'");
+    throw error_at(file, line, field, "expected a finite number, got " + quoted(text));
   return value;
 }
 
@@ -87,8 +96,7 @@ std::int64_t time_us(const std::string& file, long line, std::string_view text, 
   if (whole.size() + fraction.size() == 0 || !all_digits(whole) || !all_digits(fraction)) {
     // 1.5e9 and the like: as good as a double is
     const double value = number(file, line, "time", text) * (unit == TimeUnit::seconds ? 1e6 : 1e-3);
-    if (!(std::abs(value) < 9e18))
-      throw error_at(file, line, "time", "out of range: '" + std::string(text) + "'");
+    if (!(std::abs(value) < 9e18)) throw error_at(file, line, "time", "out of range: " + quoted(text));
     return std::llround(value);
   }
   // move the decimal point to microseconds, on the text
@@ -104,7 +112,7 @@ std::int64_t time_us(const std::string& file, long line, std::string_view text, 
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
   if (whole.size() > 0 && (error != std::errc() || value > std::int64_t{9'000'000'000'000'000'000}))
-    throw error_at(file, line, "time", "out of range: '" + std::string(text) + "'");
+    throw error_at(file, line, "time", "out of range: " + quoted(text));
   if (!fraction.empty() && fraction.front() >= '5') ++value;
   return negative ? -value : value;
 }

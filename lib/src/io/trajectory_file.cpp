@@ -18,6 +18,13 @@ using detail::fields;
 using detail::Line;
 using detail::number;
 
+constexpr double largest_distance = 1e9;  // [m]; as on the wire
+
+void require_distance(const std::string& file, long line, const Eigen::Vector3d& t) {
+  if (t.cwiseAbs().maxCoeff() > largest_distance)
+    throw error_at(file, line, "position", "expected less than 1e9 m");
+}
+
 /// x y z and a quaternion, in the order of the columns given.
 DualQuaternion pose_of(const std::string& file, long line, const std::array<double, 3>& t,
                        const Eigen::Vector4d& q) {
@@ -25,8 +32,9 @@ DualQuaternion pose_of(const std::string& file, long line, const std::array<doub
   if (!(norm > 1e-6)) throw error_at(file, line, "quaternion", "is zero");
   if (std::abs(norm - 1) > 0.01)
     throw error_at(file, line, "quaternion", "expected length 1, got " + std::to_string(norm));
-  return to_dual_quaternion(
-      {Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(), Eigen::Vector3d(t[0], t[1], t[2])});
+  const Eigen::Vector3d position(t[0], t[1], t[2]);
+  require_distance(file, line, position);
+  return to_dual_quaternion({Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(), position});
 }
 
 std::vector<double> numbers(const std::string& file, const Line& line,
@@ -70,9 +78,12 @@ DualQuaternion kitti_line(const std::string& file, const Line& line) {
                          {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty", "r31", "r32", "r33", "tz"});
   Eigen::Matrix3d R;
   R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
-  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > 0.01 || R.determinant() < 0)
+  // negated: products of large numbers are not even comparable
+  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= 0.01 && R.determinant() > 0))
     throw error_at(file, line.number, "", "the 3 x 3 part is not a rotation");
-  return to_dual_quaternion({Eigen::Quaterniond(R).normalized(), Eigen::Vector3d(v[3], v[7], v[11])});
+  const Eigen::Vector3d position(v[3], v[7], v[11]);
+  require_distance(file, line.number, position);
+  return to_dual_quaternion({Eigen::Quaterniond(R).normalized(), position});
 }
 
 std::vector<std::int64_t> read_times(const std::string& file) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,13 +27,37 @@ struct LogEvent {
 struct LogDamage {
   std::uint64_t regions = 0;      ///< damaged places that were skipped
   std::uint64_t bytes = 0;        ///< in them
-  std::uint64_t lost_events = 0;  ///< missing numbers between the events that could be read
-  bool truncated = false;         ///< the file ends in the middle of an event
+  std::uint64_t lost_events = 0;  ///< numbers that never came; what is cut off at the end counts as one event
+  std::uint64_t jumps = 0;  ///< numbers out of order where no byte is damaged: blocks cut out or swapped
+  bool truncated = false;   ///< the file ends in the middle of an event
+
+  bool any() const { return regions + lost_events + jumps > 0; }
+};
+
+/// What the numbers of a log's events say. lcm-logger, and whatever writes through liblcm, counts up from 0:
+/// so what is missing can be counted in whatever order the rest comes, and a damaged number is told from a
+/// lost event.
+class EventNumbers {
+ public:
+  /// An event has been read, so many damaged bytes after the one before. True: the number is not the next
+  /// one.
+  bool take(std::int64_t number, std::uint64_t damaged_bytes);
+  /// The file ends with damaged bytes.
+  void cut_off();
+  std::uint64_t missing() const;
+
+ private:
+  bool has_zero_ = false;
+  std::int64_t last_ = -1;    ///< number of the last event
+  std::int64_t top_ = 0;      ///< one more than the highest number that can be believed
+  std::int64_t count_ = 0;    ///< events read
+  std::uint64_t before_ = 0;  ///< missing from the logs before, in a file of several
 };
 
 /// Reads the event logs of lcm-logger. A damaged region costs what it held: the reader goes on at the next
-/// event that makes sense (liblcm's own reader ends there, without a word). Memory is that of one event, and
-/// no length field of a damaged event makes it more than 64 MiB.
+/// event that makes sense (liblcm's own reader ends there, without a word). An event whose lengths lie is
+/// left out; what else is damaged inside of one only its decoder can tell. Memory is that of one event, no
+/// length field of a damaged event makes it more than 64 MiB, and the time is proportional to the file.
 class LogReader {
  public:
   /// Throws Error where the file cannot be opened or is not a log at all (no event in it).
@@ -48,20 +73,25 @@ class LogReader {
   std::uint64_t size() const { return size_; }          ///< of the file [bytes]
 
  private:
-  enum class Parse { event, damaged, end };
-  Parse parse(LogEvent& event);
-  bool skip_to_sync();
-  bool header_at(std::uint64_t offset, std::uint64_t& event_size) const;
+  struct Place;  // the header of an event, and where it stands in the file
+  bool read_at(std::uint64_t offset, void* to, std::size_t size) const;
+  std::optional<Place> header_at(std::uint64_t offset) const;
+  std::optional<Place> find_header(std::uint64_t from, std::uint64_t to) const;
+  bool believable(const Place& place) const;
+  std::string channel_of(const Place& place) const;
 
   std::string file_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_;
+  mutable std::vector<unsigned char> window_;  ///< a piece of the file ...
+  mutable std::uint64_t window_at_ = 0;        ///< ... that begins here
   std::uint64_t position_ = 0, size_ = 0;
-  std::optional<std::int64_t> last_number_;
+  std::map<std::string, std::int32_t> usual_size_;  ///< of the data of each channel's last event
+  EventNumbers numbers_;
   LogDamage damage_;
 };
 
 /// Writes a log that lcm-logplayer plays. The file takes its name when close() is called; without that
-/// nothing remains.
+/// nothing remains. What is there under that name must be a file, or nothing: no device is ever replaced.
 class LogWriter {
  public:
   explicit LogWriter(const std::string& file);  ///< throws Error
@@ -69,6 +99,7 @@ class LogWriter {
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
+  /// Throws Error where the disk is full, or the event is larger than a log can hold (63 characters, 64 MiB).
   void write(std::int64_t time_us, const std::string& channel, Bytes data);
   void close();  ///< throws Error
 

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "try_message.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "egocal/bus/decode.hpp"
+#include "egocal/bus/glue.hpp"
+#include "require.hpp"
+
+namespace {
+
+using namespace egocal;
+using fuzz::require;
+
+bool finite(const DualQuaternion& q) {
+  return q.vec().allFinite();
+}
+
+void enter(const StampedPose& pose) {
+  require(finite(pose.pose), "a pose at the door is finite");
+  require(std::abs(pose.pose.real.norm() - 1) < 1e-9, "its quaternion is of unit length");
+  require(bus::plausible_time(pose.time_us), "its time is one");
+}
+void enter(const odometry_t& message) {
+  if (const auto pose = bus::to_stamped_pose(message)) enter(*pose.value);
+}
+void enter(const bot_core::pose_t& message) {
+  if (const auto pose = bus::to_stamped_pose(message)) enter(*pose.value);
+}
+void enter(const problem_t& message) {
+  const auto problem = bus::to_problem(message);
+  if (!problem) {
+    fuzz::require_one_line(problem.reason);
+    return;
+  }
+  const Problem& p = *problem.value;
+  require(p.blocks.size() == message.blocks.size(), "no block is lost at the door");
+  for (const Statistics& block : p.blocks) {
+    require(block.dual_rows.allFinite(), "statistics at the door are finite");
+    require(block.dual_rows == block.dual_rows.transpose(), "and symmetric");
+    require(std::isfinite(block.weight) && block.weight > 0, "and have a weight");
+  }
+  require(!p.prior || finite(*p.prior), "a prior at the door is finite");
+  // names and counts are the sender's; all the rest must go out as it came in
+  problem_t out = bus::to_message(p);
+  out.sensor_a = message.sensor_a;
+  out.sensor_b = message.sensor_b;
+  const auto again = bus::to_problem(out);
+  require(again && again.value->blocks.size() == p.blocks.size(), "a problem that came in can go out");
+  for (std::size_t i = 0; i < p.blocks.size(); ++i)
+    require(again.value->blocks[i].dual_rows == p.blocks[i].dual_rows, "with the same statistics");
+}
+void enter(const calibration_t& message) {
+  const auto answer = bus::to_answer(message);
+  if (!answer) {
+    fuzz::require_one_line(answer.reason);
+    return;
+  }
+  require(finite(answer.value->T_a_b), "an answer at the door is finite");
+  require(std::isfinite(answer.value->certificate.cost), "and so is its cost");
+  require(answer.value->certificate.gap >= 0, "and its gap is one");
+  fuzz::require(bus::printable(message.solver) == message.solver, "names at the door can be printed");
+}
+void enter(const status_t& message) {
+  const std::string text = bus::printable(message.name + message.last_error);
+  require(text.size() <= 200, "a line for people is cut to length");
+  if (bus::plausible_name(message.name))
+    require(bus::printable(message.name) == message.name, "a plausible name can be printed");
+}
+void enter(const command_t& message) {
+  if (bus::plausible_name(message.to))
+    require(bus::printable(message.to) == message.to, "a plausible name can be printed");
+}
+void enter(const motion_pair_t&) {}
+
+}  // namespace
+
+namespace egocal::fuzz {
+
+template <class Message>
+void try_message(std::span<const std::uint8_t> data) {
+  // a copy without room to spare: a read beyond the end is seen
+  const std::vector<std::byte> bytes(reinterpret_cast<const std::byte*>(data.data()),
+                                     reinterpret_cast<const std::byte*>(data.data()) + data.size());
+  Message message{};
+  const bool decoded = bus::decode(bytes, message);
+  require(decoded == bus::is_a<Message>(bytes), "decode and is_a agree");
+  if (!decoded) return;
+  require(bus::encode(message).size() == bytes.size(), "a message is as long as its bytes");
+  enter(message);
+}
+
+template void try_message<odometry_t>(std::span<const std::uint8_t>);
+template void try_message<bot_core::pose_t>(std::span<const std::uint8_t>);
+template void try_message<motion_pair_t>(std::span<const std::uint8_t>);
+template void try_message<problem_t>(std::span<const std::uint8_t>);
+template void try_message<calibration_t>(std::span<const std::uint8_t>);
+template void try_message<status_t>(std::span<const std::uint8_t>);
+template void try_message<command_t>(std::span<const std::uint8_t>);
+
+}  // namespace egocal::fuzz
