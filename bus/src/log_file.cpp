@@ -52,8 +52,10 @@ bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
   }
   // Two numbers in a row bear each other out. One that comes after damaged bytes can be believed as far as
   // these can have held the events in between; one that stands alone is damaged itself.
-  const auto most_between = static_cast<std::int64_t>(damaged_bytes / (header_size + 1)) + 1;
-  const bool close = damaged_bytes > 0 && last_ >= -1 && number > last_ && number - last_ - 1 <= most_between;
+  const std::uint64_t most_between = damaged_bytes / (header_size + 1) + 1;
+  const bool close =
+      damaged_bytes > 0 && number > last_ &&
+      static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(last_) - 1 <= most_between;
   if (number >= 0 && number < INT64_MAX && (in_order || close)) top_ = std::max(top_, number + 1);
   has_zero_ = has_zero_ || number == 0;
   last_ = number;

@@ -7,8 +7,8 @@
 
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
-#include "in_memory_file.hpp"
 #include "require.hpp"
+#include "support/in_memory_file.hpp"
 
 namespace {
 
@@ -51,7 +51,7 @@ bool holds_sync_word(const bus::LogEvent& event) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const fuzz::InMemoryFile input, mended;
+  static const test::InMemoryFile input, mended;
   input.set(data, size);
   try {
     bus::LogReader log(input.name());

@@ -5,14 +5,14 @@
 
 #include "egocal/error.hpp"
 #include "egocal/io/pairs_file.hpp"
-#include "in_memory_file.hpp"
 #include "require.hpp"
+#include "support/in_memory_file.hpp"
 
 using namespace egocal;
 using fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const fuzz::InMemoryFile input;
+  static const test::InMemoryFile input;
   input.set(data, size);
   try {
     const std::vector<MotionPair> pairs = read_pairs(input.name());

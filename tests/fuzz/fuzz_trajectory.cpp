@@ -6,14 +6,14 @@
 
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
-#include "in_memory_file.hpp"
 #include "require.hpp"
+#include "support/in_memory_file.hpp"
 
 using namespace egocal;
 using fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const fuzz::InMemoryFile poses, times;
+  static const test::InMemoryFile poses, times;
   const std::uint8_t* const zero = std::find(data, data + size, 0);
   poses.set(data, static_cast<std::size_t>(zero - data));
   const bool with_times = zero != data + size;

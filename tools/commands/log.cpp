@@ -117,9 +117,16 @@ Info inspect(const std::string& file) {
 }
 
 std::string damage_text(const bus::LogDamage& damage) {
-  if (damage.regions == 0) return "no damage";
-  return fmt::format("{} damaged regions, {} bytes and at least {} events lost{}", damage.regions,
-                     damage.bytes, damage.lost_events, damage.truncated ? "; cut off at the end" : "");
+  if (!damage.any()) return "no damage";
+  std::string text;
+  if (damage.regions > 0)
+    text = fmt::format("{} damaged regions, {} bytes and at least {} events lost", damage.regions,
+                       damage.bytes, damage.lost_events);
+  if (damage.jumps > 0)
+    text +=
+        fmt::format("{}the numbers of the events jump at {} places{}", text.empty() ? "" : "; ", damage.jumps,
+                    damage.regions > 0 ? "" : fmt::format(", {} events are missing", damage.lost_events));
+  return text + (damage.truncated ? "; cut off at the end" : "");
 }
 
 void print_info(const std::string& file, bool json) {
@@ -138,6 +145,7 @@ void print_info(const std::string& file, bool json) {
     object["damaged_regions"] = info.damage.regions;
     object["lost_bytes"] = info.damage.bytes;
     object["lost_events"] = info.damage.lost_events;
+    object["jumps"] = info.damage.jumps;
     object["truncated"] = info.damage.truncated;
     fmt::print("{}\n", object.dump(2));
     return;
@@ -194,7 +202,7 @@ void add_log(CLI::App& program) {
   check->add_option("LOG", *file)->required();
   check->callback([file] {
     const Info found = inspect(*file);
-    if (found.damage.regions > 0) throw error_at(*file, 0, "", damage_text(found.damage));
+    if (found.damage.any()) throw error_at(*file, 0, "", damage_text(found.damage));
     fmt::print("{}: {}\n", *file, damage_text(found.damage));
   });
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace egocal::fuzz {
+namespace egocal::test {
 
 /// A file that is never on a disk, with a name that anybody in this process can open.
 class InMemoryFile {
@@ -30,4 +30,4 @@ class InMemoryFile {
   int fd_;
 };
 
-}  // namespace egocal::fuzz
+}  // namespace egocal::test

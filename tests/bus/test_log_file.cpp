@@ -1,0 +1,351 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/bus/log_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <lcm/lcm-cpp.hpp>
+#include <new>
+
+#include "egocal/error.hpp"
+#include "support/damaged_log.hpp"
+#include "support/in_memory_file.hpp"
+
+namespace {
+std::size_t largest_allocation = 0;
+void* allocate(std::size_t size) {
+  largest_allocation = std::max(largest_allocation, size);
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return allocate(size);
+}
+void* operator new[](std::size_t size) {
+  return allocate(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace egocal::bus {
+namespace {
+
+using test::Accident;
+using test::Damage;
+using test::DamagedLog;
+using test::SmallLog;
+using ::testing::HasSubstr;
+
+class LogFile : public ::testing::Test {
+ protected:
+  LogFile()
+      : folder(std::filesystem::temp_directory_path() / ("egocal_log_" + std::to_string(getpid()))),
+        file((std::filesystem::create_directories(folder), folder / "damaged.log")),
+        log(test::small_log(folder / "good.log", 30)) {}
+  ~LogFile() override { std::filesystem::remove_all(folder); }
+
+  struct Read {
+    struct Event {
+      std::size_t at;  ///< in the file
+      LogEvent event;
+    };
+    std::vector<Event> events;
+    LogDamage damage;
+  };
+  Read read(const std::string& bytes) const {
+    memory.set(bytes.data(), bytes.size());
+    LogReader reader(memory.name());
+    Read result;
+    while (auto event = reader.next()) {
+      const std::size_t size = test::log_header_size + event->channel.size() + event->data.size();
+      result.events.push_back({reader.position() - size, std::move(*event)});
+    }
+    result.damage = reader.damage();
+    return result;
+  }
+  /// Everything that is whole was read, from where it stands now, and every byte is accounted for.
+  void expect_whole(const DamagedLog& damaged, const Read& read) const {
+    std::size_t next = 0, bytes = 0;
+    for (const Read::Event& event : read.events) {
+      const std::size_t size = test::log_header_size + event.event.channel.size() + event.event.data.size();
+      bytes += size;
+      while (next < damaged.whole.size() && damaged.whole[next].at < event.at) {
+        ADD_FAILURE() << "event " << damaged.whole[next].event << " was not read";
+        ++next;
+      }
+      if (next == damaged.whole.size() || damaged.whole[next].at != event.at) continue;
+      EXPECT_EQ(event.event.number, static_cast<std::int64_t>(damaged.whole[next].event));
+      const std::size_t from = log.begin[damaged.whole[next].event];
+      EXPECT_EQ(size, log.begin[damaged.whole[next].event + 1] - from);
+      const std::size_t data = from + test::log_header_size + event.event.channel.size();
+      EXPECT_EQ(
+          log.bytes.compare(data, event.event.data.size(),
+                            reinterpret_cast<const char*>(event.event.data.data()), event.event.data.size()),
+          0);
+      ++next;
+    }
+    EXPECT_EQ(next, damaged.whole.size()) << "the last ones were not read";
+    EXPECT_EQ(bytes + read.damage.bytes, damaged.bytes.size());
+  }
+  std::string with_field(std::size_t event, std::size_t offset, std::uint32_t value) const {
+    std::string bytes = log.bytes;
+    for (std::size_t k = 0; k < 4; ++k)
+      bytes[log.begin[event] + offset + k] = static_cast<char>(value >> (24 - 8 * k));
+    return bytes;
+  }
+  std::size_t size_of(std::size_t event) const { return log.begin[event + 1] - log.begin[event]; }
+
+  std::filesystem::path folder;
+  std::string file;
+  test::InMemoryFile memory;
+  SmallLog log;
+};
+
+TEST_F(LogFile, AWholeLogHasNoDamageAndLiblcmReadsIt) {
+  const Read result = read(log.bytes);
+  EXPECT_EQ(result.events.size(), log.events());
+  EXPECT_FALSE(result.damage.any());
+  lcm::LogFile theirs(memory.name(), "r");
+  for (const Read::Event& mine : result.events) {
+    const lcm::LogEvent* event = theirs.readNextEvent();
+    ASSERT_NE(event, nullptr);
+    EXPECT_EQ(event->channel, mine.event.channel);
+    EXPECT_EQ(event->timestamp, mine.event.time_us);
+    EXPECT_EQ(event->eventnum, mine.event.number);
+    EXPECT_EQ(static_cast<std::size_t>(event->datalen), mine.event.data.size());
+  }
+  EXPECT_EQ(theirs.readNextEvent(), nullptr);
+}
+
+TEST_F(LogFile, TenThousandDamagedCopiesCostNoMoreThanWhatWasDamaged) {
+  testing::Random random(6);
+  largest_allocation = 0;
+  std::size_t unreadable = 0, wrong_counts = 0, counts = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    const Damage damage = test::all_damages[static_cast<std::size_t>(i) % std::size(test::all_damages)];
+    const DamagedLog damaged = test::damaged(log, damage, random);
+    SCOPED_TRACE("copy " + std::to_string(i) + ", kind " + std::to_string(static_cast<int>(damage)));
+    Read result;
+    try {
+      result = read(damaged.bytes);
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("there is no event in it"));
+      EXPECT_TRUE(damaged.whole.empty());
+      ++unreadable;
+      continue;
+    }
+    expect_whole(damaged, result);
+    // the numbers tell how many are missing, as long as the last one is there to be compared with
+    const bool last_is_whole =
+        std::any_of(damaged.whole.begin(), damaged.whole.end(),
+                    [&](const auto& whole) { return whole.event + 1 == log.events(); });
+    if (last_is_whole) {
+      ++counts;
+      const std::size_t accounted = result.damage.lost_events + result.events.size();
+      EXPECT_LE(accounted, log.events()) << "more lost than there was";
+      if (damage == Damage::zeros || damage == Damage::noise || damage == Damage::lengths) {
+        EXPECT_EQ(accounted, log.events());
+      }
+      wrong_counts += accounted != log.events();
+    }
+    if (HasFailure()) break;
+  }
+  EXPECT_LT(largest_allocation, 1u << 20) << "a length field of a small file asked for much memory";
+  // a single event after a piece that was cut out or swapped: nothing bears its number out
+  std::printf("%zu copies without an event; fewer lost events counted than there were in %zu of %zu\n",
+              unreadable, wrong_counts, counts);
+  EXPECT_LE(wrong_counts, counts / 50);
+}
+
+TEST_F(LogFile, OneLyingLengthCostsOneEvent) {
+  for (std::size_t event = 0; event < log.events(); ++event)
+    for (const std::size_t field : {20, 24})
+      for (const std::uint32_t lie :
+           {0xffffffffu, 0x80000000u, 0x7fffffffu, 0xffff0000u, 1u << 20, 64u << 20}) {
+        const Read result = read(with_field(event, field, lie));
+        EXPECT_EQ(result.events.size(), log.events() - 1);
+        EXPECT_EQ(result.damage.regions, 1u);
+        EXPECT_EQ(result.damage.bytes, size_of(event));
+        EXPECT_EQ(result.damage.lost_events, 1u) << event;
+        EXPECT_EQ(result.damage.truncated, event + 1 == log.events());
+      }
+}
+
+TEST_F(LogFile, ALengthThatIsOffByAnyBitNeverPassesForAnEvent) {
+  for (std::size_t event = 4; event + 1 < log.events(); ++event)
+    for (int bit = 0; bit < 64; ++bit) {
+      Accident accident(log);
+      accident.piece(0, log.bytes.size());
+      accident.flip(log.begin[event] + 20 + static_cast<std::size_t>(bit / 8), bit % 8);
+      const DamagedLog damaged = accident.happened();
+      const Read result = read(damaged.bytes);
+      expect_whole(damaged, result);
+      EXPECT_EQ(result.events.size(), log.events() - 1) << event << " bit " << bit;
+      EXPECT_EQ(result.damage.bytes, size_of(event));
+      EXPECT_EQ(result.damage.lost_events, 1u);
+    }
+}
+
+TEST_F(LogFile, ACutLogSaysSo) {
+  for (std::size_t size = log.begin[1]; size <= log.bytes.size(); ++size) {
+    const Read result = read(log.bytes.substr(0, size));
+    const std::size_t whole = size == log.bytes.size() ? log.events() : log.event_at(size);
+    const std::size_t rest = size - log.begin[whole];
+    EXPECT_EQ(result.events.size(), whole);
+    EXPECT_EQ(result.damage.bytes, rest);
+    EXPECT_EQ(result.damage.truncated, rest > 0);
+    EXPECT_EQ(result.damage.lost_events, rest > 0 ? 1u : 0u);
+  }
+  // and one whose beginning is missing
+  for (const std::size_t missing : {std::size_t{5}, log.begin[7], log.begin[7] + 1}) {
+    const Read result = read(log.bytes.substr(missing));
+    const std::size_t first = missing == log.begin[7] ? 7 : log.event_at(missing) + 1;
+    EXPECT_EQ(result.events.size(), log.events() - first);
+    EXPECT_EQ(result.damage.lost_events, first);
+    EXPECT_TRUE(result.damage.any());
+  }
+}
+
+TEST_F(LogFile, BlocksInTheWrongOrderOrCutOutAreSeenByTheirNumbers) {
+  Accident swapped(log);
+  swapped.piece(0, log.begin[10]);
+  swapped.piece(log.begin[20], log.begin[25]);
+  swapped.piece(log.begin[10], log.begin[20]);
+  swapped.piece(log.begin[25], log.bytes.size());
+  Read result = read(swapped.happened().bytes);
+  EXPECT_EQ(result.events.size(), log.events());
+  EXPECT_EQ(result.damage.lost_events, 0u);
+  EXPECT_EQ(result.damage.bytes, 0u);
+  EXPECT_EQ(result.damage.jumps, 3u);
+
+  Accident cut_out(log);
+  cut_out.piece(0, log.begin[10]);
+  cut_out.piece(log.begin[20], log.bytes.size());
+  result = read(cut_out.happened().bytes);
+  EXPECT_EQ(result.events.size(), log.events() - 10);
+  EXPECT_EQ(result.damage.lost_events, 10u);
+  EXPECT_EQ(result.damage.jumps, 1u);
+
+  // one log after the other is no damage; one with a hole before a whole one is
+  EXPECT_FALSE(read(log.bytes + log.bytes).damage.any());
+  EXPECT_EQ(read(cut_out.happened().bytes + log.bytes).damage.lost_events, 10u);
+}
+
+TEST_F(LogFile, ADamagedNumberIsNoLoss) {
+  for (const std::size_t event : {std::size_t{0}, std::size_t{9}, log.events() - 1})
+    for (const std::uint32_t lie : {0xffffffffu, 0x7fffffffu, 1u, 0u}) {
+      const Read result = read(with_field(event, 4, lie));  // the upper half
+      EXPECT_EQ(result.events.size(), log.events());
+      EXPECT_EQ(result.damage.lost_events, 0u);
+      EXPECT_EQ(result.damage.bytes, 0u);
+    }
+}
+
+TEST_F(LogFile, BytesThatCameInBetweenCostNothingElse) {
+  for (const std::size_t event : {std::size_t{6}, std::size_t{10}, std::size_t{25}}) {
+    const std::string bytes =
+        log.bytes.substr(0, log.begin[event]) + std::string(100, '?') + log.bytes.substr(log.begin[event]);
+    const Read result = read(bytes);
+    EXPECT_EQ(result.events.size(), log.events()) << event;
+    EXPECT_EQ(result.damage.bytes, 100u);
+    EXPECT_EQ(result.damage.lost_events, 0u);
+  }
+}
+
+TEST_F(LogFile, WhatIsNoLogIsRefusedInOneLine) {
+  for (const std::string& bytes : {std::string(), std::string("no log"), std::string(100'000, '\xed'),
+                                   log.bytes.substr(1, 100), std::string(28, '\0')})
+    EXPECT_THROW(read(bytes), Error);
+  EXPECT_THROW(LogReader(folder.string()), Error);
+  EXPECT_THROW(LogReader((folder / "none").string()), Error);
+}
+
+/// Nothing in it but holes: a file of any size that takes no room.
+void extend(const std::string& file, std::uint64_t size) {
+  std::filesystem::resize_file(file, size);
+}
+
+TEST_F(LogFile, NoEventTakesMoreThan64MiB) {
+  constexpr std::uint32_t limit = 64 << 20;
+  for (const std::uint32_t size : {limit, limit + 1, 150u << 20}) {
+    test::write_bytes(file, log.bytes + with_field(5, 24, size).substr(log.begin[5], size_of(5)));
+    extend(file, 200 << 20);
+    largest_allocation = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    LogReader reader(file);
+    std::size_t events = 0;
+    while (reader.next()) ++events;
+    EXPECT_EQ(events, log.events() + (size <= limit ? 1 : 0));
+    EXPECT_LE(largest_allocation, std::size_t{limit} + 4096);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  }
+}
+
+TEST_F(LogFile, AHostileFileTakesNoLongerThanItsSize) {
+  // headers in a row that all claim the 64 MiB after them
+  const std::string header = with_field(0, 24, 64 << 20).substr(0, test::log_header_size + 13);
+  std::string bytes = log.bytes;
+  for (int i = 0; i < 50'000; ++i) bytes += header;
+  test::write_bytes(file, bytes);
+  extend(file, 200 << 20);
+  const auto begin = std::chrono::steady_clock::now();
+  LogReader reader(file);
+  while (reader.next()) {
+  }
+  EXPECT_EQ(reader.position(), reader.size());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
+TEST_F(LogFile, AWriterLeavesTheWholeFileOrNone) {
+  const std::string out = folder / "out.log";
+  { LogWriter(out).write(1, "A", {}); }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_FALSE(std::filesystem::exists(out + ".part"));
+  EXPECT_THROW(LogWriter("/dev/null"), Error);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  EXPECT_FALSE(std::filesystem::exists("/dev/null.part"));
+  EXPECT_THROW(LogWriter(folder.string()), Error);
+  EXPECT_THROW(LogWriter((folder / "no/such.log").string()), Error);
+
+  // a full disk
+  test::write_bytes(out, "the old one");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{10'000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string said;
+  try {
+    LogWriter writer(out);
+    for (int i = 0; i < 1000; ++i) writer.write(i, "A", std::vector<std::byte>(100));
+    writer.close();
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_THAT(said, HasSubstr("out.log: cannot be written"));
+  EXPECT_EQ(test::read_bytes(out), "the old one");
+  EXPECT_FALSE(std::filesystem::exists(out + ".part"));
+}
+
+}  // namespace
+}  // namespace egocal::bus
