@@ -43,7 +43,7 @@ class Table {
       std::string known;
       for (const std::string_view k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
       const long line = static_cast<long>(key.source().begin.line);
-      throw error_at(file_, line, (name_.empty() ? "" : name_ + ".") + std::string(key.str()),
+      throw error_at(file_, line, (name_.empty() ? "" : name_ + ".") + printable(std::string(key.str()), 60),
                      "unknown key; expected one of: " + known);
     }
   }
@@ -69,7 +69,7 @@ class Table {
       std::string known;
       for (const std::string_view c : choices)
         known += (known.empty() ? "\"" : ", \"") + std::string(c) + "\"";
-      fail(key, "expected one of " + known + ", got \"" + value + "\"");
+      fail(key, "expected one of " + known + ", got \"" + printable(value, 60) + "\"");
     }
     return value;
   }
@@ -145,8 +145,8 @@ Sensor read_sensor(const Table& in) {
   Sensor sensor;
   sensor.name = in.sensor_name("name");
   sensor.channel = in.text("channel");
-  if (sensor.channel.empty() || sensor.channel.size() > max_channel_length)
-    in.fail("channel", "expected 1 to 63 characters");
+  if (sensor.channel.empty() || printable(sensor.channel, max_channel_length) != sensor.channel)
+    in.fail("channel", "expected 1 to 63 characters that can be printed");
   if (in.has("type") && in.choice("type", {"egocal.odometry_t", "bot_core.pose_t"}) == "bot_core.pose_t")
     sensor.type = OdometryType::pose;
   if (in.has("plane")) {

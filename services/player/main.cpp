@@ -12,9 +12,9 @@ using namespace egocal;
 
 int main(int argc, char** argv) {
   CLI::App app("Plays an LCM log on the bus, in step with egocal-pairing.", "egocal-player");
-  app.footer(
-      "On a terminal it takes the lines: pause, resume, step, speed S, seek S, quit.\n"
-      "Exit codes: 0 played or ended by a signal, 1 failure, 2 wrong usage.");
+  app.footer(std::string("Keys on a terminal: ") + services::keys_help +
+             ".\nVerbs on EGOCAL_COMMAND: pause, resume, step, \"seek S\", \"speed S\" (docs/processes.md).\n"
+             "Exit codes: 0 played or ended by a signal, 1 failure, 2 wrong usage.");
   services::PlayerOptions options;
   std::string rig_file, url, name = "egocal-player";
   double end = -1;
@@ -28,9 +28,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--loop", options.loop, "from the beginning again at the end, as another session");
   app.add_flag("--paused", options.paused, "wait for resume");
-  app.add_option("--start", options.start, "begin so far into the log [s]")->check(CLI::NonNegativeNumber);
+  app.add_option("--start", options.range.start, "begin so far into the log [s]")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--end", end, "end so far into the log [s]")->check(CLI::NonNegativeNumber);
-  app.add_option("--channel", options.channel, "regular expression: only these channels");
+  app.add_option("--channel", options.range.channel,
+                 "regular expression: only these channels; default: all but EGOCAL_*");
   try {
     app.parse(argc, argv);
     if (!bus::plausible_name(name))
@@ -42,7 +44,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    if (end >= 0) options.end = end;
+    if (end >= 0) options.range.end = end;
     const bus::Rig rig = rig_file.empty() ? bus::Rig{} : bus::read_rig(rig_file);
     bus::Loop loop(url.empty() ? rig.lcm_url : url);
     const std::chrono::duration<double> timeout(rig.heartbeat_timeout);
@@ -50,6 +52,7 @@ int main(int argc, char** argv) {
                              std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));
     services::Player player(loop, heartbeat, options);
     loop.run();
+    player.report();
     heartbeat.end();
     return 0;
   } catch (const std::exception& error) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/error.hpp"
@@ -24,40 +23,47 @@ constexpr std::size_t most_in_flight = 64;
 constexpr int most_at_once = 64;
 constexpr std::int64_t wait_for_pairing_us = 3'000'000;
 constexpr std::int64_t stall_us = 500'000;
-constexpr std::int64_t announced_gap_us = 5'000'000;
+constexpr std::int64_t announced_wait_us = 5'000'000;
+/// Longer than anybody waits; what is beyond does not fit into a timer.
+constexpr double longest_wait_us = 1e15;
+constexpr std::uint64_t most_told = 5;
 
-std::regex compiled(const std::string& expression) {
-  try {
-    return std::regex(expression);
-  } catch (const std::regex_error& error) {
-    throw Error("--channel: '" + expression + "' is not a regular expression: " + error.what());
-  }
+template <class... Arguments>
+std::string text(const char* format, Arguments... arguments) {
+  char buffer[400];
+  std::snprintf(buffer, sizeof buffer, format, arguments...);
+  return buffer;
 }
 
 }  // namespace
 
 Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& options)
-    : loop_(loop), heartbeat_(heartbeat), options_(options), log_(options.log), paused_(options.paused) {
-  if (!options.channel.empty()) channel_ = compiled(options.channel);
+    : loop_(loop),
+      heartbeat_(heartbeat),
+      options_(options),
+      tape_(options.log, options.range),
+      paused_(options.paused) {
   terminal_ = isatty(STDERR_FILENO) != 0;
-  begin_us_ = log_.next()->time_us;
-  log_.rewind();
-  if (!load())
-    throw error_at(options.log, 0, "", "nothing to play: no event of the channels and times asked for");
+  load();
   started_mono_us_ = progress_mono_us_ = bus::mono_us();
-  anchor();
+  anchor(next_->time_us);
   heartbeat_.on_status([this](const status_t& status) { hear(status); });
   heartbeat_.before_publish([this] {
     heartbeat_.counter("out") = static_cast<std::int64_t>(out_);
-    heartbeat_.counter("lost: damaged bytes of the log") = static_cast<std::int64_t>(log_.damage().bytes);
-    heartbeat_.counter("lost: damaged regions of the log") = static_cast<std::int64_t>(log_.damage().regions);
+    heartbeat_.counter("lost: damaged bytes of the log") = static_cast<std::int64_t>(tape_.damage().bytes);
+    heartbeat_.counter("lost: damaged regions of the log") =
+        static_cast<std::int64_t>(tape_.damage().regions);
+    heartbeat_.counter("lost: events of the log") = static_cast<std::int64_t>(tape_.damage().lost_events);
   });
   heartbeat_.set_state(paused_ ? "paused" : "running");
   heartbeat_.publish();
   loop_.subscribe<command_t>(bus::command_channel,
                              [this](const command_t& command, const bus::Arrival&) { hear(command); });
   loop_.every(100ms, [this] { watch_over(); });
-  if (isatty(STDIN_FILENO)) loop_.watch(STDIN_FILENO, [this] { take_line(); });
+  if (terminal_keys_.there()) {
+    say(std::string("keys: ") + keys_help);
+    loop_.watch(STDIN_FILENO, [this] { take_keys(); });
+  }
   play();
 }
 
@@ -69,7 +75,7 @@ void Player::hear(const status_t& status) {
   if (progress.any) {
     progress_mono_us_ = now;
     alone_ = false;
-    if (first) anchor();
+    if (first && next_) anchor(next_->time_us);
   }
   if (progress.send_again) send_again();
   if (progress.any) play();
@@ -77,77 +83,119 @@ void Player::hear(const status_t& status) {
 
 void Player::hear(const command_t& command) {
   if (command.to != "*" && command.to != heartbeat_.identity().name) return;
-  if (command.verb != "pause" && command.verb != "resume") return;
-  paused_ = command.verb == "pause";
+  if (const std::optional<Control> control = control_from_text(command.verb))
+    obey(*control);
+  else if (command.to != "*")
+    heartbeat_.reject("command not understood");
+}
+
+void Player::take_keys() {
+  const std::string typed = terminal_keys_.read();
+  if (typed.empty() && terminal_keys_.ended()) loop_.unwatch(STDIN_FILENO);
+  for (const char byte : typed)
+    if (const std::optional<Control> control = keys_.feed(byte)) obey(*control);
+  show_progress(false);
+}
+
+void Player::obey(const Control& control) {
+  // the clock of the recording stands still at the place where it is now, or goes on from there
+  std::int64_t now = recorded_now();
+  switch (control.verb) {
+    case Control::Verb::pause:
+      paused_ = true;
+      break;
+    case Control::Verb::resume:
+      paused_ = false;
+      break;
+    case Control::Verb::toggle:
+      paused_ = !paused_;
+      break;
+    case Control::Verb::step:
+      step_ = paused_ = true;
+      break;
+    case Control::Verb::speed:
+      options_.speed = control.value;
+      break;
+    case Control::Verb::faster:
+      options_.speed = std::clamp(control.value * options_.speed, 0.0, 1e6);
+      break;
+    case Control::Verb::seek:
+      seek(control.value);
+      now = next_ ? next_->time_us : now;
+      break;
+    case Control::Verb::skip:
+      seek(std::max(0.0, into_log(now) + control.value));
+      now = next_ ? next_->time_us : now;
+      break;
+    case Control::Verb::quit:
+      loop_.stop();
+      return;
+  }
   heartbeat_.set_state(paused_ ? "paused" : "running");
-  anchor();
+  anchor(now);
   play();
 }
 
-/// On a terminal: pause, resume, step, speed S, seek S, quit.
-void Player::take_line() {
-  char buffer[256];
-  const ssize_t got = read(STDIN_FILENO, buffer, sizeof buffer - 1);
-  if (got <= 0) {
-    loop_.unwatch(STDIN_FILENO);
+/// Stays where it is if there is nothing so far into the log.
+void Player::seek(double seconds) {
+  Tape there(options_.log, options_.range);
+  there.rewind(std::max(seconds, options_.range.start));
+  std::optional<bus::LogEvent> event = there.next();
+  if (!event) {
+    say(text("nothing to play at %.1f s and later", seconds));
     return;
   }
-  std::istringstream line(std::string(buffer, static_cast<std::size_t>(got)));
-  std::string verb;
-  double value = -1;
-  line >> verb >> value;
-  if (verb == "quit" || verb == "q") {
-    loop_.stop();
-  } else if (verb == "pause" || verb == "p") {
-    paused_ = !paused_ || verb == "pause";
-  } else if (verb == "resume" || verb == "r") {
-    paused_ = false;
-  } else if (verb == "step" || verb == "s") {
-    step_ = paused_ = true;
-  } else if (verb == "speed" && value >= 0) {
-    options_.speed = value;
-  } else if (verb == "seek" && value >= 0) {
-    seek(value);
-  } else {
-    std::fprintf(stderr, "egocal-player: expected pause, resume, step, speed S, seek S or quit\n");
-  }
-  heartbeat_.set_state(paused_ ? "paused" : "running");
-  anchor();
-  play();
-}
-
-/// The next event that is to be played.
-bool Player::load() {
-  while ((next_ = log_.next())) {
-    const double into = 1e-6 * static_cast<double>(next_->time_us - begin_us_);
-    if (options_.end && into > *options_.end) {
-      next_.reset();
-      return false;
-    }
-    if (into < options_.start || (channel_ && !std::regex_match(next_->channel, *channel_))) continue;
-    return true;
-  }
-  return false;
-}
-
-void Player::seek(double seconds) {
-  const double start = options_.start;
-  options_.start = seconds;
-  log_.rewind();
-  if (!load()) std::fprintf(stderr, "egocal-player: nothing at %.1f s and later\n", seconds);
-  options_.start = start;
+  tape_ = std::move(there);
+  next_ = std::move(event);
+  told_regions_ = tape_.damage().regions;
+  told_jumps_ = tape_.damage().jumps;
   in_flight_.clear();
+  ended_ = false;
+}
+
+void Player::load() {
+  next_ = tape_.next();
+  say_damage();
+}
+
+/// From the start of what is to be played.
+bool Player::begin_again() {
+  if (!options_.loop) return false;
+  report();
+  told_regions_ = told_jumps_ = 0;
+  tape_.rewind(options_.range.start);
+  load();
+  if (next_) anchor(next_->time_us);
+  return next_.has_value();
+}
+
+/// Where in the recording the clock is; at most at the next event, which has not been sent yet.
+std::int64_t Player::recorded_now() const {
+  if (!next_) return played_us_;
+  if (paused_ || options_.speed == 0) return anchor_us_;
+  const double passed = static_cast<double>(bus::mono_us() - anchor_mono_us_) * options_.speed;
+  const double now = static_cast<double>(anchor_us_) + passed;
+  return now < static_cast<double>(next_->time_us) ? std::llround(now) : next_->time_us;
 }
 
 /// Recorded and real time run together from here.
-void Player::anchor() {
-  anchor_us_ = next_ ? next_->time_us : 0;
+void Player::anchor(std::int64_t recorded_us) {
+  anchor_us_ = recorded_us;
   anchor_mono_us_ = bus::mono_us();
 }
 
+double Player::into_log(std::int64_t recorded_us) const {
+  return 1e-6 * (static_cast<double>(recorded_us) - static_cast<double>(tape_.begin_us()));
+}
+
 void Player::send(const bus::LogEvent& event) {
-  loop_.publish_bytes(event.channel, event.data);
-  ++out_;
+  try {
+    loop_.publish_bytes(event.channel, event.data);
+    ++out_;
+  } catch (const Error& error) {
+    // larger than LCM can send, or no network just now: the next one may go
+    if (heartbeat_.counter("lost: could not be sent")++ == 0) say(error.what());
+  }
 }
 
 void Player::send_again() {
@@ -157,50 +205,60 @@ void Player::send_again() {
   }
 }
 
+void Player::wait_until(std::int64_t mono_us) {
+  timer_ =
+      loop_.after(std::chrono::microseconds(std::max<std::int64_t>(0, mono_us - bus::mono_us())), [this] {
+        timer_.reset();
+        play();
+      });
+}
+
 void Player::play() {
   if (timer_) loop_.cancel(*timer_);
   timer_.reset();
   // at any speed but that of the recording it is worth waiting for somebody to keep in step with
-  const bool waits_for_pairing = !in_flight_.heard() && !alone_ && options_.speed != 1;
+  const bool waits_for_pairing = !in_flight_.heard() && !alone_ && options_.speed != 1 && !step_;
   for (int sent = 0; next_ && (!paused_ || step_) && !waits_for_pairing; ++sent) {
     if (in_flight_.count() >= most_in_flight) return;  // goes on with the next acknowledgement
     const double speed = options_.speed == 0 && alone_ ? 1 : options_.speed;
     if (speed > 0 && !step_) {
-      const auto due =
-          anchor_mono_us_ + std::llround(static_cast<double>(next_->time_us - anchor_us_) / speed);
+      const double ahead_us = (static_cast<double>(next_->time_us) - static_cast<double>(anchor_us_)) / speed;
+      const std::int64_t due = anchor_mono_us_ + std::llround(std::min(ahead_us, longest_wait_us));
       const std::int64_t wait = due - bus::mono_us();
       if (wait > 0) {
-        if (wait > announced_gap_us)
-          std::fprintf(stderr, "egocal-player: gap of %.1f s in the log, %.1f s to wait\n",
-                       1e-6 * speed * static_cast<double>(wait), 1e-6 * static_cast<double>(wait));
-        timer_ = loop_.after(std::chrono::microseconds(wait), [this] {
-          timer_.reset();
-          play();
-        });
+        if (wait > announced_wait_us && announced_gap_us_ != next_->time_us) {
+          announced_gap_us_ = next_->time_us;
+          const std::string gap = text("gap in the log, nothing until %.1f s into it: %.1f s to wait",
+                                       into_log(next_->time_us), 1e-6 * static_cast<double>(wait));
+          say(gap);
+          heartbeat_.set_error(gap);
+        }
+        wait_until(due);
         return;
       }
     } else if (sent == most_at_once) {
-      timer_ = loop_.after(0ns, [this] {
-        timer_.reset();
-        play();
-      });
+      wait_until(0);
       return;
+    }
+    if (announced_gap_us_) {
+      announced_gap_us_.reset();
+      heartbeat_.set_error("");
     }
     if (in_flight_.count() == 0) progress_mono_us_ = bus::mono_us();
     send(*next_);
     in_flight_.sent(*next_);
+    played_us_ = next_->time_us;
+    if (step_ || options_.speed == 0) anchor(played_us_);
     step_ = false;
-    if (!load() && options_.loop) {
-      log_.rewind();
-      load();
-      anchor();
-    }
+    load();
+    if (!next_ && begin_again()) continue;
   }
   if (!next_ && !ended_) {
     ended_ = true;
     progress_mono_us_ = bus::mono_us();
   }
-  if (ended_ && in_flight_.count() == 0) finish();
+  // paused at the end, by a step: whoever steps may want to look and to go back
+  if (ended_ && in_flight_.count() == 0 && !paused_) finish();
 }
 
 /// Ten times a second: nobody there, something lost, the end.
@@ -209,12 +267,11 @@ void Player::watch_over() {
   show_progress(false);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > wait_for_pairing_us) {
     alone_ = true;
-    if (options_.speed != 1)
-      std::fprintf(
-          stderr,
-          "egocal-player: no pairing process acknowledges anything; going on without keeping in step%s\n",
-          options_.speed == 0 ? ", at the recorded speed" : "");
-    anchor();
+    if (options_.speed != 1) {
+      say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
+          (options_.speed == 0 ? ", at the recorded speed" : ""));
+      if (next_) anchor(paused_ ? anchor_us_ : next_->time_us);
+    }
     play();
   }
   if (in_flight_.count() > 0 && now - progress_mono_us_ > stall_us && heartbeat_.alive("pairing")) {
@@ -222,37 +279,67 @@ void Player::watch_over() {
     progress_mono_us_ = now;
   }
   // whoever is gone for long at the end of the log will not be waited for
-  if (ended_ && now - progress_mono_us_ > 10'000'000) {
-    std::fprintf(stderr, "egocal-player: %zu messages were never acknowledged\n", in_flight_.count());
+  if (ended_ && in_flight_.count() > 0 && now - progress_mono_us_ > 10'000'000) {
+    say(text("%zu messages were never acknowledged", in_flight_.count()));
     in_flight_.clear();
-    finish();
+    play();
   }
 }
 
 void Player::finish() {
-  show_progress(true);
-  const bus::LogDamage& damage = log_.damage();
-  if (damage.regions > 0)
-    std::fprintf(
-        stderr,
-        "egocal-player: %s: %llu damaged regions skipped, %llu bytes and at least %llu events lost%s\n",
-        options_.log.c_str(), static_cast<unsigned long long>(damage.regions),
-        static_cast<unsigned long long>(damage.bytes), static_cast<unsigned long long>(damage.lost_events),
-        damage.truncated ? "; the log is cut off" : "");
   loop_.stop();
 }
 
+/// A line for people, not into the middle of the one that shows the progress.
+void Player::say(const std::string& line) {
+  std::fprintf(stderr, "%segocal-player: %s\n", line_open_ ? "\n" : "", line.c_str());
+  line_open_ = false;
+}
+
+/// What has been skipped just now.
+void Player::say_damage() {
+  const bus::LogDamage& damage = tape_.damage();
+  if (damage.regions <= told_regions_ && damage.jumps <= told_jumps_) return;
+  const std::uint64_t places = damage.regions + damage.jumps;
+  if (places <= most_told)
+    say(text("the log is damaged here: %llu bytes and at least %llu events lost so far",
+             static_cast<unsigned long long>(damage.bytes),
+             static_cast<unsigned long long>(damage.lost_events)));
+  else if (told_regions_ + told_jumps_ <= most_told)
+    say("the log is damaged in more places; their sum will be told at the end");
+  told_regions_ = damage.regions;
+  told_jumps_ = damage.jumps;
+}
+
+void Player::report() {
+  show_progress(true);
+  const bus::LogDamage& damage = tape_.damage();
+  if (damage.any())
+    say(text(
+        "%s: %llu damaged regions skipped, %llu bytes and at least %llu events lost%s", options_.log.c_str(),
+        static_cast<unsigned long long>(damage.regions), static_cast<unsigned long long>(damage.bytes),
+        static_cast<unsigned long long>(damage.lost_events), damage.truncated ? "; the log is cut off" : ""));
+  if (tape_.damaged_times() > 0)
+    say(text("%llu events with damaged times were played when their neighbours were",
+             static_cast<unsigned long long>(tape_.damaged_times())));
+  if (tape_.left_out() > 0)
+    say(text("%llu events of egocal's own channels (EGOCAL_*) were left out; --channel plays them",
+             static_cast<unsigned long long>(tape_.left_out())));
+}
+
 void Player::show_progress(bool last) {
-  if (!terminal_) return;
+  if (!terminal_ || (last && out_ == 0)) return;
   const std::int64_t now = bus::mono_us();
   if (!last && now - shown_mono_us_ < 200'000) return;
   shown_mono_us_ = now;
-  const double part =
-      static_cast<double>(log_.position()) / static_cast<double>(std::max<std::uint64_t>(1, log_.size()));
-  const std::int64_t at = next_ ? next_->time_us : anchor_us_;
-  std::fprintf(stderr, "\r%s %3.0f %%  %8.1f s  %llu messages%s", paused_ ? "paused " : "playing", 100 * part,
-               1e-6 * static_cast<double>(at - begin_us_), static_cast<unsigned long long>(out_),
-               last ? "\n" : "  ");
+  const std::string state = paused_               ? "paused"
+                            : options_.speed == 0 ? "playing, full speed"
+                                                  : text("playing x %g", options_.speed);
+  std::fprintf(stderr, "\r%-20s %3.0f %%  %8.1f s  %llu messages  %s\x1b[K", state.c_str(),
+               100 * tape_.part(), into_log(recorded_now()), static_cast<unsigned long long>(out_),
+               keys_.number().c_str());
+  if (last) std::fputc('\n', stderr);
+  line_open_ = !last;
   std::fflush(stderr);
 }
 

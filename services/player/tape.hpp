@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <regex>
+#include <string>
+
+#include "egocal/bus/log_file.hpp"
+
+namespace egocal::services {
+
+struct TapeOptions {
+  double start = 0;           ///< begins so far into the log [s]
+  std::optional<double> end;  ///< ends so far into the log [s]
+  /// Regular expression: only these channels. Empty: all but those that egocal itself sends on (EGOCAL_*):
+  /// answers and acknowledgements of another day would be taken for today's.
+  std::string channel;
+};
+
+/// The events of a log that are to be played, in the order of the file. A time that fits neither the event
+/// before nor the one after it is damaged and replaced by that of the event before: nobody waits years for
+/// one flipped bit.
+class Tape {
+ public:
+  /// Throws Error where there is nothing to play.
+  Tape(const std::string& file, const TapeOptions& options);
+
+  /// The next event; empty at the end.
+  std::optional<bus::LogEvent> next();
+  /// Begins anew; only what is so far into the log, or later [s].
+  void rewind(double from);
+
+  std::int64_t begin_us() const { return begin_us_; }  ///< recorded time of the log's first event
+  const bus::LogDamage& damage() const { return log_.damage(); }
+  std::uint64_t damaged_times() const { return damaged_times_; }  ///< since it began
+  std::uint64_t left_out() const { return left_out_; }  ///< events of egocal's own channels, since then
+  double part() const;                                  ///< of the file that has been read
+
+ private:
+  void look_ahead();
+  void mend_time();
+  bool wanted(const std::string& channel);
+
+  bus::LogReader log_;
+  TapeOptions options_;
+  std::optional<std::regex> channel_;
+  std::deque<bus::LogEvent> ahead_;  ///< read, not yet handed out: three at most
+  std::optional<std::int64_t> last_us_;
+  std::int64_t begin_us_ = 0;
+  double from_ = 0;
+  std::uint64_t damaged_times_ = 0, left_out_ = 0;
+};
+
+}  // namespace egocal::services
