@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 
 #include "commands/commands.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/bus/loop.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "supervision/output_file.hpp"
 #include "supervision/supervisor.hpp"
 
 namespace egocal::tools {
@@ -28,11 +32,20 @@ std::filesystem::path programs_directory() {
 
 void run(const Options& options) {
   // one clear line here instead of one from each process
-  bus::read_rig(options.rig);
+  const bus::Rig rig = bus::read_rig(options.rig);
   if (!options.log.empty()) bus::LogReader{options.log};
-  if (!options.output_dir.empty()) std::filesystem::create_directories(options.output_dir);
-
+  bus::Loop{options.url.empty() ? rig.lcm_url : options.url, bus::LoopOptions{.handle_signals = false}};
   const std::filesystem::path directory = programs_directory();
+  SupervisorOptions supervisor;
+  if (options.output_dir != "-") {
+    supervisor.output_dir = options.output_dir.empty() ? default_output_directory() : options.output_dir;
+    std::error_code error;
+    std::filesystem::create_directories(supervisor.output_dir, error);
+    if (error) throw error_at(supervisor.output_dir, 0, "", "cannot be made: " + error.message());
+    fmt::print(stderr, "egocal up: the processes' outputs are in {}\n", supervisor.output_dir);
+  }
+  supervisor.quiet = options.monitor;
+
   const auto program = [&](const char* name, const std::vector<std::string>& more) {
     Program result;
     result.name = name;
@@ -53,8 +66,6 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  SupervisorOptions supervisor;
-  supervisor.output_dir = options.output_dir;
   if (supervise(programs, supervisor) != 0) throw CLI::RuntimeError(1);
 }
 
@@ -76,7 +87,8 @@ void add_up(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
   command->add_flag("--follow", options->follow, "with the monitor's lines on standard output");
-  command->add_option("--output-dir", options->output_dir, "each process's output in a file there");
+  command->add_option("--output-dir", options->output_dir,
+                      "each process's output in a file there; -: here; default: ~/.local/state/egocal");
   command->add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
   command->callback([options] { run(*options); });
 }

@@ -14,9 +14,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <deque>
 #include <optional>
 
 #include "egocal/error.hpp"
+#include "supervision/output_file.hpp"
 
 namespace egocal::tools {
 
@@ -25,19 +27,25 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
+constexpr int exec_failed = 127;
+constexpr int wrong_usage = 2;
+
 struct Child {
   Program program;
   pid_t pid = -1;  ///< -1: not running
   Clock::time_point started{}, start_at{};
+  std::deque<Clock::time_point> starts;  ///< of the last minute
   milliseconds back_off{0};
   int quick_deaths = 0;
   bool finished = false;  ///< ended as it should
 };
 
 /// In the child, between fork and exec: only what is safe there.
-[[noreturn]] void become(const Program& program, char* const* arguments, int output,
+[[noreturn]] void become(const Program& program, char* const* arguments, int output, pid_t parent,
                          const sigset_t& old_mask) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);  // whatever happens to us, nothing is left behind
+  if (getppid() != parent) _exit(exec_failed);
+  if (!program.foreground) setpgid(0, 0);
   sigprocmask(SIG_SETMASK, &old_mask, nullptr);
   if (!program.foreground) {
     if (output >= 0) {
@@ -49,8 +57,8 @@ struct Child {
   }
   execv(arguments[0], arguments);
   constexpr char text[] = "cannot be started\n";
-  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(126);
-  _exit(127);
+  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(exec_failed);
+  _exit(exec_failed);
 }
 
 std::string ending(int status) {
@@ -75,41 +83,51 @@ class Supervisor {
   }
   ~Supervisor() {
     close(signals_);
+    if (own_output_ >= 0) close(own_output_);
+    if (!last_words_.empty()) fmt::print(stderr, "egocal up: {}\n", last_words_);
     sigprocmask(SIG_SETMASK, &old_mask_, nullptr);
   }
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
   int run() {
-    while (!ending_ || any_running()) {
-      const Clock::time_point now = Clock::now();
-      if (ending_) {
-        if (now >= kill_at_) end_all(SIGKILL);
-      } else {
-        for (Child& child : children_)
-          if (child.pid < 0 && !child.finished && now >= child.start_at) start(child);
-        if (end_at_ && now >= *end_at_) end_all(SIGTERM);
-      }
-      wait();
+    try {
+      while (!ending_ || any_running()) turn();
+    } catch (...) {
+      end_all(SIGTERM, false);
+      while (any_running()) turn();
+      throw;
     }
     return failed_ ? 1 : 0;
   }
 
  private:
+  void turn() {
+    const Clock::time_point now = Clock::now();
+    if (ending_) {
+      if (now >= kill_at_) kill_all();
+    } else {
+      for (Child& child : children_)
+        if (child.pid < 0 && !child.finished && now >= child.start_at) start(child);
+      if (end_at_ && now >= *end_at_) end_all(SIGTERM, false);
+    }
+    wait();
+  }
+
   void start(Child& child) {
     int output = -1;
-    if (!options_.output_dir.empty()) {
-      output = open(output_file(child).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-      if (output < 0) throw error_at(output_file(child), 0, "", "cannot be written");
-    }
+    if (!options_.output_dir.empty() && !child.program.foreground) output = open_output(output_file(child));
     std::vector<char*> arguments;
     for (std::string& argument : child.program.command) arguments.push_back(argument.data());
     arguments.push_back(nullptr);
+    const pid_t parent = getpid();
     child.pid = fork();
-    if (child.pid == 0) become(child.program, arguments.data(), output, old_mask_);
+    if (child.pid == 0) become(child.program, arguments.data(), output, parent, old_mask_);
     if (output >= 0) close(output);
     if (child.pid < 0) throw Error(std::string("fork: ") + std::strerror(errno));
     child.started = Clock::now();
+    child.starts.push_back(child.started);
+    while (child.started - child.starts.front() > std::chrono::minutes(1)) child.starts.pop_front();
   }
 
   /// Until a signal comes or something is to be done by the clock.
@@ -127,7 +145,11 @@ class Supervisor {
     poll(&waiting, 1, static_cast<int>(std::clamp<long long>(left + 1, 0, 1000)));
     signalfd_siginfo info;
     while (read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info))
-      if (info.ssi_signo != SIGCHLD && !ending_) end_all(static_cast<int>(info.ssi_signo));
+      if (info.ssi_signo != SIGCHLD && !ending_) {
+        // a key of the terminal has reached those in the foreground already
+        const bool by_key = info.ssi_code == SI_KERNEL && info.ssi_signo == SIGINT;
+        end_all(info.ssi_signo == SIGINT ? SIGINT : SIGTERM, by_key);
+      }
     reap();
   }
 
@@ -150,28 +172,57 @@ class Supervisor {
       return;
     }
     const bool quick = Clock::now() - child.started < std::chrono::seconds(1);
-    const bool wrong_usage = WIFEXITED(status) && WEXITSTATUS(status) == 2;
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
     child.quick_deaths = quick ? child.quick_deaths + 1 : 0;
-    if (child.quick_deaths >= options_.most_quick_deaths || wrong_usage) {
-      fmt::print(stderr, "egocal up: {} cannot be kept alive ({}){}\n", child.program.name, ending(status),
-                 options_.output_dir.empty() ? "" : ", see " + output_file(child));
+    if (child.quick_deaths >= options_.most_quick_deaths || code == wrong_usage || code == exec_failed ||
+        static_cast<int>(child.starts.size()) >= options_.most_starts_a_minute) {
+      say(fmt::format("{} cannot be kept alive ({}){}", child.program.name, reason(child, status),
+                      options_.output_dir.empty() ? "" : ", see " + output_file(child)),
+          true);
       failed_ = true;
-      end_all(SIGTERM);
+      end_all(SIGTERM, false);
       return;
     }
     child.back_off = quick
                          ? std::clamp(2 * child.back_off, options_.first_back_off, options_.longest_back_off)
                          : options_.first_back_off;
     child.start_at = Clock::now() + child.back_off;
-    fmt::print(stderr, "egocal up: {} ended ({}), starting it again in {} ms\n", child.program.name,
-               ending(status), child.back_off.count());
+    say(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason(child, status),
+                    child.back_off.count()));
   }
 
-  void end_all(int signal) {
+  /// How it ended, and what it said last.
+  std::string reason(const Child& child, int status) const {
+    const std::string said =
+        options_.output_dir.empty() || child.program.foreground ? "" : last_line(output_file(child));
+    return ending(status) + (said.empty() ? "" : ": " + said);
+  }
+
+  /// Where the screen is the monitor's, all but the last words wait in a file.
+  void say(const std::string& line, bool last_words = false) {
+    if (!options_.quiet || options_.output_dir.empty()) {
+      fmt::print(stderr, "egocal up: {}\n", line);
+      return;
+    }
+    if (own_output_ < 0) own_output_ = open_output(options_.output_dir + "/up.out");
+    const std::string text = line + "\n";
+    if (write(own_output_, text.data(), text.size()) < 0 || last_words) last_words_ = line;
+  }
+
+  void end_all(int signal, bool foreground_knows) {
     for (const Child& child : children_)
-      if (child.pid > 0) kill(child.pid, signal);
-    kill_at_ = Clock::now() + std::chrono::seconds(3);
+      if (child.pid > 0 && !(child.program.foreground && foreground_knows)) kill(child.pid, signal);
+    kill_at_ = Clock::now() + options_.patience;
     ending_ = true;
+  }
+
+  void kill_all() {
+    for (const Child& child : children_) {
+      if (child.pid <= 0) continue;
+      say(fmt::format("{} did not end and is killed", child.program.name));
+      kill(child.pid, SIGKILL);
+    }
+    kill_at_ = Clock::now() + options_.patience;
   }
 
   bool any_running() const {
@@ -184,7 +235,8 @@ class Supervisor {
   SupervisorOptions options_;
   std::vector<Child> children_;
   sigset_t old_mask_{};
-  int signals_ = -1;
+  int signals_ = -1, own_output_ = -1;
+  std::string last_words_;
   std::optional<Clock::time_point> end_at_;
   Clock::time_point kill_at_{};
   bool ending_ = false, failed_ = false;

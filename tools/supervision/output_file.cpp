@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "supervision/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include "egocal/bus/glue.hpp"
+#include "egocal/error.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+constexpr std::uintmax_t largest = 10'000'000;
+constexpr const char* header = "-- started ";
+
+}  // namespace
+
+std::string default_output_directory() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state && *state) return std::string(state) + "/egocal";
+  const char* home = std::getenv("HOME");
+  if (home && *home) return std::string(home) + "/.local/state/egocal";
+  return fmt::format("/tmp/egocal-{}", getuid());
+}
+
+int open_output(const std::string& file) {
+  std::error_code none;
+  if (std::filesystem::file_size(file, none) > largest && !none)
+    std::filesystem::rename(file, file + ".old", none);
+  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (fd < 0) throw error_at(file, 0, "", "cannot be written");
+  const std::string line =
+      fmt::format("{}{:%Y-%m-%d %H:%M:%S}\n", header, fmt::localtime(std::time(nullptr)));
+  if (write(fd, line.data(), line.size()) < 0) {
+    close(fd);
+    throw error_at(file, 0, "", "cannot be written");
+  }
+  return fd;
+}
+
+std::string last_line(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  constexpr std::streamoff tail = 1000;
+  const std::streamoff size = stream.tellg();
+  stream.seekg(std::max<std::streamoff>(0, size - tail));
+  std::string line, last;
+  while (std::getline(stream, line)) {
+    if (line.rfind(header, 0) == 0)
+      last.clear();  // nothing has been said since
+    else if (!line.empty())
+      last = line;
+  }
+  return bus::printable(last);
+}
+
+}  // namespace egocal::tools
