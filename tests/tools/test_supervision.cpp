@@ -18,6 +18,8 @@
 #include <sstream>
 #include <thread>
 
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/loop.hpp"
 #include "egocal/error.hpp"
 #include "supervision/output_file.hpp"
 #include "supervision/supervisor.hpp"
@@ -323,6 +325,8 @@ class Up : public Supervision {
                                        path("out"),
                                        "--lcm-url",
                                        "udpm://239.255.76.67:" + std::to_string(++port) + "?ttl=0"};
+    if (std::find(more.begin(), more.end(), "--lcm-url") != more.end())
+      arguments.resize(arguments.size() - 2);
     arguments.insert(arguments.end(), more.begin(), more.end());
     return ChildProcess(arguments, path("said"));
   }
@@ -350,15 +354,53 @@ TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
     ASSERT_TRUE(until([&] { return child(self, name) > 0; })) << name;
     const pid_t before = child(self, name);
     kill(before, SIGKILL);
-    ASSERT_TRUE(until([&] { return child(self, name) > 0 && child(self, name) != before; })) << name;
+    ASSERT_TRUE(until([&] {
+      const pid_t now = child(self, name);
+      return now > 0 && now != before;
+    })) << name;
     EXPECT_THAT(read(path("said")), HasSubstr(name + " ended (killed by signal 9"));
   }
+  ASSERT_TRUE(until([&] { return children(self).size() == 3; }));
   const auto all = children(self);
-  EXPECT_EQ(all.size(), 3u);
   egocal.signal(SIGINT);
   EXPECT_EQ(egocal.wait(30s), 0);
   for (const auto& [id, name] : all) EXPECT_FALSE(runs(id)) << name;
   EXPECT_THAT(read(path("said")), Not(HasSubstr("did not end")));
+}
+
+TEST_F(Up, AKilledPairingCostsNothing) {
+  const auto last_problem = [&](bool killed) {
+    const std::string url = "udpm://239.255.76.67:" + std::to_string(killed ? 7751 : 7752) + "?ttl=0";
+    bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+    problem_t problem{};
+    loop.subscribe<problem_t>(bus::problem_channel("lidar", "camera"),
+                              [&](const problem_t& message, const bus::Arrival&) { problem = message; });
+    ChildProcess egocal = up({"--log", log, "--speed", "40", "--lcm-url", url});
+    bool done = false;
+    EXPECT_TRUE(until(
+        [&] {
+          loop.run_once(5ms);
+          if (killed && problem.seq > 150) {
+            kill(child(egocal.pid(), "egocal-pairing"), SIGKILL);
+            killed = false;
+          }
+          return done = done || egocal.wait(0ms) == 0;
+        },
+        60s))
+        << read(path("said"));
+    return problem;
+  };
+  const problem_t expected = last_problem(false), found = last_problem(true);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing ended (killed by signal 9"));
+  EXPECT_EQ(expected.seq, 399);
+  EXPECT_EQ(found.seq, expected.seq);
+  EXPECT_EQ(found.session, expected.session);
+  EXPECT_EQ(found.matched, expected.matched);
+  ASSERT_EQ(found.blocks.size(), expected.blocks.size());
+  for (std::size_t i = 0; i < found.blocks.size(); ++i)
+    EXPECT_EQ(bus::encode(found.blocks[i]), bus::encode(expected.blocks[i]));
+  for (const auto& entry : std::filesystem::directory_iterator(path("out")))
+    EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("state")));
 }
 
 TEST_F(Up, LeavesNoOrphans) {

@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -18,7 +22,7 @@ namespace egocal::tools {
 namespace {
 
 struct Options {
-  std::string rig, log, url, output_dir, speed = "1", fast = "sqp", global = "dual";
+  std::string rig, log, url, output_dir, state, speed = "1", fast = "sqp", global = "dual";
   bool monitor = false, follow = false;
 };
 
@@ -30,6 +34,26 @@ std::filesystem::path programs_directory() {
   return self.parent_path();
 }
 
+/// Of pairing, for the process that takes its place while this command runs.
+std::string passing_state(const std::string& directory, pid_t pid) {
+  return fmt::format("{}/pairing-{}.state", directory, pid);
+}
+
+void remove_passing_state(const std::string& directory, pid_t pid) {
+  for (const char* suffix : {"", ".lock", ".part"})
+    std::filesystem::remove(passing_state(directory, pid) + suffix);
+}
+
+/// Those of commands that were killed.
+void remove_stale_states(const std::string& directory) {
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    int pid = 0;
+    if (std::sscanf(entry.path().filename().c_str(), "pairing-%d.state", &pid) == 1 && pid > 0 &&
+        kill(pid, 0) != 0 && errno == ESRCH)
+      remove_passing_state(directory, pid);
+  }
+}
+
 void run(const Options& options) {
   // one clear line here instead of one from each process
   const bus::Rig rig = bus::read_rig(options.rig);
@@ -38,7 +62,9 @@ void run(const Options& options) {
   const std::filesystem::path directory = programs_directory();
   SupervisorOptions supervisor;
   if (options.output_dir != "-") {
-    supervisor.output_dir = options.output_dir.empty() ? default_output_directory() : options.output_dir;
+    const std::string rig_name = std::filesystem::path(options.rig).stem();
+    supervisor.output_dir =
+        options.output_dir.empty() ? default_output_directory() + "/" + rig_name : options.output_dir;
     std::error_code error;
     std::filesystem::create_directories(supervisor.output_dir, error);
     if (error) throw error_at(supervisor.output_dir, 0, "", "cannot be made: " + error.message());
@@ -54,7 +80,18 @@ void run(const Options& options) {
     result.command.insert(result.command.end(), more.begin(), more.end());
     return result;
   };
-  std::vector<Program> programs = {program("egocal-pairing", {}),
+  // what a killed pairing process had accumulated is for the one that takes its place; for another day only
+  // if asked for
+  std::vector<std::string> pairing;
+  const bool passing = options.state.empty() && !supervisor.output_dir.empty();
+  if (passing) {
+    remove_stale_states(supervisor.output_dir);
+    remove_passing_state(supervisor.output_dir, getpid());
+    pairing = {"--state", passing_state(supervisor.output_dir, getpid())};
+  } else if (!options.state.empty()) {
+    pairing = {"--state", options.state};
+  }
+  std::vector<Program> programs = {program("egocal-pairing", pairing),
                                    program("egocal-fast", {"--method", options.fast}),
                                    program("egocal-global", {"--method", options.global})};
   if (options.monitor || options.follow) {
@@ -66,7 +103,9 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  if (supervise(programs, supervisor) != 0) throw CLI::RuntimeError(1);
+  const int code = supervise(programs, supervisor);
+  if (passing) remove_passing_state(supervisor.output_dir, getpid());
+  if (code != 0) throw CLI::RuntimeError(1);
 }
 
 }  // namespace
@@ -87,8 +126,10 @@ void add_up(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
   command->add_flag("--follow", options->follow, "with the monitor's lines on standard output");
-  command->add_option("--output-dir", options->output_dir,
-                      "each process's output in a file there; -: here; default: ~/.local/state/egocal");
+  command->add_option(
+      "--output-dir", options->output_dir,
+      "each process's output in a file there; -: here; default: ~/.local/state/egocal/NAME OF RIG");
+  command->add_option("--state", options->state, "file in which the statistics outlive this command");
   command->add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
   command->callback([options] { run(*options); });
 }
