@@ -24,6 +24,13 @@ bool starts_with(const std::string& text, const char* prefix) {
   return text.rfind(prefix, 0) == 0;
 }
 
+// liblcm itself says little, and that after ten seconds: the processes' own connection tells in one line why
+// a machine cannot multicast, and what helps.
+const std::string& connected(const std::string& url) {
+  bus::Loop probe(url, {.handle_signals = false});
+  return url;
+}
+
 }  // namespace
 
 bool deliver(Model& model, const std::string& channel, std::span<const std::byte> bytes, Now now) {
@@ -47,19 +54,16 @@ bool deliver(Model& model, const std::string& channel, std::span<const std::byte
   return true;
 }
 
-Feed::Feed(const std::string& url) : lcm_(url), run_(bus::wall_us()) {
-  const std::string remedy =
-      "cannot receive on '" + url +
-      "': is the URL right, and does the machine have a multicast route (ip route add 224.0.0.0/4 dev lo)?";
-  if (!lcm_.good()) throw Error(remedy);
+Feed::Feed(const std::string& url) : lcm_(connected(url)), run_(bus::wall_us()) {
+  const auto failed = [&] { return Error("cannot receive on '" + url + "'"); };
+  if (!lcm_.good()) throw failed();
   for (const char* pattern :
        {"EGOCAL_PROBLEM_.*", "EGOCAL_CALIBRATION_.*", "EGOCAL_STATUS", "EGOCAL_COMMAND"}) {
     lcm::Subscription* subscription = lcm_.subscribe(pattern, &Feed::receive, this);
-    if (subscription == nullptr) throw Error(remedy);
+    if (subscription == nullptr) throw failed();
     subscription->setQueueCapacity(2000);
   }
-  // runs the self-test, which is where a missing route shows
-  if (lcm_.getFileno() < 0) throw Error(remedy);
+  if (lcm_.getFileno() < 0) throw failed();
 }
 
 void Feed::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {

@@ -27,10 +27,11 @@ namespace egocal::monitor {
 namespace {
 
 // What signal handlers may touch: plain memory, set up before the handlers are.
+constexpr std::size_t kSequence = 250;
 struct Rescue {
   struct termios modes {};
   bool has_modes = false;
-  char sequence[256] = {};
+  char sequence[kSequence + 2] = {};
   std::size_t length = 0;
   int real_stderr = -1;
 };
@@ -76,7 +77,7 @@ void handle(int signal_number, void (*handler)(int), int flags = 0) {
 void add_capability(const char* name) {
   const char* text = tigetstr(name);
   if (text == nullptr || text == reinterpret_cast<const char*>(-1)) return;
-  for (const char* c = text; *c != '\0' && rescue.length < sizeof rescue.sequence;) {
+  for (const char* c = text; *c != '\0' && rescue.length < kSequence;) {
     if (c[0] == '$' && c[1] == '<') {
       while (*c != '\0' && *c != '>') ++c;
       if (*c == '>') ++c;
@@ -89,6 +90,17 @@ void add_capability(const char* name) {
 bool can(const char* capability) {
   const char* text = tigetstr(capability);
   return text != nullptr && text != reinterpret_cast<const char*>(-1);
+}
+
+// Back to the shell. Where there is no second screen the last picture stays, and the prompt wants a line of
+// its own below it.
+void leave() {
+  if (!can("rmcup")) {
+    move(getmaxy(stdscr) - 1, 0);
+    clrtoeol();
+    refresh();
+  }
+  endwin();
 }
 
 // Colours by meaning; where there are none, by weight.
@@ -181,6 +193,10 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
     return nullptr;
   }
   for (const char* name : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_capability(name);
+  if (!can("rmcup")) {
+    for (char c : {'\r', '\n'}) rescue.sequence[rescue.length++] = c;
+    add_capability("ed");
+  }
 
   const bool utf8 = std::strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
   // the Linux console has no braille, a vt100 knows nothing of UTF-8
@@ -233,7 +249,7 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
 Terminal::~Terminal() {
   State& s = *state_;
   if (s.screen != nullptr) {
-    endwin();
+    leave();
     delscreen(s.screen);
   }
   if (rescue.has_modes) tcsetattr(STDIN_FILENO, TCSANOW, &rescue.modes);
@@ -342,7 +358,7 @@ Interrupts Terminal::interrupts() {
   Interrupts result;
   if (suspend_flag) {
     suspend_flag = 0;
-    endwin();
+    leave();
     // stopped by the default action, as the shell expects; back here after SIGCONT
     handle(SIGTSTP, SIG_DFL);
     raise(SIGTSTP);
