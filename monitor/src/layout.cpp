@@ -7,6 +7,8 @@
 namespace egocal::monitor {
 namespace {
 
+constexpr int kSummaryRows = 4;
+
 struct Frame {
   Rect header, body, keys;
 };
@@ -35,6 +37,10 @@ OverviewLayout layout_overview(int width, int height, int pairs, int processes) 
   layout.titles = rows >= 8;
   if (!layout.titles) {
     layout.pairs = frame.body;
+    if (rows >= pairs + kSummaryRows) {  // room for the chosen pair in full
+      layout.pairs.h = rows - kSummaryRows;
+      layout.summary = {0, frame.body.y + layout.pairs.h, width, kSummaryRows};
+    }
     return layout;
   }
   // as many processes as there are while the pairs keep the larger half
@@ -61,7 +67,7 @@ std::vector<PlacedColumn> layout_pair_table(int width) {
     int rank;  // what is given room first
   };
   // from left to right
-  constexpr Wish wishes[] = {{PairColumn::name, 17, 1},
+  constexpr Wish wishes[] = {{PairColumn::name, 16, 1},
                              {PairColumn::verdict, 11, 0},
                              {PairColumn::error_translation, 9, 2},
                              {PairColumn::error_rotation, 8, 3},
@@ -129,7 +135,7 @@ DetailLayout layout_detail(int width, int height) {
     return layout;
   }
 
-  const int summary = std::min(body.h, 4);
+  const int summary = std::min(body.h, kSummaryRows);
   layout.summary = {0, body.y, body.w, summary};
   Rect rest{0, body.y + summary, body.w, body.h - summary};
   if (rest.h >= 8 + 8 && rest.w >= 28) {

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "answer_text.hpp"
 #include "egocal/geometry/pose.hpp"
-#include "panels.hpp"
 
 namespace egocal::monitor {
 namespace {
 
 using nlohmann::json;
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 json real(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);

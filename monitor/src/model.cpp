@@ -15,8 +15,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // A verdict or a fallback must have lasted this long before its end is an event: solvers alternate, people do
 // not.
-constexpr double kSettle = 1.0;   // [s]
-constexpr double kRepeat = 30.0;  // [s] the same event again within this time is only counted
+constexpr double kSettle = 1.0;             // [s]
+constexpr double kLongest = 366 * 86400.0;  // [s] no session lasts longer: a time beyond it is none
+constexpr double kRepeat = 30.0;            // [s] the same event again within this time is only counted
 
 double seconds(std::int64_t from_us, std::int64_t to_us) {
   return (static_cast<double>(to_us) - static_cast<double>(from_us)) * 1e-6;
@@ -47,6 +48,11 @@ Claim claim_of(const calibration_t& answer) {
 }
 
 }  // namespace
+
+bool pair_is_paused(const Model& model, const PairState& pair) {
+  return pair.paused || std::any_of(model.processes().begin(), model.processes().end(),
+                                    [](const auto& p) { return p.alive && p.status.state == "paused"; });
+}
 
 std::string pair_name(const std::string& a, const std::string& b) {
   return a + " -> " + b;
@@ -79,8 +85,9 @@ void Model::expect_pair(const std::string& a, const std::string& b) {
   find_pair(bounded(a), bounded(b));
 }
 
-void Model::note(Severity severity, const std::string& subject, const std::string& text, Now now) {
+void Model::note(Severity severity, const std::string& full_subject, const std::string& full_text, Now now) {
   now_ = now;
+  const std::string subject = bounded(full_subject), text = bounded(full_text);
   const std::size_t recent = std::min<std::size_t>(events_.size(), 16);
   for (std::size_t i = 1; i <= recent; ++i) {
     Event& event = events_[events_.size() - i];
@@ -91,7 +98,7 @@ void Model::note(Severity severity, const std::string& subject, const std::strin
   }
   ++events_seen_;
   if (events_.size() == kMaxEvents) events_.pop_front();
-  events_.push_back({now, severity, bounded(subject), bounded(text), 1});
+  events_.push_back({now, severity, subject, text, 1});
 }
 
 void Model::begin_session(PairState& pair, std::int64_t session) {
@@ -123,6 +130,9 @@ void Model::on_problem(const problem_t& message, Now now) {
       note(Severity::warning, name, "gap of " + rounded(step, 1) + " s in the stream", now);
     }
   }
+  if (pair->paused && message.seq > pair->problem.seq && message.session == pair->problem.session &&
+      seconds(pair->paused_mono_us, now.mono_us) > kSettle)
+    pair->paused = false;  // it was resumed, or the command was lost
   if (pair->silent) note(Severity::good, name, "the stream is back", now);
   const bool chosen_anew = pair->has_problem && pair->problem.stride != message.stride;
   pair->silent = false;
@@ -316,7 +326,7 @@ void Model::on_calibration(const calibration_t& message, Now now) {
   values[scaled_gap] = message.scaled_gap;
   values[execution_time] =
       (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
-  track->history.add(time, values);
+  if (time >= 0 && time < kLongest) track->history.add(time, values);
   count_answer(*pair, now);
 }
 
@@ -393,13 +403,22 @@ void Model::on_status(const status_t& message, Now now) {
   } else {
     return;  // changes come in bursts, a rate needs a while
   }
+  if (!process->alive) process->rate_in = process->rate_out = -1;
   process->rate_mono_us = now.mono_us;
   process->rate_in_count = process->in;
   process->rate_out_count = process->out;
 }
 
 void Model::on_command(const command_t& message, Now now) {
+  now_ = now;
   ++messages_;
+  if (message.verb == "pause" || message.verb == "resume")
+    for (PairState& pair : pairs_) {
+      const bool all = message.sensor_a.empty() && message.sensor_b.empty();
+      if (!all && (message.sensor_a != pair.a || message.sensor_b != pair.b)) continue;
+      pair.paused = message.verb == "pause";
+      pair.paused_mono_us = now.mono_us;
+    }
   const std::string subject = message.sensor_a.empty() && message.sensor_b.empty()
                                   ? std::string("all pairs")
                                   : pair_name(bounded(message.sensor_a), bounded(message.sensor_b));

@@ -10,24 +10,17 @@ namespace egocal::monitor {
 
 // The parts that the screens are put together from. Each fills the pane that the layout gave it.
 
-struct Verdict {
-  std::string text;  ///< with a mark, at most 12 cells
-  Style style;
-};
-Verdict verdict_of(const PairState& pair, Charset charset);
-
 /// A title with a rule to the right edge.
 void draw_title(const Pane& pane, const std::string& title, Charset charset);
-std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
-/// "fast" for "egocal-fast".
-std::string short_solver(const std::string& name, std::size_t max = 12);
-Style solver_style(Role role);
 
+// pair_panels.cpp
 void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, Charset charset);
 void draw_pair_table(const Pane& pane, const Model& model, int selected, bool header, Charset charset);
+
 void draw_processes(const Pane& pane, const Model& model, bool title, Charset charset);
 void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset);
 
+// detail_panels.cpp
 void draw_summary(const Pane& pane, const PairState& pair, Charset charset);
 void draw_observability(const Pane& pane, const PairState& pair, Charset charset);
 void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset charset);

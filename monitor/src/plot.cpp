@@ -123,11 +123,15 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
     label(high);
     if (h >= 5) label(0.5 * (low + high));
   }
-  const std::string from = compact(plot.begin, charset), to = compact(plot.end, charset) + " s";
+  const auto time_text = [&](double time) { return number(time, span < 10 ? 1 : 0, charset); };
+  const std::string from = time_text(plot.begin), to = time_text(plot.end) + " s",
+                    middle = time_text(plot.begin + 0.5 * span);
   pane.text(kLabel, 1 + h, charset == Charset::unicode ? "└" : "+", Style::dim);
   for (int x = 0; x < w; ++x) pane.text(kLabel + 1 + x, 1 + h, symbols(charset).line, Style::dim);
   pane.text(kLabel + 1, 1 + h, from, Style::dim);
   if (w > width_of(from) + width_of(to) + 1) pane.text(kLabel + 1 + w - width_of(to), 1 + h, to, Style::dim);
+  if (w > 2 * (width_of(to) + width_of(middle)) + 6)
+    pane.text(kLabel + 1 + (w - width_of(middle)) / 2, 1 + h, middle, Style::dim);
 
   const Pane field = pane.part({kLabel + 1, 1, w, h});
   if (plot.threshold && usable(*plot.threshold)) {
@@ -136,7 +140,11 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
   }
   if (plot.mark && span > 0 && *plot.mark >= plot.begin && *plot.mark <= plot.end) {
     const int x = static_cast<int>((*plot.mark - plot.begin) / span * (w - 1));
-    for (int y = 0; y < h; ++y) field.text(x, y, charset == Charset::unicode ? "┊" : ":", Style::global);
+    const std::string line = charset == Charset::unicode ? "┊" : ":";
+    for (int y = 0; y < h; ++y) field.text(x, y, line, Style::global);
+    const std::string meaning = line + " " + plot.mark_label;
+    if (!plot.mark_label.empty() && width_of(plot.title) + width_of(meaning) + 4 <= pane.width())
+      pane.text(pane.width() - width_of(meaning) - 1, 0, meaning, Style::global);
   }
   if (nothing || !(span > 0)) return;
 

@@ -8,7 +8,7 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr Symbols kAscii{"->", "+-", "deg", "u", "yes", "NO", "*", "x", ">", "|", "-", "#", ".", "inf"};
+constexpr Symbols kAscii{"->", "+-", "deg", "u", "+", "!", "*", "x", ">", "|", "-", "#", ".", "inf"};
 constexpr Symbols kUnicode{"→", "±", "°", "µ", "✓", "✗", "●", "○", "▸", "·", "─", "█", "░", "∞"};
 
 // Characters that every terminal draws one cell wide; the rest is not worth a torn screen.

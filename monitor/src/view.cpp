@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "answer_text.hpp"
 #include "egocal/monitor/layout.hpp"
 #include "panels.hpp"
 
@@ -69,11 +70,6 @@ Action press_in_dialog(ViewState& view, const Model& model, KeyPress key) {
   return {};
 }
 
-bool is_paused(const Model& model) {
-  return std::any_of(model.processes().begin(), model.processes().end(),
-                     [](const ProcessState& p) { return p.alive && p.status.state == "paused"; });
-}
-
 void ask(ViewState& view, const Model& model, Dialog dialog) {
   if (!selected_pair(model, view)) {
     view.notice = "there is no pair yet";
@@ -90,24 +86,34 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
   const PairState* pair = selected_pair(model, view);
   int x = 1;
   std::string right = clock_time(model.now().wall_us, view.utc_offset_s);
+  if (view.frozen) right = "VIEW PAUSED  " + right;
+  // items from left to right as far as there is room before the clock
+  const int end = pane.width() - (pane.width() >= 40 || view.frozen ? width_of(right) + 3 : 0);
+  const auto item = [&](const std::string& text, Style style) {
+    if (x + width_of(text) > end) return false;
+    x = pane.text(x, 0, text, style);
+    return true;
+  };
   if (view.screen == Screen::detail && pair) {
     x = pane.text(x, 0, pair_title(*pair, view.charset, pane.width() >= 60 ? 24 : 12), Style::title) + 2;
     const Verdict verdict = verdict_of(*pair, view.charset);
-    x = pane.text(x, 0, verdict.text, verdict.style) + 1;
-    if (const calibration_t* answer = pair->answer(); answer && pane.width() >= 60) {
-      x = pane.text(x, 0, "by ", Style::dim);
-      x = pane.text(x, 0, clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
-      x = pane.text(x, 0,
-                    std::string(" ") + s.dot + " " + (pair->problem.mode == 1 ? "planar" : "3-D") + " " +
-                        s.dot + " " + count(answer->pairs) + " frames",
-                    Style::dim);
-      if (pair->has_problem && pane.width() >= 90) {
-        const double offset_ms = pair->problem.time_offset * 1e3;
-        x = pane.text(x, 0,
-                      std::string(" ") + s.dot + " stride " + std::to_string(pair->problem.stride) + " " +
-                          s.dot + " offset " + number(offset_ms, 1, view.charset) + " ms",
-                      Style::dim);
-      }
+    item(verdict.text, verdict.style);
+    const std::string between = std::string(" ") + s.dot + " ";
+    if (pair_is_paused(model, *pair)) item(between + "PAUSED", Style::warning);
+    if (const calibration_t* answer = pair->answer()) {
+      if (item(" by ", Style::dim))
+        item(clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
+      item(between + count(answer->pairs) + " frames", Style::dim);
+    }
+    if (pair->has_problem) {
+      const problem_t& problem = pair->problem;
+      if (problem.rejected > 0) item(between + count(problem.rejected) + " rejected", Style::dim);
+      item(between + (problem.mode == 1 ? "planar" : "3-D"), Style::dim);
+      std::string offset = number(problem.time_offset * 1e3, 1, view.charset);
+      if (problem.time_offset_stddev >= 0)
+        offset += " " + std::string(s.plus_minus) + number(problem.time_offset_stddev * 1e3, 1, view.charset);
+      item(between + "offset " + offset + " ms", Style::dim);
+      item(between + "stride " + std::to_string(problem.stride), Style::dim);
     }
   } else {
     x = pane.text(x, 0, "egocal", Style::title) + 2;
@@ -121,7 +127,6 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     if (gone) x = pane.text(x, 0, std::to_string(gone) + " gone", Style::bad) + 2;
     if (pane.width() >= 70) right = clean(view.source, 40) + "  " + right;
   }
-  if (view.frozen) right = "VIEW PAUSED  " + right;
   const int at = pane.width() - width_of(right) - 1;
   if (at > x) pane.text(at, 0, right, view.frozen ? Style::warning : Style::dim);
 }
@@ -240,6 +245,9 @@ void draw_overview(Canvas& canvas, const Model& model, const ViewState& view) {
   } else {
     draw_pair_table(rows, model, view.selected, layout.titles, view.charset);
   }
+  if (!layout.summary.empty())
+    if (const PairState* pair = selected_pair(model, view))
+      draw_summary(Pane(canvas, layout.summary), *pair, view.charset);
   if (!layout.processes.empty())
     draw_processes(Pane(canvas, layout.processes), model, layout.titles, view.charset);
   if (!layout.events.empty()) {
@@ -385,7 +393,9 @@ Action press(ViewState& view, const Model& model, KeyPress key) {
       ask(view, model, Dialog::reset);
       break;
     case 'p':
-      ask(view, model, is_paused(model) ? Dialog::resume : Dialog::pause);
+      ask(view, model,
+          (selected_pair(model, view) && pair_is_paused(model, *selected_pair(model, view))) ? Dialog::resume
+                                                                                             : Dialog::pause);
       break;
     case 'x':
       ask(view, model, Dialog::export_format);

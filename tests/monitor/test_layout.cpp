@@ -27,7 +27,7 @@ TEST(Layout, NothingOverlapsOrLeavesTheScreenAtAnySize) {
     for (int h = 1; h <= 80; ++h) {
       for (int pairs : {0, 1, 3, 20}) {
         const OverviewLayout o = layout_overview(w, h, pairs, 5);
-        expect_apart({o.header, o.pairs, o.processes, o.events, o.keys}, w, h);
+        expect_apart({o.header, o.pairs, o.summary, o.processes, o.events, o.keys}, w, h);
         ASSERT_FALSE(o.pairs.empty());
       }
       const DetailLayout d = layout_detail(w, h);

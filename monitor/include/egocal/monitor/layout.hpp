@@ -14,6 +14,7 @@ namespace egocal::monitor {
 
 struct OverviewLayout {
   Rect header, pairs, processes, events, keys;
+  Rect summary;         ///< of the chosen pair, where there is no room for processes and events
   bool titles = false;  ///< the first row of pairs, processes and events is a title
   int card_rows = 0;    ///< rows of one pair's card; 0: a table, one row a pair
 };

@@ -87,6 +87,9 @@ struct PairState {
   double reported_time_offset = 0;
   bool time_offset_known = false;
   std::int64_t gap_count = 0;
+  /// By the commands heard; motions that go on being accepted say otherwise.
+  bool paused = false;
+  std::int64_t paused_mono_us = 0;
 
   const calibration_t* answer() const {
     return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;
@@ -152,6 +155,9 @@ class Model {
   Now now_;
 };
 
+/// Whether a pair's calibration stands still on somebody's wish: by the commands heard for it, or because
+/// pairing says so of all its pairs (a monitor that came later has heard no command).
+bool pair_is_paused(const Model& model, const PairState& pair);
 /// "lidar -> camera", for events and lines.
 std::string pair_name(const std::string& a, const std::string& b);
 /// An answer made plain, with its error against the pair's truth, else against its nominal value.

@@ -25,6 +25,7 @@ struct Plot {
   double begin = 0, end = 1;        ///< [s]
   std::optional<double> threshold;  ///< in the unit shown; a line across
   std::optional<double> mark;       ///< [s]; a line down
+  std::string mark_label;           ///< what it means; beside the title, where there is room
   std::vector<PlotSeries> series;
 };
 

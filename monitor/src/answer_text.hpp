@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <string>
+
+#include "egocal/monitor/canvas.hpp"
+#include "egocal/monitor/model.hpp"
+#include "egocal/monitor/text.hpp"
+
+namespace egocal::monitor {
+
+// What an answer says, in words and numbers for people: degrees and centimetres.
+
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;
+inline constexpr double kCentimetres = 100.0;
+inline constexpr const char* kDirections[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
+
+double seconds(std::int64_t from_us, std::int64_t to_us);
+/// From SI to what is shown, by direction (x y z roll pitch yaw).
+double scale_of(int direction);
+/// In planar mode the ground planes say what the motions cannot.
+bool from_ground(const PairState& pair, int direction);
+bool shown_by_motion(const calibration_t& answer, int direction);
+/// x y z [m], roll pitch yaw [rad].
+std::array<double, 6> components(const Pose& T);
+/// Of three standard deviations, for instance.
+double largest(const double* values);
+
+/// "+-0.94", or "plane" where the ground says it.
+std::string spread(const PairState& pair, const calibration_t& answer, int direction, int decimals,
+                   Charset charset);
+/// "14.34 cm" or "0.262 deg": as many decimals as the size deserves.
+std::string centimetres(double metres, Charset charset);
+std::string degrees(double radians, Charset charset);
+/// "z yaw": what the motions do not show; empty where they show everything.
+std::string missing_directions(const PairState& pair, const calibration_t& answer);
+std::string latency(const calibration_t& answer, Charset charset);
+std::string solve_time(const calibration_t& answer, Charset charset);
+std::string verify_time(const calibration_t& answer, Charset charset);
+
+struct Verdict {
+  std::string text;  ///< with a mark, at most 12 cells
+  Style style;
+};
+Verdict verdict_of(const PairState& pair, Charset charset);
+std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
+/// "fast" for "egocal-fast".
+std::string short_solver(const std::string& name, std::size_t max = 12);
+Style solver_style(Role role);
+
+}  // namespace egocal::monitor

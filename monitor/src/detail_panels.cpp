@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "answer_text.hpp"
+#include "egocal/monitor/plot.hpp"
+#include "panels.hpp"
+
+namespace egocal::monitor {
+
+void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
+  const Symbols& s = symbols(charset);
+  const calibration_t* answer = pair.answer();
+  const Verdict verdict = verdict_of(pair, charset);
+  int x = pane.text(0, 0, verdict.text, verdict.style) + 1;
+  if (answer)
+    pane.text(x, 0, "by " + clean(answer->solver, 16) + "  gap " + compact(answer->scaled_gap, charset),
+              Style::dim);
+  if (!answer || !pair.shown.valid) return;
+  const std::array<double, 6> values = components(pair.shown.T_a_b);
+  for (int row = 0; row < 2; ++row) {
+    std::string text = row == 0 ? "t" : "R";
+    for (int i = 3 * row; i < 3 * row + 3; ++i)
+      text +=
+          pad_left(number(values[static_cast<std::size_t>(i)] * scale_of(i), row == 0 ? 1 : 2, charset), 8);
+    text += " " + std::string(s.plus_minus) +
+            number(largest(answer->stddev + 3 * row) * scale_of(3 * row), row == 0 ? 1 : 2, charset);
+    text += row == 0 ? " cm" : charset == Charset::unicode ? "°" : " deg";
+    pane.text(0, 1 + row, text);
+  }
+  if (pair.shown.reference != ReferenceKind::none) {
+    pane.text(0, 3,
+              (pair.shown.reference == ReferenceKind::truth ? "error " : "off nominal ") +
+                  centimetres(pair.shown.error_translation, charset) + "  " +
+                  degrees(pair.shown.error_rotation, charset),
+              Style::strong);
+  } else {
+    pane.text(0, 3, clean(answer->hint, 100), Style::warning);
+  }
+}
+
+void draw_observability(const Pane& pane, const PairState& pair, Charset charset) {
+  const Symbols& s = symbols(charset);
+  draw_title(pane, "Observability", charset);
+  const calibration_t* answer = pair.answer();
+  if (!answer) {
+    pane.text(2, 1, "no answer yet", Style::dim);
+    return;
+  }
+  constexpr int kLabel = 8;
+  const int number_width = charset == Charset::unicode ? 9 : 11;  // "±11.05 cm", "+-0.017 deg"
+  const int length = std::max(4, pane.width() - kLabel - number_width - 2);
+  for (int i = 0; i < 6; ++i) {
+    const int y = 1 + i;
+    pane.text(2, y, kDirections[i], Style::normal);
+    const bool ground = from_ground(pair, i);
+    const bool known = shown_by_motion(*answer, i);
+    // from a metre (10 degrees) of doubt, an empty bar, to a millimetre (a hundredth of a degree), a full one
+    const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : kDegrees / 10.0);
+    double filled =
+        known && doubt >= 0 ? std::clamp(-std::log10(std::max(doubt, 1e-9)) / 3.0, 0.0, 1.0) : 0.0;
+    if (ground) filled = 0;
+    const Style style = ground         ? Style::dim
+                        : !known       ? Style::bad
+                        : filled < 0.4 ? Style::warning
+                                       : Style::good;
+    const int full = static_cast<int>(std::lround(filled * length));
+    for (int k = 0; k < length; ++k)
+      pane.text(kLabel + k, y, k < full ? s.bar_full : s.bar_empty, k < full ? style : Style::dim);
+    const std::string text = ground   ? "plane"
+                             : !known ? "not shown"
+                                      : s.plus_minus + (i < 3 ? centimetres(answer->stddev[i], charset)
+                                                              : degrees(answer->stddev[i], charset));
+    pane.text(kLabel + length + 1, y, pad_left(text, number_width),
+              known || ground ? Style::dim : Style::bad);
+  }
+  pane.text(2, 7, answer->hint.empty() ? "the motions show everything" : clean(answer->hint, 120),
+            answer->hint.empty() ? Style::dim : Style::warning);
+}
+
+void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset charset) {
+  const Symbols& s = symbols(charset);
+  draw_title(pane, "Solvers", charset);
+  if (pair.solvers.empty()) {
+    pane.text(2, 1, "no answer yet", Style::dim);
+    return;
+  }
+  constexpr int kLabel = 10, kNarrow = 10;
+  const int room = pane.width() - kLabel;
+  const int columns = std::min<int>({static_cast<int>(pair.solvers.size()), std::max(1, room / kNarrow), 3});
+  const int w = std::min(20, room / columns);
+  const int indent = w >= 14 ? 2 : 0;
+  // always in the same place; where there is no room for all, the freshest
+  std::vector<const SolverTrack*> order;
+  for (const SolverTrack& solver : pair.solvers) order.push_back(&solver);
+  std::sort(order.begin(), order.end(),
+            [](const SolverTrack* x, const SolverTrack* y) { return x->name < y->name; });
+  if (static_cast<int>(order.size()) > columns)
+    std::sort(order.begin(), order.end(),
+              [](const SolverTrack* x, const SolverTrack* y) { return x->at.mono_us > y->at.mono_us; });
+
+  // the transform itself where there is room: what both agree on, or not
+  const bool transforms = pane.height() >= 2 + 11 + 6;
+  const bool spread_rows = pair.shown.reference == ReferenceKind::none;
+  std::vector<std::string> labels{"method", "verdict", "gap",
+                                  spread_rows ? s.plus_minus + std::string(" t") : "error t",
+                                  spread_rows ? s.plus_minus + std::string(" R") : "error R"};
+  if (transforms) labels.insert(labels.end(), std::begin(kDirections), std::end(kDirections));
+  for (const char* label : {"cost", "solve", "verify", "total", "frames", "age"}) labels.emplace_back(label);
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    pane.text(2, 2 + static_cast<int>(i), pad_right(labels[i], kLabel - 3), Style::dim);
+
+  for (int c = 0; c < columns; ++c) {
+    const SolverTrack& solver = *order[static_cast<std::size_t>(c)];
+    const calibration_t& answer = solver.answer;
+    const Shown own = shown_of(pair, answer);
+    const Pane column = pane.part({kLabel + c * w, 0, w - 1, pane.height()});
+    const std::string mark = &solver == pair.counted_solver() ? s.cursor : " ";
+    column.text(0, 1, mark + (indent ? " " : "") + short_solver(solver.name), solver_style(solver.role));
+    int row = 2;
+    const auto value = [&](const std::string& text, Style style = Style::normal) {
+      column.text(indent, row++, text, style);
+    };
+    const bool referenced = own.reference != ReferenceKind::none;
+    value(clean(answer.method, 9));
+    if (answer.status == 0)
+      value("certified", Style::good);
+    else
+      value(answer.status == 1 ? "not best" : "undecided", answer.status == 1 ? Style::bad : Style::warning);
+    value(compact(answer.scaled_gap, charset));
+    value(centimetres(referenced ? own.error_translation : largest(answer.stddev), charset));
+    value(degrees(referenced ? own.error_rotation : largest(answer.stddev + 3), charset));
+    if (transforms) {
+      const std::array<double, 6> values = components(own.T_a_b);
+      for (int i = 0; i < 6; ++i) {
+        const double v = values[static_cast<std::size_t>(i)];
+        value(!own.valid ? "-" : i < 3 ? centimetres(v, charset) : degrees(v, charset));
+      }
+    }
+    value(compact(answer.cost, charset));
+    value(solve_time(answer, charset));
+    value(verify_time(answer, charset));
+    value(latency(answer, charset));
+    value(count(answer.pairs));
+    value(age(seconds(solver.at.mono_us, now.mono_us)), solver.silent ? Style::bad : Style::dim);
+  }
+}
+
+void draw_direction(const Pane& pane, const PairState& pair, bool inverted, bool matrix, Charset charset) {
+  const std::string from = clean(inverted ? pair.b : pair.a, 16), to = clean(inverted ? pair.a : pair.b, 16);
+  draw_title(pane, "pose of " + to + " in " + from, charset);
+  const calibration_t* answer = pair.answer();
+  if (!answer || !pair.shown.valid) {
+    pane.text(2, 1, "no answer yet", Style::dim);
+    return;
+  }
+  const Pose T = inverted ? inverse(pair.shown.T_a_b) : pair.shown.T_a_b;
+  const int w = pane.width();
+  const int cell = w >= 48 ? 10 : 8, start = 8;
+  const auto row = [&](int y, const char* label, const std::vector<std::string>& values, const char* unit) {
+    pane.text(1, y, label, Style::dim);
+    int x = start;
+    for (const std::string& value : values) {
+      pane.text(x, y, pad_left(value, cell));
+      x += cell;
+    }
+    pane.text(x + 1, y, unit, Style::dim);
+  };
+  const Eigen::Vector3d t = T.translation, rpy = roll_pitch_yaw(T.rotation);
+  const Eigen::Quaterniond& q = T.rotation;
+  const int fine = cell - 4;  // decimals of what lies between -1 and 1
+  row(1, "x y z",
+      {number(t.x() * kCentimetres, 2, charset), number(t.y() * kCentimetres, 2, charset),
+       number(t.z() * kCentimetres, 2, charset)},
+      "cm");
+  row(2, "q wxyz",
+      {number(q.w(), fine, charset), number(q.x(), fine, charset), number(q.y(), fine, charset),
+       number(q.z(), fine, charset)},
+      "");
+  row(3, "r p y",
+      {number(rpy.x() * kDegrees, 3, charset), number(rpy.y() * kDegrees, 3, charset),
+       number(rpy.z() * kDegrees, 3, charset)},
+      symbols(charset).degree);
+  if (!matrix) return;
+  const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
+  for (int i = 0; i < 3; ++i)
+    row(4 + i, i == 0 ? "R | t" : "",
+        {number(R(i, 0), fine, charset), number(R(i, 1), fine, charset), number(R(i, 2), fine, charset),
+         number(t(i), fine, charset)},
+        i == 0 ? "m" : "");
+}
+
+void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewState& view) {
+  const bool unicode = view.charset == Charset::unicode;
+  Plot plot;
+  plot.curve = static_cast<Curve>(curve);
+  plot.logarithmic = view.logarithmic;
+  const char* kind = pair.shown.reference == ReferenceKind::truth     ? "error"
+                     : pair.shown.reference == ReferenceKind::nominal ? "off nominal"
+                                                                      : "spread";
+  switch (plot.curve) {
+    case rotation_error:
+      plot.title = std::string("rotation ") + kind + (unicode ? " [°]" : " [deg]");
+      plot.scale = kDegrees;
+      break;
+    case translation_error:
+      plot.title = std::string("translation ") + kind + " [cm]";
+      plot.scale = kCentimetres;
+      break;
+    case scaled_gap:
+      plot.title = pane.width() >= 30 ? "scaled duality gap (limit 1)" : "scaled gap (limit 1)";
+      plot.threshold = 1.0;
+      break;
+    default:
+      plot.title = std::string("execution time [") + symbols(view.charset).micro + "s]";
+      plot.scale = 1e6;
+      break;
+  }
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const SolverTrack& solver : pair.solvers) {
+    if (solver.history.empty()) continue;
+    first = std::min(first, solver.history.first_time());
+    last = std::max(last, solver.history.last_time());
+    plot.series.push_back({&solver.history, solver_style(solver.role)});
+  }
+  if (!(first <= last)) {
+    plot.begin = 0;
+    plot.end = 1;
+  } else {
+    plot.end = last;
+    plot.begin = view.window_s > 0 ? std::max(first, last - view.window_s) : first;
+    if (plot.end - plot.begin < 1) plot.end = plot.begin + 1;
+  }
+  // the fast solver is what remains: its curve is drawn last, on top
+  std::stable_sort(plot.series.begin(), plot.series.end(), [](const auto& x, const auto& y) {
+    return x.style == Style::global && y.style != Style::global;
+  });
+  plot.mark = pair.only_fast_since;
+  if (plot.curve == execution_time && plot.mark) plot.mark_label = "fast alone";
+  draw_plot(pane, plot, view.charset);
+}
+
+}  // namespace egocal::monitor
