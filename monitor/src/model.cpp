@@ -91,10 +91,13 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
   const std::size_t recent = std::min<std::size_t>(events_.size(), 16);
   for (std::size_t i = 1; i <= recent; ++i) {
     Event& event = events_[events_.size() - i];
-    if (event.subject == subject && event.text == text && seconds(event.at.mono_us, now.mono_us) < kRepeat) {
+    if (event.subject != subject) continue;
+    if (event.text == text && seconds(event.at.mono_us, now.mono_us) < kRepeat) {
       ++event.repeated;
       return;
     }
+    // what was good and is bad now, or the other way round, is listed in its order
+    if (severity == Severity::good || severity == Severity::bad) break;
   }
   ++events_seen_;
   if (events_.size() == kMaxEvents) events_.pop_front();
@@ -349,7 +352,6 @@ void Model::on_status(const status_t& message, Now now) {
     }
     process = &processes_.emplace_back();
     process->rate_in = process->rate_out = -1;
-    process->rate_mono_us = now.mono_us;
     process->alive = state != "ended";
     if (process->alive) note(Severity::good, name, "process is there (" + state + ")", now);
     if (!error.empty()) note(Severity::warning, name, error, now);

@@ -91,8 +91,9 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
   }
   double low = range.low, high = range.high;
   if (plot.logarithmic) {
-    low = std::max(std::floor(std::log10(low) + 1e-9), std::log10(high) - 15);
-    high = std::ceil(std::log10(high) - 1e-9);
+    // the courses are kept in single precision: 0.01 may be a little less
+    low = std::max(std::floor(std::log10(low) + 1e-6), std::log10(high) - 15);
+    high = std::ceil(std::log10(high) - 1e-6);
     if (high - low < 1) high = low + 1;
   } else {
     if (low > 0 && low < 0.6 * high) low = 0;

@@ -1,0 +1,494 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages in, plain data out: every event, and everything that a sender can do wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <functional>
+#include <limits>
+
+#include "egocal/monitor/lines.hpp"
+#include "egocal/monitor/model.hpp"
+#include "egocal/monitor/view.hpp"
+#include "scene.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+using test::calibration_at;
+using test::kBegin;
+using test::problem_at;
+using test::status_of;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+
+// A drive of one pair, ten motions a second, whose messages can be changed before they are sent.
+struct Drive {
+  Model model;
+  std::int64_t step = 0;
+  bool global = false, fast = true;
+  std::function<void(problem_t&)> change_problem = [](problem_t&) {};
+  std::function<void(calibration_t&)> change_answer = [](calibration_t&) {};
+
+  Now now() const { return {1'000'000 + step * 100'000, kBegin + step * 100'000}; }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i, ++step) {
+      problem_t problem = problem_at("lidar", "camera", step, 10);
+      change_problem(problem);
+      model.on_problem(problem, now());
+      for (const bool which : {true, false}) {
+        if (which ? !global : !fast) continue;
+        calibration_t answer = calibration_at(problem, which);
+        if (which || step >= 8) answer.fallback = 0;
+        change_answer(answer);
+        model.on_calibration(answer, now());
+      }
+      model.tick(now());
+    }
+  }
+  void heartbeat(const status_t& status) { model.on_status(status, now()); }
+  std::vector<std::string> texts() const {
+    std::vector<std::string> all;
+    for (const Event& event : model.events()) all.push_back(event.subject + ": " + event.text);
+    return all;
+  }
+  const PairState& pair() const { return model.pairs().front(); }
+  std::size_t seen = 0;
+  /// The events since the last call.
+  std::vector<std::string> fresh() {
+    std::vector<std::string> all = texts();
+    all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(seen));
+    seen += all.size();
+    return all;
+  }
+};
+
+}  // namespace
+
+TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
+  Drive drive;
+  drive.global = true;
+  drive.run(5);
+  EXPECT_THAT(drive.texts(),
+              ElementsAre("lidar -> camera: certified globally optimal, by egocal-global",
+                          "lidar -> camera: solver swapped: egocal-fast (sqp) answers too",
+                          "lidar -> camera: fallback: egocal-fast asked for the global solver"));
+  EXPECT_FALSE(drive.pair().only_fast_since);
+  drive.run(35);
+  drive.global = false;
+  drive.run(20);
+  ASSERT_TRUE(drive.pair().only_fast_since);
+  EXPECT_NEAR(*drive.pair().only_fast_since, 3.9, 1e-6) << "right after the global one's last answer";
+  EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-fast");
+  // the first fallback of a session has ended more than a second ago: said once, when it was over
+  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: only the fast solver runs again").Times(1));
+
+  drive.change_answer = [](calibration_t& answer) { answer.fallback = 1; };
+  drive.run(1);
+  EXPECT_FALSE(drive.pair().only_fast_since);
+}
+
+TEST(ModelEvents, CertificateLostAndFoundButNotForAMoment) {
+  Drive drive;
+  drive.run(30);
+  drive.fresh();
+  drive.change_answer = [](calibration_t& answer) { answer.status = 1; };
+  drive.run(5);
+  EXPECT_THAT(drive.fresh(), IsEmpty()) << "half a second is no event";
+  drive.run(20);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: certificate lost: a better answer is known"));
+  drive.change_answer = [](calibration_t&) {};
+  drive.run(5);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: certified globally optimal, by egocal-fast"));
+  drive.change_answer = [](calibration_t& answer) { answer.status = 2; };
+  drive.run(20);
+  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: certificate lost: too imprecise to decide"));
+}
+
+TEST(ModelEvents, SolverSwapped) {
+  Drive drive;
+  drive.run(20);
+  drive.fresh();
+  drive.change_answer = [](calibration_t& answer) { answer.method = "sdp"; };
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("lidar -> camera: solver swapped: egocal-fast changed from sqp to sdp"));
+  drive.change_answer = [](calibration_t& answer) {
+    answer.solver = "egocal-other-fast";
+    answer.method = "sdp";
+  };
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("lidar -> camera: solver swapped: egocal-other-fast (sdp) answers too"));
+  drive.run(30);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: solver swapped: egocal-fast no longer answers"));
+  drive.change_answer = [](calibration_t& answer) { answer.method = "sdp"; };
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: egocal-fast answers again"));
+}
+
+TEST(ModelEvents, ManySolversOfOneSessionAreBounded) {
+  Drive drive;
+  drive.change_answer = [&](calibration_t& answer) {
+    answer.solver = "solver-" + std::to_string(answer.seq);
+  };
+  drive.run(500);
+  EXPECT_EQ(drive.pair().solvers.size(), Model::kMaxSolvers);
+  EXPECT_EQ(drive.pair().counted_solver()->name, "solver-500");
+}
+
+TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
+  Drive drive;
+  status_t status = status_of("egocal-fast", "fast", 1);
+  drive.heartbeat(status);
+  drive.run(20);
+  EXPECT_TRUE(drive.model.processes()[0].alive);
+  drive.run(20);
+  EXPECT_FALSE(drive.model.processes()[0].alive);
+  drive.heartbeat(status);
+  status.run = 2;
+  drive.heartbeat(status);
+  status.state = "paused";
+  status.last_error = "no global solver";
+  drive.heartbeat(status);
+  status.state = "ended";
+  drive.heartbeat(status);
+  EXPECT_FALSE(drive.model.processes()[0].alive);
+  drive.run(50);
+  std::vector<std::string> about;
+  for (const std::string& text : drive.texts())
+    if (text.starts_with("egocal-fast: ")) about.push_back(text.substr(13));
+  EXPECT_THAT(about, ElementsAre("process is there (running)", "process is gone: no heartbeat for 3 s",
+                                 "process is back", "process was started anew", "is paused, was running",
+                                 "no global solver", "is ended, was paused"));
+}
+
+TEST(ModelEvents, SessionResetForgetsTheOldOne) {
+  Drive drive;
+  drive.run(30);
+  drive.fresh();
+  const auto anew = [](auto& message) {
+    message.session = kBegin + 3'000'000;
+    message.seq -= 30;
+  };
+  drive.change_problem = anew;
+  drive.fast = false;
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: session reset: the calibration begins anew"));
+  EXPECT_EQ(drive.pair().answer(), nullptr);
+  // an answer of the session before is late
+  drive.model.on_calibration(calibration_at(problem_at("lidar", "camera", 29, 10), false), drive.now());
+  EXPECT_EQ(drive.pair().answer(), nullptr);
+  drive.fast = true;
+  drive.run(1);
+  ASSERT_NE(drive.pair().answer(), nullptr);
+  EXPECT_NEAR(drive.pair().solvers[0].history.last_time(), 0.1, 1e-9) << "its time begins anew";
+}
+
+TEST(ModelEvents, TimeOffsetChangedBeyondItsNoise) {
+  Drive drive;
+  drive.change_problem = [](problem_t& p) {
+    p.time_offset = 0.020;
+    p.time_offset_stddev = 0.002;
+  };
+  drive.run(10);
+  drive.change_problem = [](problem_t& p) {
+    p.time_offset = 0.024;
+    p.time_offset_stddev = 0.002;
+  };
+  drive.run(10);
+  EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("time offset"))));
+  drive.change_problem = [](problem_t& p) {
+    p.time_offset = 0.0352;
+    p.time_offset_stddev = 0.002;
+  };
+  drive.run(10);
+  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: time offset changed from 20.0 to 35.2 ms").Times(1));
+}
+
+TEST(ModelEvents, GapInAStreamAndSilence) {
+  Drive drive;
+  drive.run(30);
+  drive.fresh();
+  drive.step += 12;  // 1.2 s are missing
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: gap of 1.3 s in the stream"));
+  EXPECT_EQ(drive.pair().gap_count, 1);
+  // as many steps as one motion spans are no gap
+  drive.change_problem = [](problem_t& p) { p.stride = 4; };
+  drive.step += 15;
+  drive.run(1);
+  EXPECT_EQ(drive.pair().gap_count, 1);
+  drive.fresh();
+  drive.step += 21;
+  drive.model.tick(drive.now());
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: the stream is silent: no new motion for 2 s"));
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(), Contains("lidar -> camera: the stream is back"));
+}
+
+TEST(ModelEvents, TheSameAgainIsCounted) {
+  Drive drive;
+  for (int i = 0; i < 5; ++i)
+    drive.model.note(Severity::warning, "stderr", std::string(500, 'x'), drive.now());
+  ASSERT_EQ(drive.model.events().size(), 1u);
+  EXPECT_EQ(drive.model.events()[0].repeated, 5);
+  EXPECT_EQ(drive.model.events()[0].text.size(), Model::kMaxText);
+  drive.step += 400;
+  drive.model.note(Severity::warning, "stderr", std::string(500, 'x'), drive.now());
+  EXPECT_EQ(drive.model.events().size(), 2u) << "after a while it is news again";
+}
+
+TEST(ModelEvents, CommandsOfAnybody) {
+  Drive drive;
+  drive.run(1);
+  command_t command{};
+  command.to = "*";
+  command.verb = "pause";
+  command.sensor_a = "lidar";
+  command.sensor_b = "camera";
+  drive.model.on_command(command, drive.now());
+  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: command: pause"));
+  EXPECT_TRUE(pair_is_paused(drive.model, drive.pair()));
+}
+
+TEST(ModelPause, KnownByCommandsByStatesAndByMotionsThatGoOn) {
+  Drive drive;
+  drive.run(5);
+  EXPECT_FALSE(pair_is_paused(drive.model, drive.pair()));
+  command_t command{};
+  command.to = "*";
+  command.verb = "pause";
+  command.sensor_a = "lidar";
+  command.sensor_b = "other";
+  drive.model.on_command(command, drive.now());
+  EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "that was another pair";
+  command.sensor_b = "camera";
+  drive.model.on_command(command, drive.now());
+  // problems are repeated while paused, without new motions
+  drive.change_problem = [](problem_t& p) { p.seq = 5; };
+  drive.run(40);
+  EXPECT_TRUE(pair_is_paused(drive.model, drive.pair()));
+  drive.change_problem = [](problem_t&) {};
+  drive.run(1);
+  EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "somebody has resumed it unheard";
+  status_t status = status_of("egocal-pairing", "pairing", 1);
+  status.state = "paused";
+  drive.heartbeat(status);
+  EXPECT_TRUE(pair_is_paused(drive.model, drive.pair()));
+
+  ViewState view;
+  press(view, drive.model, {Key::character, 'p'});
+  EXPECT_EQ(view.dialog, Dialog::resume);
+  EXPECT_EQ(press(view, drive.model, {Key::character, 'y'}).kind, Action::Kind::resume);
+}
+
+TEST(ModelAnswer, TheOneThatCountsIsTheLibrarysChoice) {
+  Drive drive;
+  drive.global = true;
+  drive.change_answer = [](calibration_t& answer) {
+    if (answer.solver == "egocal-fast") answer.status = 1;
+  };
+  drive.run(3);
+  EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-global") << "certified before uncertified";
+  drive.global = false;
+  drive.run(1);
+  EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-fast") << "the newest problem first";
+}
+
+TEST(ModelAnswer, ErrorsAgainstTruthOrNominalOrSpreads) {
+  Drive drive;
+  drive.run(20);
+  EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::truth);
+  EXPECT_GT(drive.pair().shown.error_translation, 0);
+  drive.change_problem = [](problem_t& p) { p.has_truth = 0; };
+  drive.run(1);
+  EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::nominal);
+  drive.change_problem = [](problem_t& p) { p.has_truth = p.has_prior = 0; };
+  drive.run(1);
+  EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::none);
+  EXPECT_TRUE(std::isnan(drive.pair().shown.error_translation));
+  drive.change_problem = [](problem_t& p) { p.truth_quat[2] = kNaN; };
+  drive.run(1);
+  EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::nominal) << "a broken truth is none";
+}
+
+TEST(ModelProcesses, CountsAndRates) {
+  Drive drive;
+  status_t status = status_of("egocal-pairing", "pairing", 100);
+  const auto count = [&](const char* name, std::int64_t value) {
+    counter_t& counter = status.counters.emplace_back();
+    counter.name = name;
+    counter.value = value;
+  };
+  count("lost", 3);
+  count("rejected: too late", 4);
+  count("rejected: duplicate", 5);
+  drive.heartbeat(status);
+  const ProcessState& process = drive.model.processes()[0];
+  EXPECT_EQ(process.lost, 3);
+  EXPECT_EQ(process.rejected, 9);
+  EXPECT_LT(process.rate_in, 0) << "not known yet";
+  drive.step += 10;
+  status.counters[0].value = 300;
+  drive.heartbeat(status);
+  EXPECT_NEAR(process.rate_in, 200, 1e-9);
+  status.run = 2;  // restarted: counts begin at zero
+  status.counters[0].value = 5;
+  drive.step += 10;
+  drive.heartbeat(status);
+  EXPECT_LT(process.rate_in, 0);
+}
+
+namespace {
+
+const std::string kEvil = "\x1b[2J\x1b]0;x\x07\r\n\t\xff\xfe\xc0\xaf\xf5\xed\xa0\x80" + std::string(200, 'W');
+
+void expect_clean_screens(const Model& model) {
+  for (const Charset charset : {Charset::ascii, Charset::unicode})
+    for (const Screen screen : {Screen::overview, Screen::detail, Screen::events})
+      for (const Dialog dialog : {Dialog::none, Dialog::help, Dialog::reset, Dialog::export_format})
+        for (int w : {1, 3, 20, 40, 79, 100, 160, 250})
+          for (int h : {1, 2, 5, 8, 24, 50, 80}) {
+            ViewState view;
+            view.charset = charset;
+            view.screen = screen;
+            view.dialog = dialog;
+            view.selected = w % 3;
+            view.scroll = w;
+            view.window_s = h % 2 ? 10 : 0;
+            view.logarithmic = h % 2;
+            view.notice = h == 8 ? kEvil : "";
+            view.source = kEvil;
+            Canvas canvas(w, h);
+            draw(canvas, model, view);
+            for (int y = 0; y < h; ++y)
+              for (int x = 0; x < w; ++x) {
+                const char32_t g = canvas.at(x, y).glyph;
+                ASSERT_TRUE(g >= 0x20 && g != 0x7f && !(g >= 0x80 && g < 0xa0) &&
+                            (charset == Charset::unicode || g < 0x7f))
+                    << static_cast<unsigned>(g) << " at " << x << "," << y << " of " << w << "x" << h;
+              }
+          }
+  for (const std::string& text : {pair_lines(model, Charset::unicode), text_lines(model, Charset::ascii)})
+    for (char c : text) ASSERT_TRUE(static_cast<unsigned char>(c) >= 0x20 || c == '\n');
+  const std::string json = json_line(model);
+  for (char c : json) ASSERT_GE(static_cast<unsigned char>(c), 0x20);
+  EXPECT_THAT(json, Not(HasSubstr("NaN")));
+  for (const Event& event : model.events())
+    for (char c : event_line(event, 0)) ASSERT_GE(static_cast<unsigned char>(c), 0x20);
+}
+
+}  // namespace
+
+TEST(Hostile, ValuesNamesAndTimesNeitherCrashNorReachTheScreen) {
+  Model model;
+  const double values[] = {kNaN, kInf, -kInf, 1e308, -1e308, 5e-324, 0, -1};
+  const std::int64_t counts[] = {kMost, kLeast, -1, 0, 1};
+  std::int64_t n = 0;
+  const auto value = [&] { return values[static_cast<std::size_t>(n++) % std::size(values)]; };
+  const auto number = [&] { return counts[static_cast<std::size_t>(n++) % std::size(counts)]; };
+  for (std::int64_t step = 0; step < 3000; ++step) {
+    const Now now{step * 50'000, step % 500 == 0 ? number() : step * 50'000};
+    problem_t p = problem_at("lidar", step % 3 ? "camera" : kEvil, step, 10);
+    calibration_t c = calibration_at(p, step % 2);
+    status_t s = status_of(step % 4 ? kEvil : "egocal-fast", "fast", number());
+    for (double* field :
+         {&p.truth_pos[0], &p.truth_quat[1], &p.prior_pos[2], &p.prior_quat[0], &p.time_offset,
+          &p.time_offset_stddev, &p.weight_rotation, &c.pos[0], &c.pos[2], &c.quat[0], &c.quat[3], &c.cost,
+          &c.lower_bound, &c.gap, &c.scaled_gap, &c.stddev[0], &c.stddev[5], &c.reach_translation})
+      if (n++ % 5 == 0) *field = value();
+    for (std::int64_t* field : {&p.utime, &p.seq, &p.matched, &p.rejected, &p.received_mono_us, &c.utime,
+                                &c.seq, &c.pairs, &c.solve_ns, &c.verify_ns, &c.latency_us, &s.run})
+      if (n++ % 7 == 0) *field = number();
+    if (step % 11 == 0) p.session = c.session = number();
+    if (step % 13 == 0) p.stride = static_cast<std::int32_t>(number());
+    if (step % 17 == 0) p.mode = c.status = static_cast<std::int8_t>(step);
+    p.choice = c.hint = c.method = s.last_error = s.state = kEvil;
+    s.pid = -1;
+    s.counters[0].name = step % 2 ? "lost" : kEvil;
+    s.counters[0].value = number();
+    model.on_problem(p, now);
+    model.on_calibration(c, now);
+    model.on_status(s, now);
+    command_t command{};
+    command.verb = command.sensor_a = command.to = kEvil;
+    model.on_command(command, now);
+    model.tick(now);
+    if (step % 750 == 0) {
+      expect_clean_screens(model);
+      if (HasFatalFailure()) return;
+    }
+  }
+  expect_clean_screens(model);
+  EXPECT_LE(model.events().size(), Model::kMaxEvents);
+}
+
+TEST(Hostile, AFloodOfNamesIsBoundedAndCounted) {
+  Model model;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string name = "sensor" + std::to_string(i);
+    const problem_t p = problem_at(name, name, i, 10);
+    model.on_problem(p, {i, i});
+    model.on_calibration(calibration_at(p, false), {i, i});
+    model.on_status(status_of(name, "fast", 1), {i, i});
+  }
+  EXPECT_EQ(model.pairs().size(), Model::kMaxPairs);
+  EXPECT_EQ(model.processes().size(), Model::kMaxProcesses);
+  for (int i = 0; i < 2000; ++i) model.note(Severity::info, "stderr", std::to_string(i), {i, i});
+  EXPECT_EQ(model.events().size(), Model::kMaxEvents);
+  EXPECT_EQ(model.events().back().text, "1999");
+  EXPECT_GT(model.events_seen(), 2000);
+  EXPECT_EQ(model.ignored(), 3 * 1000 - 2 * 64 - 64);
+  expect_clean_screens(model);
+}
+
+TEST(Hostile, TimeRunningBackwardsIsSaidAndTheCurveGoesOn) {
+  Drive drive;
+  drive.run(100);
+  drive.fresh();
+  drive.change_problem = [](problem_t& p) { p.utime = 0; };
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("lidar -> camera: time ran backwards in the problems of one session"));
+  drive.change_problem = [](problem_t& p) { p.utime = kMost; };
+  drive.run(1);
+  drive.change_problem = [](problem_t&) {};
+  drive.run(10);
+  EXPECT_NEAR(drive.pair().solvers[0].history.last_time(), 11.1, 1e-9);
+}
+
+TEST(Memory, FlatOverASimulatedDay) {
+  Drive drive;
+  drive.global = true;
+  drive.model.on_status(status_of("egocal-fast", "fast", 1), drive.now());
+  const auto hours = [&](int n) {
+    for (int minute = 0; minute < 60 * n; ++minute) {
+      drive.run(60);
+      drive.step += 540;  // a day of ten messages a second, a tenth of them sent
+      drive.heartbeat(status_of("egocal-fast", "fast", drive.step));
+      if (minute % 7 == 0) drive.model.note(Severity::info, "x", std::to_string(drive.step), drive.now());
+    }
+  };
+  hours(8);
+  const std::size_t before = mallinfo2().uordblks;
+  hours(16);
+  const std::size_t after = mallinfo2().uordblks;
+  EXPECT_NEAR(static_cast<double>(drive.step) / 36000, 24, 0.01);
+  EXPECT_LE(after, before + 256 * 1024) << "bytes in use, 8 h and 24 h into the day";
+  EXPECT_EQ(drive.model.events().size(), Model::kMaxEvents);
+  for (const SolverTrack& solver : drive.pair().solvers)
+    for (double back : {0.0, 100.0, 1000.0, 40000.0, 86400.0})
+      EXPECT_LE(solver.history.since(solver.history.last_time() - back).size(), History::kSlices);
+}
+
+}  // namespace egocal::monitor

@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What the screens say of a model, and what the keys do.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "egocal/monitor/view.hpp"
+#include "scene.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr Now kNow{1'000'000, test::kBegin};
+
+KeyPress character(char c) {
+  return {Key::character, c};
+}
+
+class View : public testing::Test {
+ protected:
+  View() {
+    view.charset = Charset::unicode;
+    send([](problem_t&) {}, [](calibration_t&) {});
+  }
+  void send(const std::function<void(problem_t&)>& change_problem,
+            const std::function<void(calibration_t&)>& change_answer, bool both = true) {
+    problem_t problem = test::problem_at("lidar", "camera", step++, 10);
+    change_problem(problem);
+    model.on_problem(problem, kNow);
+    for (bool global : {false, true}) {
+      if (global && !both) continue;
+      calibration_t answer = test::calibration_at(problem, global);
+      change_answer(answer);
+      model.on_calibration(answer, kNow);
+    }
+  }
+  std::string shown(Screen screen, int w, int h) {
+    view.screen = screen;
+    Canvas canvas(w, h);
+    draw(canvas, model, view);
+    return canvas.to_text();
+  }
+
+  Model model;
+  ViewState view;
+  std::int64_t step = 100;
+};
+
+}  // namespace
+
+TEST_F(View, APairsCardSaysAllOfIt) {
+  const std::string text = shown(Screen::overview, 110, 30);
+  for (const char* part :
+       {"lidar → camera", "✓ certified", "egocal-", "3-D", "101 frames", "translation", "roll", "±", "cm",
+        "error", "of 1", "solve", "verify", "end to end", "q quit", "? help"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST_F(View, DetailHasBothSolversBothDirectionsAndFourCurves) {
+  for (const auto& [w, h] : {std::pair{80, 24}, {110, 42}, {200, 60}}) {
+    const std::string text = shown(Screen::detail, w, h);
+    for (const char* part :
+         {"rotation error [°]", "translation error [cm]", "scaled", "execution time [µs]", "Observability",
+          "Solvers", "fast", "global", "sqp", "dual", "pose of camera in lidar", "pose of lidar in camera",
+          "q wxyz", "r p y", "x y z"})
+      EXPECT_THAT(text, HasSubstr(part)) << w << "x" << h;
+  }
+  const std::string text = shown(Screen::detail, 110, 42);
+  EXPECT_THAT(text, HasSubstr("R | t"));
+  // (0.5, -0.5, 0.5, -0.5), turned by a little; and the way back
+  EXPECT_THAT(text, testing::ContainsRegex("q wxyz +0\\.50.* -0\\.49.* 0\\.50.* -0\\.49"));
+  EXPECT_THAT(text, HasSubstr("the motions show everything"));
+}
+
+TEST_F(View, WhatTheMotionsDoNotShowIsSaid) {
+  send([](problem_t&) {},
+       [](calibration_t& answer) {
+         answer.observable[2] = 0;
+         answer.stddev[2] = std::numeric_limits<double>::infinity();
+         answer.hint = "turn while going uphill";
+       });
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("not shown: z"));
+  EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("turn while going uphill"));
+  EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("not shown"));
+  send([](problem_t& p) { p.mode = 1; },
+       [](calibration_t& answer) {
+         for (int i : {2, 3, 4}) answer.observable[i] = 0;
+       });
+  EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("plane")) << "the ground says it";
+  EXPECT_THAT(shown(Screen::overview, 110, 30), Not(HasSubstr("not shown: z")));
+}
+
+TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
+  send(
+      [](problem_t& p) {
+        p.rejected = 17;
+        p.time_offset = -0.0123;
+        p.time_offset_stddev = 0.0004;
+      },
+      [](calibration_t&) {});
+  const std::string text = shown(Screen::detail, 140, 42);
+  EXPECT_THAT(text, HasSubstr("17 rejected"));
+  EXPECT_THAT(text, HasSubstr("offset -12.3 ±0.4 ms"));
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("17 rejected"));
+}
+
+TEST_F(View, ProcessesSayWhoWhereAndWhatIsWrong) {
+  status_t status = test::status_of("egocal-fast", "fast", 5);
+  status.last_error = "no global solver is heard";
+  model.on_status(status, kNow);
+  for (int w : {100, 140})
+    EXPECT_THAT(shown(Screen::overview, w, 30), HasSubstr("no global solver is heard")) << w;
+  EXPECT_THAT(shown(Screen::overview, 140, 30), HasSubstr("pid 4711 on car"));
+  model.tick({kNow.mono_us + 4'000'000, kNow.wall_us});
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("GONE"));
+}
+
+TEST_F(View, NothingIsCutInHalfBesideTheClock) {
+  for (int w = 40; w < 160; ++w) {
+    std::string first = shown(Screen::detail, w, 30);
+    first = first.substr(0, first.find('\n'));
+    ASSERT_GE(first.size(), 8u);
+    EXPECT_THAT(first.substr(first.size() - 8), testing::MatchesRegex("[0-9:]*")) << first;
+    EXPECT_EQ(first[first.size() - 9], ' ') << first;
+  }
+}
+
+TEST_F(View, KeysMoveBetweenScreensAndPairs) {
+  for (const char* b : {"radar", "imu"}) model.on_problem(test::problem_at("lidar", b, 1, 10), kNow);
+  press(view, model, {Key::down});
+  EXPECT_EQ(view.selected, 1);
+  press(view, model, {Key::end});
+  EXPECT_EQ(view.selected, 2);
+  press(view, model, {Key::down});
+  EXPECT_EQ(view.selected, 2) << "stays at the end";
+  press(view, model, character('n'));
+  EXPECT_EQ(view.selected, 0) << "goes round";
+  press(view, model, character('N'));
+  EXPECT_EQ(view.selected, 2);
+  press(view, model, {Key::enter});
+  EXPECT_EQ(view.screen, Screen::detail);
+  press(view, model, {Key::escape});
+  EXPECT_EQ(view.screen, Screen::overview);
+  press(view, model, character('e'));
+  EXPECT_EQ(view.screen, Screen::events);
+  press(view, model, {Key::tab});
+  EXPECT_EQ(view.screen, Screen::overview);
+  EXPECT_EQ(press(view, model, character('q')).kind, Action::Kind::quit);
+}
+
+TEST_F(View, ZoomGoesInAndOut) {
+  EXPECT_EQ(view.window_s, 0);
+  std::vector<double> in, out;
+  for (int i = 0; i < 8; ++i) {
+    press(view, model, character('+'));
+    in.push_back(view.window_s);
+  }
+  EXPECT_THAT(in, testing::ElementsAre(7200, 1800, 300, 60, 30, 10, 10, 10));
+  for (int i = 0; i < 7; ++i) {
+    press(view, model, character('-'));
+    out.push_back(view.window_s);
+  }
+  EXPECT_THAT(out, testing::ElementsAre(30, 60, 300, 1800, 7200, 0, 0));
+  press(view, model, character('l'));
+  EXPECT_FALSE(view.logarithmic);
+}
+
+TEST_F(View, NothingIsCommandedWithoutAYes) {
+  for (char key : {'r', 'p'})
+    for (char answer : {'n', 'r', 'p', 'q', ' ', '?'}) {
+      EXPECT_EQ(press(view, model, character(key)).kind, Action::Kind::none);
+      EXPECT_NE(view.dialog, Dialog::none);
+      EXPECT_EQ(press(view, model, character(answer)).kind, Action::Kind::none);
+      EXPECT_EQ(view.dialog, Dialog::none);
+    }
+  press(view, model, character('r'));
+  const Action action = press(view, model, character('y'));
+  EXPECT_EQ(action.kind, Action::Kind::reset);
+  EXPECT_EQ(action.a, "lidar");
+  EXPECT_EQ(action.session, test::kBegin) << "this session and no later one";
+  view.live = false;
+  press(view, model, character('r'));
+  EXPECT_EQ(view.dialog, Dialog::none);
+  EXPECT_THAT(view.notice, HasSubstr("log"));
+  press(view, model, character('x'));
+  EXPECT_EQ(view.dialog, Dialog::export_format) << "a log's answer can be exported";
+}
+
+TEST_F(View, WhatIsExportedIsTheAnswerThatCounts) {
+  const auto extrinsic = extrinsic_of(model.pairs()[0]);
+  ASSERT_TRUE(extrinsic);
+  EXPECT_EQ(extrinsic->parent, "lidar");
+  EXPECT_EQ(extrinsic->child, "camera");
+  EXPECT_TRUE(extrinsic->certified);
+  send([](problem_t&) {},
+       [](calibration_t& answer) { answer.pos[1] = std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_FALSE(extrinsic_of(model.pairs()[0])) << "nothing rather than nonsense";
+}
+
+}  // namespace egocal::monitor
