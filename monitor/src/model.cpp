@@ -446,10 +446,11 @@ void Model::tick(Now now) {
       note(Severity::info, name,
            "the stream is silent: no new motion for " + rounded(options_.stream_timeout, 0) + " s", now);
     }
+    // a solver is missed only where there is something to solve, and only after it has had time to
+    if (!pair.has_problem || pair.silent || pair_is_paused(*this, pair)) pair.idle_mono_us = now.mono_us;
     for (SolverTrack& track : pair.solvers) {
-      // a solver is missed only where there is something to solve
-      const bool owed = pair.has_problem && !pair.silent && track.role == Role::fast;
-      if (owed && !track.silent && seconds(track.at.mono_us, now.mono_us) > options_.stream_timeout) {
+      const double unanswered = seconds(std::max(track.at.mono_us, pair.idle_mono_us), now.mono_us);
+      if (track.role == Role::fast && !track.silent && unanswered > options_.stream_timeout) {
         track.silent = true;
         note(Severity::bad, name, "solver swapped: " + track.name + " no longer answers", now);
       }

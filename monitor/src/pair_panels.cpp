@@ -8,7 +8,8 @@
 
 namespace egocal::monitor {
 
-void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, Charset charset) {
+void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, bool paused,
+                    Charset charset) {
   const Symbols& s = symbols(charset);
   const int right = pane.width();
   if (selected) pane.text(0, 0, s.cursor, Style::key);
@@ -29,7 +30,9 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
                                    : pair.has_problem ? pair.problem.matched
                                                       : 0) +
                              " frames";
-  const std::string mode = pair.has_problem ? (pair.problem.mode == 1 ? "planar  " : "3-D  ") : "";
+  const std::string mode = paused             ? "PAUSED  "
+                           : pair.has_problem ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
+                                              : "";
   const std::string rejected =
       pair.has_problem && pair.problem.rejected > 0 ? "  " + count(pair.problem.rejected) + " rejected" : "";
   const std::string old =
@@ -37,7 +40,7 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
   for (const std::string& text :
        {mode + frames + rejected + old, mode + frames + old, frames + old, frames, old}) {
     if (x + width_of(text) + 1 > right) continue;
-    pane.text(right - width_of(text) - 1, 0, text, pair.silent || pair.paused ? Style::warning : Style::dim);
+    pane.text(right - width_of(text) - 1, 0, text, pair.silent || paused ? Style::warning : Style::dim);
     break;
   }
   if (!answer) {

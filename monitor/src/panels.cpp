@@ -54,8 +54,10 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
                   style) +
         1;
     if (pane.width() >= 60) {
-      const std::string in = process->rate_in < 0 ? "-" : compact(process->rate_in, charset) + "/s";
-      const std::string out = process->rate_out < 0 ? "-" : compact(process->rate_out, charset) + "/s";
+      const auto rate = [&](double value) {
+        return value < 0 ? "-" : number(value, value < 9.95 ? 1 : 0, charset) + "/s";
+      };
+      const std::string in = rate(process->rate_in), out = rate(process->rate_out);
       x = pane.text(x, y, "in ", Style::dim);
       x = pane.text(x, y, pad_right(in, 7)) + 1;
       x = pane.text(x, y, "out ", Style::dim);

@@ -30,6 +30,7 @@ namespace {
 constexpr std::int64_t kDrainUs = 50000;    // taking in batches keeps the load low
 constexpr std::int64_t kRedrawUs = 100000;  // ten redraws a second
 constexpr std::int64_t kTickUs = 200000;
+constexpr std::int64_t kNoticeUs = 8000000;  // what a key did is told this long, then the keys are back
 
 volatile std::sig_atomic_t stop_flag = 0;
 extern "C" void on_stop(int) {
@@ -131,6 +132,10 @@ void carry_out(const Action& action, const Model& model, ViewState& view, Source
   view.notice = command.verb + " sent";
 }
 
+std::string no_session(const std::string& log) {
+  return log + " holds nothing of egocal's processes, odometry at most: `egocal up RIG --log` plays it";
+}
+
 Screen screen_from(const std::string& name) {
   return name == "detail" ? Screen::detail : name == "events" ? Screen::events : Screen::overview;
 }
@@ -150,7 +155,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
   view.charset = terminal->charset();
   std::optional<Model> still;  // what is shown while the view is paused
   const std::int64_t begin = bus::mono_us();
-  std::int64_t drained = 0, drawn = 0, ticked = 0;
+  std::int64_t drained = 0, drawn = 0, ticked = 0, noticed = 0;
   bool changed = true;
   for (;;) {
     const std::int64_t next =
@@ -168,6 +173,10 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
       if (mono - ticked >= kTickUs) {
         ticked = mono;
         model.tick(now);
+        if (source.at_end() && model.messages() == 0)
+          view.notice = no_session(source.name());
+        else if (mono - noticed > kNoticeUs)
+          view.notice.clear();
       }
     }
     while (const auto key = terminal->key()) {
@@ -175,6 +184,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
       const Action action = press(view, seen, *key);
       if (action.kind == Action::Kind::quit) return 0;
       if (action.kind != Action::Kind::none) carry_out(action, seen, view, source);
+      noticed = mono;
       if (view.frozen && !still) still = model;
       if (!view.frozen) still.reset();
       changed = true;
@@ -185,7 +195,8 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
     if (mono - drawn >= kRedrawUs || (changed && mono - drawn >= kRedrawUs / 4)) {
       drawn = mono;
       changed = false;
-      Canvas canvas(terminal->width(), terminal->height());
+      view.height = terminal->height();
+      Canvas canvas(terminal->width(), view.height);
       draw(canvas, still ? *still : model, view);
       terminal->show(canvas);
     }
@@ -240,7 +251,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
   const bool heard = std::any_of(model.pairs().begin(), model.pairs().end(),
                                  [](const PairState& p) { return p.answer() || p.has_problem; }) ||
                      !model.processes().empty();
-  if (!heard) throw Error("nothing heard on " + source.name());
+  if (!heard) throw Error(source.live() ? "nothing heard on " + source.name() : no_session(source.name()));
   return 0;
 }
 

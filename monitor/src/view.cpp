@@ -99,10 +99,11 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     const Verdict verdict = verdict_of(*pair, view.charset);
     item(verdict.text, verdict.style);
     const std::string between = std::string(" ") + s.dot + " ";
+    const calibration_t* answer = pair->answer();
+    if (answer && item(" by ", Style::dim))
+      item(clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
     if (pair_is_paused(model, *pair)) item(between + "PAUSED", Style::warning);
-    if (const calibration_t* answer = pair->answer()) {
-      if (item(" by ", Style::dim))
-        item(clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
+    if (answer) {
       item(between + count(answer->pairs) + " frames", Style::dim);
     }
     if (pair->has_problem) {
@@ -241,7 +242,8 @@ void draw_overview(Canvas& canvas, const Model& model, const ViewState& view) {
   if (layout.card_rows > 0 && !model.pairs().empty()) {
     for (std::size_t i = 0; i < model.pairs().size(); ++i)
       draw_pair_card(rows.part({0, static_cast<int>(i) * layout.card_rows, rows.width(), layout.card_rows}),
-                     model.pairs()[i], model.now(), static_cast<int>(i) == view.selected, view.charset);
+                     model.pairs()[i], model.now(), static_cast<int>(i) == view.selected,
+                     pair_is_paused(model, model.pairs()[i]), view.charset);
   } else {
     draw_pair_table(rows, model, view.selected, layout.titles, view.charset);
   }
@@ -280,12 +282,17 @@ void draw_detail(Canvas& canvas, const Model& model, const ViewState& view) {
       draw_direction(Pane(canvas, rect), *pair, i == 1, layout.matrices, view.charset);
 }
 
+// A title where there is room for one.
+int event_rows(int height) {
+  return height < 3 ? std::max(1, height) : height - 1;
+}
+
 void draw_event_screen(Canvas& canvas, const Model& model, const ViewState& view) {
   const EventsLayout layout = layout_events(canvas.width(), canvas.height());
   draw_header(Pane(canvas, layout.header), model, view);
   draw_keys(Pane(canvas, layout.keys), view);
   const Pane list(canvas, layout.list);
-  if (list.height() < 3) {
+  if (event_rows(list.height()) == list.height()) {
     draw_events(list, model, view.scroll, view.utc_offset_s, view.charset);
     return;
   }
@@ -302,8 +309,9 @@ Action press(ViewState& view, const Model& model, KeyPress key) {
   const int pairs = static_cast<int>(model.pairs().size());
   const int events = static_cast<int>(model.events().size());
   const auto select = [&](int index) { view.selected = pairs ? std::clamp(index, 0, pairs - 1) : 0; };
+  const int page = event_rows(layout_events(80, view.height).list.h);
   const auto scroll = [&](int lines) {
-    view.scroll = std::clamp(view.scroll + lines, 0, std::max(0, events - 1));
+    view.scroll = std::clamp(view.scroll + lines, 0, std::max(0, events - page));
   };
   const bool list = view.screen == Screen::events;
   switch (key.key) {
@@ -314,10 +322,10 @@ Action press(ViewState& view, const Model& model, KeyPress key) {
       list ? scroll(-1) : select(view.selected + 1);
       return {};
     case Key::page_up:
-      list ? scroll(10) : select(view.selected - 10);
+      list ? scroll(page) : select(view.selected - 10);
       return {};
     case Key::page_down:
-      list ? scroll(-10) : select(view.selected + 10);
+      list ? scroll(-page) : select(view.selected + 10);
       return {};
     case Key::home:
       list ? scroll(events) : select(0);

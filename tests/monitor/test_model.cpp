@@ -274,10 +274,13 @@ TEST(ModelPause, KnownByCommandsByStatesAndByMotionsThatGoOn) {
   EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "that was another pair";
   command.sensor_b = "camera";
   drive.model.on_command(command, drive.now());
-  // problems are repeated while paused, without new motions
+  // problems are repeated while paused, without new motions and without answers
   drive.change_problem = [](problem_t& p) { p.seq = 5; };
+  drive.fast = false;
   drive.run(40);
   EXPECT_TRUE(pair_is_paused(drive.model, drive.pair()));
+  EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("no longer answers"))));
+  drive.fast = true;
   drive.change_problem = [](problem_t&) {};
   drive.run(1);
   EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "somebody has resumed it unheard";

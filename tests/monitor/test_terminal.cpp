@@ -353,6 +353,9 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
   ASSERT_TRUE(heard(2));
   EXPECT_EQ(commands[1].verb, "pause");
   ASSERT_EQ(commands.size(), 2u) << "nothing is sent that was not confirmed";
+  tmux.keys("Up");
+  ASSERT_TRUE(until([&] { return tmux.shows("q quit"); })) << tmux.screen();
+  tmux.keys("Down");
 
   tmux.keys("Space");
   ASSERT_TRUE(until([&] { return tmux.shows("VIEW PAUSED"); }));

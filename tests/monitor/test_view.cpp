@@ -151,6 +151,22 @@ TEST_F(View, KeysMoveBetweenScreensAndPairs) {
   EXPECT_EQ(press(view, model, character('q')).kind, Action::Kind::quit);
 }
 
+TEST_F(View, EventsScrollAPageAtATimeAndNoFurtherThanThereAre) {
+  for (int i = 0; i < 100; ++i) model.note(Severity::info, "x", "event " + std::to_string(i) + ".", kNow);
+  view.height = 20;
+  press(view, model, character('e'));
+  EXPECT_THAT(shown(Screen::events, 80, 20), HasSubstr("event 99."));
+  press(view, model, {Key::home});
+  const std::string oldest = shown(Screen::events, 80, 20);
+  EXPECT_THAT(oldest, HasSubstr("lidar → camera"));
+  press(view, model, {Key::down});
+  EXPECT_NE(shown(Screen::events, 80, 20), oldest) << "the first step back is seen";
+  press(view, model, {Key::end});
+  press(view, model, {Key::page_up});
+  EXPECT_THAT(shown(Screen::events, 80, 20), HasSubstr("event 82."));
+  EXPECT_THAT(shown(Screen::events, 80, 20), Not(HasSubstr("event 83.")));
+}
+
 TEST_F(View, ZoomGoesInAndOut) {
   EXPECT_EQ(view.window_s, 0);
   std::vector<double> in, out;

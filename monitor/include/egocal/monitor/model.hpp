@@ -90,6 +90,7 @@ struct PairState {
   /// By the commands heard; motions that go on being accepted say otherwise.
   bool paused = false;
   std::int64_t paused_mono_us = 0;
+  std::int64_t idle_mono_us = 0;  ///< when last there was nothing to solve
 
   const calibration_t* answer() const {
     return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;

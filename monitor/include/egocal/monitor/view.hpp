@@ -23,6 +23,7 @@ struct ViewState {
   bool logarithmic = true;
   bool frozen = false;  ///< the view stands still, the calibration goes on
   int scroll = 0;       ///< events: lines up from the newest
+  int height = 24;      ///< of the screen: how far the events can be scrolled
   std::string notice;   ///< one line for the bottom: the outcome of the last key
   std::string source;   ///< where the messages come from
   bool live = true;     ///< false: a log, nobody to send commands to
