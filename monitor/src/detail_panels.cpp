@@ -136,7 +136,8 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
       const std::array<double, 6> values = components(own.T_a_b);
       for (int i = 0; i < 6; ++i) {
         const double v = values[static_cast<std::size_t>(i)];
-        value(!own.valid ? "-" : i < 3 ? centimetres(v, charset) : degrees(v, charset));
+        const std::string unit = i < 3 ? " cm" : charset == Charset::unicode ? "°" : indent ? " deg" : "";
+        value(own.valid ? number(v * scale_of(i), i < 3 ? 2 : 3, charset) + unit : "-");
       }
     }
     value(compact(answer.cost, charset));

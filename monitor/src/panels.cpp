@@ -55,7 +55,7 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
         1;
     if (pane.width() >= 60) {
       const auto rate = [&](double value) {
-        return value < 0 ? "-" : number(value, value < 9.95 ? 1 : 0, charset) + "/s";
+        return value < 0 ? "-" : number(value, value > 0 && value < 9.95 ? 1 : 0, charset) + "/s";
       };
       const std::string in = rate(process->rate_in), out = rate(process->rate_out);
       x = pane.text(x, y, "in ", Style::dim);
