@@ -299,12 +299,15 @@ void Model::on_calibration(const calibration_t& message, Now now) {
   track->answer.solver = solver;
   track->answer.method = bounded(message.method);
   track->answer.hint = bounded(message.hint);
+  // what is no transform, or contradicts itself, is not certified, whatever its sender says
+  if (message.status == 0 && !(pose_from(message.pos, message.quat) && message.scaled_gap <= 1))
+    track->answer.status = 2;
   track->role = role_of(track->answer);
 
   const double time = seconds(pair->session, message.utime);
   if (track->role == Role::global || message.fallback) {
     pair->only_fast_since.reset();
-  } else if (!pair->only_fast_since && message.status == 0) {
+  } else if (!pair->only_fast_since && track->answer.status == 0) {
     pair->only_fast_since = time;
   }
   if (message.fallback) {

@@ -74,7 +74,7 @@ inline calibration_t calibration_at(const problem_t& p, bool global) {
   c.cost = 1e-4;
   c.gap = 1e-12;
   c.lower_bound = c.cost - c.gap;
-  c.scaled_gap = 0.002 * wobble + (n < 8 ? 30 : 0);
+  c.scaled_gap = 0.002 * wobble + (n < 8 && !global ? 30 : 0);
   c.status = n < 8 && !global ? 2 : 0;
   for (int i = 0; i < 6; ++i) {
     c.observable[i] = 1;

@@ -308,6 +308,34 @@ TEST(ModelAnswer, TheOneThatCountsIsTheLibrarysChoice) {
   EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-fast") << "the newest problem first";
 }
 
+TEST(ModelAnswer, WhatIsNoTransformOrContradictsItselfIsNeverCertified) {
+  const std::function<void(calibration_t&)> lies[] = {
+      [](calibration_t& c) { c.pos[1] = kNaN; }, [](calibration_t& c) { c.quat[0] = kInf; },
+      [](calibration_t& c) { c.scaled_gap = 1.1; }, [](calibration_t& c) { c.scaled_gap = kNaN; },
+      [](calibration_t& c) {
+        for (double& q : c.quat) q = 0;
+      }};
+  for (const auto& lie : lies) {
+    Drive drive;
+    drive.change_answer = [&](calibration_t& answer) {
+      answer.status = 0;
+      lie(answer);
+    };
+    drive.run(40);
+    EXPECT_NE(drive.pair().answer()->status, 0);
+    EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("certified"))));
+    EXPECT_THAT(json_line(drive.model), Not(HasSubstr("\"certified\":true")));
+    EXPECT_FALSE(drive.pair().only_fast_since);
+    // beside an honest one it does not count
+    drive.global = true;
+    drive.change_answer = [&](calibration_t& answer) {
+      if (answer.solver == "egocal-fast") lie(answer);
+    };
+    drive.run(1);
+    EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-global");
+  }
+}
+
 TEST(ModelAnswer, ErrorsAgainstTruthOrNominalOrSpreads) {
   Drive drive;
   drive.run(20);
