@@ -408,6 +408,49 @@ TEST(Terminal, HostileSendersReachNeitherTheTerminalNorTheTitle) {
   EXPECT_THAT(raw, Not(HasSubstr("\x07")));
 }
 
+TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
+  const std::string rig = EGOCAL_SOURCE_DIR "/logs/drive.toml", log = EGOCAL_SOURCE_DIR "/logs/drive.log";
+  const std::string url = "udpm://239.255.76.67:7674?ttl=0";
+  const auto start = [&](const std::string& name, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{EGOCAL_BIN_DIR "/" + name, "--rig", rig, "--lcm-url", url};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::ChildProcess(arguments);
+  };
+  Tmux tmux(110, 42, script(environment("xterm-256color"), "--rig " + rig + " --lcm-url " + url));
+  ASSERT_TRUE(until([&] { return tmux.shows("no motions yet"); })) << tmux.screen();
+  test::ChildProcess pairing = start("egocal-pairing"), fast = start("egocal-fast"),
+                     global = start("egocal-global");
+  ASSERT_TRUE(until([&] {
+    return tmux.shows("egocal-pairing   running") && tmux.shows("egocal-fast      running") &&
+           tmux.shows("egocal-global");
+  })) << tmux.screen();
+  test::ChildProcess player = start("egocal-player", {log, "--speed", "2"});
+  ASSERT_TRUE(until([&] { return tmux.shows("✓ certified by egocal-"); })) << tmux.screen();
+  EXPECT_TRUE(until([&] { return tmux.shows("error"); })) << "the rig knows the truth";
+
+  tmux.keys("p");
+  tmux.keys("y");
+  ASSERT_TRUE(until([&] { return tmux.shows("PAUSED") && tmux.shows("egocal-pairing   paused"); }))
+      << tmux.screen();
+  tmux.keys("p");
+  ASSERT_TRUE(until([&] { return tmux.shows("Resume the calibration"); })) << tmux.screen();
+  tmux.keys("y");
+  ASSERT_TRUE(until([&] { return !tmux.shows("PAUSED") && tmux.shows("egocal-pairing   running"); }))
+      << tmux.screen();
+  tmux.keys("r");
+  tmux.keys("y");
+  ASSERT_TRUE(until([&] { return tmux.shows("session reset: the calibration begins anew"); }))
+      << tmux.screen();
+  ASSERT_TRUE(until([&] { return tmux.shows("✓ certified by egocal-"); })) << tmux.screen();
+
+  global.signal(SIGKILL);
+  ASSERT_TRUE(until([&] { return tmux.shows("GONE") && tmux.shows("process is gone"); })) << tmux.screen();
+  global = start("egocal-global");
+  ASSERT_TRUE(until([&] { return !tmux.shows("GONE") && tmux.shows("process is back"); })) << tmux.screen();
+  tmux.keys("q");
+  expect_shell_is_back(tmux);
+}
+
 // Time on the processor [s] that a process has used, all threads.
 double processor_time(pid_t pid) {
   const std::string text = read_text("/proc/" + std::to_string(pid) + "/stat");
