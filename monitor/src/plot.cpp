@@ -60,6 +60,14 @@ struct Range {
   bool empty() const { return !(low <= high); }
 };
 
+// The next larger of 1, 2, 5, 10, 20...
+double round_step(double size) {
+  const double decade = std::pow(10.0, std::floor(std::log10(size)));
+  for (double factor : {1.0, 2.0, 5.0})
+    if (factor * decade >= size * (1 - 1e-9)) return factor * decade;
+  return 10 * decade;
+}
+
 }  // namespace
 
 void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
@@ -89,7 +97,7 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
     pane.text(kLabel + std::max(0, (w - width_of(text)) / 2), 1 + h / 2, text, Style::dim);
     return;
   }
-  double low = range.low, high = range.high;
+  double low = range.low, high = range.high, step = 1;
   if (plot.logarithmic) {
     // the courses are kept in single precision: 0.01 may be a little less
     low = std::max(std::floor(std::log10(low) + 1e-6), std::log10(high) - 15);
@@ -97,9 +105,11 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
     if (high - low < 1) high = low + 1;
   } else {
     if (low > 0 && low < 0.6 * high) low = 0;
-    const double room = 0.05 * std::max(high - low, 1e-9 * std::max(1.0, std::abs(high)));
-    high += room;
-    if (low != 0) low -= room;
+    // from round number to round number, a few of them in between
+    step = round_step(std::max(high - low, 1e-6 * std::max(1e-30, std::abs(high))) /
+                      std::clamp((h - 1) / 2, 1, 5));
+    low = std::floor(low / step + 1e-6) * step;
+    high = std::max(std::ceil(high / step - 1e-6) * step, low + step);
   }
 
   // numbers at the axis: every decade that fits, or the ends and the middle
@@ -117,12 +127,10 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
     pane.text(kLabel, 1 + row, charset == Charset::unicode ? "│" : "|", Style::dim);
   if (plot.logarithmic) {
     const int decades = static_cast<int>(high - low);
-    const int step = std::max(1, (2 * decades + h - 1) / std::max(1, h));
-    for (int d = 0; d <= decades; d += step) label(low + d);
+    const int every = std::max(1, (2 * decades + h - 1) / std::max(1, h));
+    for (int d = 0; d <= decades; d += every) label(low + d);
   } else {
-    label(low);
-    label(high);
-    if (h >= 5) label(0.5 * (low + high));
+    for (int i = 0; i <= 12 && low + i * step <= high + 0.1 * step; ++i) label(low + i * step);
   }
   const auto time_text = [&](double time) { return number(time, span < 10 ? 1 : 0, charset); };
   const std::string from = time_text(plot.begin), to = time_text(plot.end) + " s",
