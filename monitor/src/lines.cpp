@@ -93,6 +93,8 @@ std::string pair_lines(const Model& model, Charset charset) {
     }
     text += verdict_of(pair, charset).text + " by " + clean(answer->solver, 40) + " (" +
             clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
+    if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
+    if (pair_is_paused(model, pair)) text += "paused, ";
     if (pair.shown.valid) {
       const Pose& T = pair.shown.T_a_b;
       const Eigen::Vector3d rpy = roll_pitch_yaw(T.rotation) * kDegrees;
@@ -163,7 +165,11 @@ std::string json_line(const Model& model) {
       p["rejected"] = pair.problem.rejected;
       p["stride"] = pair.problem.stride;
       p["time_offset"] = real(pair.problem.time_offset);
+      p["time_offset_stddev"] =
+          pair.problem.time_offset_stddev < 0 ? json(nullptr) : real(pair.problem.time_offset_stddev);
     }
+    p["paused"] = pair_is_paused(model, pair);
+    p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
     p["answer"] = pair.counted_solver() ? answer_json(pair, *pair.counted_solver()) : json(nullptr);
     p["solvers"] = json::array();
     for (const SolverTrack& solver : pair.solvers) p["solvers"].push_back(answer_json(pair, solver));

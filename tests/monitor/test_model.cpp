@@ -353,6 +353,26 @@ TEST(ModelAnswer, ErrorsAgainstTruthOrNominalOrSpreads) {
   EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::nominal) << "a broken truth is none";
 }
 
+TEST(Lines, SayWhatTheScreenSays) {
+  Drive drive;
+  drive.change_problem = [](problem_t& p) {
+    p.rejected = 17;
+    p.time_offset = 0.012;
+    p.time_offset_stddev = -1;
+  };
+  drive.run(40);
+  const std::string line = pair_lines(drive.model, Charset::ascii);
+  for (const char* part :
+       {"lidar -> camera: + certified by egocal-fast (sqp), 40 frames, 17 rejected, x y z ", "+-",
+        " cm, roll pitch yaw ", ", error ", ", gap ", " of 1, solve 5.2 us verify 1.9 us"})
+    EXPECT_THAT(line, HasSubstr(part));
+  const std::string json = json_line(drive.model);
+  for (const char* part : {"\"rejected\":17", "\"time_offset\":0.012", "\"time_offset_stddev\":null",
+                           "\"paused\":false", "\"only_fast_since\":0.7", "\"reference\":\"truth\"",
+                           "\"method\":\"sqp\"", "\"observable\":[true,true,true,true,true,true]"})
+    EXPECT_THAT(json, HasSubstr(part));
+}
+
 TEST(ModelProcesses, CountsAndRates) {
   Drive drive;
   status_t status = status_of("egocal-pairing", "pairing", 100);

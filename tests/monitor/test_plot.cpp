@@ -112,6 +112,25 @@ TEST(Plot, ValuesAreScaledToTheirUnit) {
   EXPECT_THAT(lines[1] + lines[10], HasSubstr("5.0"));
 }
 
+TEST(Plot, LinearAxesHaveRoundNumbers) {
+  for (const double size : {0.0037, 0.9, 11.0, 4321.0}) {
+    const History history = course(10, 0.1, [&](double t) { return size * (0.1 + 0.09 * t); });
+    Plot plot = plot_of(history, 10);
+    plot.logarithmic = false;
+    const auto lines = drawn(plot, 60, 14, Charset::ascii);
+    std::vector<double> numbers;
+    for (std::size_t y = 1; y + 1 < lines.size(); ++y)
+      if (lines[y].size() > 8 && lines[y][8] == '+') numbers.push_back(std::stod(lines[y]));
+    ASSERT_GE(numbers.size(), 3u) << size;
+    EXPECT_EQ(numbers.back(), 0);
+    EXPECT_GE(numbers.front(), 0.99 * size);
+    const double step = numbers[numbers.size() - 2];
+    const double digit = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
+    EXPECT_TRUE(std::abs(digit - 1) < 1e-9 || std::abs(digit - 2) < 1e-9 || std::abs(digit - 5) < 1e-9)
+        << step;
+  }
+}
+
 TEST(Plot, ThresholdAcrossAndMarkDown) {
   const History history = course(10, 0.1, [](double) { return 0.01; });
   Plot plot = plot_of(history, 10);
