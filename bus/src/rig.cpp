@@ -202,9 +202,12 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
     }
   }
   if (in.has("time_offset")) {
-    if (in.require("time_offset").is_string())
-      in.fail("time_offset", "expected seconds (egocal solve --time-offset auto finds them)");
-    pair.time_offset = in.number("time_offset", -1e9, 1e9, "s");
+    if (in.require("time_offset").is_string()) {
+      if (in.text("time_offset") != "auto") in.fail("time_offset", "expected seconds or \"auto\"");
+      pair.time_offset.reset();
+    } else {
+      pair.time_offset = in.number("time_offset", -1e9, 1e9, "s");
+    }
   }
   return pair;
 }
@@ -281,7 +284,8 @@ DriveOptions drive_options(const Rig& rig, const PairConfig& pair) {
   }
   options.stride = pair.stride;
   options.balance = pair.balance;
-  options.time_offset = pair.time_offset;
+  options.time_offset = pair.time_offset.value_or(0);
+  options.track_time_offset = !pair.time_offset;
   options.robust = pair.robust;
   options.max_gap = rig.max_gap;
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);

@@ -91,7 +91,10 @@ std::optional<problem_t> PairSession::message() {
     message.has_truth = 1;
     bus::set_pose(to_dual_quaternion(*config_.truth), message.truth_pos, message.truth_quat);
   }
-  message.time_offset = options_.time_offset;
+  message.time_offset = drive_.time_offset().value_or(0);
+  message.time_offset_stddev = -1;
+  if (const std::optional<TimeOffset>& estimate = drive_.state().clock.newest)
+    message.time_offset_stddev = estimate->stddev;
   const DriveCounts& counts = drive_.counts();
   message.matched = static_cast<std::int64_t>(counts.matched);
   message.left_out = static_cast<std::int64_t>(counts.left_out);

@@ -36,8 +36,9 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
 }
 
 void fields(auto& archive, services::Is<DriveOptions> auto& value) {
-  auto& [mode, plane_a, plane_b, stride, balance, time_offset, max_gap, robust, prior] = value;
-  archive(mode, plane_a, plane_b, stride, balance, time_offset, max_gap, robust, prior);
+  auto& [mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior] =
+      value;
+  archive(mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior);
 }
 
 void fields(auto& archive, services::Is<MotionPair> auto& value) {
@@ -108,6 +109,21 @@ void fields(auto& archive, services::Is<Choice> auto& value) {
   archive(stride, balance, reason);
 }
 
+void fields(auto& archive, services::Is<TimeOffset> auto& value) {
+  auto& [seconds, stddev, correlation] = value;
+  archive(seconds, stddev, correlation);
+}
+
+void fields(auto& archive, services::Is<ClockState::Stream> auto& value) {
+  auto& [window, begin_us] = value;
+  archive(window, begin_us);
+}
+
+void fields(auto& archive, services::Is<ClockState> auto& value) {
+  auto& [streams, next_us, newest, in_force, given_up, changes] = value;
+  archive(streams, next_us, newest, in_force, given_up, changes);
+}
+
 void fields(auto& archive, services::Is<DriveState::Instant> auto& value) {
   auto& [time_us, a, b, chain] = value;
   archive(time_us, a, b, chain);
@@ -119,16 +135,16 @@ void fields(auto& archive, services::Is<DriveState::PerStride> auto& value) {
 }
 
 void fields(auto& archive, services::Is<DriveState> auto& value) {
-  auto& [counts, choice, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
+  auto& [counts, choice, clock, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
          congruence, doubtful] = value;
-  archive(counts, choice, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
+  archive(counts, choice, clock, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
           congruence, doubtful);
 }
 
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 2;
+constexpr int state_layout = 3;
 
 void fields(auto& archive, Is<Sample> auto& value) {
   auto& [pose, seq, mono_us, begins_anew] = value;

@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const bus::PairConfig& pair : rig.pairs) {
       require(pair.a != pair.b, "a pair is of two sensors");
       require(!pair.nominal || std::abs(pair.nominal->rotation.norm() - 1) < 1e-9, "a rotation is one");
-      require(std::isfinite(pair.time_offset), "an offset is finite");
+      require(!pair.time_offset || std::isfinite(*pair.time_offset), "an offset is finite");
       require(!pair.stride || (*pair.stride >= 1 && *pair.stride <= 10000), "a stride is one");
       require(
           pair.mode == Mode::spatial || (bus::sensor(rig, pair.a).plane && bus::sensor(rig, pair.b).plane),

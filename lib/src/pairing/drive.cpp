@@ -103,7 +103,24 @@ std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
     return {};
   }
   pose.pose = normalized(pose.pose);
-  if (side == Side::b) pose.time_us += std::llround(options_.time_offset * 1e6);
+  if (!options_.track_time_offset) {
+    if (side == Side::b) pose.time_us += std::llround(options_.time_offset * 1e6);
+    return take(side, pose);
+  }
+  const std::uint64_t changes = state_.clock.changes, given_up = state_.clock.given_up;
+  const std::vector<ReleasedPose> released = follow_clock(state_.clock, side, pose, options_.max_gap);
+  for (std::uint64_t n = state_.clock.given_up - given_up; n > 0; --n) reject(Rejection::no_partner);
+  std::vector<MotionPair> pairs;
+  for (const ReleasedPose& one : released) {
+    const std::vector<MotionPair> more = take(one.side, one.pose);
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  }
+  // no motion spans a change of the clock
+  if (state_.clock.changes != changes) ++state_.chain;
+  return pairs;
+}
+
+std::vector<MotionPair> Drive::take(Side side, StampedPose pose) {
   auto& newest = state_.newest_us[index(side)];
   if (newest && pose.time_us <= *newest) {
     reject(Rejection::out_of_order);
@@ -329,6 +346,10 @@ Problem Drive::problem() const {
   for (const auto& [stride, statistics] : state_.strides)
     if (stride == state_.choice.stride) problem.blocks = statistics.kept();
   return problem;
+}
+
+std::optional<double> Drive::time_offset() const {
+  return options_.track_time_offset ? state_.clock.in_force : options_.time_offset;
 }
 
 std::optional<std::int64_t> Drive::newest_us() const {

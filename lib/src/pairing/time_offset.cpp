@@ -87,12 +87,14 @@ Correlation correlation(const std::vector<double>& a, const std::vector<double>&
   return {r, std::atanh(r) * std::sqrt(n - 3)};
 }
 
-/// Minimum of the cost at an offset, motions of about half a second; negative where nothing can be paired.
+/// The cost with b's stamps shifted by an offset.
 struct OffsetCost {
-  double cost = -1;
-  double motions = 0;  ///< independent ones
+  double cost = -1;  ///< its minimum; negative where nothing can be paired
+  DualQuaternion q;  ///< minimiser
+  Problem problem;
 };
 
+/// Motions of about half a second.
 OffsetCost cost_at(const Trajectory& a, const Trajectory& b, double offset, int stride, double max_gap) {
   DriveOptions options;
   options.stride = stride;
@@ -101,11 +103,36 @@ OffsetCost cost_at(const Trajectory& a, const Trajectory& b, double offset, int 
   options.time_offset = offset;
   options.max_gap = max_gap;
   options.robust = false;
-  const DriveResult result = run_drive(options, a, b);
-  const Problem problem = result.drive.problem();
-  const double count = static_cast<double>(total(problem.blocks).count);
-  if (count < 10) return {};
-  return {solve_dual(cost_matrix(problem)).cost, count / stride};
+  OffsetCost result;
+  result.problem = run_drive(options, a, b).drive.problem();
+  if (total(result.problem.blocks).count < 10) return result;
+  const Solution solution = solve_dual(cost_matrix(result.problem));
+  result.cost = solution.cost;
+  result.q = solution.q;
+  return result;
+}
+
+/// Standard deviation of the slope of the cost between two offsets, at one extrinsic, from its spread over
+/// consecutive parts of the drive: neighbouring motions share poses and errors. Not finite where there are
+/// too few.
+double slope_deviation(const OffsetCost& low, const OffsetCost& high, const DualQuaternion& q,
+                       double distance) {
+  const auto &x = low.problem.blocks, &y = high.problem.blocks;
+  const std::size_t n = std::min(x.size(), y.size());
+  if (n < 4) return INFINITY;
+  const double weight = total(low.problem.blocks).weight;
+  std::vector<double> slopes;
+  double mean = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Balance& balance = low.problem.balance;
+    const double share = x[i].weight / weight;
+    slopes.push_back(share * (cost(cost_matrix(y[i], balance), q) - cost(cost_matrix(x[i], balance), q)) /
+                     distance);
+    mean += slopes.back() / static_cast<double>(n);
+  }
+  double squares = 0;
+  for (const double slope : slopes) squares += (slope - mean) * (slope - mean);
+  return std::sqrt(squares * static_cast<double>(n) / static_cast<double>(n - 1));
 }
 
 }  // namespace
@@ -169,8 +196,8 @@ std::optional<TimeOffset> estimate_time_offset(const Trajectory& a, const Trajec
   if (low.cost > 0 && high.cost > 0 && curvature > 0) {
     const double vertex = 0.5 * (low.cost - high.cost) / (curvature * arm);
     if (std::abs(vertex) < arm) result.seconds = centre + vertex;
-    // J = mean squared residual: its minimum moves by sqrt(2 J / (n curvature))
-    result.stddev = std::sqrt(2 * middle.cost / (std::max(1.0, middle.motions) * curvature));
+    // the minimum moves by what the slope is wrong by
+    result.stddev = slope_deviation(low, high, middle.q, 2 * arm) / curvature;
   }
   return result;
 }

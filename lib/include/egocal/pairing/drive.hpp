@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "egocal/pairing/clock_offset.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/problem.hpp"
@@ -24,7 +25,9 @@ struct DriveOptions {
   std::optional<int> stride{};  ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
   std::optional<Balance> balance{};  ///< empty: chosen by the jack-knife
   double time_offset = 0;            ///< added to the stamps of b before pairing [s]
-  double max_gap = 0.5;              ///< poses further apart are never interpolated between [s]
+  bool track_time_offset =
+      false;             ///< find it from the streams instead (poses are held until then), follow its drift
+  double max_gap = 0.5;  ///< poses further apart are never interpolated between [s]
   bool robust =
       true;  ///< leave out poses that are not screw congruent and motions that contradict the others
   std::optional<DualQuaternion> prior{};  ///< handed on to the problem
@@ -74,6 +77,7 @@ struct DriveState {
 
   DriveCounts counts;
   Choice choice;
+  ClockState clock;                                      ///< only where the time offset is tracked
   std::array<std::optional<std::int64_t>, 2> newest_us;  ///< of each stream, b's with the offset
   std::array<std::deque<StampedPose>, 2> waiting;  ///< not yet synchronised; the faster one keeps a neighbour
   std::optional<Side> keys;                        ///< the slower stream, at whose stamps poses are paired
@@ -109,9 +113,12 @@ class Drive {
   const DriveOptions& options() const { return options_; }
   const DriveState& state() const { return state_; }
   std::optional<std::int64_t> newest_us() const;  ///< time of the newest synchronised instant [us]
+  /// What is added to the stamps of b. Empty while it is looked for.
+  std::optional<double> time_offset() const;
 
  private:
   void reject(Rejection reason) { ++state_.counts.rejected[static_cast<std::size_t>(reason)]; }
+  std::vector<MotionPair> take(Side side, StampedPose pose);
   void decide_keys();
   std::vector<MotionPair> synchronise();
   void judge(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
