@@ -93,6 +93,7 @@ std::string pair_lines(const Model& model, Charset charset) {
     }
     text += verdict_of(pair, charset).text + " by " + clean(answer->solver, 40) + " (" +
             clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
+    if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " left out, ";
     if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
     if (pair_is_paused(model, pair)) text += "paused, ";
     if (pair.shown.valid) {
@@ -162,6 +163,7 @@ std::string json_line(const Model& model) {
       p["mode"] = pair.problem.mode == 1 ? "planar" : "spatial";
       p["seq"] = pair.problem.seq;
       p["matched"] = pair.problem.matched;
+      p["left_out"] = pair.problem.left_out;
       p["rejected"] = pair.problem.rejected;
       p["stride"] = pair.problem.stride;
       p["time_offset"] = real(pair.problem.time_offset);

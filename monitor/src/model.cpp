@@ -17,6 +17,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // not.
 constexpr double kSettle = 1.0;             // [s]
 constexpr double kLongest = 366 * 86400.0;  // [s] no session lasts longer: a time beyond it is none
+constexpr double kManyLeftOut = 0.05;       // more than this says that a sensor is at fault
 constexpr double kRepeat = 30.0;            // [s] the same event again within this time is only counted
 
 double seconds(std::int64_t from_us, std::int64_t to_us) {
@@ -31,6 +32,12 @@ std::string rounded(double value, int decimals) {
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
   return buffer;
+}
+
+double share_left_out(const problem_t& problem) {
+  const double matched = std::max(0.0, static_cast<double>(problem.matched)),
+               left_out = std::max(0.0, static_cast<double>(problem.left_out));
+  return left_out > 0 && matched + left_out >= 20 ? left_out / (matched + left_out) : 0;
 }
 
 bool starts_with(const std::string& text, const char* prefix) {
@@ -112,6 +119,7 @@ void Model::begin_session(PairState& pair, std::int64_t session) {
   pair.only_fast_since.reset();
   pair.certified = pair.fallback = false;
   pair.time_offset_known = false;
+  pair.reported_left_out = 0;
 }
 
 void Model::on_problem(const problem_t& message, Now now) {
@@ -166,6 +174,7 @@ void Model::on_problem(const problem_t& message, Now now) {
     kept.time_offset = message.time_offset;
     kept.time_offset_stddev = message.time_offset_stddev;
     kept.matched = message.matched;
+    kept.left_out = message.left_out;
     kept.rejected = message.rejected;
     kept.host = bounded(message.host);
     kept.received_mono_us = message.received_mono_us;
@@ -174,6 +183,15 @@ void Model::on_problem(const problem_t& message, Now now) {
   if (chosen_anew)
     note(Severity::info, name, "stride is now " + std::to_string(kept.stride) + " (" + kept.choice + ")",
          now);
+
+  const double share = share_left_out(kept);
+  if (share > kManyLeftOut && share > 2 * pair->reported_left_out) {
+    pair->reported_left_out = share;
+    note(Severity::warning, name,
+         rounded(100 * share, 0) + " % of the motions contradict the others and are left out", now);
+  } else if (share < 0.5 * kManyLeftOut) {
+    pair->reported_left_out = 0;
+  }
 
   if (std::isfinite(kept.time_offset)) {
     const double spread = kept.time_offset_stddev >= 0 ? 3 * kept.time_offset_stddev : 0;

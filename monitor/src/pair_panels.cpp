@@ -33,12 +33,14 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
   const std::string mode = paused             ? "PAUSED  "
                            : pair.has_problem ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
                                               : "";
+  const std::string left_out =
+      pair.has_problem && pair.problem.left_out > 0 ? "  " + count(pair.problem.left_out) + " left out" : "";
   const std::string rejected =
       pair.has_problem && pair.problem.rejected > 0 ? "  " + count(pair.problem.rejected) + " rejected" : "";
   const std::string old =
       answer ? "  " + pad_left(age(seconds(pair.counted_solver()->at.mono_us, now.mono_us)), 5) : "";
-  for (const std::string& text :
-       {mode + frames + rejected + old, mode + frames + old, frames + old, frames, old}) {
+  for (const std::string& text : {mode + frames + left_out + rejected + old, mode + frames + left_out + old,
+                                  mode + frames + old, frames + old, frames, old}) {
     if (x + width_of(text) + 1 > right) continue;
     pane.text(right - width_of(text) - 1, 0, text, pair.silent || paused ? Style::warning : Style::dim);
     break;

@@ -108,6 +108,7 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     }
     if (pair->has_problem) {
       const problem_t& problem = pair->problem;
+      if (problem.left_out > 0) item(between + count(problem.left_out) + " left out", Style::warning);
       if (problem.rejected > 0) item(between + count(problem.rejected) + " rejected", Style::dim);
       item(between + (problem.mode == 1 ? "planar" : "3-D"), Style::dim);
       std::string offset = number(problem.time_offset * 1e3, 1, view.charset);

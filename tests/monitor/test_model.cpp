@@ -215,6 +215,25 @@ TEST(ModelEvents, TimeOffsetChangedBeyondItsNoise) {
   EXPECT_THAT(drive.texts(), Contains("lidar -> camera: time offset changed from 20.0 to 35.2 ms").Times(1));
 }
 
+TEST(ModelEvents, ManyMotionsThatContradictTheOthers) {
+  Drive drive;
+  drive.change_problem = [](problem_t& p) { p.left_out = p.matched / 30; };
+  drive.run(100);
+  EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("contradict"))));
+  drive.fresh();
+  drive.change_problem = [](problem_t& p) {
+    p.matched = 90;
+    p.left_out = 10;
+  };
+  drive.run(50);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("lidar -> camera: 10 % of the motions contradict the others and are left out"));
+  drive.change_problem = [](problem_t& p) { p.left_out = p.matched = 100; };
+  drive.run(50);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("lidar -> camera: 50 % of the motions contradict the others and are left out"));
+}
+
 TEST(ModelEvents, GapInAStreamAndSilence) {
   Drive drive;
   drive.run(30);
@@ -357,19 +376,21 @@ TEST(Lines, SayWhatTheScreenSays) {
   Drive drive;
   drive.change_problem = [](problem_t& p) {
     p.rejected = 17;
+    p.left_out = 3;
     p.time_offset = 0.012;
     p.time_offset_stddev = -1;
   };
   drive.run(40);
   const std::string line = pair_lines(drive.model, Charset::ascii);
   for (const char* part :
-       {"lidar -> camera: + certified by egocal-fast (sqp), 40 frames, 17 rejected, x y z ", "+-",
+       {"lidar -> camera: + certified by egocal-fast (sqp), 40 frames, 3 left out, 17 rejected, x y z ", "+-",
         " cm, roll pitch yaw ", ", error ", ", gap ", " of 1, solve 5.2 us verify 1.9 us"})
     EXPECT_THAT(line, HasSubstr(part));
   const std::string json = json_line(drive.model);
-  for (const char* part : {"\"rejected\":17", "\"time_offset\":0.012", "\"time_offset_stddev\":null",
-                           "\"paused\":false", "\"only_fast_since\":0.7", "\"reference\":\"truth\"",
-                           "\"method\":\"sqp\"", "\"observable\":[true,true,true,true,true,true]"})
+  for (const char* part :
+       {"\"rejected\":17", "\"left_out\":3", "\"time_offset\":0.012", "\"time_offset_stddev\":null",
+        "\"paused\":false", "\"only_fast_since\":0.7", "\"reference\":\"truth\"", "\"method\":\"sqp\"",
+        "\"observable\":[true,true,true,true,true,true]"})
     EXPECT_THAT(json, HasSubstr(part));
 }
 
@@ -458,8 +479,8 @@ TEST(Hostile, ValuesNamesAndTimesNeitherCrashNorReachTheScreen) {
           &p.time_offset_stddev, &p.weight_rotation, &c.pos[0], &c.pos[2], &c.quat[0], &c.quat[3], &c.cost,
           &c.lower_bound, &c.gap, &c.scaled_gap, &c.stddev[0], &c.stddev[5], &c.reach_translation})
       if (n++ % 5 == 0) *field = value();
-    for (std::int64_t* field : {&p.utime, &p.seq, &p.matched, &p.rejected, &p.received_mono_us, &c.utime,
-                                &c.seq, &c.pairs, &c.solve_ns, &c.verify_ns, &c.latency_us, &s.run})
+    for (std::int64_t* field : {&p.utime, &p.seq, &p.matched, &p.left_out, &p.rejected, &p.received_mono_us,
+                                &c.utime, &c.seq, &c.pairs, &c.solve_ns, &c.verify_ns, &c.latency_us, &s.run})
       if (n++ % 7 == 0) *field = number();
     if (step % 11 == 0) p.session = c.session = number();
     if (step % 13 == 0) p.stride = static_cast<std::int32_t>(number());

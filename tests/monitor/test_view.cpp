@@ -97,12 +97,14 @@ TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
   send(
       [](problem_t& p) {
         p.rejected = 17;
+        p.left_out = 4;
         p.time_offset = -0.0123;
         p.time_offset_stddev = 0.0004;
       },
       [](calibration_t&) {});
   const std::string text = shown(Screen::detail, 140, 42);
   EXPECT_THAT(text, HasSubstr("17 rejected"));
+  EXPECT_THAT(text, HasSubstr("4 left out"));
   EXPECT_THAT(text, HasSubstr("offset -12.3 ±0.4 ms"));
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("17 rejected"));
 }

@@ -86,6 +86,7 @@ struct PairState {
   bool fallback = false;
   double reported_time_offset = 0;
   bool time_offset_known = false;
+  double reported_left_out = 0;  ///< share of the motions that contradict the others, as last told
   std::int64_t gap_count = 0;
   /// By the commands heard; motions that go on being accepted say otherwise.
   bool paused = false;
