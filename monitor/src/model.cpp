@@ -57,8 +57,9 @@ Claim claim_of(const calibration_t& answer) {
 }  // namespace
 
 bool pair_is_paused(const Model& model, const PairState& pair) {
-  return pair.paused || std::any_of(model.processes().begin(), model.processes().end(),
-                                    [](const auto& p) { return p.alive && p.status.state == "paused"; });
+  return pair.paused || std::any_of(model.processes().begin(), model.processes().end(), [](const auto& p) {
+           return p.alive && p.status.role == "pairing" && p.status.state == "paused";
+         });
 }
 
 std::string pair_name(const std::string& a, const std::string& b) {
@@ -435,7 +436,11 @@ void Model::on_status(const status_t& message, Now now) {
 void Model::on_command(const command_t& message, Now now) {
   now_ = now;
   ++messages_;
-  if (message.verb == "pause" || message.verb == "resume")
+  const bool to_pairing =
+      message.to == "*" || std::any_of(processes_.begin(), processes_.end(), [&](const auto& p) {
+        return p.status.name == message.to && p.status.role == "pairing";
+      });
+  if (to_pairing && (message.verb == "pause" || message.verb == "resume"))
     for (PairState& pair : pairs_) {
       const bool all = message.sensor_a.empty() && message.sensor_b.empty();
       if (!all && (message.sensor_a != pair.a || message.sensor_b != pair.b)) continue;

@@ -292,6 +292,13 @@ TEST(ModelPause, KnownByCommandsByStatesAndByMotionsThatGoOn) {
   drive.model.on_command(command, drive.now());
   EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "that was another pair";
   command.sensor_b = "camera";
+  command.to = "egocal-player";
+  drive.model.on_command(command, drive.now());
+  status_t player = status_of("egocal-player", "player", 1);
+  player.state = "paused";
+  drive.heartbeat(player);
+  EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "the player rests, the calibration does not";
+  command.to = "*";
   drive.model.on_command(command, drive.now());
   // problems are repeated while paused, without new motions and without answers
   drive.change_problem = [](problem_t& p) { p.seq = 5; };
