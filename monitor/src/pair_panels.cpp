@@ -39,8 +39,11 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
       pair.has_problem && pair.problem.rejected > 0 ? "  " + count(pair.problem.rejected) + " rejected" : "";
   const std::string old =
       answer ? "  " + pad_left(age(seconds(pair.counted_solver()->at.mono_us, now.mono_us)), 5) : "";
-  for (const std::string& text : {mode + frames + left_out + rejected + old, mode + frames + left_out + old,
-                                  mode + frames + old, frames + old, frames, old}) {
+  const std::string* parts[] = {&mode, &frames, &left_out, &rejected, &old};
+  for (const unsigned chosen : {0b11111u, 0b10111u, 0b10011u, 0b10010u, 0b00010u, 0b10000u}) {
+    std::string text;
+    for (std::size_t i = 0; i < std::size(parts); ++i)
+      if (chosen >> i & 1u) text += *parts[i];
     if (x + width_of(text) + 1 > right) continue;
     pane.text(right - width_of(text) - 1, 0, text, pair.silent || paused ? Style::warning : Style::dim);
     break;
