@@ -344,7 +344,7 @@ Problem Drive::empty_problem() const {
 Problem Drive::problem() const {
   Problem problem = empty_problem();
   for (const auto& [stride, statistics] : state_.strides)
-    if (stride == state_.choice.stride) problem.blocks = statistics.kept();
+    if (stride == state_.choice.stride) problem.blocks = independent_blocks(statistics.kept(), stride);
   return problem;
 }
 

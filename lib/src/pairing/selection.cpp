@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/online/answer.hpp"
+#include "egocal/uncertainty/knowledge.hpp"
 
 namespace egocal {
 
@@ -14,21 +14,6 @@ namespace {
 /// Parts of the drive that the jack-knife leaves out: at least this many, each at least two motions long, or
 /// else neighbouring parts share motions and their spread says too little.
 constexpr std::size_t least_parts = 8;
-
-std::vector<Statistics> merged(const std::vector<Statistics>& blocks, std::uint64_t least_count) {
-  std::vector<Statistics> parts;
-  for (const Statistics& block : blocks) {
-    if (parts.empty() || parts.back().count >= least_count) parts.emplace_back();
-    parts.back() += block;
-  }
-  // a rest that is too short joins its neighbour
-  if (parts.size() > 1 && parts.back().count < least_count) {
-    const Statistics rest = parts.back();
-    parts.pop_back();
-    parts.back() += rest;
-  }
-  return parts;
-}
 
 double score(const Spread& spread) {
   double sum = 0;
@@ -39,17 +24,39 @@ double score(const Spread& spread) {
 
 }  // namespace
 
+std::vector<Statistics> joined(const std::vector<Statistics>& blocks, std::uint64_t least_pairs) {
+  std::vector<Statistics> parts;
+  for (const Statistics& block : blocks) {
+    if (parts.empty() || parts.back().count >= least_pairs) parts.emplace_back();
+    parts.back() += block;
+  }
+  // a rest that is too short joins its neighbour
+  if (parts.size() > 1 && parts.back().count < least_pairs) {
+    const Statistics rest = parts.back();
+    parts.pop_back();
+    parts.back() += rest;
+  }
+  return parts;
+}
+
+std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride) {
+  const auto steps = static_cast<std::uint64_t>(stride);
+  std::vector<Statistics> long_ones = joined(blocks, 4 * steps);
+  return long_ones.size() >= least_parts ? long_ones : joined(blocks, 2 * steps);
+}
+
 std::optional<Spread> spread(const Problem& problem, int stride) {
   Problem parts = problem;
-  parts.blocks = merged(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
+  parts.blocks = joined(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
   if (parts.blocks.size() < least_parts) return std::nullopt;
   const Answer answer = solve(parts, Method::dual);
+  const Knowledge known = knowledge(parts, cost_matrix(parts), answer.T_a_b, Blocks::independent);
   Spread result;
   double rotation = 0, translation = 0;
   for (std::size_t i = 0; i < 6; ++i) {
-    if (!answer.knowledge.observable[i] || !std::isfinite(answer.knowledge.stddev[i])) continue;
+    if (!known.observable[i] || !std::isfinite(known.stddev[i])) continue;
     ++result.directions;
-    (i < 3 ? translation : rotation) += answer.knowledge.stddev[i] * answer.knowledge.stddev[i];
+    (i < 3 ? translation : rotation) += known.stddev[i] * known.stddev[i];
   }
   if (result.directions == 0) return std::nullopt;
   result.rotation = std::sqrt(rotation);

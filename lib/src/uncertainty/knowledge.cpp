@@ -60,9 +60,12 @@ class Jackknife {
     cross_ += pseudo / (h - 1);
     weights_ += 1 / (h - 1);
   }
+  /// With Student's factor: 1.96 of its roots cover 95 % whatever the number of blocks.
   Vector6d variance() const {
+    const double student = 1 + 1.21 / (count_ - 1);  // t(0.975) / 1.96, to a hundredth from six blocks on
     // mean of (pseudo - mean)^2 / (h - 1)
-    return (squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_) / count_;
+    const Vector6d squares = squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_;
+    return student * student * squares / count_;
   }
 
  private:
@@ -73,6 +76,23 @@ class Jackknife {
 
 /// Fewer blocks than this say too little about a spread.
 constexpr std::size_t least_blocks = 6;
+/// Fewer double ones are not looked at.
+constexpr std::size_t least_double_blocks = 8;
+
+/// Per direction the larger of the variances with single and with double blocks: where neighbours share their
+/// errors (noise that wanders) single ones say too little.
+template <typename Variance>
+Vector6d largest_variance(const Problem& problem, Blocks blocks, const Variance& variance) {
+  const Vector6d single = variance(problem);
+  if (blocks == Blocks::independent || problem.blocks.size() < 2 * least_double_blocks) return single;
+  Problem doubled = problem;
+  doubled.blocks.clear();
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    if (i % 2 == 0) doubled.blocks.emplace_back();
+    doubled.blocks.back() += problem.blocks[i];
+  }
+  return single.cwiseMax(variance(doubled));
+}
 
 std::string text_of(const Eigen::Vector3d& v) {
   char text[64];
@@ -123,7 +143,8 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, double 
   return jackknife.variance();
 }
 
-Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {
+Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b,
+                            Blocks blocks) {
   Knowledge result;
   result.stddev.fill(infinity);
   const Statistics all = total(problem.blocks);
@@ -164,9 +185,11 @@ Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, co
 
   const int shown = 6 - hidden;
   if (shown == 0 || problem.blocks.size() < least_blocks) return result;
-  const Vector6d variance = shown == 6 ? spatial_variance<6>(problem, all, length, q, T, seen.vectors)
-                                       : spatial_variance<Eigen::Dynamic>(problem, all, length, q, T,
-                                                                          seen.vectors.rightCols(shown));
+  const Vector6d variance = largest_variance(problem, blocks, [&](const Problem& given) {
+    return shown == 6
+               ? spatial_variance<6>(given, all, length, q, T, seen.vectors)
+               : spatial_variance<Eigen::Dynamic>(given, all, length, q, T, seen.vectors.rightCols(shown));
+  });
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
@@ -182,7 +205,8 @@ Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, co
   return result;
 }
 
-Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b) {
+Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                           Blocks blocks) {
   Knowledge result;
   result.stddev.fill(infinity);
   const Statistics all = total(problem.blocks);
@@ -223,17 +247,19 @@ Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const Dual
     result.hint = translation_seen ? "still needed: motion" : "still needed: turns";
 
   if (problem.blocks.size() < least_blocks) return result;
-  Jackknife jackknife(count);
-  for (const Statistics& block : problem.blocks) {
-    Statistics rest = all;
-    rest.dual_rows -= block.dual_rows;
-    rest.weight -= block.weight;
-    rest.count -= block.count;
-    const Solution without = solve_planar(cost_matrix(rest, problem.balance));
-    jackknife.leave_out(static_cast<double>(block.count),
-                        detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
-  }
-  const Vector6d variance = jackknife.variance();
+  const Vector6d variance = largest_variance(problem, blocks, [&](const Problem& given) {
+    Jackknife jackknife(count);
+    for (const Statistics& block : given.blocks) {
+      Statistics rest = all;
+      rest.dual_rows -= block.dual_rows;
+      rest.weight -= block.weight;
+      rest.count -= block.count;
+      const Solution without = solve_planar(cost_matrix(rest, problem.balance));
+      jackknife.leave_out(static_cast<double>(block.count),
+                          detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
+    }
+    return jackknife.variance();
+  });
   const double pull = D_least > 0 ? 2 * T_p.dual.norm() * noise / D_least : infinity;
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -246,15 +272,15 @@ Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const Dual
 
 }  // namespace
 
-Knowledge knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b) {
+Knowledge knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b, Blocks blocks) {
   if (!Q.allFinite() || !(Q.diagonal().maxCoeff() > 0)) {
     Knowledge nothing;
     nothing.stddev.fill(infinity);
     nothing.hint = "still needed: motion";
     return nothing;
   }
-  return problem.mode == Mode::planar ? planar_knowledge(problem, Q, T_a_b)
-                                      : spatial_knowledge(problem, Q, T_a_b);
+  return problem.mode == Mode::planar ? planar_knowledge(problem, Q, T_a_b, blocks)
+                                      : spatial_knowledge(problem, Q, T_a_b, blocks);
 }
 
 FlatDirections flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {

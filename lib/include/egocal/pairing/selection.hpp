@@ -17,6 +17,13 @@ struct Candidate {
   std::vector<Statistics> blocks;
 };
 
+/// The blocks, neighbours joined until each has at least so many pairs.
+std::vector<Statistics> joined(const std::vector<Statistics>& blocks, std::uint64_t least_pairs);
+
+/// Blocks so long that what neighbours share (motions of so many steps overlap) hardly matters to the
+/// jack-knife: four motions, or two where that would leave too few blocks.
+std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride);
+
 /// Spread of the answers when each of several consecutive parts of the drive is left out.
 struct Spread {
   double rotation = 0;     ///< standard deviation, root of the sum over the observable directions [rad]
