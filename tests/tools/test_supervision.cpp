@@ -403,6 +403,47 @@ TEST_F(Up, AKilledPairingCostsNothing) {
     EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("state")));
 }
 
+TEST_F(Up, TheirProcessesCanBeTold) {
+  const std::string url = "udpm://239.255.76.67:7753?ttl=0";
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  std::string state;
+  std::int64_t out = 0;
+  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    if (status.name != "egocal-player") return;
+    state = status.state;
+    for (const counter_t& counter : status.counters)
+      if (counter.name == "out") out = counter.value;
+  });
+  const auto tell = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {EGOCAL_BIN_DIR "/egocal", "tell", "--lcm-url", url});
+    std::filesystem::remove(path("told"));
+    return ChildProcess(words, path("told")).wait(30s);
+  };
+  EXPECT_EQ(tell({"egocal-player", "pause"}), 1);
+  EXPECT_EQ(lines(path("told")).size(), 1u);
+  EXPECT_EQ(tell({"egocal-player", "dance"}), 2);
+  EXPECT_EQ(tell({"egocal-player", "seek"}), 2);
+  EXPECT_EQ(tell({"egocal-player", "seek", "x"}), 2);
+  EXPECT_EQ(tell({"egocal-player", "pause", "1"}), 2);
+  ChildProcess egocal = up({"--log", log, "--lcm-url", url});
+  const auto seen = [&](const std::function<bool()>& condition) {
+    return until([&] {
+      loop.run_once(5ms);
+      return condition();
+    });
+  };
+  ASSERT_TRUE(seen([&] { return state == "running"; }));
+  EXPECT_EQ(tell({"egocal-player", "pause"}), 0);
+  ASSERT_TRUE(seen([&] { return state == "paused"; }));
+  EXPECT_EQ(tell({"egocal-player", "seek", "3.5"}), 0);
+  const std::int64_t before = out;
+  EXPECT_EQ(tell({"egocal-player", "step"}), 0);
+  EXPECT_TRUE(seen([&] { return out > before; }));
+  EXPECT_EQ(tell({"egocal-player", "speed", "0"}), 0);
+  EXPECT_EQ(tell({"egocal-player", "resume"}), 0);
+  EXPECT_EQ(egocal.wait(60s), 0);
+}
+
 TEST_F(Up, LeavesNoOrphans) {
   ChildProcess egocal = up({"--log", log});
   const pid_t self = egocal.pid();

@@ -12,6 +12,7 @@ void add_commands(CLI::App& program) {
   add_simulate(program);
   add_log(program);
   add_up(program);
+  add_tell(program);
   add_export(program);
   add_compare(program);
   add_experiment(program);

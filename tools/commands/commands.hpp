@@ -13,6 +13,7 @@ void add_solve(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_log(CLI::App& program);
 void add_up(CLI::App& program);
+void add_tell(CLI::App& program);
 void add_export(CLI::App& program);
 
 }  // namespace egocal::tools
