@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/log_file.hpp"
 
+#include <endian.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -27,8 +28,8 @@ constexpr std::size_t most_channels = 1000;
 
 std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
   std::uint64_t value = 0;
-  for (std::size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
-  return value;
+  std::memcpy(reinterpret_cast<unsigned char*>(&value) + (8 - count), bytes, count);
+  return be64toh(value);
 }
 
 void put(std::vector<unsigned char>& out, std::uint64_t value, std::size_t count) {
