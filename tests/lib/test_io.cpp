@@ -112,6 +112,11 @@ TEST_F(Io, BadTrajectoriesGetOneClearLine) {
   expect_error(good + "1 0 0 0 0 0 0 1\n", ":2: time: does not increase");
   expect_error(good + "0.5 0 0 0 0 0 0 1\n", ":2: time: does not increase");
   expect_error(good + "x 0 0 0 0 0 0 1\n", ":2: time: expected a number, got 'x'");
+  expect_error(good + "2 0 0 1e300 0 0 0 1\n", ":2: position: expected less than 1e9 m");
+  expect_error(good + "2 0 0 +-1 0 0 0 1\n", ":2: field 4 (tz): expected a number, got '+-1'");
+  expect_error(good + "2 0 0 \x1b[2J" + std::string(5000, 'x') + " 0 0 0 1\n", "got '?[2Jxxxxx");
+  expect_error("1 0 0 1e300 0 1 0 2 0 0 1 3\n", "position: expected less", file("t0", "0\n"));
+  expect_error("1e300 0 0 1 0 1 0 2 0 0 1 3\n", "not a rotation", file("t0", "0\n"));
   expect_error("1 2 3\n", ":1: expected 8 fields");
   expect_error("99999999999999999999 0 0 0 0 0 0 1\n", "out of range");
   expect_error("1,0,0,0,0,0\n", ":1: expected at least 8 fields");
@@ -144,6 +149,7 @@ TEST_F(Io, PairsSurviveARoundTripAndBadOnesDoNot) {
   rejects("1 0 0 0 0 0 0 0 1 0 0 0 0 0 0\n", ":1: expected 16 fields");
   rejects("1 0 0 0 0 0 0 0 1 0 0 0 0 0 0 q\n", "field 16 (b dz)");
   rejects("2 0 0 0 0 0 0 0 1 0 0 0 0 0 0 0\n", "a: the real part");
+  rejects("1 0 0 0 0 1e300 0 0 1 0 0 0 0 0 0 0\n", "a: expected less than 1e9 m");
   rejects("1 0 0 0 0 0 0 0 1 0 0 0 1 0 0 0\n", "b: real and dual part are not orthogonal");
 }
 
@@ -156,6 +162,10 @@ TEST_F(Io, FilesAreWholeOrAbsent) {
   std::getline(stream, text);
   EXPECT_EQ(text, "second");
   EXPECT_FALSE(fs::exists(path("whole") + ".part"));
+  write_whole_file("/dev/null", "gone");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_THROW(write_whole_file("/dev/full", "does not fit"), Error);
+  EXPECT_THROW(write_whole_file(path(""), "a folder"), Error);
 }
 
 }  // namespace
