@@ -249,7 +249,7 @@ void LogWriter::write(std::int64_t time_us, const std::string& channel, Bytes da
   put(header, data.size(), 4);
   header.insert(header.end(), channel.begin(), channel.end());
   if (std::fwrite(header.data(), 1, header.size(), stream_.get()) != header.size() ||
-      std::fwrite(data.data(), 1, data.size(), stream_.get()) != data.size())
+      (!data.empty() && std::fwrite(data.data(), 1, data.size(), stream_.get()) != data.size()))
     throw error_at(file_, 0, "", "cannot be written");
 }
 

@@ -55,10 +55,11 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
         static_cast<std::int64_t>(tape_.damage().regions);
     heartbeat_.counter("lost: events of the log") = static_cast<std::int64_t>(tape_.damage().lost_events);
   });
-  heartbeat_.set_state(paused_ ? "paused" : "running");
-  heartbeat_.publish();
+  // first the ears: whoever sees that it is there may send a command at once
   loop_.subscribe<command_t>(bus::command_channel,
                              [this](const command_t& command, const bus::Arrival&) { hear(command); });
+  heartbeat_.set_state(paused_ ? "paused" : "running");
+  heartbeat_.publish();
   loop_.every(100ms, [this] { watch_over(); });
   if (terminal_keys_.there()) {
     say(std::string("keys: ") + keys_help);

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <stdexcept>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/glue.hpp"
@@ -168,7 +169,7 @@ TEST_F(PlayerProcess, PausesStepsSeeksAndResumesByCommands) {
   const auto stepped = [&](double seconds) {
     const std::size_t before = heard.size();
     command("step");
-    EXPECT_TRUE(until([&] { return heard.size() > before; }));
+    ASSERT_TRUE(until([&] { return heard.size() > before; })) << said();
     listen(150ms);
     EXPECT_EQ(heard.size(), before + 1) << "one step, one event";
     EXPECT_NEAR(heard.back().seconds, seconds, 1e-9);
@@ -362,7 +363,7 @@ TEST_F(OnTerminal, KeysPauseStepSeekAndQuit) {
   const auto stepped = [&](const std::string& keys) {
     const std::size_t count = heard.size();
     type(keys);
-    EXPECT_TRUE(until([&] { return heard.size() > count; }));
+    if (!until([&] { return heard.size() > count; })) throw std::runtime_error("no event after " + keys);
     listen(150ms);
     EXPECT_EQ(heard.size(), count + 1);
     return heard.back().seconds;
