@@ -10,6 +10,7 @@
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "egocal/uncertainty/knowledge.hpp"
+#include "online/solve_and_verify.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -111,13 +112,18 @@ Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, 
 
 }  // namespace
 
+Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Method method,
+                                const std::optional<DualQuaternion>& start, NanosecondClock clock) {
+  const Stopwatch time{clock};
+  const DualQuaternion from = start.value_or(DualQuaternion{});
+  return problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, from, time)
+                                      : solve_spatial(problem, Q, method, from, time);
+}
+
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start,
              NanosecondClock clock) {
-  const Stopwatch time{clock};
   const Matrix8d Q = cost_matrix(problem);
-  const DualQuaternion from = start.value_or(DualQuaternion{});
-  Answer answer = problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, from, time)
-                                               : solve_spatial(problem, Q, method, from, time);
+  Answer answer = detail::solve_and_verify(problem, Q, method, start, clock);
   answer.knowledge = knowledge(problem, Q, answer.T_a_b);
   return answer;
 }

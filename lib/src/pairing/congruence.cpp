@@ -19,7 +19,7 @@ constexpr double least_turn = 0.02;
 constexpr double angle_floor = 1e-6, length_floor = 1e-5;
 /// Memory, in motions, and how many of them make a first and every further estimate.
 constexpr std::size_t memory = 1024, first_estimate = 24;
-constexpr std::uint64_t estimate_every = 64;
+constexpr std::uint64_t estimate_every = 16;
 constexpr std::uint64_t doubted_that_teach = 8;
 /// Odometry whose noise were a larger part of the motion would not be any.
 constexpr double most_growing = 0.2;

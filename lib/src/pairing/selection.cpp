@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "egocal/uncertainty/knowledge.hpp"
+#include "online/solve_and_verify.hpp"
 
 namespace egocal {
 
@@ -49,8 +50,9 @@ std::optional<Spread> spread(const Problem& problem, int stride) {
   Problem parts = problem;
   parts.blocks = joined(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
   if (parts.blocks.size() < least_parts) return std::nullopt;
-  const Answer answer = solve(parts, Method::dual);
-  const Knowledge known = knowledge(parts, cost_matrix(parts), answer.T_a_b, Blocks::independent);
+  const Matrix8d Q = cost_matrix(parts);
+  const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
+  const Knowledge known = knowledge(parts, Q, answer.T_a_b, Blocks::independent);
   Spread result;
   double rotation = 0, translation = 0;
   for (std::size_t i = 0; i < 6; ++i) {

@@ -26,6 +26,9 @@ constexpr double least_relative = 1e-4;
 constexpr double rounding = 1e-9;
 /// Starting points besides the contiguous ones, and how many of all are followed to their end.
 constexpr std::size_t draws_of_pieces = 16, draws_of_parts = 32, most_settled = 8;
+/// A fit to three hundredths of the motion (squared) with parts no further off than this needs no further
+/// search.
+constexpr double good_fit = 1e-3, unsuspicious = 6;
 /// So much of the motion must agree; the scale is doubled so often until it does.
 constexpr double majority = 0.55;
 constexpr int most_relaxed = 8;
@@ -109,6 +112,12 @@ class Search {
     return parts_[i].size > 0 ? excess(fit.residuals[i], parts_[i].size, scale) : 0;
   }
 
+  double largest_excess(const Fit& fit, const ResidualScale& scale) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) largest = std::max(largest, excess_of(fit, i, scale));
+    return largest;
+  }
+
   double truncated_cost(const Fit& fit, const ResidualScale& scale) const {
     double sum = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -166,19 +175,24 @@ class Search {
   double all_ = 0;
 };
 
-/// Fits of the whole, of its contiguous halves, quarters, eighths and sixteenths, of three sixteenths drawn
-/// together (one may be free of what is wrong and yet too short to show every direction), and of four parts
-/// (what is wrong may be everywhere).
-std::vector<Fit> starting_points(const Search& search) {
-  std::vector<Fit> starts;
+std::vector<double> only(std::size_t parts, std::size_t first, std::size_t last) {
+  std::vector<double> factors(parts, 0.0);
+  std::fill(factors.begin() + static_cast<std::ptrdiff_t>(first),
+            factors.begin() + static_cast<std::ptrdiff_t>(last), 1.0);
+  return factors;
+}
+
+/// Fits of each of so many contiguous pieces.
+void fit_pieces(const Search& search, std::size_t pieces, std::vector<Fit>& fits) {
   const std::size_t n = search.size();
-  for (const std::size_t pieces : {1u, 2u, 4u, 8u, 16u})
-    for (std::size_t k = 0; k < pieces; ++k) {
-      std::vector<double> factors(n, 0.0);
-      std::fill(factors.begin() + static_cast<std::ptrdiff_t>(k * n / pieces),
-                factors.begin() + static_cast<std::ptrdiff_t>((k + 1) * n / pieces), 1.0);
-      starts.push_back(search.fit(factors));
-    }
+  for (std::size_t k = 0; k < pieces; ++k)
+    fits.push_back(search.fit(only(n, k * n / pieces, (k + 1) * n / pieces)));
+}
+
+/// Fits of three sixteenths drawn together (a piece may be free of what is wrong and yet too short to show
+/// every direction), and of four parts (what is wrong may be everywhere).
+void fit_draws(const Search& search, std::vector<Fit>& fits) {
+  const std::size_t n = search.size();
   std::uint64_t drawn = 1;
   const auto draw = [&](std::size_t below) {
     drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
@@ -188,17 +202,16 @@ std::vector<Fit> starting_points(const Search& search) {
     std::vector<double> factors(n, 0.0);
     for (int piece = 0; piece < 3; ++piece) {
       const std::size_t k = draw(16);
-      std::fill(factors.begin() + static_cast<std::ptrdiff_t>(k * n / 16),
-                factors.begin() + static_cast<std::ptrdiff_t>((k + 1) * n / 16), 1.0);
+      const std::vector<double> more = only(n, k * n / 16, (k + 1) * n / 16);
+      for (std::size_t part = 0; part < n; ++part) factors[part] = std::max(factors[part], more[part]);
     }
-    starts.push_back(search.fit(factors));
+    fits.push_back(search.fit(factors));
   }
   for (std::size_t i = 0; i < draws_of_parts; ++i) {
     std::vector<double> factors(n, 0.0);
     for (int part = 0; part < 4; ++part) factors[draw(n)] = 1;
-    starts.push_back(search.fit(factors));
+    fits.push_back(search.fit(factors));
   }
-  return starts;
 }
 
 double product(const ResidualScale& scale) {
@@ -212,13 +225,22 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   const Search search(problem, parts);
   if (!(search.motion() > 0)) return std::nullopt;
 
-  std::vector<Fit> starts = starting_points(search);
+  std::vector<Fit> starts;
+  for (const std::size_t pieces : {1u, 2u, 4u}) fit_pieces(search, pieces, starts);
   // the tightest fit of half of the motion says what typical is
   ResidualScale scale = search.scale_of(starts.front());
   const auto tighten = [&](const Fit& fit) {
     const ResidualScale here = search.scale_of(fit);
     if (product(here) < product(scale)) scale = here;
   };
+  for (const Fit& start : starts) tighten(start);
+  // Mostly nothing is wrong: where the fit of the whole is good, and nowhere worse than noise explains, it is
+  // all there is to find. (Gross errors of many parts spoil it for all; those of few stand out.)
+  if (scale.relative < good_fit && search.largest_excess(starts.front(), scale) < unsuspicious)
+    return Consensus{{starts.front().q, scale}, std::vector<bool>(parts.size(), false)};
+
+  for (const std::size_t pieces : {8u, 16u}) fit_pieces(search, pieces, starts);
+  fit_draws(search, starts);
   for (const Fit& start : starts) tighten(start);
   starts.push_back(search.graduated(starts.front(), scale));
   tighten(starts.back());
