@@ -135,16 +135,16 @@ void fields(auto& archive, services::Is<DriveState::PerStride> auto& value) {
 }
 
 void fields(auto& archive, services::Is<DriveState> auto& value) {
-  auto& [counts, choice, clock, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
-         congruence, doubtful] = value;
-  archive(counts, choice, clock, newest_us, waiting, keys, period_us, instants, chain, strides, next_choice,
-          congruence, doubtful);
+  auto& [counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
+         next_choice, congruence, doubtful] = value;
+  archive(counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
+          next_choice, congruence, doubtful);
 }
 
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 3;
+constexpr int state_layout = 4;
 
 void fields(auto& archive, Is<Sample> auto& value) {
   auto& [pose, seq, mono_us, begins_anew] = value;

@@ -65,8 +65,16 @@ bool Stream::plausible(const Sample& sample) const {
 }
 
 void Stream::release(Sample sample, std::vector<Sample>& out) {
-  if (state_.newest_us && sample.pose.time_us <= *state_.newest_us) {
+  const bool late = state_.newest_us && sample.pose.time_us <= *state_.newest_us;
+  if (late && sample.seq >= 0) {
     ++state_.counts.out_of_order;
+    return;
+  }
+  if (late) {
+    // without a number nobody waited for it; whether it can still be of use the drive knows
+    state_.recent[state_.recent_next] = sample.pose.time_us;
+    state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
+    out.push_back(std::move(sample));
     return;
   }
   if (state_.newest_us) state_.period_us = sample.pose.time_us - *state_.newest_us;

@@ -136,6 +136,35 @@ TEST(Drive, ALostPoseMakesALongerMotionNotAWrongOne) {
   EXPECT_LT(error_of(data, drive).translation, 1e-8);
 }
 
+/// Packets overtake each other: a pose that comes late costs nothing while nothing after it has been paired.
+TEST(Drive, LatePosesFindTheirPlace) {
+  const Simulated data = simulated(Terrain::rough, 0.01, 400);
+  const DriveOptions options{.stride = 1, .balance = Balance{}};
+  const Problem expected = run_drive(options, data.a, data.b).drive.problem();
+  testing::Random random(9);
+  Trajectory late = data.a;
+  for (std::size_t i = 20; i + 4 < late.size(); i += 4)
+    if (random.uniform() < 0.3) std::swap(late[i], late[i + 1 + random.below(2)]);
+  Drive drive(options);
+  for (std::size_t i = 0; i < late.size() + 4; ++i) {  // b comes a little later than a
+    if (i < late.size()) drive.push(Side::a, late[i]);
+    if (i >= 4) drive.push(Side::b, data.b[i - 4]);
+  }
+  drive.finish();
+  EXPECT_TRUE(same_bits(drive.problem(), expected));
+  EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::out_of_order)], 0u);
+
+  // too late: its neighbours have been paired without it
+  Drive strict(options);
+  for (std::size_t i = 0; i < data.a.size(); ++i) {
+    if (i != 200) strict.push(Side::a, data.a[i]);
+    strict.push(Side::b, data.b[i]);
+    if (i == 210) strict.push(Side::a, data.a[200]);
+    if (i == 220) strict.push(Side::a, data.a[220]);  // known
+  }
+  EXPECT_EQ(strict.counts().rejected[static_cast<std::size_t>(Rejection::out_of_order)], 2u);
+}
+
 TEST(Drive, GapsAreNotBridged) {
   Simulated data = simulated(Terrain::rough, 0.001, 600);
   std::erase_if(data.a, [&](const StampedPose& pose) {

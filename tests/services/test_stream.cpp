@@ -121,6 +121,14 @@ TEST(Stream, APatientOneGivesUpWhatTheSenderDoesNotHave) {
   EXPECT_FALSE(stream.waiting());
 }
 
+TEST(Stream, WithoutNumbersLateOnesPassOnceForTheDriveToJudge) {
+  Stream stream(0.2);
+  EXPECT_THAT(feed(stream, {sample(0, -1), sample(2, -1), sample(1, -1), sample(3, -1), sample(1, -1)}),
+              ElementsAre(0, 2, 1, 3));
+  EXPECT_EQ(stream.counts().duplicate, 1);
+  EXPECT_EQ(stream.counts().out_of_order, 0);
+}
+
 TEST(Stream, WhatWasLostAndComesVeryLateBeginsNoNewTimeline) {
   Stream stream(0.2);
   feed(stream, {sample(0, 0), sample(1, 1)});

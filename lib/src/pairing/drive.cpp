@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 
 #include "egocal/error.hpp"
@@ -122,13 +123,19 @@ std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
 
 std::vector<MotionPair> Drive::take(Side side, StampedPose pose) {
   auto& newest = state_.newest_us[index(side)];
-  if (newest && pose.time_us <= *newest) {
-    reject(Rejection::out_of_order);
-    return {};
-  }
-  newest = pose.time_us;
   auto& waiting = state_.waiting[index(side)];
-  waiting.push_back(pose);
+  // a late pose still has its place while nothing after it has been paired
+  auto place = waiting.end();
+  if (newest && pose.time_us <= *newest) {
+    while (place != waiting.begin() && std::prev(place)->time_us > pose.time_us) --place;
+    const bool known = place != waiting.begin() && std::prev(place)->time_us == pose.time_us;
+    if (known || (state_.last_key_us && pose.time_us <= *state_.last_key_us)) {
+      reject(Rejection::out_of_order);
+      return {};
+    }
+  }
+  newest = std::max(newest.value_or(pose.time_us), pose.time_us);
+  waiting.insert(place, pose);
   if (waiting.size() > most_waiting) {
     waiting.pop_front();
     reject(Rejection::no_partner);
@@ -179,6 +186,7 @@ std::vector<MotionPair> Drive::synchronise() {
   while (!keys.empty() && !others.empty()) {
     const StampedPose& key = keys.front();
     if (key.time_us < others.front().time_us) {
+      state_.last_key_us = key.time_us;
       reject(Rejection::no_partner);
       keys.pop_front();
       continue;
@@ -186,6 +194,7 @@ std::vector<MotionPair> Drive::synchronise() {
     while (others.size() > 1 && others[1].time_us <= key.time_us) others.pop_front();
     const bool exact = others.front().time_us == key.time_us;
     if (!exact && others.size() < 2) break;
+    state_.last_key_us = key.time_us;
     if (!exact && others[1].time_us - others[0].time_us > max_gap_us) {
       reject(Rejection::gap);
       keys.pop_front();

@@ -36,7 +36,7 @@ struct DriveOptions {
 /// Why a pose or a motion is not in the statistics.
 enum class Rejection {
   not_finite,        ///< NaN, infinity or a quaternion far from unit length
-  out_of_order,      ///< not newer than the newest of its stream
+  out_of_order,      ///< known, or so late that poses after it have been paired
   no_partner,        ///< the other stream has no pose on one side of it (before its start, after its end)
   gap,               ///< the neighbours in the other stream, or the two ends of the motion, are too far apart
   screw_congruence,  ///< the motions to and from a pose differ in angle or slide by more than noise explains
@@ -82,6 +82,7 @@ struct DriveState {
   std::array<std::deque<StampedPose>, 2> waiting;  ///< not yet synchronised; the faster one keeps a neighbour
   std::optional<Side> keys;                        ///< the slower stream, at whose stamps poses are paired
   std::int64_t period_us = 0;                      ///< typical, of the slower stream
+  std::optional<std::int64_t> last_key_us;         ///< newest stamp that was paired or given up
   std::deque<Instant> instants;                    ///< the newest, as many as the longest motion needs
   std::uint64_t chain = 0;
   std::vector<PerStride> strides;
