@@ -84,6 +84,14 @@ TEST(Consensus, TooFewPartsOrNoMotionHaveNone) {
   EXPECT_FALSE(find_consensus(Problem{}, parts));
   EXPECT_FALSE(find_consensus(Problem{}, std::vector<Statistics>(40, of_one({}))));
   EXPECT_FALSE(find_consensus(Problem{}, std::vector<Statistics>(40)));
+  // and what holds nothing harms nothing
+  parts.clear();
+  for (const MotionPair& pair : random_pairs(T_a_b, {.pairs = 40, .noise = 0.05}, random))
+    parts.push_back(of_one(pair));
+  parts.resize(400);
+  const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
+  ASSERT_TRUE(consensus);
+  EXPECT_LT(extrinsic_error(T_a_b, consensus->agreement.q).rotation, 0.1);
 }
 
 /// A long way straight on, then the first turn: it contradicts whatever roll was guessed before, and is

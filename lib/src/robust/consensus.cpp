@@ -87,7 +87,7 @@ class Search {
       Q += factors[i] * parts_[i].weight * parts_[i].Q;
       weight += factors[i] * parts_[i].weight;
     }
-    Q /= weight;
+    if (weight > 0) Q /= weight;
     Fit fit{mode_ == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q, {}};
     for (const Part& part : parts_) fit.residuals.push_back(std::max(0.0, cost(part.Q, fit.q)));
     return fit;

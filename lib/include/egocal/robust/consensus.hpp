@@ -32,7 +32,7 @@ struct Consensus {
 /// the sum of min(residual, limit) is smallest. A single large residual then counts no more than any other,
 /// and up to nearly half of the motion may be wrong, even if the wrong parts agree among themselves. Started
 /// by graduated non-convexity (Geman-McClure weights that sharpen step by step, each step solved globally)
-/// and from every contiguous eighth, quarter and half of the drive. Nothing is judged against an earlier
+/// and from contiguous pieces of the drive and draws of them. Nothing is judged against an earlier
 /// answer, so motion that shows a new direction is never taken for an outlier. problem: mode, planes and
 /// balance; its blocks are not looked at. Empty where the parts are too few to outvote one another (16), or
 /// do not move. Deterministic.
