@@ -164,7 +164,8 @@ void Pairing::be_patient_if_it_helps() {
 void Pairing::watch_gaps() {
   be_patient_if_it_helps();
   const std::int64_t now = bus::mono_us();
-  for (std::uint16_t i = 0; i < arrivals_.size(); ++i) {
+  for (std::size_t channel = 0; channel < arrivals_.size(); ++channel) {
+    const auto i = static_cast<std::uint16_t>(channel);
     Arrivals& arrivals = arrivals_[i];
     const Stream& stream = accumulation_.stream(i);
     if (!stream.waiting()) {
@@ -212,7 +213,8 @@ void Pairing::hear(const status_t& status) {
 
 void Pairing::obey(Verb verb, const command_t& command) {
   bool any = false;
-  for (std::uint16_t i = 0; i < channels_.size(); ++i) {
+  for (std::size_t number = 0; number < channels_.size(); ++number) {
+    const auto i = static_cast<std::uint16_t>(number);
     const PairSession& pair = accumulation_.pairs()[i];
     if (!means(command, verb, pair.config().a, pair.config().b, pair.session())) continue;
     any = true;

@@ -99,7 +99,8 @@ std::string difference(const std::string& found, const std::string& expected) {
     const bool more_y = static_cast<bool>(std::getline(y, line_y));
     if (!more_x) line_x = "nothing";
     if (!more_y) line_y = "nothing";
-    if (line_x != line_y) return "it has '" + line_x + "', expected '" + line_y + "'";
+    if (line_x != line_y)
+      return "it has '" + std::string(line_x).append("', expected '").append(line_y) + "'";
     if (!more_x && !more_y) return "no difference";
   }
 }

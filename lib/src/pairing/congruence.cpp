@@ -71,6 +71,7 @@ std::pair<std::vector<Seen>, std::vector<Seen>> halves(const std::deque<Seen>& n
 
 double robust_deviation(const std::vector<Seen>& seen) {
   std::vector<double> differences;
+  differences.reserve(seen.size());
   for (const Seen& one : seen) differences.push_back(one.difference);
   return robust_deviation(std::move(differences));
 }

@@ -121,7 +121,7 @@ std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
   return pairs;
 }
 
-std::vector<MotionPair> Drive::take(Side side, StampedPose pose) {
+std::vector<MotionPair> Drive::take(Side side, const StampedPose& pose) {
   auto& newest = state_.newest_us[index(side)];
   auto& waiting = state_.waiting[index(side)];
   // a late pose still has its place while nothing after it has been paired

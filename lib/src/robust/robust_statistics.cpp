@@ -43,6 +43,7 @@ void RobustStatistics::look(const Problem& problem) {
   state_.next_look = state_.given + std::max<std::uint64_t>(1, state_.given / 8);
   const auto& blocks = state_.blocks.state().blocks;
   std::vector<Statistics> parts;
+  parts.reserve(blocks.size() + state_.waiting.size());
   for (const BlockStatistics::Block& block : blocks) parts.push_back(block.statistics);
   for (const MotionPair& pair : state_.waiting) parts.push_back(of_one(pair));
   const std::optional<Consensus> consensus = find_consensus(problem, parts);

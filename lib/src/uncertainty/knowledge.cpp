@@ -83,7 +83,7 @@ constexpr std::size_t least_double_blocks = 8;
 /// errors (noise that wanders) single ones say too little.
 template <typename Variance>
 Vector6d largest_variance(const Problem& problem, Blocks blocks, const Variance& variance) {
-  const Vector6d single = variance(problem);
+  Vector6d single = variance(problem);
   if (blocks == Blocks::independent || problem.blocks.size() < 2 * least_double_blocks) return single;
   Problem doubled = problem;
   doubled.blocks.clear();

@@ -119,7 +119,7 @@ class Drive {
 
  private:
   void reject(Rejection reason) { ++state_.counts.rejected[static_cast<std::size_t>(reason)]; }
-  std::vector<MotionPair> take(Side side, StampedPose pose);
+  std::vector<MotionPair> take(Side side, const StampedPose& pose);
   void decide_keys();
   std::vector<MotionPair> synchronise();
   void judge(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
