@@ -23,11 +23,11 @@ namespace egocal::test {
 /// is in a network namespace of its own already, and may make more (enter_network_namespace()).
 class SeveralHosts {
  public:
-  explicit SeveralHosts(int count) {
+  explicit SeveralHosts(int count) : SeveralHosts() {
     run("ip link add bridge type bridge mcast_snooping 0 && ip link set bridge up");
     for (int i = 0; i < count; ++i) {
       const std::string number = std::to_string(i + 1);
-      const std::string port = "port" + number;
+      const std::string port = port_of(i);
       holders_.push_back(hold_namespace());
       const std::string pid = std::to_string(holders_.back());
       run("ip link add " + port + " type veth peer name eth netns " + pid + " && ip link set " + port +
@@ -41,9 +41,12 @@ class SeveralHosts {
     }
   }
   ~SeveralHosts() {
-    for (const pid_t holder : holders_) {
-      ::kill(holder, SIGKILL);
-      waitpid(holder, nullptr, 0);
+    for (std::size_t i = 0; i < holders_.size(); ++i) {
+      // by name, as the kernel takes its time for a namespace that nobody is in any more: the next object's
+      // interfaces would meet these
+      std::system(("ip link del " + port_of(static_cast<int>(i))).c_str());
+      ::kill(holders_[i], SIGKILL);
+      waitpid(holders_[i], nullptr, 0);
     }
     std::system("ip link del bridge");
   }
@@ -64,6 +67,10 @@ class SeveralHosts {
   }
 
  private:
+  SeveralHosts() =
+      default;  // delegated to, so that what is there is taken down where the rest cannot be made
+
+  static std::string port_of(int host) { return "port" + std::to_string(host + 1); }
   static std::size_t index(int host) { return static_cast<std::size_t>(host); }
   static void run(const std::string& command) {
     if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
