@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -92,6 +94,29 @@ TEST(Consensus, TooFewPartsOrNoMotionHaveNone) {
   const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
   ASSERT_TRUE(consensus);
   EXPECT_LT(extrinsic_error(T_a_b, consensus->agreement.q).rotation, 0.1);
+}
+
+/// A few degrees are within the noise of single motions, not of a run of them.
+TEST(Consensus, ARunThatWouldRatherHaveAnotherExtrinsicIsLeftOut) {
+  const DualQuaternion little_turned = T_a_b * displacement({0.06, 0, 0}, {0, 0, 0});
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Random random(seed);
+    std::vector<Statistics> parts(32);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const bool wrong = i == 7 || i == 8 || i == 20;
+      for (const MotionPair& pair :
+           random_pairs(wrong ? little_turned : T_a_b, {.pairs = 64, .noise = 0.03}, random))
+        parts[i].add(pair);
+    }
+    const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
+    ASSERT_TRUE(consensus);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      EXPECT_EQ(consensus->left_out[i], i == 7 || i == 8 || i == 20) << seed << " " << i;
+    // overlapping motions are as many as they are independent
+    const std::optional<Consensus> overlapping = find_consensus(Problem{}, parts, 8);
+    ASSERT_TRUE(overlapping);
+    EXPECT_EQ(std::count(overlapping->left_out.begin(), overlapping->left_out.end(), true), 0);
+  }
 }
 
 /// A long way straight on, then the first turn: it contradicts whatever roll was guessed before, and is

@@ -92,8 +92,12 @@ std::vector<MotionPair> read_pairs(const CalibrationOptions& options, Calibratio
   result.problem.balance = options.drive.balance.value_or(Balance{});
   RobustStatistics statistics;
   for (const MotionPair& pair : pairs) {
-    statistics.add(pair, result.problem, options.drive.robust);
-    if (options.drive.robust && statistics.look_is_due()) statistics.look(result.problem);
+    if (!options.drive.robust) {
+      statistics.add_unjudged(pair);
+      continue;
+    }
+    statistics.add(pair, result.problem);
+    if (statistics.look_is_due()) statistics.look(result.problem);
   }
   if (options.drive.robust) statistics.look(result.problem);
   result.problem.blocks = statistics.kept();

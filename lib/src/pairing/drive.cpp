@@ -277,10 +277,13 @@ void Drive::accept(Instant instant, std::vector<MotionPair>& pairs) {
     const std::optional<MotionPair> pair =
         motion(state_.instants[state_.instants.size() - 1 - steps], instant, entry.stride, chosen);
     if (!pair) continue;
-    entry.statistics.add(*pair, problem, options_.robust);
+    if (options_.robust)
+      entry.statistics.add(*pair, problem, entry.stride);
+    else
+      entry.statistics.add_unjudged(*pair);
     if (!chosen) continue;
     pairs.push_back(*pair);
-    if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem);
+    if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem, entry.stride);
   }
   if (state_.counts.synchronised >= state_.next_choice) {
     choose();
@@ -318,7 +321,7 @@ void Drive::choose() {
   std::vector<Candidate> candidates;
   std::optional<std::size_t> current;
   for (DriveState::PerStride& entry : state_.strides) {
-    if (options_.robust) entry.statistics.look(problem);
+    if (options_.robust) entry.statistics.look(problem, entry.stride);
     for (const double translation : balances) {
       const Balance balance = options_.balance.value_or(Balance{1, translation});
       if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&

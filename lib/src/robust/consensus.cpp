@@ -29,6 +29,14 @@ constexpr std::size_t draws_of_pieces = 16, draws_of_parts = 32, most_settled = 
 /// A fit to three hundredths of the motion (squared) with parts no further off than this needs no further
 /// search.
 constexpr double good_fit = 1e-3, unsuspicious = 6;
+/// A run of motions may fit well enough and yet come from another extrinsic (two axes exchanged on a straight
+/// road): then it would gain far more than others by an extrinsic of its own. Of single runs of real drives
+/// up to 25 times the typical gain, all others below 10; of such a stretch 10 to 60.
+constexpr double most_gain = 10;
+/// Shorter runs of independent motions fit anything by themselves.
+constexpr double least_run = 16;
+/// Less is nothing to compare with [squared residuals of one motion].
+constexpr double least_gain = 1;
 /// So much of the motion must agree; the scale is doubled so often until it does.
 constexpr double majority = 0.55;
 constexpr int most_relaxed = 8;
@@ -42,8 +50,9 @@ double squared_size(const Matrix8d& Q) {
 struct Part {
   Matrix8d Q;     ///< (16) of this part alone
   double weight;  ///< of its motions
-  double size;    ///< squared_size
-  double limit;   ///< of the excess over typical
+  double count;
+  double size;   ///< squared_size
+  double limit;  ///< of the excess over typical
 };
 
 struct Fit {
@@ -68,10 +77,11 @@ double excess(double residual, double size, const ResidualScale& scale) {
 
 class Search {
  public:
-  Search(const Problem& problem, std::span<const Statistics> statistics) : mode_(problem.mode) {
+  Search(const Problem& problem, std::span<const Statistics> statistics, int overlap)
+      : mode_(problem.mode), overlap_(overlap) {
     for (const Statistics& part : statistics) {
       const Matrix8d Q = cost_matrix(part, problem.balance);
-      parts_.push_back({Q, part.weight, squared_size(Q), limit(part.count)});
+      parts_.push_back({Q, part.weight, static_cast<double>(part.count), squared_size(Q), limit(part.count)});
       all_ += part.weight * parts_.back().size;
     }
   }
@@ -88,7 +98,7 @@ class Search {
       weight += factors[i] * parts_[i].weight;
     }
     if (weight > 0) Q /= weight;
-    Fit fit{mode_ == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q, {}};
+    Fit fit{minimiser(Q), {}};
     for (const Part& part : parts_) fit.residuals.push_back(std::max(0.0, cost(part.Q, fit.q)));
     return fit;
   }
@@ -167,10 +177,82 @@ class Search {
     return fit;
   }
 
+  /// Leaves out the run that would gain most by an extrinsic of its own, again and again, as long as one
+  /// would gain far more than others do and a majority stays.
+  Fit without_dissenters(Fit fit, std::vector<double>& factors) const {
+    const std::vector<Alone> alone = fit_alone();
+    while (const std::optional<std::size_t> i = dissenter(fit, alone, factors)) {
+      const double rest = motion_of(factors) - parts_[*i].weight * parts_[*i].size;
+      if (rest < majority * motion()) break;
+      factors[*i] = 0;
+      fit = this->fit(factors);
+    }
+    return fit;
+  }
+
+  Consensus consensus(Fit fit, const ResidualScale& scale, std::vector<double> factors) const {
+    fit = without_dissenters(std::move(fit), factors);
+    Consensus consensus{{fit.q, scale}, {}};
+    for (const double factor : factors) consensus.left_out.push_back(factor == 0);
+    return consensus;
+  }
+
   std::size_t size() const { return parts_.size(); }
 
  private:
+  DualQuaternion minimiser(const Matrix8d& Q) const {
+    return mode_ == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
+  }
+
+  /// A run of motions with the extrinsic that suits it best.
+  struct Alone {
+    double residual = 0;  ///< mean squared
+    double noise = 0;     ///< at least what is typical: a short run may fit by chance
+  };
+
+  bool is_run(const Part& part) const { return part.count >= least_run * overlap_ && part.size > 0; }
+
+  std::vector<Alone> fit_alone() const {
+    std::vector<Alone> alone;
+    std::vector<std::pair<double, double>> absolute, relative;
+    for (const Part& part : parts_) {
+      Alone& one = alone.emplace_back();
+      if (!is_run(part)) continue;
+      one.residual = std::max(0.0, cost(part.Q, minimiser(part.Q)));
+      absolute.emplace_back(one.residual, part.weight);
+      relative.emplace_back(one.residual / part.size, part.weight);
+    }
+    const double typical = weighted_median(std::move(absolute));
+    const double typical_relative = std::max(weighted_median(std::move(relative)), rounding * rounding);
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      alone[i].noise = std::max({alone[i].residual, std::min(typical, typical_relative * parts_[i].size),
+                                 rounding * rounding * parts_[i].size});
+    return alone;
+  }
+
+  /// The run that stands out, of those that count. The gain is about that of the six numbers of an extrinsic
+  /// fitted to noise: six times the noise of one motion, more where motions overlap.
+  std::optional<std::size_t> dissenter(const Fit& fit, const std::vector<Alone>& alone,
+                                       const std::vector<double>& factors) const {
+    std::vector<std::pair<double, double>> gains;
+    std::size_t most = 0;
+    double most_found = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (!(factors[i] > 0) || !is_run(parts_[i])) continue;
+      const double gain = parts_[i].count * (fit.residuals[i] - alone[i].residual) / alone[i].noise;
+      gains.emplace_back(gain, 1);
+      if (gain > most_found) {
+        most_found = gain;
+        most = i;
+      }
+    }
+    if (gains.size() < least_parts) return std::nullopt;
+    const double typical = std::max(weighted_median(std::move(gains)), least_gain);
+    return most_found > most_gain * typical ? std::optional(most) : std::nullopt;
+  }
+
   Mode mode_;
+  int overlap_;
   std::vector<Part> parts_;
   double all_ = 0;
 };
@@ -220,9 +302,10 @@ double product(const ResidualScale& scale) {
 
 }  // namespace
 
-std::optional<Consensus> find_consensus(const Problem& problem, std::span<const Statistics> parts) {
+std::optional<Consensus> find_consensus(const Problem& problem, std::span<const Statistics> parts,
+                                        int overlap) {
   if (parts.size() < least_parts) return std::nullopt;
-  const Search search(problem, parts);
+  const Search search(problem, parts, overlap);
   if (!(search.motion() > 0)) return std::nullopt;
 
   std::vector<Fit> starts;
@@ -237,7 +320,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   // Mostly nothing is wrong: where the fit of the whole is good, and nowhere worse than noise explains, it is
   // all there is to find. (Gross errors of many parts spoil it for all; those of few stand out.)
   if (scale.relative < good_fit && search.largest_excess(starts.front(), scale) < unsuspicious)
-    return Consensus{{starts.front().q, scale}, std::vector<bool>(parts.size(), false)};
+    return search.consensus(std::move(starts.front()), scale, std::vector<double>(parts.size(), 1.0));
 
   for (const std::size_t pieces : {8u, 16u}) fit_pieces(search, pieces, starts);
   fit_draws(search, starts);
@@ -272,9 +355,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
     factors = search.agreeing(best, scale);
   }
   if (search.motion_of(factors) < majority * search.motion()) return std::nullopt;
-  Consensus consensus{{best.q, scale}, {}};
-  for (const double factor : factors) consensus.left_out.push_back(factor == 0);
-  return consensus;
+  return search.consensus(std::move(best), scale, std::move(factors));
 }
 
 double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement) {

@@ -20,9 +20,13 @@ Statistics of_one(const MotionPair& pair) {
 
 }  // namespace
 
-void RobustStatistics::add(const MotionPair& pair, const Problem& problem, bool judge) {
+void RobustStatistics::add_unjudged(const MotionPair& pair) {
   ++state_.given;
-  if (!judge) return state_.blocks.add(pair);
+  state_.blocks.add(pair);
+}
+
+void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int overlap) {
+  ++state_.given;
   const bool disagrees =
       state_.agreement && disagreement(of_one(pair), problem.balance, *state_.agreement) > 1;
   if (disagrees) {
@@ -36,17 +40,17 @@ void RobustStatistics::add(const MotionPair& pair, const Problem& problem, bool 
     state_.blocks.add(pair);
     state_.in_a_row = 0;
   }
-  if (state_.in_a_row >= suspicious_run && std::has_single_bit(state_.in_a_row)) look(problem);
+  if (state_.in_a_row >= suspicious_run && std::has_single_bit(state_.in_a_row)) look(problem, overlap);
 }
 
-void RobustStatistics::look(const Problem& problem) {
+void RobustStatistics::look(const Problem& problem, int overlap) {
   state_.next_look = state_.given + std::max<std::uint64_t>(1, state_.given / 8);
   const auto& blocks = state_.blocks.state().blocks;
   std::vector<Statistics> parts;
   parts.reserve(blocks.size() + state_.waiting.size());
   for (const BlockStatistics::Block& block : blocks) parts.push_back(block.statistics);
   for (const MotionPair& pair : state_.waiting) parts.push_back(of_one(pair));
-  const std::optional<Consensus> consensus = find_consensus(problem, parts);
+  const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap);
   if (!consensus) return;  // what was agreed on before stands
   const std::vector<bool>& left_out = consensus->left_out;
   state_.agreement = consensus->agreement;

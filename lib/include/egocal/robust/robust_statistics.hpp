@@ -32,10 +32,12 @@ class RobustStatistics {
   RobustStatistics() = default;
   explicit RobustStatistics(State state) : state_(std::move(state)) {}
 
-  /// problem: mode, planes and balance in force. judge: false takes everything in.
-  void add(const MotionPair& pair, const Problem& problem, bool judge = true);
+  /// problem: mode, planes and balance in force. overlap: the stride, see find_consensus().
+  void add(const MotionPair& pair, const Problem& problem, int overlap = 1);
+  /// Takes it in whatever the others say.
+  void add_unjudged(const MotionPair& pair);
   /// Looks for the consensus now.
-  void look(const Problem& problem);
+  void look(const Problem& problem, int overlap = 1);
   /// The drive has grown by an eighth since the last look.
   bool look_is_due() const { return state_.given >= state_.next_look; }
 
