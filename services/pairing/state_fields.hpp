@@ -136,15 +136,15 @@ void fields(auto& archive, services::Is<DriveState::PerStride> auto& value) {
 
 void fields(auto& archive, services::Is<DriveState> auto& value) {
   auto& [counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
-         next_choice, congruence, doubtful] = value;
+         next_choice, congruence, newest, unjudged, doubtful] = value;
   archive(counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
-          next_choice, congruence, doubtful);
+          next_choice, congruence, newest, unjudged, doubtful);
 }
 
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 4;
+constexpr int state_layout = 5;
 
 void fields(auto& archive, Is<Sample> auto& value) {
   auto& [pose, seq, mono_us, begins_anew] = value;

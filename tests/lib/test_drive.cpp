@@ -217,6 +217,49 @@ TEST(Drive, JumpsAreLeftOut) {
   EXPECT_LT(error_of(data, with).rotation, 2 * error_of(clean, without).rotation + 2e-4);
 }
 
+/// Before anything is known of what is typical: a motion of many steps across the jump would stay wrong.
+TEST(Drive, JumpsAmongTheFirstPosesAreLeftOut) {
+  const Simulated clean = simulated(Terrain::free, 0.01, 1001, 4);
+  for (const std::size_t first : {1u, 5u, 20u}) {
+    Simulated data = clean;
+    const DualQuaternion jump = testing::displacement({0.5, -2, 0.3}, {1, -3, 2});
+    for (std::size_t i = first; i < data.b.size(); ++i) data.b[i].pose = normalized(jump * data.b[i].pose);
+    const Drive with = run_drive({}, data.a, data.b).drive, without = run_drive({}, clean.a, clean.b).drive;
+    EXPECT_EQ(with.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 1u) << first;
+    EXPECT_EQ(with.state().instants.back().chain, 1u) << first;
+    EXPECT_LE(with.counts().left_out, without.counts().left_out) << first;
+    EXPECT_LT(error_of(data, with).rotation, 2 * error_of(clean, without).rotation + 2e-4) << first;
+  }
+}
+
+TEST(Drive, AFrozenSensorIsLeftOutAndAVehicleAtRestIsNot) {
+  const Simulated clean = simulated(Terrain::free, 0.01, 1001, 4);
+  const auto frozen = [](const Drive& drive) {
+    return drive.counts().rejected[static_cast<std::size_t>(Rejection::frozen)];
+  };
+  // b samples between the poses of a: what is repeated is an interpolation
+  for (const std::int64_t later_us : {0, 33'000}) {
+    Simulated data = clean;
+    for (StampedPose& pose : data.b) pose.time_us += later_us;
+    DriveOptions options;
+    options.time_offset = -1e-6 * static_cast<double>(later_us) / 2;
+    const double error_clean = error_of(data, run_drive(options, data.a, data.b).drive).rotation;
+    for (std::size_t i = 401; i < 600; ++i) data.b[i].pose = data.b[400].pose;
+    const Drive drive = run_drive(options, data.a, data.b).drive;
+    EXPECT_NEAR(static_cast<double>(frozen(drive)), 199, 1) << later_us;
+    if (later_us == 0) {
+      EXPECT_LT(error_of(data, drive).rotation, 3 * error_clean);
+    }
+    for (std::size_t i = 401; i < 600; ++i) data.a[i].pose = data.a[400].pose;
+    EXPECT_LE(frozen(run_drive(options, data.a, data.b).drive), 2u) << later_us;
+  }
+  DriveOptions trusting;
+  trusting.robust = false;
+  Simulated data = clean;
+  for (std::size_t i = 401; i < 600; ++i) data.b[i].pose = data.b[400].pose;
+  EXPECT_EQ(frozen(run_drive(trusting, data.a, data.b).drive), 0u);
+}
+
 TEST(Drive, TimeOffsetIsAddedToB) {
   Simulated data = simulated(Terrain::rough, 0, 300);
   for (StampedPose& pose : data.b) pose.time_us -= 12'345'678;

@@ -123,6 +123,34 @@ TEST_F(RealOutliers, Kitti) {
   check(data);
 }
 
+/// Where a stretch of exchanged axes hides: on straight roads only the few turns of a car tell.
+TEST_F(RealOutliers, TwoAxesExchangedOnALongDrive) {
+  const DualQuaternion truth = to_dual_quaternion(
+      {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
+       {0.333504767535, -0.00479610810717, -0.0755785517707}});
+  const Streams data{truth, read("kitti_05/velodyne_pylidar.tum"), read("kitti_05/cam0_orbslam2.tum"), {}};
+  const double clean = error_of(data, data.a, data.b).rotation;
+  for (const ExtrinsicError& error : errors_of(data, Corruption::mirrored_axes, 7))
+    EXPECT_LE(error.rotation, 2 * clean);
+}
+
+/// An arm whose best motions take two seconds, with noise that hides what happens from one pose to the next.
+TEST_F(RealOutliers, RobotArm) {
+  const DualQuaternion reference = to_dual_quaternion(
+      {Eigen::Quaterniond(0.600112895337, -0.605573525678, 0.371519644521, -0.367584509445).normalized(),
+       {-0.00245036495877, -0.0184887305911, 0.00211597057302}});
+  const Streams data{reference, read("eth_robot_arm_real/hand.tum"), read("eth_robot_arm_real/eye.tum"), {}};
+  double missing = 0;
+  for (const std::uint64_t seed : {7, 8, 9})
+    for (const ExtrinsicError& error : errors_of(data, Corruption::missing, seed))
+      missing = std::max(missing, error.rotation);
+  for (const std::uint64_t seed : {7, 8, 9})
+    for (const Corruption corruption :
+         {Corruption::lasting_jumps, Corruption::frozen_once, Corruption::frozen_often})
+      for (const ExtrinsicError& error : errors_of(data, corruption, seed))
+        EXPECT_LE(error.rotation, 2 * missing) << name(corruption) << ", seed " << seed;
+}
+
 TEST_F(RealOutliers, HandheldAtDifferentRates) {
   check({{}, read("euroc_v2_01/body_gt.tum"), read("euroc_v2_01/body_vio.tum"), {}});
 }

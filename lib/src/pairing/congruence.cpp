@@ -109,8 +109,12 @@ double sigmas(const Seen& seen, const TypicalDifference& typical, double floor) 
 
 }  // namespace
 
+bool knows_typical(const CongruenceScale& scale) {
+  return scale.taught >= first_estimate;
+}
+
 double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale) {
-  if (scale.taught < first_estimate) return 0;
+  if (!knows_typical(scale)) return 0;
   const Difference d = difference(a, b);
   const double unexplained = std::max(0.0, d.length.difference - scale.arm * d.angle.size);
   return std::max({sigmas(d.angle, scale.angle, angle_floor),

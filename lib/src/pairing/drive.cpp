@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "egocal/error.hpp"
 #include "egocal/pairing/selection.hpp"
@@ -51,6 +52,15 @@ DualQuaternion motion_between(const DualQuaternion& from, const DualQuaternion& 
   return canonical_sign(normalized(conjugate(from) * to));
 }
 
+/// One sensor says exactly what it said before while the other one moves. (Both do at rest.) Rounding of the
+/// interpolation is no motion.
+bool one_repeats(const Instant& before, const Instant& now) {
+  const auto repeats = [](const DualQuaternion& x, const DualQuaternion& y) {
+    return (x.vec() - y.vec()).cwiseAbs().maxCoeff() <= 1e-14 * std::max(1.0, y.dual.norm());
+  };
+  return repeats(before.a, now.a) != repeats(before.b, now.b);
+}
+
 std::size_t index(Side side) {
   return side == Side::a ? 0 : 1;
 }
@@ -67,6 +77,8 @@ std::string_view name(Rejection reason) {
       return "no partner";
     case Rejection::gap:
       return "gap";
+    case Rejection::frozen:
+      return "frozen";
     case Rejection::screw_congruence:
       return "screw congruence";
     case Rejection::too_much_rotation:
@@ -208,9 +220,41 @@ std::vector<MotionPair> Drive::synchronise() {
     Instant instant{key.time_us, key.pose, other, 0};
     if (*state_.keys == Side::b) std::swap(instant.a, instant.b);
     keys.pop_front();
+    ++state_.counts.synchronised;
+    if (!options_.robust) {
+      accept(instant, pairs);
+      continue;
+    }
+    const std::optional<Instant> before = std::exchange(state_.newest, instant);
+    if (before && one_repeats(*before, instant)) {
+      reject(Rejection::frozen);
+      continue;
+    }
+    const bool known = knows_typical(state_.congruence);
+    if (!known) state_.unjudged.push_back({instant.time_us, instant.a, instant.b, state_.chain});
     judge(instant, pairs);
+    if (!known && knows_typical(state_.congruence)) judge_first_ones();
   }
   return pairs;
+}
+
+/// What was taken in before it was known what is typical is taken in anew: one wrong pose among the first
+/// would stay in every long motion across it. The motions handed out already cannot be taken back; what they
+/// taught is not learnt twice, and their rejections are not counted twice.
+void Drive::judge_first_ones() {
+  const std::vector<Instant> first = std::exchange(state_.unjudged, {});
+  const CongruenceScale learnt = state_.congruence;
+  const auto rejected = state_.counts.rejected;
+  for (DriveState::PerStride& entry : state_.strides) entry.statistics = {};
+  state_.instants.clear();
+  std::vector<MotionPair> handed_out;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (i > 0 && first[i].chain != first[i - 1].chain) ++state_.chain;
+    judge(first[i], handed_out);
+  }
+  state_.congruence = learnt;
+  for (const Rejection reason : {Rejection::gap, Rejection::too_much_rotation})
+    state_.counts.rejected[static_cast<std::size_t>(reason)] = rejected[static_cast<std::size_t>(reason)];
 }
 
 /// A pose that jumped, froze or was tracked wrongly makes incongruent motions with its neighbours, while
@@ -218,9 +262,8 @@ std::vector<MotionPair> Drive::synchronise() {
 /// with those before (tracking lost and found again elsewhere) begin a new chain; two might be a glitch that
 /// passes.
 void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
-  ++state_.counts.synchronised;
   auto& doubtful = state_.doubtful;
-  if (!options_.robust || state_.instants.empty()) return accept(instant, pairs);
+  if (state_.instants.empty()) return accept(instant, pairs);
   const auto difference = [&](const Instant& from, const Instant& to) {
     const double steps =
         static_cast<double>(to.time_us - from.time_us) / static_cast<double>(state_.period_us);

@@ -33,6 +33,9 @@ struct CongruenceScale {
   std::uint64_t taught = 0, doubted = 0;  ///< motions
 };
 
+/// Whether enough motions were learnt from.
+bool knows_typical(const CongruenceScale& scale);
+
 /// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
 /// length, whatever the extrinsic. How far a and b (over the same time) are from that, in standard deviations
 /// of the typical difference; 0 while nothing is known of what is typical.

@@ -39,6 +39,7 @@ enum class Rejection {
   out_of_order,      ///< known, or so late that poses after it have been paired
   no_partner,        ///< the other stream has no pose on one side of it (before its start, after its end)
   gap,               ///< the neighbours in the other stream, or the two ends of the motion, are too far apart
+  frozen,            ///< one sensor repeats its pose to the last digit while the other one moves
   screw_congruence,  ///< the motions to and from a pose differ in angle or slide by more than noise explains
   too_much_rotation,  ///< so near to half a turn that the sign of its quaternion is a guess
   count_
@@ -88,6 +89,8 @@ struct DriveState {
   std::vector<PerStride> strides;
   std::uint64_t next_choice = 0;  ///< number of instants at which to choose again
   CongruenceScale congruence;     ///< what differences between the motions are typical
+  std::optional<Instant> newest;  ///< synchronised, whatever became of it
+  std::vector<Instant> unjudged;  ///< the first ones, while it is not known what is typical
   std::deque<Instant> doubtful;   ///< newer than instants, not congruent with the newest of them
 };
 
@@ -123,6 +126,7 @@ class Drive {
   void decide_keys();
   std::vector<MotionPair> synchronise();
   void judge(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
+  void judge_first_ones();
   void speak_for(const std::vector<DriveState::Instant>& witnesses, const DriveState::Instant& instant,
                  std::vector<MotionPair>& pairs);
   void accept(DriveState::Instant instant, std::vector<MotionPair>& pairs);
