@@ -6,12 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numbers>
 
 #include "../support/corruption.hpp"
+#include "../support/real_drives.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/io/trajectory_file.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/drive.hpp"
 #include "egocal/simulation/simulation.hpp"
@@ -22,12 +21,7 @@ namespace {
 using testing::corrupted;
 using testing::Corruption;
 using testing::corruptions;
-
-struct Streams {
-  DualQuaternion T;
-  Trajectory a, b;
-  DriveOptions options;
-};
+using testing::Streams;
 
 ExtrinsicError error_of(const Streams& data, const Trajectory& a, const Trajectory& b) {
   const Answer answer = solve(run_drive(data.options, a, b).drive.problem(), Method::dual);
@@ -88,11 +82,8 @@ TEST(Outliers, AFifthOfThePosesWrongAtMostDoublesTheError) {
 class RealOutliers : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(EGOCAL_DATA_DIR))
+    if (!testing::have_real_drives())
       GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
-  }
-  static Trajectory read(const std::string& name) {
-    return read_trajectory(std::string(EGOCAL_DATA_DIR "/") + name);
   }
   /// At most twice the larger of the errors of the clean run and of one in which a fifth is missing.
   static void check(const Streams& data) {
@@ -110,25 +101,13 @@ class RealOutliers : public ::testing::Test {
 };
 
 TEST_F(RealOutliers, Kitti) {
-  const DualQuaternion truth = to_dual_quaternion(
-      {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
-       {0.333504767535, -0.00479610810717, -0.0755785517707}});
-  Streams data{truth, read("kitti_07/velodyne_pylidar.tum"), read("kitti_07/cam0_orbslam2.tum"), {}};
-  check(data);
-  data.options.mode = Mode::planar;
-  data.options.plane_a = {{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
-                          -1.779603641715662210};
-  data.options.plane_b = {{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
-                          -1.684677553916568593};
-  check(data);
+  check(testing::kitti("07"));
+  check(testing::planar(testing::kitti("07")));
 }
 
 /// Where a stretch of exchanged axes hides: on straight roads only the few turns of a car tell.
 TEST_F(RealOutliers, TwoAxesExchangedOnALongDrive) {
-  const DualQuaternion truth = to_dual_quaternion(
-      {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
-       {0.333504767535, -0.00479610810717, -0.0755785517707}});
-  const Streams data{truth, read("kitti_05/velodyne_pylidar.tum"), read("kitti_05/cam0_orbslam2.tum"), {}};
+  const Streams data = testing::kitti("05");
   const double clean = error_of(data, data.a, data.b).rotation;
   for (const ExtrinsicError& error : errors_of(data, Corruption::mirrored_axes, 7))
     EXPECT_LE(error.rotation, 2 * clean);
@@ -136,10 +115,7 @@ TEST_F(RealOutliers, TwoAxesExchangedOnALongDrive) {
 
 /// An arm whose best motions take two seconds, with noise that hides what happens from one pose to the next.
 TEST_F(RealOutliers, RobotArm) {
-  const DualQuaternion reference = to_dual_quaternion(
-      {Eigen::Quaterniond(0.600112895337, -0.605573525678, 0.371519644521, -0.367584509445).normalized(),
-       {-0.00245036495877, -0.0184887305911, 0.00211597057302}});
-  const Streams data{reference, read("eth_robot_arm_real/hand.tum"), read("eth_robot_arm_real/eye.tum"), {}};
+  const Streams data = testing::robot_arm();
   double missing = 0;
   for (const std::uint64_t seed : {7, 8, 9})
     for (const ExtrinsicError& error : errors_of(data, Corruption::missing, seed))
@@ -152,7 +128,7 @@ TEST_F(RealOutliers, RobotArm) {
 }
 
 TEST_F(RealOutliers, HandheldAtDifferentRates) {
-  check({{}, read("euroc_v2_01/body_gt.tum"), read("euroc_v2_01/body_vio.tum"), {}});
+  check(testing::euroc());
 }
 
 }  // namespace

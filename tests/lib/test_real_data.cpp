@@ -5,11 +5,9 @@
 // so and are skipped; everything they cover is tested on simulated drives elsewhere.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "../support/random_motion.hpp"
+#include "../support/real_drives.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/io/trajectory_file.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/drive.hpp"
 #include "egocal/pairing/time_offset.hpp"
@@ -17,12 +15,8 @@
 namespace egocal {
 namespace {
 
-const DualQuaternion kitti_truth = to_dual_quaternion(
-    {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
-     {0.333504767535, -0.00479610810717, -0.0755785517707}});
-const DualQuaternion arm_reference = to_dual_quaternion(
-    {Eigen::Quaterniond(0.600112895337, -0.605573525678, 0.371519644521, -0.367584509445).normalized(),
-     {-0.00245036495877, -0.0184887305911, 0.00211597057302}});
+using testing::arm_reference;
+using testing::kitti_truth;
 
 DriveOptions equal_weights() {
   DriveOptions options;
@@ -32,24 +26,13 @@ DriveOptions equal_weights() {
   return options;
 }
 
-DriveOptions planar(DriveOptions options) {
-  options.mode = Mode::planar;
-  options.plane_a = {{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
-                     -1.779603641715662210};
-  options.plane_b = {{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
-                     -1.684677553916568593};
-  return options;
-}
-
 class RealData : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(EGOCAL_DATA_DIR))
+    if (!testing::have_real_drives())
       GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
   }
-  static Trajectory read(const std::string& name) {
-    return read_trajectory(std::string(EGOCAL_DATA_DIR "/") + name);
-  }
+  static Trajectory read(const std::string& name) { return testing::real_trajectory(name); }
 
   struct Result {
     double degrees, centimetres;
@@ -75,7 +58,7 @@ TEST_F(RealData, EqualWeightsGiveWhatAnIndependentImplementationGave) {
   EXPECT_EQ(spatial.pairs, 1100u);
   EXPECT_NEAR(spatial.degrees, 0.278, 0.0006);
   EXPECT_NEAR(spatial.centimetres, 19.02, 0.006);
-  const Result flat = run(planar(equal_weights()), lidar07, camera07, kitti_truth);
+  const Result flat = run(testing::kitti_planar(equal_weights()), lidar07, camera07, kitti_truth);
   EXPECT_NEAR(flat.degrees, 0.262, 0.0006);
   EXPECT_NEAR(flat.centimetres, 14.34, 0.006);
   const Result k05 = run(equal_weights(), lidar05, camera05, kitti_truth);
@@ -90,15 +73,15 @@ TEST_F(RealData, NoTuningKitti) {
   EXPECT_LE(run({}, lidar05, camera05, kitti_truth).degrees, 0.25);
   EXPECT_LE(run({}, lidar07, camera07, kitti_truth).degrees, 0.25);
   for (const auto& [lidar, camera] : {std::pair{lidar05, camera05}, std::pair{lidar07, camera07}}) {
-    const Result result = run(planar({}), lidar, camera, kitti_truth);
+    const Result result = run(testing::kitti_planar({}), lidar, camera, kitti_truth);
     EXPECT_LE(result.degrees, 0.27);
     EXPECT_LE(result.centimetres, 14.5);
   }
 }
 
 TEST_F(RealData, NoTuningAsynchronousStamps) {
-  const Result result =
-      run(planar({}), "kitti0930_27_async/velodyne.tum", "kitti0930_27_async/cam0.tum", kitti_truth);
+  const Result result = run(testing::kitti_planar({}), "kitti0930_27_async/velodyne.tum",
+                            "kitti0930_27_async/cam0.tum", kitti_truth);
   EXPECT_LE(result.degrees, 0.27);
   EXPECT_LE(result.centimetres, 20);
 }
