@@ -166,6 +166,17 @@ std::string LogReader::channel_of(const Place& place) const {
   return channel;
 }
 
+/// Whether the header found inside of an event is the log going on there, and not a piece of a log that
+/// somebody has sent as a message. The next number alone proves nothing: every log has a 1. It is borne
+/// out by a higher one after it, wherever that stands (the events in between may be damaged, too), or by an
+/// end where the outer event has its own.
+bool LogReader::goes_on(const Place& inner, const Place& outer) const {
+  if (!follows(inner.number, outer.number)) return false;
+  if (inner.end() == outer.end()) return true;
+  const std::optional<Place> next = find_header(inner.offset + header_size, outer.end());
+  return next && next->number > inner.number;
+}
+
 /// Whether its lengths, which decide where the next event is looked for, agree with what is around it.
 bool LogReader::believable(const Place& place) const {
   if (place.end() > size_) return false;
@@ -175,11 +186,10 @@ bool LogReader::believable(const Place& place) const {
   const std::optional<Place> next = header_at(place.end());
   if (next && follows(next->number, place.number)) return true;
   // Too long: it would swallow other events. Where another one begins at its end after all, or the file ends
-  // there, only the very next number betrays it: somebody may have sent a log, or a piece of one, as a
-  // message.
+  // there, only the log itself going on inside betrays it.
   const bool ends_well = next || place.end() == size_;
   const std::optional<Place> inner = find_header(place.offset + header_size, place.end());
-  if (inner && (!ends_well || follows(inner->number, place.number))) return false;
+  if (inner && (!ends_well || goes_on(*inner, place))) return false;
   if (ends_well) return true;
   // Too short: bytes are left before an event that is the very next one, so they are this one's own. Unless
   // its channel had such an event before: then they came in between.

@@ -271,6 +271,90 @@ TEST_F(LogFile, BytesThatCameInBetweenCostNothingElse) {
   }
 }
 
+/// As it stands in a log.
+std::string event_bytes(std::uint64_t number, const std::string& channel, const std::string& data) {
+  std::string bytes;
+  const auto put = [&](std::uint64_t value, int count) {
+    for (int i = count; i > 0; --i) bytes += static_cast<char>(value >> (8 * (i - 1)));
+  };
+  put(0xEDA1DA01, 4);
+  put(number, 8);
+  put(1'600'000'000'000'000, 8);
+  put(channel.size(), 4);
+  put(data.size(), 4);
+  return bytes + channel + data;
+}
+
+TEST_F(LogFile, AMessageThatHoldsThePieceOfALogIsWhole) {
+  const std::string next = event_bytes(1, "INNER", "data");
+  for (const std::string& piece : {next + "more", "more" + next + "more", next.substr(0, next.size() - 1),
+                                   next.substr(0, test::log_header_size), event_bytes(7, "INNER", "data"),
+                                   next + event_bytes(0, "INNER", "data")}) {
+    const Read result = read(event_bytes(0, "OUTER", piece));
+    ASSERT_EQ(result.events.size(), 1u) << piece;
+    EXPECT_EQ(result.events[0].event.channel, "OUTER");
+    EXPECT_EQ(result.events[0].event.data.size(), piece.size());
+    EXPECT_FALSE(result.damage.any());
+  }
+  // begun in the name of the channel: what repairing a damaged log made once
+  std::string bytes = event_bytes(0, "OUTER" + next.substr(0, 2), next.substr(2) + "more");
+  Read result = read(bytes);
+  ASSERT_EQ(result.events.size(), 1u);
+  EXPECT_FALSE(result.damage.any());
+
+  // in the middle of a log the next event bears the outer one out, whatever it holds
+  const std::string both = next + event_bytes(2, "INNER", "data");
+  for (const std::string& piece : {next, both, both + "more"}) {
+    result = read(event_bytes(0, "OUTER", piece) + event_bytes(1, "OUTER", "data"));
+    ASSERT_EQ(result.events.size(), 2u);
+    EXPECT_EQ(result.events[0].event.data.size(), piece.size());
+    EXPECT_FALSE(result.damage.any());
+  }
+}
+
+TEST_F(LogFile, WhereTheSameBytesAreTwoLogsTheOneWithMoreEventsIsRead) {
+  // These are at the same time the events of a log whose first one has a damaged length, and a message in
+  // which somebody has sent them.
+  const std::string next = event_bytes(1, "CHANNEL", "data"), after = event_bytes(2, "CHANNEL", "data");
+  for (const std::string& rest : {next, next + after, next + after + "cut off"}) {
+    std::string lying = event_bytes(0, "CHANNEL", "data") + rest;
+    lying[27] = static_cast<char>(4 + rest.size());
+    ASSERT_EQ(lying, event_bytes(0, "CHANNEL", "data" + rest));
+    const Read result = read(lying);
+    EXPECT_EQ(result.events.size(), rest == next ? 1u : 2u);
+    EXPECT_EQ(result.damage.lost_events, rest.size() > 2 * next.size() ? 2u : 1u);
+    for (const Read::Event& event : result.events) EXPECT_EQ(event.event.data.size(), 4u);
+  }
+}
+
+TEST_F(LogFile, AnEventThatEndsWithAnotherOneIsBetrayedByWhatItSwallows) {
+  // All as long as each other, as from one sensor: a length off by one bit ends at another event.
+  std::string good;
+  std::vector<std::size_t> begin;
+  for (std::uint64_t i = 0; i < 16; ++i) {
+    begin.push_back(good.size());
+    good += event_bytes(i, "ODOMETRY", std::string(92, 'x'));
+  }
+  ASSERT_EQ(begin[1], 128u);
+  for (const int bit : {7, 8, 9})
+    for (const std::size_t event :
+         {std::size_t{0}, std::size_t{5}, std::size_t{15 - (std::size_t{1} << (bit - 7))}}) {
+      std::string bytes = good;
+      const auto flip = [&](std::size_t which, int k) {
+        bytes[begin[which] + 27 - static_cast<std::size_t>(k / 8)] ^= static_cast<char>(1 << (k % 8));
+      };
+      flip(event, bit);
+      EXPECT_EQ(read(bytes).events.size(), 15u) << event << " bit " << bit;
+      // and the one after it, which then cannot be read itself but has a number still
+      if (bit == 7) continue;
+      flip(event + 1, 3);
+      const Read result = read(bytes);
+      EXPECT_EQ(result.events.size(), 14u) << event << " bit " << bit;
+      EXPECT_EQ(result.damage.bytes, 256u);
+      EXPECT_EQ(result.damage.lost_events, 2u);
+    }
+}
+
 TEST_F(LogFile, WhatIsNoLogIsRefusedInOneLine) {
   for (const std::string& bytes : {std::string(), std::string("no log"), std::string(100'000, '\xed'),
                                    log.bytes.substr(1, 100), std::string(28, '\0')})

@@ -77,6 +77,7 @@ class LogReader {
   bool read_at(std::uint64_t offset, void* to, std::size_t size) const;
   std::optional<Place> header_at(std::uint64_t offset) const;
   std::optional<Place> find_header(std::uint64_t from, std::uint64_t to) const;
+  bool goes_on(const Place& inner, const Place& outer) const;
   bool believable(const Place& place) const;
   std::string channel_of(const Place& place) const;
 
