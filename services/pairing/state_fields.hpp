@@ -90,8 +90,8 @@ void fields(auto& archive, services::Is<TypicalDifference::Seen> auto& value) {
 }
 
 void fields(auto& archive, services::Is<TypicalDifference> auto& value) {
-  auto& [newest, constant, growing] = value;
-  archive(newest, constant, growing);
+  auto& [newest, constant, growing, large] = value;
+  archive(newest, constant, growing, large);
 }
 
 void fields(auto& archive, services::Is<CongruenceScale> auto& value) {

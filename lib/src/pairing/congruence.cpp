@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,9 @@ constexpr std::uint64_t estimate_every = 16;
 constexpr std::uint64_t doubted_that_teach = 8;
 /// Odometry whose noise were a larger part of the motion would not be any.
 constexpr double most_growing = 0.2;
+/// Noise of no odometry is as large as that from one pose to the next: an angle [rad], and lengths as a
+/// multiple of the longer half of the motions.
+constexpr double gross_angle = 20 * std::numbers::pi / 180, gross_lengths = 10;
 /// Sensors are not further apart [m].
 constexpr double longest_arm = 10;
 struct Difference {
@@ -80,11 +84,13 @@ double robust_deviation(const std::vector<Seen>& seen) {
 void estimate(TypicalDifference& typical) {
   if (typical.newest.size() < 4) return;
   const auto [small, large] = halves(typical.newest);
-  double size = 0;
-  for (const Seen& one : large) size += one.size / static_cast<double>(large.size());
+  typical.large = 0;
+  for (const Seen& one : large) typical.large += one.size / static_cast<double>(large.size());
   typical.constant = robust_deviation(small);
   typical.growing =
-      size > 0 ? std::clamp((robust_deviation(large) - typical.constant) / size, 0.0, most_growing) : 0;
+      typical.large > 0
+          ? std::clamp((robust_deviation(large) - typical.constant) / typical.large, 0.0, most_growing)
+          : 0;
 }
 
 /// From the motions that turn more than others: three times the median covers the directions in between.
@@ -107,6 +113,10 @@ double sigmas(const Seen& seen, const TypicalDifference& typical, double floor) 
   return seen.difference / (typical.constant + typical.growing * seen.size + floor);
 }
 
+double unexplained_length(const Difference& d, const CongruenceScale& scale) {
+  return std::max(0.0, d.length.difference - scale.arm * d.angle.size);
+}
+
 }  // namespace
 
 bool knows_typical(const CongruenceScale& scale) {
@@ -116,10 +126,17 @@ bool knows_typical(const CongruenceScale& scale) {
 double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale) {
   if (!knows_typical(scale)) return 0;
   const Difference d = difference(a, b);
-  const double unexplained = std::max(0.0, d.length.difference - scale.arm * d.angle.size);
+  const double unexplained = unexplained_length(d, scale);
   return std::max({sigmas(d.angle, scale.angle, angle_floor),
                    d.turns ? sigmas(d.slide, scale.slide, length_floor) : 0,
                    sigmas({d.length.size, unexplained}, scale.length, length_floor)});
+}
+
+bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, double steps,
+                         const CongruenceScale& scale) {
+  const Difference d = difference(a, b);
+  return d.angle.difference > gross_angle ||
+         unexplained_length(d, scale) > gross_lengths * steps * scale.length.large;
 }
 
 void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale) {

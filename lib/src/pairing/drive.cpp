@@ -264,11 +264,18 @@ void Drive::judge_first_ones() {
 void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
   auto& doubtful = state_.doubtful;
   if (state_.instants.empty()) return accept(instant, pairs);
+  const auto steps = [&](const Instant& from, const Instant& to) {
+    return std::max(1.0,
+                    static_cast<double>(to.time_us - from.time_us) / static_cast<double>(state_.period_us));
+  };
   const auto difference = [&](const Instant& from, const Instant& to) {
-    const double steps =
-        static_cast<double>(to.time_us - from.time_us) / static_cast<double>(state_.period_us);
     return incongruence(motion_between(from.a, to.a), motion_between(from.b, to.b), state_.congruence) /
-           std::sqrt(std::max(1.0, steps));
+           std::sqrt(steps(from, to));
+  };
+  const auto one_chain = [&](const Instant& from, const Instant& to) {
+    return difference(from, to) <= break_chain &&
+           !grossly_incongruent(motion_between(from.a, to.a), motion_between(from.b, to.b), steps(from, to),
+                                state_.congruence);
   };
   const auto teach = [&](const Instant& from, bool doubted) {
     learn(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted, state_.congruence);
@@ -280,7 +287,7 @@ void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
   }
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
     if (difference(doubtful[i], instant) > doubt) continue;
-    if (difference(newest, doubtful[i]) <= break_chain) return speak_for({doubtful[i]}, instant, pairs);
+    if (one_chain(newest, doubtful[i])) return speak_for({doubtful[i]}, instant, pairs);
     for (std::size_t k = 0; k < i; ++k) {
       if (difference(doubtful[k], doubtful[i]) > doubt) continue;
       ++state_.chain;

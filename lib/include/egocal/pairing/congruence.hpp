@@ -19,6 +19,7 @@ struct TypicalDifference {
   std::deque<Seen> newest;
   double constant = 0;  ///< standard deviation at size 0, in the unit of the quantity
   double growing = 0;   ///< per unit of size
+  double large = 0;     ///< mean size of the larger half
 };
 
 /// What is typical of a pair of sensors. Noise may be the same for every motion or grow with it, and a drive
@@ -40,6 +41,11 @@ bool knows_typical(const CongruenceScale& scale);
 /// length, whatever the extrinsic. How far a and b (over the same time) are from that, in standard deviations
 /// of the typical difference; 0 while nothing is known of what is typical.
 double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale);
+
+/// Whether a and b, over so many steps, differ by more than noise ever does, however large it is just now: by
+/// the size of the motions.
+bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, double steps,
+                         const CongruenceScale& scale);
 
 /// Learns what is typical. Of motions that were doubted only one in eight teaches: they may be wrong, or the
 /// beginning of another regime.
