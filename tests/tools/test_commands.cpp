@@ -16,6 +16,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "egocal/io/pairs_file.hpp"
+#include "support/random_motion.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,6 +79,31 @@ std::string tum(int poses, const std::function<std::string(int)>& pose) {
 }
 
 const std::string good_line = "1000.0 0 0 0 0 0 0 1\n";
+
+/// Small motions, a fifth of them spoilt by many times their size, in a file without times.
+TEST_F(Commands, MotionPairsFromAFileAreJudgedToo) {
+  using namespace egocal;
+  egocal::testing::Random random(1);
+  const Pose T{rotation_exp({0.4, -1.1, 0.7}), {0.5, -2, 1.2}};
+  auto pairs = egocal::testing::random_pairs(
+      to_dual_quaternion(T), {.pairs = 500, .rotation = 0.05, .translation = 0.3, .noise = 0.01}, random);
+  int spoilt = 0;
+  for (std::size_t i = 0; i < pairs.size(); i += 5, ++spoilt)
+    pairs[i].b = canonical_sign(
+        normalized(pairs[i].b * egocal::testing::displacement(random.normal3(2), random.normal3(2))));
+  write_pairs(path("pairs.txt"), pairs);
+  std::ostringstream truth;
+  truth.precision(17);
+  truth << " --truth " << T.translation.x() << "," << T.translation.y() << "," << T.translation.z() << ","
+        << T.rotation.w() << "," << T.rotation.x() << "," << T.rotation.y() << "," << T.rotation.z();
+  const json result = solved("--pairs " + path("pairs.txt") + truth.str());
+  EXPECT_LT(result["error_rotation_deg"], 0.1);
+  EXPECT_LT(result["error_translation_m"], 0.01);
+  EXPECT_NEAR(result["rejected"]["screw congruence"].get<double>(), spoilt, 2);
+  const Outcome text = egocal("solve --pairs " + path("pairs.txt"));
+  EXPECT_THAT(text.out, HasSubstr("rejected: screw congruence"));
+  EXPECT_EQ(solved("--weights equal --pairs " + path("pairs.txt"))["pairs"], 500);
+}
 
 TEST_F(Commands, SolveSaysEverythingThatOthersRelyOn) {
   ASSERT_EQ(egocal("simulate --out " + path("d") + " --poses 300 --noise 0").code, 0);

@@ -14,6 +14,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/io/trajectory_file.hpp"
+#include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/selection.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 #include "egocal/solvers/dual.hpp"
@@ -78,6 +79,12 @@ std::vector<MotionPair> pair_trajectories(const CalibrationOptions& options, Cal
 /// Motions from a file of pairs.
 std::vector<MotionPair> read_pairs(const CalibrationOptions& options, CalibrationResult& result) {
   std::vector<MotionPair> pairs = egocal::read_pairs(options.source.pairs);
+  if (options.drive.robust) {
+    const std::vector<bool> wrong = incongruent(pairs);
+    std::size_t i = 0;
+    result.counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)] =
+        std::erase_if(pairs, [&](const MotionPair&) { return wrong[i++]; });
+  }
   result.problem.mode = options.drive.mode;
   result.problem.plane_a = options.drive.plane_a;
   result.problem.plane_b = options.drive.plane_b;

@@ -3,6 +3,7 @@
 #include "offline/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -114,13 +115,13 @@ std::string report_text(const CalibrationResult& result, const std::optional<Pos
     if (stream)
       text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,
                           stream->first, stream->last);
-  if (result.a) {
-    text += fmt::format("pairing       {} instants synchronised", result.counts.synchronised);
-    for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
-      if (result.counts.rejected[i] > 0)
-        text += fmt::format(", {} rejected: {}", result.counts.rejected[i], name(static_cast<Rejection>(i)));
-    text += "\n";
-  }
+  std::vector<std::string> pairing;
+  if (result.a) pairing.push_back(fmt::format("{} instants synchronised", result.counts.synchronised));
+  for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
+    if (result.counts.rejected[i] > 0)
+      pairing.push_back(
+          fmt::format("{} rejected: {}", result.counts.rejected[i], name(static_cast<Rejection>(i))));
+  if (!pairing.empty()) text += fmt::format("pairing       {}\n", fmt::join(pairing, ", "));
   if (result.time_offset)
     text +=
         fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",

@@ -153,4 +153,18 @@ void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, Congr
   scale.arm = arm_of(scale.lever);
 }
 
+std::vector<bool> incongruent(std::span<const MotionPair> pairs) {
+  std::vector<bool> verdicts;
+  while (!pairs.empty()) {
+    // the last ones are judged with those before them
+    const std::size_t count = pairs.size() < 2 * memory ? pairs.size() : memory;
+    CongruenceScale scale;
+    for (const MotionPair& pair : pairs.first(count)) learn(pair.a, pair.b, false, scale);
+    for (const MotionPair& pair : pairs.first(count))
+      verdicts.push_back(incongruence(pair.a, pair.b, scale) > doubtful_incongruence);
+    pairs = pairs.subspan(count);
+  }
+  return verdicts;
+}
+
 }  // namespace egocal

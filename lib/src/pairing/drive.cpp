@@ -32,10 +32,9 @@ constexpr double most_rotation = 170 * std::numbers::pi / 180;
 constexpr double balances[] = {1, 0.1, 0.01, 0.001};
 /// The first choice is made after so many instants, each further one after a quarter more.
 constexpr std::uint64_t first_choice = 64;
-/// A pose whose motion is further from congruent than `doubt` waits for the next ones to speak for it; real
-/// odometry has heavy tails that belong to it, so between poses that others speak for only what is grossly
-/// wrong ends a chain [sigmas].
-constexpr double doubt = 10, break_chain = 40;
+/// A pose whose motion is doubtful waits for the next ones to speak for it; real odometry has heavy tails
+/// that belong to it, so between poses that others speak for only what is further off ends a chain [sigmas].
+constexpr double break_chain = 40;
 /// Poses that wait for others to speak for them.
 constexpr std::size_t most_doubtful = 5;
 
@@ -281,15 +280,15 @@ void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
     learn(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted, state_.congruence);
   };
   const Instant newest = state_.instants.back();
-  if (difference(newest, instant) <= doubt) {
+  if (difference(newest, instant) <= doubtful_incongruence) {
     if (doubtful.empty()) teach(newest, false);
     return speak_for({}, instant, pairs);
   }
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
-    if (difference(doubtful[i], instant) > doubt) continue;
+    if (difference(doubtful[i], instant) > doubtful_incongruence) continue;
     if (one_chain(newest, doubtful[i])) return speak_for({doubtful[i]}, instant, pairs);
     for (std::size_t k = 0; k < i; ++k) {
-      if (difference(doubtful[k], doubtful[i]) > doubt) continue;
+      if (difference(doubtful[k], doubtful[i]) > doubtful_incongruence) continue;
       ++state_.chain;
       reject(Rejection::screw_congruence);
       return speak_for({doubtful[k], doubtful[i]}, instant, pairs);

@@ -4,10 +4,15 @@
 
 #include <cstdint>
 #include <deque>
+#include <span>
+#include <vector>
 
-#include "egocal/geometry/dual_quaternion.hpp"
+#include "egocal/problem/cost.hpp"
 
 namespace egocal {
+
+/// Further from congruent than so many standard deviations is doubtful.
+inline constexpr double doubtful_incongruence = 10;
 
 /// How much two measurements of one quantity typically differ: constant + growing * size, learnt from the
 /// newest of them.
@@ -46,6 +51,10 @@ double incongruence(const DualQuaternion& a, const DualQuaternion& b, const Cong
 /// the size of the motions.
 bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, double steps,
                          const CongruenceScale& scale);
+
+/// Which motion pairs are not congruent, judged by what is typical of the thousand around each: without
+/// poses, there are no witnesses. In three dimensions, in any order.
+std::vector<bool> incongruent(std::span<const MotionPair> pairs);
 
 /// Learns what is typical. Of motions that were doubted only one in eight teaches: they may be wrong, or the
 /// beginning of another regime.
