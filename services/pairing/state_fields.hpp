@@ -124,7 +124,7 @@ void fields(auto& archive, services::Is<ClockState> auto& value) {
   archive(streams, next_us, newest, in_force, given_up, changes);
 }
 
-void fields(auto& archive, services::Is<DriveState::Instant> auto& value) {
+void fields(auto& archive, services::Is<Instant> auto& value) {
   auto& [time_us, a, b, chain] = value;
   archive(time_us, a, b, chain);
 }

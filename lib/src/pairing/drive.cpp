@@ -16,8 +16,6 @@ namespace egocal {
 
 namespace {
 
-using Instant = DriveState::Instant;
-
 /// So many poses of each stream show which one is slower.
 constexpr std::size_t poses_to_decide = 8;
 /// A stream whose partner is silent does not grow without bound.

@@ -62,15 +62,16 @@ struct Choice {
   std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
 };
 
+/// Poses of both sensors at one time; motions never span two chains.
+struct Instant {
+  std::int64_t time_us = 0;
+  DualQuaternion a, b;
+  std::uint64_t chain = 0;
+};
+
 /// Everything that a Drive remembers; bounded whatever the length of the drive. Continuing from a copy gives
 /// the same bits as never having stopped.
 struct DriveState {
-  /// Poses of both sensors at one time; motions never span two chains.
-  struct Instant {
-    std::int64_t time_us = 0;
-    DualQuaternion a, b;
-    std::uint64_t chain = 0;
-  };
   struct PerStride {
     int stride = 1;
     RobustStatistics statistics;
@@ -125,14 +126,13 @@ class Drive {
   std::vector<MotionPair> take(Side side, const StampedPose& pose);
   void decide_keys();
   std::vector<MotionPair> synchronise();
-  void judge(const DriveState::Instant& instant, std::vector<MotionPair>& pairs);
+  void judge(const Instant& instant, std::vector<MotionPair>& pairs);
   void judge_first_ones();
-  void speak_for(const std::vector<DriveState::Instant>& witnesses, const DriveState::Instant& instant,
+  void speak_for(const std::vector<Instant>& witnesses, const Instant& instant,
                  std::vector<MotionPair>& pairs);
-  void accept(DriveState::Instant instant, std::vector<MotionPair>& pairs);
+  void accept(Instant instant, std::vector<MotionPair>& pairs);
   Problem empty_problem() const;
-  std::optional<MotionPair> motion(const DriveState::Instant& from, const DriveState::Instant& to, int stride,
-                                   bool count_rejections);
+  std::optional<MotionPair> motion(const Instant& from, const Instant& to, int stride, bool count_rejections);
   void choose();
 
   DriveOptions options_;
