@@ -9,8 +9,7 @@
 #include <cstdio>
 
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
-#include "egocal/simulation/simulation.hpp"
+#include "support/simulated_drive.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace {
@@ -24,17 +23,10 @@ struct Coverage {
 constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 void add_drive(Terrain terrain, bool wanders, std::uint64_t seed, Coverage& coverage) {
-  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
-  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.relative_noise = 0.01;
-  options.random_walk = wanders;
-  options.seed = seed;
-  options.T_vehicle_sensor = {T_v_a, T_v_b};
-  const auto trajectories = simulate(options);
-  const Answer answer = solve(run_drive({}, trajectories[0], trajectories[1]).drive.problem(), Method::dual);
-  const auto error = detail::frame_a_difference(to_dual_quaternion(inverse(T_v_a) * T_v_b), answer.T_a_b);
+  const testing::Streams streams = testing::simulated_drive(
+      {.terrain = terrain, .relative_noise = 0.01, .random_walk = wanders, .seed = seed});
+  const Answer answer = solve(run_drive({}, streams.a, streams.b).drive.problem(), Method::dual);
+  const auto error = detail::frame_a_difference(streams.T, answer.T_a_b);
   for (std::size_t i = 0; i < 6; ++i) {
     if (!answer.knowledge.observable[i] || !std::isfinite(answer.knowledge.stddev[i])) continue;
     ++coverage.observable[i];

@@ -12,7 +12,6 @@
 
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/simulation/simulation.hpp"
 #include "support/corruption.hpp"
 #include "support/real_drives.hpp"
 
@@ -25,18 +24,6 @@ using testing::Streams;
 double degrees_off(const Streams& streams, const Trajectory& a, const Trajectory& b) {
   const Answer answer = solve(run_drive(streams.options, a, b).drive.problem(), Method::dual);
   return extrinsic_error(streams.T, answer.T_a_b).rotation * 180 / std::numbers::pi;
-}
-
-Streams simulated(Terrain terrain, std::uint64_t seed) {
-  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
-  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.relative_noise = 0.01;
-  options.seed = seed;
-  options.T_vehicle_sensor = {T_v_a, T_v_b};
-  auto trajectories = simulate(options);
-  return {to_dual_quaternion(inverse(T_v_a) * T_v_b), trajectories[0], trajectories[1], {}};
 }
 
 struct Errors {
@@ -86,7 +73,9 @@ int main(int argc, char** argv) {
   for (const auto& [name, terrain] :
        {std::pair{"simulated car", Terrain::rough}, {"simulated, free", Terrain::free}}) {
     Errors errors;
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) measure(simulated(terrain, seed), seeds, errors);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+      measure(testing::simulated_drive({.terrain = terrain, .relative_noise = 0.01, .seed = seed}), seeds,
+              errors);
     print(name, errors);
   }
   if (!testing::have_real_drives()) {

@@ -6,31 +6,19 @@
 #include <limits>
 
 #include "../support/random_motion.hpp"
+#include "../support/simulated_drive.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
-#include "egocal/simulation/simulation.hpp"
 
 namespace egocal {
 namespace {
 
-struct Simulated {
-  DualQuaternion T;
-  Trajectory a, b;
-};
+using Simulated = testing::Streams;
 
 Simulated simulated(Terrain terrain, double noise, int poses = 1001, std::uint64_t seed = 1) {
-  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
-  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = poses;
-  options.relative_noise = noise;
-  options.seed = seed;
-  options.T_vehicle_sensor = {T_v_a, T_v_b};
-  auto trajectories = simulate(options);
-  return {to_dual_quaternion(inverse(T_v_a) * T_v_b), trajectories[0], trajectories[1]};
+  return testing::simulated_drive(
+      {.terrain = terrain, .poses = poses, .relative_noise = noise, .seed = seed});
 }
 
 bool same_bits(const Problem& x, const Problem& y) {

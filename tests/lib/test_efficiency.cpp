@@ -9,10 +9,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "../support/simulated_drive.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
-#include "egocal/simulation/simulation.hpp"
 
 namespace egocal {
 namespace {
@@ -22,9 +21,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double relative_noise = 0.01;
 constexpr int drives = 20;
-const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
-const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
-const Pose T_a_b = inverse(T_v_a) * T_v_b;
+const Pose T_a_b = inverse(testing::T_vehicle_a) * testing::T_vehicle_b;
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
@@ -42,14 +39,9 @@ Matrix6 adjoint(const Pose& p) {
   return Ad;
 }
 
-std::vector<Trajectory> drive_of(Terrain terrain, int poses, std::uint64_t seed, double noise) {
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = poses;
-  options.seed = seed;
-  options.relative_noise = noise;
-  options.T_vehicle_sensor = {T_v_a, T_v_b};
-  return simulate(options);
+testing::Streams drive_of(Terrain terrain, int poses, std::uint64_t seed, double noise) {
+  return testing::simulated_drive(
+      {.terrain = terrain, .poses = poses, .relative_noise = noise, .seed = seed});
 }
 
 std::vector<Pose> motions_of(const Trajectory& trajectory) {
@@ -101,14 +93,14 @@ Medians medians(Terrain terrain, int poses, std::uint64_t first_seed) {
   std::vector<double> best, ours;
   const DualQuaternion truth = to_dual_quaternion(T_a_b);
   for (std::uint64_t seed = first_seed; seed < first_seed + drives; ++seed) {
-    const auto clean = drive_of(terrain, poses, seed, 0);
-    const auto noisy = drive_of(terrain, poses, seed, relative_noise);
+    const testing::Streams clean = drive_of(terrain, poses, seed, 0);
+    const testing::Streams noisy = drive_of(terrain, poses, seed, relative_noise);
     const Matrix6 Ad = adjoint(inverse(T_a_b));
     const Matrix6 covariance =
-        noise_covariance(motions_of(clean[1])) + Ad * noise_covariance(motions_of(clean[0])) * Ad.transpose();
-    const Pose T = maximum_likelihood(motions_of(noisy[0]), motions_of(noisy[1]), covariance.inverse());
+        noise_covariance(motions_of(clean.b)) + Ad * noise_covariance(motions_of(clean.a)) * Ad.transpose();
+    const Pose T = maximum_likelihood(motions_of(noisy.a), motions_of(noisy.b), covariance.inverse());
     best.push_back(extrinsic_error(truth, to_dual_quaternion(T)).rotation);
-    const Drive drive = run_drive({}, noisy[0], noisy[1]).drive;
+    const Drive drive = run_drive({}, noisy.a, noisy.b).drive;
     ours.push_back(extrinsic_error(truth, solve(drive.problem(), Method::dual).T_a_b).rotation);
   }
   const auto median = [](std::vector<double> errors) {

@@ -13,7 +13,6 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/drive.hpp"
-#include "egocal/simulation/simulation.hpp"
 
 namespace egocal {
 namespace {
@@ -37,15 +36,7 @@ std::array<ExtrinsicError, 2> errors_of(const Streams& data, Corruption corrupti
 }
 
 Streams simulated(Terrain terrain, std::uint64_t seed) {
-  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
-  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.relative_noise = 0.01;
-  options.seed = seed;
-  options.T_vehicle_sensor = {T_v_a, T_v_b};
-  auto trajectories = simulate(options);
-  return {to_dual_quaternion(inverse(T_v_a) * T_v_b), trajectories[0], trajectories[1], {}};
+  return testing::simulated_drive({.terrain = terrain, .relative_noise = 0.01, .seed = seed});
 }
 
 /// Each error is a draw of its own, so medians over seeds are compared, and a single one only roughly.

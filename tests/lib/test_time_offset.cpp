@@ -5,35 +5,27 @@
 #include <cmath>
 
 #include "../support/random_motion.hpp"
+#include "../support/simulated_drive.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
-#include "egocal/simulation/simulation.hpp"
 
 namespace egocal {
 namespace {
 
-struct Streams {
-  DualQuaternion T;
-  Trajectory a, b;
-};
+using testing::Streams;
 
 /// Free motion at 50 Hz; b thinned to 10 Hz, so that the stamps never help.
 Streams simulated(double noise, std::uint64_t seed, int seconds = 120) {
-  const Pose T_v_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
-  const Pose T_v_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
-  SimulationOptions options;
-  options.terrain = Terrain::free;
-  options.poses = 50 * seconds;
-  options.rate = 50;
-  options.speed = 2;
-  options.relative_noise = noise;
-  options.seed = seed;
-  options.T_vehicle_sensor = {T_v_a, T_v_b};
-  auto trajectories = simulate(options);
+  Streams streams = testing::simulated_drive({.terrain = Terrain::free,
+                                              .poses = 50 * seconds,
+                                              .rate = 50,
+                                              .speed = 2,
+                                              .relative_noise = noise,
+                                              .seed = seed});
   Trajectory b;
-  for (std::size_t i = 2; i < trajectories[1].size(); i += 5) b.push_back(trajectories[1][i]);
-  return {to_dual_quaternion(inverse(T_v_a) * T_v_b), trajectories[0], b};
+  for (std::size_t i = 2; i < streams.b.size(); i += 5) b.push_back(streams.b[i]);
+  streams.b = std::move(b);
+  return streams;
 }
 
 Trajectory shifted(Trajectory path, double seconds) {

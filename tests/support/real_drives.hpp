@@ -8,7 +8,7 @@
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/io/trajectory_file.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "simulated_drive.hpp"
 
 namespace egocal::testing {
 
@@ -37,13 +37,6 @@ inline DriveOptions kitti_planar(DriveOptions options) {
 inline const DualQuaternion arm_reference = to_dual_quaternion(
     {Eigen::Quaterniond(0.600112895337, -0.605573525678, 0.371519644521, -0.367584509445).normalized(),
      {-0.00245036495877, -0.0184887305911, 0.00211597057302}});
-
-/// Two streams and the pose of b in a.
-struct Streams {
-  DualQuaternion T;
-  Trajectory a, b;
-  DriveOptions options;
-};
 
 inline Streams kitti(const std::string& drive, const std::string& lidar = "velodyne_pylidar") {
   return {kitti_truth,
