@@ -15,7 +15,7 @@ namespace {
 
 constexpr double largest_distance = 1e9;  // [m]; beyond it doubles know no micrometres
 constexpr std::int64_t year_2100_us = 4'102'444'800'000'000;
-constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_kept;
+constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_inlier_blocks;
 
 template <std::size_t n>
 bool finite(const double (&values)[n]) {
@@ -240,10 +240,10 @@ Checked<Answer> to_answer(const calibration_t& message) {
   certificate.reach_translation = message.reach_translation;
   certificate.reach_rotation = message.reach_rotation;
   for (std::size_t i = 0; i < 6; ++i) {
-    answer.knowledge.observable[i] = message.observable[i] != 0;
-    answer.knowledge.stddev[i] = message.stddev[i];
+    answer.observability.observable[i] = message.observable[i] != 0;
+    answer.observability.stddev[i] = message.stddev[i];
   }
-  answer.knowledge.hint = message.hint;
+  answer.observability.hint = message.hint;
   return {std::move(answer), {}};
 }
 
@@ -267,10 +267,10 @@ calibration_t to_message(const Answer& answer, const problem_t& problem) {
   message.reach_translation = certificate.reach_translation;
   message.reach_rotation = certificate.reach_rotation;
   for (std::size_t i = 0; i < 6; ++i) {
-    message.observable[i] = answer.knowledge.observable[i];
-    message.stddev[i] = answer.knowledge.stddev[i];
+    message.observable[i] = answer.observability.observable[i];
+    message.stddev[i] = answer.observability.stddev[i];
   }
-  message.hint = answer.knowledge.hint;
+  message.hint = answer.observability.hint;
   message.latency_us = -1;
   return message;
 }

@@ -275,8 +275,8 @@ const Sensor& sensor(const Rig& rig, const std::string& name) {
   throw error_at(rig.file, 0, "", "no sensor has the name \"" + name + "\"");
 }
 
-DriveOptions drive_options(const Rig& rig, const PairConfig& pair) {
-  DriveOptions options;
+PairingOptions drive_options(const Rig& rig, const PairConfig& pair) {
+  PairingOptions options;
   options.mode = pair.mode;
   if (pair.mode == Mode::planar) {
     options.plane_a = sensor(rig, pair.a).plane.value_or(GroundPlane{});

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/online/calibrate.hpp"
+#include "egocal/online/algorithm1.hpp"
 
 namespace egocal::monitor {
 namespace {
@@ -50,7 +50,7 @@ Optimality optimality_of(const calibration_t& answer) {
                               : Optimality::undecided;
 }
 
-Claim claim_of(const calibration_t& answer) {
+AnswerRank claim_of(const calibration_t& answer) {
   return {answer.session, answer.seq, optimality_of(answer), answer.cost};
 }
 
@@ -247,8 +247,8 @@ Shown shown_of(const PairState& pair, const calibration_t& answer) {
 void Model::count_answer(PairState& pair, Now now) {
   int best = -1;
   for (std::size_t i = 0; i < pair.solvers.size(); ++i)
-    if (best < 0 || counts_more(claim_of(pair.solvers[i].answer),
-                                claim_of(pair.solvers[static_cast<std::size_t>(best)].answer)))
+    if (best < 0 || outranks(claim_of(pair.solvers[i].answer),
+                             claim_of(pair.solvers[static_cast<std::size_t>(best)].answer)))
       best = static_cast<int>(i);
   pair.counted = best;
   if (best >= 0) pair.shown = shown_of(pair, *pair.answer());

@@ -24,7 +24,7 @@ void PairSession::begin(std::int64_t time_us) {
   // session numbers only grow, so that the newest problem is known by it
   state_.session = std::max(time_us, state_.last_session + 1);
   state_.last_session = state_.session;
-  drive_ = Drive(options_);
+  drive_ = MotionPairing(options_);
   state_.seq = 0;
   state_.early.clear();
   fresh_ = false;
@@ -45,7 +45,7 @@ void PairSession::timeline_restarts(Side side) {
   }
   // the other stream began anew shortly before: same session, without what this one still sent of the old
   // timeline
-  drive_ = Drive(options_);
+  drive_ = MotionPairing(options_);
   std::erase_if(state_.early, [side](const EarlyPose& early) { return early.side == side; });
   for (const EarlyPose& early : state_.early) drive_.push(early.side, early.pose);
   state_.restarted_by.reset();
@@ -95,9 +95,9 @@ std::optional<problem_t> PairSession::message() {
   message.time_offset_stddev = -1;
   if (const std::optional<TimeOffset>& estimate = drive_.state().clock.newest)
     message.time_offset_stddev = estimate->stddev;
-  const DriveCounts& counts = drive_.counts();
+  const PairingCounts& counts = drive_.counts();
   message.matched = static_cast<std::int64_t>(counts.matched);
-  message.left_out = static_cast<std::int64_t>(counts.left_out);
+  message.left_out = static_cast<std::int64_t>(counts.outliers);
   for (const std::uint64_t rejected : counts.rejected)
     message.rejected += static_cast<std::int64_t>(rejected);
   message.host = host_;
@@ -107,9 +107,9 @@ std::optional<problem_t> PairSession::message() {
 }
 
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
-  const DriveCounts& counts = drive_.counts();
+  const PairingCounts& counts = drive_.counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
-  counters["left out"] += static_cast<std::int64_t>(counts.left_out);
+  counters["left out"] += static_cast<std::int64_t>(counts.outliers);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
       counters["rejected: " + std::string(name(static_cast<Rejection>(i)))] +=
@@ -123,7 +123,7 @@ PairState PairSession::state() const {
 }
 
 void PairSession::restore(PairState state) {
-  drive_ = Drive(options_, std::exchange(state.drive, {}));
+  drive_ = MotionPairing(options_, std::exchange(state.drive, {}));
   state_ = std::move(state);
   fresh_ = false;
 }

@@ -11,7 +11,7 @@
 
 #include "egocal/bus/decode.hpp"
 #include "egocal/bus/rig.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "pairing/stream.hpp"
 
 namespace egocal::services {
@@ -23,7 +23,7 @@ struct EarlyPose {
 
 /// What one sensor pair has accumulated.
 struct PairState {
-  DriveState drive;
+  PairingState drive;
   std::int64_t session = -1;  ///< -1: none has begun
   std::int64_t last_session = -1;
   std::int64_t seq = 0;
@@ -69,9 +69,9 @@ class PairSession {
 
   std::size_t index_;
   bus::PairConfig config_;
-  DriveOptions options_;
+  PairingOptions options_;
   std::string host_;
-  Drive drive_;
+  MotionPairing drive_;
   PairState state_;  // without the drive's
   bool fresh_ = false;
   std::int64_t received_mono_us_ = 0;

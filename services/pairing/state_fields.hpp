@@ -4,7 +4,7 @@
 // struct gains or loses a field, so that none is forgotten. Whoever changes one raises state_layout.
 #pragma once
 
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "pairing/accumulation.hpp"
 #include "pairing/archive.hpp"
 
@@ -35,7 +35,7 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
   archive(normal, distance);
 }
 
-void fields(auto& archive, services::Is<DriveOptions> auto& value) {
+void fields(auto& archive, services::Is<PairingOptions> auto& value) {
   auto& [mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior] =
       value;
   archive(mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior);
@@ -47,8 +47,8 @@ void fields(auto& archive, services::Is<MotionPair> auto& value) {
 }
 
 void fields(auto& archive, services::Is<BlockStatistics::Block> auto& value) {
-  auto& [statistics, left_out] = value;
-  archive(statistics, left_out);
+  auto& [statistics, outlier] = value;
+  archive(statistics, outlier);
 }
 
 void fields(auto& archive, services::Is<BlockStatistics::State> auto& value) {
@@ -99,9 +99,9 @@ void fields(auto& archive, services::Is<CongruenceScale> auto& value) {
   archive(angle, slide, length, lever, arm, taught, doubted);
 }
 
-void fields(auto& archive, services::Is<DriveCounts> auto& value) {
-  auto& [poses_a, poses_b, synchronised, matched, left_out, rejected] = value;
-  archive(poses_a, poses_b, synchronised, matched, left_out, rejected);
+void fields(auto& archive, services::Is<PairingCounts> auto& value) {
+  auto& [poses_a, poses_b, synchronised, matched, outliers, rejected] = value;
+  archive(poses_a, poses_b, synchronised, matched, outliers, rejected);
 }
 
 void fields(auto& archive, services::Is<Choice> auto& value) {
@@ -129,12 +129,12 @@ void fields(auto& archive, services::Is<Instant> auto& value) {
   archive(time_us, a, b, chain);
 }
 
-void fields(auto& archive, services::Is<DriveState::PerStride> auto& value) {
+void fields(auto& archive, services::Is<PairingState::PerStride> auto& value) {
   auto& [stride, statistics] = value;
   archive(stride, statistics);
 }
 
-void fields(auto& archive, services::Is<DriveState> auto& value) {
+void fields(auto& archive, services::Is<PairingState> auto& value) {
   auto& [counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
          next_choice, congruence, newest, unjudged, doubtful] = value;
   archive(counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,

@@ -71,7 +71,7 @@ void FastSolver::answer(Pair& pair, const ReceivedProblem& received) {
   pair.seq = message.seq;
   OnlineOptions options = options_;
   if (heartbeat_.alive("global")) options.global.reset();
-  const OnlineStep step = calibrate(received.problem, message.utime, pair.state, options);
+  const OnlineStep step = algorithm1_step(received.problem, message.utime, pair.state, options);
   pair.state = step.state;
   const bool asks = step.global_wanted && !step.global_used;
   pair.outbox.send(step.answer, message, asks);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "egocal/online/calibrate.hpp"
+#include "egocal/online/algorithm1.hpp"
 #include "program/commands.hpp"
 #include "solving/problems.hpp"
 

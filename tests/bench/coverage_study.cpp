@@ -25,12 +25,13 @@ constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 void add_drive(Terrain terrain, bool wanders, std::uint64_t seed, Coverage& coverage) {
   const testing::Streams streams = testing::simulated_drive(
       {.terrain = terrain, .relative_noise = 0.01, .random_walk = wanders, .seed = seed});
-  const Answer answer = solve(run_drive({}, streams.a, streams.b).drive.problem(), Method::dual);
+  const Answer answer = solve(pair_motions({}, streams.a, streams.b).drive.problem(), Method::dual);
   const auto error = detail::frame_a_difference(streams.T, answer.T_a_b);
   for (std::size_t i = 0; i < 6; ++i) {
-    if (!answer.knowledge.observable[i] || !std::isfinite(answer.knowledge.stddev[i])) continue;
+    if (!answer.observability.observable[i] || !std::isfinite(answer.observability.stddev[i])) continue;
     ++coverage.observable[i];
-    coverage.covered[i] += std::abs(error[static_cast<Eigen::Index>(i)]) <= 1.96 * answer.knowledge.stddev[i];
+    coverage.covered[i] +=
+        std::abs(error[static_cast<Eigen::Index>(i)]) <= 1.96 * answer.observability.stddev[i];
   }
 }
 

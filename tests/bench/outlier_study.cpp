@@ -22,7 +22,7 @@ using testing::Corruption;
 using testing::Streams;
 
 double degrees_off(const Streams& streams, const Trajectory& a, const Trajectory& b) {
-  const Answer answer = solve(run_drive(streams.options, a, b).drive.problem(), Method::dual);
+  const Answer answer = solve(pair_motions(streams.options, a, b).drive.problem(), Method::dual);
   return extrinsic_error(streams.T, answer.T_a_b).rotation * 180 / std::numbers::pi;
 }
 

@@ -198,7 +198,7 @@ TEST(Answer, RoundTrips) {
   ASSERT_TRUE(back) << back.reason;
   EXPECT_EQ(back.value->certificate.optimality, answer.certificate.optimality);
   EXPECT_EQ(back.value->certificate.cost, answer.certificate.cost);
-  EXPECT_EQ(back.value->knowledge.stddev, answer.knowledge.stddev);
+  EXPECT_EQ(back.value->observability.stddev, answer.observability.stddev);
   EXPECT_LT(extrinsic_error(answer.T_a_b, back.value->T_a_b).translation, 1e-14);
   calibration_t message = example<calibration_t>();
   message.stddev[2] = -1;

@@ -152,10 +152,10 @@ class Processes : public ::testing::Test {
 
   /// Of the poses as the wire carries them, so that the statistics are the same bits.
   static Problem offline(const std::vector<Trajectory>& trajectories) {
-    DriveOptions options;
+    PairingOptions options;
     options.stride = 1;
     options.balance = Balance{};
-    Drive d(options);
+    MotionPairing d(options);
     for (const Event& event : events(trajectories))
       d.push(event.side, *bus::to_stamped_pose(bus::to_message(event.pose, event.seq)).value);
     return d.problem();

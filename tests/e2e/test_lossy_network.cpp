@@ -16,7 +16,7 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/lossy_relay.hpp"
@@ -194,9 +194,9 @@ TEST_F(LossyNetwork, DamagedMessagesToo) {
 }
 
 TEST_F(LossyNetwork, TheAnswerIsCertifiedAndHardlyWorse) {
-  DriveOptions options;
+  PairingOptions options;
   const auto trajectories = drive();
-  const DriveResult clean = run_drive(options, trajectories[0], trajectories[1]);
+  const PairingResult clean = pair_motions(options, trajectories[0], trajectories[1]);
   const ExtrinsicError clean_error = error_of(solve(clean.drive.problem(), Method::dual).T_a_b);
   start("egocal-pairing");
   start("egocal-fast");

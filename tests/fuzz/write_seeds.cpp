@@ -54,7 +54,7 @@ problem_t problem() {
 calibration_t calibration() {
   Answer answer;
   answer.T_a_b = pose(1).pose;
-  answer.knowledge.hint = "turn";
+  answer.observability.hint = "turn";
   calibration_t message = bus::to_message(answer, problem());
   message.solver = "egocal-fast";
   return message;

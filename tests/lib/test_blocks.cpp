@@ -29,11 +29,11 @@ TEST(BlockStatistics, StayBoundedMergeNeighboursAndKeepTheSum) {
     ASSERT_LE(state.blocks.size(), BlockStatistics::max_blocks);
     for (std::size_t i = 0; i + 1 < state.blocks.size(); ++i)
       ASSERT_EQ(state.blocks[i].statistics.count, state.pairs_per_block);
-    ASSERT_LE(blocks.kept().size(), BlockStatistics::max_kept);
-    ASSERT_EQ(total(blocks.kept()).count, sum.count);
+    ASSERT_LE(blocks.inliers().size(), BlockStatistics::max_inlier_blocks);
+    ASSERT_EQ(total(blocks.inliers()).count, sum.count);
   }
-  EXPECT_GT(blocks.kept().size(), BlockStatistics::max_kept / 2);
-  EXPECT_LT((total(blocks.kept()).dual_rows - sum.dual_rows).cwiseAbs().maxCoeff(),
+  EXPECT_GT(blocks.inliers().size(), BlockStatistics::max_inlier_blocks / 2);
+  EXPECT_LT((total(blocks.inliers()).dual_rows - sum.dual_rows).cwiseAbs().maxCoeff(),
             1e-12 * sum.dual_rows.trace());
 }
 
@@ -46,16 +46,16 @@ TEST(BlockStatistics, VerdictsStayApartWhenBlocksMergeAndNothingIsLost) {
     blocks.add(pair, bad);
     (bad ? left_out : kept).add(pair);
     ASSERT_LE(blocks.state().blocks.size(), BlockStatistics::max_blocks);
-    ASSERT_EQ(blocks.kept_pairs(), kept.count);
+    ASSERT_EQ(blocks.inlier_pairs(), kept.count);
   }
-  EXPECT_LT((total(blocks.kept()).dual_rows - kept.dual_rows).cwiseAbs().maxCoeff(),
+  EXPECT_LT((total(blocks.inliers()).dual_rows - kept.dual_rows).cwiseAbs().maxCoeff(),
             1e-12 * kept.dual_rows.trace());
   // a verdict can be revised: everything comes back
   blocks.leave_out(std::vector<bool>(blocks.state().blocks.size(), false));
-  EXPECT_EQ(blocks.kept_pairs(), kept.count + left_out.count);
+  EXPECT_EQ(blocks.inlier_pairs(), kept.count + left_out.count);
   Statistics all = kept;
   all += left_out;
-  EXPECT_LT((total(blocks.kept()).dual_rows - all.dual_rows).cwiseAbs().maxCoeff(),
+  EXPECT_LT((total(blocks.inliers()).dual_rows - all.dual_rows).cwiseAbs().maxCoeff(),
             1e-12 * all.dual_rows.trace());
 }
 
@@ -69,7 +69,7 @@ TEST(BlockStatistics, ContinueFromTheirStateBitForBit) {
     }
     BlockStatistics second(first.state());
     for (std::size_t i = cut; i < pairs.size(); ++i) second.add(pairs[i], i % 7 == 0);
-    const std::vector<Statistics> expected = whole.kept(), kept = second.kept();
+    const std::vector<Statistics> expected = whole.inliers(), kept = second.inliers();
     ASSERT_EQ(kept.size(), expected.size());
     for (std::size_t i = 0; i < kept.size(); ++i)
       ASSERT_EQ(kept[i].dual_rows, expected[i].dual_rows) << "cut " << cut << " block " << i;

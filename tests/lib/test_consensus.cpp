@@ -58,7 +58,7 @@ TEST(Consensus, TheMajorityIsFoundEvenAgainstAMinorityThatAgrees) {
     // the same pairs that were made wrong, but for a few that are too small to tell
     const std::vector<bool> wrong = wrong_ones(pairs);
     int differ = 0;
-    for (std::size_t i = 0; i < wrong.size(); ++i) differ += wrong[i] != consensus->left_out[i];
+    for (std::size_t i = 0; i < wrong.size(); ++i) differ += wrong[i] != consensus->outlier[i];
     EXPECT_LT(differ, 20) << seed;
   }
 }
@@ -74,7 +74,7 @@ TEST(Consensus, CleanMotionIsNeverLeftOut) {
           parts.push_back(of_one(pair));
         const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
         ASSERT_TRUE(consensus);
-        EXPECT_EQ(std::count(consensus->left_out.begin(), consensus->left_out.end(), true), 0)
+        EXPECT_EQ(std::count(consensus->outlier.begin(), consensus->outlier.end(), true), 0)
             << noise << " " << seed;
       }
 }
@@ -111,11 +111,11 @@ TEST(Consensus, ARunThatWouldRatherHaveAnotherExtrinsicIsLeftOut) {
     const std::optional<Consensus> consensus = find_consensus(Problem{}, parts);
     ASSERT_TRUE(consensus);
     for (std::size_t i = 0; i < parts.size(); ++i)
-      EXPECT_EQ(consensus->left_out[i], i == 7 || i == 8 || i == 20) << seed << " " << i;
+      EXPECT_EQ(consensus->outlier[i], i == 7 || i == 8 || i == 20) << seed << " " << i;
     // overlapping motions are as many as they are independent
     const std::optional<Consensus> overlapping = find_consensus(Problem{}, parts, 8);
     ASSERT_TRUE(overlapping);
-    EXPECT_EQ(std::count(overlapping->left_out.begin(), overlapping->left_out.end(), true), 0);
+    EXPECT_EQ(std::count(overlapping->outlier.begin(), overlapping->outlier.end(), true), 0);
   }
 }
 
@@ -135,9 +135,9 @@ TEST(RobustStatistics, TheFirstTurnIsNotAnOutlier) {
   for (int i = 0; i < 20; ++i) {
     add(displacement({0, 0, 0.1}, {1, 0.05, 0}));
     ++turns;
-    EXPECT_TRUE(i < 3 || statistics.left_out_pairs() == 0) << "turning step " << i;
+    EXPECT_TRUE(i < 3 || statistics.outlier_pairs() == 0) << "turning step " << i;
   }
-  EXPECT_EQ(statistics.kept_pairs(), 500 + turns);
+  EXPECT_EQ(statistics.inlier_pairs(), 500 + turns);
 }
 
 TEST(RobustStatistics, OutliersInARandomOrderCostNothing) {
@@ -151,16 +151,16 @@ TEST(RobustStatistics, OutliersInARandomOrderCostNothing) {
       all.add(pair);
     }
     for (const MotionPair& pair : contradictory(0, 0.01, seed, 500)) good.add(pair);
-    robust.blocks = statistics.kept();
-    plain.blocks = all.kept();
-    clean.blocks = good.kept();
+    robust.blocks = statistics.inliers();
+    plain.blocks = all.inliers();
+    clean.blocks = good.inliers();
     const auto error = [](const Problem& problem) {
       return extrinsic_error(T_a_b, solve(problem, Method::dual).T_a_b);
     };
     EXPECT_LT(error(robust).rotation, 2 * error(clean).rotation + 1e-3) << seed;
     EXPECT_LT(error(robust).translation, 2 * error(clean).translation + 1e-2) << seed;
     EXPECT_GT(error(plain).rotation, 20 * error(robust).rotation) << seed;
-    EXPECT_EQ(statistics.kept_pairs() + statistics.left_out_pairs(), 500u);
+    EXPECT_EQ(statistics.inlier_pairs() + statistics.outlier_pairs(), 500u);
   }
 }
 
@@ -175,14 +175,14 @@ TEST(RobustStatistics, AWrongBeginningIsOutvotedLater) {
     }
   };
   add(contradictory(1, 0.01, 1, 150));
-  problem.blocks = statistics.kept();
+  problem.blocks = statistics.inliers();
   EXPECT_LT(extrinsic_error(another, solve(problem, Method::dual).T_a_b).rotation, 0.01);
   problem.blocks.clear();
   add(contradictory(0, 0.01, 2, 400));
   statistics.look(problem);
-  problem.blocks = statistics.kept();
+  problem.blocks = statistics.inliers();
   EXPECT_LT(extrinsic_error(T_a_b, solve(problem, Method::dual).T_a_b).rotation, 0.01);
-  EXPECT_NEAR(static_cast<double>(statistics.left_out_pairs()), 150, 30);
+  EXPECT_NEAR(static_cast<double>(statistics.outlier_pairs()), 150, 30);
 }
 
 TEST(RobustStatistics, AreBoundedAndContinueFromTheirStateBitForBit) {
@@ -197,7 +197,7 @@ TEST(RobustStatistics, AreBoundedAndContinueFromTheirStateBitForBit) {
       EXPECT_LE(statistics.state().waiting.size(), RobustStatistics::most_waiting);
       EXPECT_LE(statistics.state().blocks.state().blocks.size(), BlockStatistics::max_blocks);
     }
-    return total(statistics.kept());
+    return total(statistics.inliers());
   };
   const Statistics expected = run(pairs.size());
   for (const std::size_t cut : {1u, 17u, 100u, 1999u}) EXPECT_EQ(run(cut).dual_rows, expected.dual_rows);

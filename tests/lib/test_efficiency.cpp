@@ -100,7 +100,7 @@ Medians medians(Terrain terrain, int poses, std::uint64_t first_seed) {
         noise_covariance(motions_of(clean.b)) + Ad * noise_covariance(motions_of(clean.a)) * Ad.transpose();
     const Pose T = maximum_likelihood(motions_of(noisy.a), motions_of(noisy.b), covariance.inverse());
     best.push_back(extrinsic_error(truth, to_dual_quaternion(T)).rotation);
-    const Drive drive = run_drive({}, noisy.a, noisy.b).drive;
+    const MotionPairing drive = pair_motions({}, noisy.a, noisy.b).drive;
     ours.push_back(extrinsic_error(truth, solve(drive.problem(), Method::dual).T_a_b).rotation);
   }
   const auto median = [](std::vector<double> errors) {

@@ -12,7 +12,7 @@
 #include "../support/real_drives.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal {
 namespace {
@@ -23,7 +23,7 @@ using testing::corruptions;
 using testing::Streams;
 
 ExtrinsicError error_of(const Streams& data, const Trajectory& a, const Trajectory& b) {
-  const Answer answer = solve(run_drive(data.options, a, b).drive.problem(), Method::dual);
+  const Answer answer = solve(pair_motions(data.options, a, b).drive.problem(), Method::dual);
   EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
   const ExtrinsicError error = extrinsic_error(data.T, answer.T_a_b);
   return {.translation = error.translation * 100, .rotation = error.rotation * 180 / std::numbers::pi};

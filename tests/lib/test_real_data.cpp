@@ -9,7 +9,7 @@
 #include "../support/real_drives.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
 
 namespace egocal {
@@ -18,8 +18,8 @@ namespace {
 using testing::arm_reference;
 using testing::kitti_truth;
 
-DriveOptions equal_weights() {
-  DriveOptions options;
+PairingOptions equal_weights() {
+  PairingOptions options;
   options.stride = 1;
   options.balance = Balance{};
   options.robust = false;
@@ -39,9 +39,9 @@ class RealData : public ::testing::Test {
     std::uint64_t pairs;
     Answer answer;
   };
-  static Result run(const DriveOptions& options, const std::string& a, const std::string& b,
+  static Result run(const PairingOptions& options, const std::string& a, const std::string& b,
                     const DualQuaternion& truth) {
-    const Drive drive = run_drive(options, read(a), read(b)).drive;
+    const MotionPairing drive = pair_motions(options, read(a), read(b)).drive;
     const Answer answer = solve(drive.problem(), Method::dual);
     EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
     const ExtrinsicError error = extrinsic_error(truth, answer.T_a_b);
@@ -101,7 +101,7 @@ TEST_F(RealData, NoTuningRobotArm) {
 TEST_F(RealData, NoTuningLoopOfThreeCloses) {
   const auto T = [](const char* a, const char* b) {
     const auto file = [](const char* name) { return read(std::string("eth_tango_easy/") + name + ".tum"); };
-    return solve(run_drive({}, file(a), file(b)).drive.problem(), Method::dual).T_a_b;
+    return solve(pair_motions({}, file(a), file(b)).drive.problem(), Method::dual).T_a_b;
   };
   const ExtrinsicError loop =
       extrinsic_error(T("caligula", "nero"), T("caligula", "mars") * T("mars", "nero"));

@@ -68,11 +68,12 @@ TEST(TimeOffset, OfStreamsThatNeverTurnOrAreTooShortIsNotGuessed) {
   EXPECT_TRUE(!offset || offset->correlation < 0.5 || !(offset->stddev < 0.005));
 }
 
-Drive followed(const Trajectory& a, const Trajectory& b, std::uint64_t interleave, bool drift_seen = false) {
+MotionPairing followed(const Trajectory& a, const Trajectory& b, std::uint64_t interleave,
+                       bool drift_seen = false) {
   testing::Random random(interleave);
-  DriveOptions options;
+  PairingOptions options;
   options.track_time_offset = true;
-  Drive drive(options);
+  MotionPairing drive(options);
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
     const std::uint64_t run = interleave == 0 ? 1 : 1 + random.below(200);
@@ -93,9 +94,9 @@ Drive followed(const Trajectory& a, const Trajectory& b, std::uint64_t interleav
 
 TEST(ClockOffset, IsFoundOnTheWayAndCostsNoPose) {
   const Streams data = simulated(0.01, 3);
-  const Drive together = run_drive({}, data.a, data.b).drive;
+  const MotionPairing together = pair_motions({}, data.a, data.b).drive;
   for (const double shift : {0.0, -250.0, 1e6}) {
-    const Drive drive = followed(data.a, shifted(data.b, shift), 0);
+    const MotionPairing drive = followed(data.a, shifted(data.b, shift), 0);
     ASSERT_TRUE(drive.time_offset());
     EXPECT_NEAR(*drive.time_offset(), -shift, 0.005);
     EXPECT_EQ(drive.counts().synchronised, together.counts().synchronised);
@@ -109,9 +110,9 @@ TEST(ClockOffset, IsFoundOnTheWayAndCostsNoPose) {
 TEST(ClockOffset, DoesNotDependOnHowTheStreamsInterleave) {
   const Streams data = simulated(0.01, 4, 90);
   const Trajectory b = shifted(data.b, 77);
-  const Drive expected = followed(data.a, b, 0);
+  const MotionPairing expected = followed(data.a, b, 0);
   for (std::uint64_t seed = 1; seed < 6; ++seed) {
-    const Drive drive = followed(data.a, b, seed);
+    const MotionPairing drive = followed(data.a, b, seed);
     EXPECT_EQ(drive.time_offset(), expected.time_offset());
     EXPECT_EQ(total(drive.problem().blocks).dual_rows, total(expected.problem().blocks).dual_rows) << seed;
   }
@@ -122,7 +123,7 @@ TEST(ClockOffset, DriftIsFollowed) {
   Trajectory drifting = data.b;  // a clock that is slow by two in ten thousand
   for (StampedPose& pose : drifting)
     pose.time_us -= std::llround(2e-4 * static_cast<double>(pose.time_us - data.b[0].time_us));
-  const Drive drive = followed(data.a, drifting, 0, true);
+  const MotionPairing drive = followed(data.a, drifting, 0, true);
   const double end = 2e-4 * 1e-6 * static_cast<double>(data.b.back().time_us - data.b[0].time_us);
   // the newest estimate is of the minute before; another comes into force at five milliseconds
   EXPECT_NEAR(*drive.time_offset(), end, 0.018);
@@ -133,12 +134,12 @@ TEST(ClockOffset, ContinuesFromItsStateBitForBit) {
   const Streams data = simulated(0.01, 6, 60);
   const Trajectory b = shifted(data.b, -5);
   const Problem expected = followed(data.a, b, 0).problem();
-  DriveOptions options;
+  PairingOptions options;
   options.track_time_offset = true;
-  Drive drive(options);
+  MotionPairing drive(options);
   std::size_t i = 0, j = 0;
   while (i < data.a.size() || j < b.size()) {
-    if ((i + j) % 500 == 0) drive = Drive(drive.options(), drive.state());
+    if ((i + j) % 500 == 0) drive = MotionPairing(drive.options(), drive.state());
     const bool from_a = j == b.size() || (i < data.a.size() && data.a[i].time_us - data.a[0].time_us <=
                                                                    b[j].time_us - b[0].time_us);
     from_a ? drive.push(Side::a, data.a[i++]) : drive.push(Side::b, b[j++]);
@@ -149,9 +150,9 @@ TEST(ClockOffset, ContinuesFromItsStateBitForBit) {
 
 TEST(ClockOffset, StreamsThatNeverMatchAreHeldBoundedAndCounted) {
   const Streams data = simulated(0.01, 7, 400), other = simulated(0.01, 8, 400);
-  DriveOptions options;
+  PairingOptions options;
   options.track_time_offset = true;
-  Drive drive(options);
+  MotionPairing drive(options);
   std::size_t j = 0;
   for (const StampedPose& pose : data.a) {
     StampedPose still = pose;

@@ -32,7 +32,7 @@ constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
 
 // A drive of one pair, ten motions a second, whose messages can be changed before they are sent.
-struct Drive {
+struct MotionPairing {
   Model model;
   std::int64_t step = 0;
   bool global = false, fast = true;
@@ -75,7 +75,7 @@ struct Drive {
 }  // namespace
 
 TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
-  Drive drive;
+  MotionPairing drive;
   drive.global = true;
   drive.run(5);
   EXPECT_THAT(drive.texts(),
@@ -98,7 +98,7 @@ TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
 }
 
 TEST(ModelEvents, CertificateLostAndFoundButNotForAMoment) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(30);
   drive.fresh();
   drive.change_answer = [](calibration_t& answer) { answer.status = 1; };
@@ -115,7 +115,7 @@ TEST(ModelEvents, CertificateLostAndFoundButNotForAMoment) {
 }
 
 TEST(ModelEvents, SolverSwapped) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(20);
   drive.fresh();
   drive.change_answer = [](calibration_t& answer) { answer.method = "sdp"; };
@@ -137,7 +137,7 @@ TEST(ModelEvents, SolverSwapped) {
 }
 
 TEST(ModelEvents, ManySolversOfOneSessionAreBounded) {
-  Drive drive;
+  MotionPairing drive;
   drive.change_answer = [&](calibration_t& answer) {
     answer.solver = "solver-" + std::to_string(answer.seq);
   };
@@ -147,7 +147,7 @@ TEST(ModelEvents, ManySolversOfOneSessionAreBounded) {
 }
 
 TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
-  Drive drive;
+  MotionPairing drive;
   status_t status = status_of("egocal-fast", "fast", 1);
   drive.heartbeat(status);
   drive.run(20);
@@ -173,7 +173,7 @@ TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
 }
 
 TEST(ModelEvents, SessionResetForgetsTheOldOne) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(30);
   drive.fresh();
   const auto anew = [](auto& message) {
@@ -195,7 +195,7 @@ TEST(ModelEvents, SessionResetForgetsTheOldOne) {
 }
 
 TEST(ModelEvents, TimeOffsetChangedBeyondItsNoise) {
-  Drive drive;
+  MotionPairing drive;
   drive.change_problem = [](problem_t& p) {
     p.time_offset = 0.020;
     p.time_offset_stddev = 0.002;
@@ -216,7 +216,7 @@ TEST(ModelEvents, TimeOffsetChangedBeyondItsNoise) {
 }
 
 TEST(ModelEvents, ManyMotionsThatContradictTheOthers) {
-  Drive drive;
+  MotionPairing drive;
   drive.change_problem = [](problem_t& p) { p.left_out = p.matched / 30; };
   drive.run(100);
   EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("contradict"))));
@@ -235,7 +235,7 @@ TEST(ModelEvents, ManyMotionsThatContradictTheOthers) {
 }
 
 TEST(ModelEvents, GapInAStreamAndSilence) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(30);
   drive.fresh();
   drive.step += 12;  // 1.2 s are missing
@@ -256,7 +256,7 @@ TEST(ModelEvents, GapInAStreamAndSilence) {
 }
 
 TEST(ModelEvents, TheSameAgainIsCounted) {
-  Drive drive;
+  MotionPairing drive;
   for (int i = 0; i < 5; ++i)
     drive.model.note(Severity::warning, "stderr", std::string(500, 'x'), drive.now());
   ASSERT_EQ(drive.model.events().size(), 1u);
@@ -268,7 +268,7 @@ TEST(ModelEvents, TheSameAgainIsCounted) {
 }
 
 TEST(ModelEvents, CommandsOfAnybody) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(1);
   command_t command{};
   command.to = "*";
@@ -281,7 +281,7 @@ TEST(ModelEvents, CommandsOfAnybody) {
 }
 
 TEST(ModelPause, KnownByCommandsByStatesAndByMotionsThatGoOn) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(5);
   EXPECT_FALSE(pair_is_paused(drive.model, drive.pair()));
   command_t command{};
@@ -322,7 +322,7 @@ TEST(ModelPause, KnownByCommandsByStatesAndByMotionsThatGoOn) {
 }
 
 TEST(ModelAnswer, TheOneThatCountsIsTheLibrarysChoice) {
-  Drive drive;
+  MotionPairing drive;
   drive.global = true;
   drive.change_answer = [](calibration_t& answer) {
     if (answer.solver == "egocal-fast") answer.status = 1;
@@ -342,7 +342,7 @@ TEST(ModelAnswer, WhatIsNoTransformOrContradictsItselfIsNeverCertified) {
         for (double& q : c.quat) q = 0;
       }};
   for (const auto& lie : lies) {
-    Drive drive;
+    MotionPairing drive;
     drive.change_answer = [&](calibration_t& answer) {
       answer.status = 0;
       lie(answer);
@@ -363,7 +363,7 @@ TEST(ModelAnswer, WhatIsNoTransformOrContradictsItselfIsNeverCertified) {
 }
 
 TEST(ModelAnswer, ErrorsAgainstTruthOrNominalOrSpreads) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(20);
   EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::truth);
   EXPECT_GT(drive.pair().shown.error_translation, 0);
@@ -380,7 +380,7 @@ TEST(ModelAnswer, ErrorsAgainstTruthOrNominalOrSpreads) {
 }
 
 TEST(Lines, SayWhatTheScreenSays) {
-  Drive drive;
+  MotionPairing drive;
   drive.change_problem = [](problem_t& p) {
     p.rejected = 17;
     p.left_out = 3;
@@ -402,7 +402,7 @@ TEST(Lines, SayWhatTheScreenSays) {
 }
 
 TEST(ModelProcesses, CountsAndRates) {
-  Drive drive;
+  MotionPairing drive;
   status_t status = status_of("egocal-pairing", "pairing", 100);
   const auto count = [&](const char* name, std::int64_t value) {
     counter_t& counter = status.counters.emplace_back();
@@ -532,7 +532,7 @@ TEST(Hostile, AFloodOfNamesIsBoundedAndCounted) {
 }
 
 TEST(Hostile, TimeRunningBackwardsIsSaidAndTheCurveGoesOn) {
-  Drive drive;
+  MotionPairing drive;
   drive.run(100);
   drive.fresh();
   drive.change_problem = [](problem_t& p) { p.utime = 0; };
@@ -547,7 +547,7 @@ TEST(Hostile, TimeRunningBackwardsIsSaidAndTheCurveGoesOn) {
 }
 
 TEST(Memory, FlatOverASimulatedDay) {
-  Drive drive;
+  MotionPairing drive;
   drive.global = true;
   drive.model.on_status(status_of("egocal-fast", "fast", 1), drive.now());
   const auto hours = [&](int n) {

@@ -24,7 +24,7 @@ inline Trajectory real_trajectory(const std::string& name) {
 inline const DualQuaternion kitti_truth = to_dual_quaternion(
     {Eigen::Quaterniond(0.499924473812, -0.499145921532, 0.504084765332, -0.496817289214).normalized(),
      {0.333504767535, -0.00479610810717, -0.0755785517707}});
-inline DriveOptions kitti_planar(DriveOptions options) {
+inline PairingOptions kitti_planar(PairingOptions options) {
   options.mode = Mode::planar;
   options.plane_a = {{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
                      -1.779603641715662210};

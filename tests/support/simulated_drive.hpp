@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/simulation/simulation.hpp"
 
 namespace egocal::testing {
@@ -11,7 +11,7 @@ namespace egocal::testing {
 struct Streams {
   DualQuaternion T;
   Trajectory a, b;
-  DriveOptions options;
+  PairingOptions options;
 };
 
 /// A lidar on the roof and a camera behind the windscreen, of which the tests know no more than this.

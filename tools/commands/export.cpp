@@ -16,7 +16,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "egocal/online/calibrate.hpp"
+#include "egocal/online/algorithm1.hpp"
 
 namespace egocal::tools {
 
@@ -33,10 +33,10 @@ class Answers {
   void hear(const calibration_t& message) {
     const bus::Checked<Answer> answer = bus::to_answer(message);
     if (!answer) return;
-    const Claim claim{message.session, message.seq, answer.value->certificate.optimality,
-                      answer.value->certificate.cost};
+    const AnswerRank claim{message.session, message.seq, answer.value->certificate.optimality,
+                           answer.value->certificate.cost};
     const auto [entry, fresh] = best_.try_emplace({message.sensor_a, message.sensor_b}, Best{message, claim});
-    if (!fresh && counts_more(claim, entry->second.claim)) entry->second = {message, claim};
+    if (!fresh && outranks(claim, entry->second.claim)) entry->second = {message, claim};
   }
   bool has(const std::string& pair) const { return find(pair) != best_.end(); }
 
@@ -55,13 +55,13 @@ class Answers {
     const calibration_t& message = entry->second.message;
     const Answer answer = *bus::to_answer(message).value;
     return {entry->first.first,  entry->first.second, to_pose(answer.T_a_b),
-            message.status == 0, message.pairs,       answer.knowledge.stddev};
+            message.status == 0, message.pairs,       answer.observability.stddev};
   }
 
  private:
   struct Best {
     calibration_t message;
-    Claim claim;
+    AnswerRank claim;
   };
   using Map = std::map<std::pair<std::string, std::string>, Best>;
   Map::const_iterator find(const std::string& pair) const {

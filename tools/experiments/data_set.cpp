@@ -41,7 +41,7 @@ Problem problem_of(const DataSet& data, Mode mode, std::size_t count) {
   }
   BlockStatistics blocks;
   for (const MotionPair& pair : pairs) blocks.add(pair);
-  problem.blocks = blocks.kept();
+  problem.blocks = blocks.inliers();
   return problem;
 }
 

@@ -24,8 +24,8 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
   for (std::size_t i = 0; i < count; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     blocks.add(pairs[i]);
-    problem.blocks = blocks.kept();
-    const OnlineStep step = calibrate(problem, pairs[i].end_us, state, options);
+    problem.blocks = blocks.inliers();
+    const OnlineStep step = algorithm1_step(problem, pairs[i].end_us, state, options);
     const auto end = std::chrono::steady_clock::now();
     state = step.state;
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/online/calibrate.hpp"
+#include "egocal/online/algorithm1.hpp"
 #include "experiments/data_set.hpp"
 
 namespace egocal::tools {

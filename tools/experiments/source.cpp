@@ -4,7 +4,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal::tools {
 
@@ -28,12 +28,12 @@ DataSet simulated(const Source& source) {
 DataSet recorded(const Source& source) {
   const Trajectory a = read_trajectory(source.file_a, source.times_a);
   const Trajectory b = read_trajectory(source.file_b, source.times_b);
-  DriveOptions options;
+  PairingOptions options;
   options.stride = source.stride;
   options.balance = Balance{};
   options.time_offset = source.time_offset;
   DataSet data;
-  data.pairs = run_drive(options, a, b).pairs;
+  data.pairs = pair_motions(options, a, b).pairs;
   if (data.pairs.empty())
     throw Error(source.file_a + ", " + source.file_b +
                 ": no motion pairs: the two do not overlap in time, or every one was rejected");

@@ -33,7 +33,7 @@ StreamSpan span_of(const Trajectory& trajectory) {
           1e-6 * static_cast<double>(trajectory.back().time_us)};
 }
 
-std::string rejections(const DriveCounts& counts) {
+std::string rejections(const PairingCounts& counts) {
   std::string text;
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
@@ -42,7 +42,7 @@ std::string rejections(const DriveCounts& counts) {
   return text.empty() ? "none rejected" : "rejected: " + text;
 }
 
-/// Motions from trajectories: through a Drive, as online.
+/// Motions from trajectories: through a MotionPairing, as online.
 std::vector<MotionPair> pair_trajectories(const CalibrationOptions& options, CalibrationResult& result) {
   const MotionSource& source = options.source;
   const Trajectory a = source.log.empty() ? read_trajectory(source.a, source.times_a)
@@ -51,7 +51,7 @@ std::vector<MotionPair> pair_trajectories(const CalibrationOptions& options, Cal
                                           : read_log_trajectory(source.log, source.b);
   result.a = span_of(a);
   result.b = span_of(b);
-  DriveOptions drive_options = options.drive;
+  PairingOptions drive_options = options.drive;
   if (options.estimate_time_offset) {
     result.time_offset = estimate_time_offset(a, b);
     if (!result.time_offset)
@@ -59,7 +59,7 @@ std::vector<MotionPair> pair_trajectories(const CalibrationOptions& options, Cal
     drive_options.time_offset = result.time_offset->seconds;
   }
   result.time_offset_applied = drive_options.time_offset;
-  DriveResult run = run_drive(drive_options, a, b);
+  PairingResult run = pair_motions(drive_options, a, b);
   result.counts = run.drive.counts();
   result.choice = run.drive.choice();
   result.problem = run.drive.problem();
@@ -73,7 +73,7 @@ std::vector<MotionPair> pair_trajectories(const CalibrationOptions& options, Cal
   // the stride was chosen on the way: the pairs of that stride from the beginning
   drive_options.stride = result.choice.stride;
   drive_options.balance = result.choice.balance;
-  return run_drive(drive_options, a, b).pairs;
+  return pair_motions(drive_options, a, b).pairs;
 }
 
 /// Motions from a file of pairs.
@@ -107,9 +107,9 @@ std::vector<MotionPair> read_pairs(const CalibrationOptions& options, Calibratio
     if (statistics.look_is_due()) statistics.look(result.problem);
   }
   if (options.drive.robust) statistics.look(result.problem);
-  result.problem.blocks = statistics.kept();
-  result.counts.matched = statistics.kept_pairs();
-  result.counts.left_out = statistics.left_out_pairs();
+  result.problem.blocks = statistics.inliers();
+  result.counts.matched = statistics.inlier_pairs();
+  result.counts.outliers = statistics.outlier_pairs();
   result.choice.balance = options.drive.balance.value_or(Balance{});
   result.choice.reason = "fixed";
   if (!options.drive.balance) {
@@ -154,7 +154,7 @@ void solve_with_baseline(const CalibrationOptions& options, const std::vector<Mo
   // these methods minimise other things: what their answer is worth is what our certificate says of it
   const Matrix8d Q = cost_matrix(result.problem);
   result.answer.certificate = verify(Q, result.answer.T_a_b);
-  result.answer.knowledge = solve(result.problem, Method::dual).knowledge;
+  result.answer.observability = solve(result.problem, Method::dual).observability;
   result.note = baseline.valid ? "" : baseline.note;
   result.solve_us = median_us([&] { run(); });
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
 
 namespace egocal::tools {
@@ -23,7 +23,7 @@ struct MotionSource {
 struct CalibrationOptions {
   MotionSource source;
   std::string method = "global";  ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
-  DriveOptions drive;             ///< stride, balance: empty means auto
+  PairingOptions drive;           ///< stride, balance: empty means auto
   bool estimate_time_offset = false;
   std::optional<Pose> truth;
 };
@@ -40,7 +40,7 @@ struct CalibrationResult {
   std::string note;    ///< of a baseline: why its answer is not valid
   Problem problem;
   Choice choice;
-  DriveCounts counts;
+  PairingCounts counts;
   std::optional<StreamSpan> a, b;  ///< not for a file of pairs
   std::optional<TimeOffset> time_offset;
   double time_offset_applied = 0;  ///< [s]

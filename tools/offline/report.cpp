@@ -68,9 +68,9 @@ std::string report_json(const CalibrationResult& result, const std::optional<Pos
                                                                        : "undecided";
   json["reach_translation"] = certificate.reach_translation;
   json["reach_rotation"] = certificate.reach_rotation;
-  json["observable"] = result.answer.knowledge.observable;
-  json["stddev"] = result.answer.knowledge.stddev;
-  json["hint"] = result.answer.knowledge.hint;
+  json["observable"] = result.answer.observability.observable;
+  json["stddev"] = result.answer.observability.stddev;
+  json["hint"] = result.answer.observability.hint;
   json["method"] = result.method;
   json["note"] = result.note;
   json["solve_us"] = result.solve_us;
@@ -85,7 +85,7 @@ std::string report_json(const CalibrationResult& result, const std::optional<Pos
                                     {"stddev", result.time_offset->stddev},
                                     {"correlation", result.time_offset->correlation}};
   json["synchronised"] = result.counts.synchronised;
-  json["left_out"] = result.counts.left_out;
+  json["outliers"] = result.counts.outliers;
   json["rejected"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
     json["rejected"][std::string(name(static_cast<Rejection>(i)))] = result.counts.rejected[i];
@@ -109,8 +109,8 @@ std::string report_text(const CalibrationResult& result, const std::optional<Pos
       fmt::format("\nmotions       {} pairs, stride {}, weights rotation : translation = {:g} : {:g} ({})\n",
                   total(result.problem.blocks).count, result.choice.stride, result.choice.balance.rotation,
                   result.choice.balance.translation, result.choice.reason);
-  if (result.counts.left_out > 0)
-    text += fmt::format("left out      {} more pairs contradict these\n", result.counts.left_out);
+  if (result.counts.outliers > 0)
+    text += fmt::format("outliers      {} more pairs contradict these\n", result.counts.outliers);
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
     if (stream)
       text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,
@@ -141,18 +141,18 @@ std::string report_text(const CalibrationResult& result, const std::optional<Pos
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   text += "uncertainty   in the frame of a, one standard deviation\n";
   for (std::size_t i = 0; i < 6; ++i) {
-    const double stddev = answer.knowledge.stddev[i];
+    const double stddev = answer.observability.stddev[i];
     const bool rotation = i >= 3;
     std::string value = "NOT OBSERVABLE, the number above is not a measurement";
-    if (!answer.knowledge.observable[i] && result.problem.mode == Mode::planar)
+    if (!answer.observability.observable[i] && result.problem.mode == Mode::planar)
       value = "from the ground planes";
-    if (answer.knowledge.observable[i])
+    if (answer.observability.observable[i])
       value = std::isfinite(stddev)
                   ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")
                   : "observable, too few motions for a standard deviation";
     text += fmt::format("  {:<12}{}\n", directions[i], value);
   }
-  if (!answer.knowledge.hint.empty()) text += fmt::format("  {}\n", answer.knowledge.hint);
+  if (!answer.observability.hint.empty()) text += fmt::format("  {}\n", answer.observability.hint);
   if (truth) {
     const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*truth), answer.T_a_b);
     text += fmt::format("\nerror against the truth (32)   {:.3f} deg, {:.2f} cm\n", error.rotation * degrees,

@@ -9,7 +9,7 @@
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
-#include "egocal/uncertainty/knowledge.hpp"
+#include "egocal/uncertainty/observability.hpp"
 #include "online/solve_and_verify.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -124,7 +124,7 @@ Answer solve(const Problem& problem, Method method, const std::optional<DualQuat
              NanosecondClock clock) {
   const Matrix8d Q = cost_matrix(problem);
   Answer answer = detail::solve_and_verify(problem, Q, method, start, clock);
-  answer.knowledge = knowledge(problem, Q, answer.T_a_b);
+  answer.observability = assess_observability(problem, Q, answer.T_a_b);
   return answer;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/uncertainty/knowledge.hpp"
+#include "egocal/uncertainty/observability.hpp"
 #include "online/solve_and_verify.hpp"
 
 namespace egocal {
@@ -52,7 +52,7 @@ std::optional<Spread> spread(const Problem& problem, int stride) {
   if (parts.blocks.size() < least_parts) return std::nullopt;
   const Matrix8d Q = cost_matrix(parts);
   const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
-  const Knowledge known = knowledge(parts, Q, answer.T_a_b, Blocks::independent);
+  const Observability known = assess_observability(parts, Q, answer.T_a_b, ErrorCorrelation::independent);
   Spread result;
   double rotation = 0, translation = 0;
   for (std::size_t i = 0; i < 6; ++i) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/solvers/dual.hpp"
 
 namespace egocal {
@@ -96,7 +96,7 @@ struct OffsetCost {
 
 /// Motions of about half a second.
 OffsetCost cost_at(const Trajectory& a, const Trajectory& b, double offset, int stride, double max_gap) {
-  DriveOptions options;
+  PairingOptions options;
   options.stride = stride;
   // rotations tell time; translations only with the lever arm
   options.balance = Balance{1, 0.01};
@@ -104,7 +104,7 @@ OffsetCost cost_at(const Trajectory& a, const Trajectory& b, double offset, int 
   options.max_gap = max_gap;
   options.robust = false;
   OffsetCost result;
-  result.problem = run_drive(options, a, b).drive.problem();
+  result.problem = pair_motions(options, a, b).drive.problem();
   if (total(result.problem.blocks).count < 10) return result;
   const Solution solution = solve_dual(cost_matrix(result.problem));
   result.cost = solution.cost;

@@ -17,7 +17,7 @@ std::vector<Block> merged(const std::vector<Block>& blocks) {
   std::vector<Block> result;
   std::array<std::optional<std::size_t>, 2> single;  // of either verdict, waits for its neighbour
   for (const Block& block : blocks) {
-    std::optional<std::size_t>& partner = single[block.left_out ? 1 : 0];
+    std::optional<std::size_t>& partner = single[block.outlier ? 1 : 0];
     if (partner) {
       result[*partner].statistics += block.statistics;
       partner.reset();
@@ -31,10 +31,10 @@ std::vector<Block> merged(const std::vector<Block>& blocks) {
 
 }  // namespace
 
-void BlockStatistics::add(const MotionPair& pair, bool left_out) {
+void BlockStatistics::add(const MotionPair& pair, bool outlier) {
   const auto newest = [&] {
     return std::find_if(state_.blocks.rbegin(), state_.blocks.rend(),
-                        [&](const Block& block) { return block.left_out == left_out; });
+                        [&](const Block& block) { return block.outlier == outlier; });
   };
   const auto full = [&](const auto& block) {
     return block == state_.blocks.rend() || block->statistics.count >= state_.pairs_per_block;
@@ -43,19 +43,19 @@ void BlockStatistics::add(const MotionPair& pair, bool left_out) {
     state_.blocks = merged(state_.blocks);
     state_.pairs_per_block *= 2;
   }
-  if (full(newest())) state_.blocks.push_back({{}, left_out});
+  if (full(newest())) state_.blocks.push_back({{}, outlier});
   newest()->statistics.add(pair);
 }
 
 void BlockStatistics::leave_out(const std::vector<bool>& verdicts) {
-  for (std::size_t i = 0; i < state_.blocks.size(); ++i) state_.blocks[i].left_out = verdicts.at(i);
+  for (std::size_t i = 0; i < state_.blocks.size(); ++i) state_.blocks[i].outlier = verdicts.at(i);
 }
 
-std::vector<Statistics> BlockStatistics::kept() const {
+std::vector<Statistics> BlockStatistics::inliers() const {
   std::vector<Statistics> kept;
   for (const Block& block : state_.blocks)
-    if (!block.left_out) kept.push_back(block.statistics);
-  if (kept.size() <= max_kept) return kept;
+    if (!block.outlier) kept.push_back(block.statistics);
+  if (kept.size() <= max_inlier_blocks) return kept;
   std::vector<Statistics> joined;
   for (std::size_t i = 0; i < kept.size(); i += 2) {
     joined.push_back(kept[i]);
@@ -64,10 +64,10 @@ std::vector<Statistics> BlockStatistics::kept() const {
   return joined;
 }
 
-std::uint64_t BlockStatistics::kept_pairs() const {
+std::uint64_t BlockStatistics::inlier_pairs() const {
   std::uint64_t count = 0;
   for (const Block& block : state_.blocks)
-    if (!block.left_out) count += block.statistics.count;
+    if (!block.outlier) count += block.statistics.count;
   return count;
 }
 

@@ -193,7 +193,7 @@ class Search {
   Consensus consensus(Fit fit, const ResidualScale& scale, std::vector<double> factors) const {
     fit = without_dissenters(std::move(fit), factors);
     Consensus consensus{{fit.q, scale}, {}};
-    for (const double factor : factors) consensus.left_out.push_back(factor == 0);
+    for (const double factor : factors) consensus.outlier.push_back(factor == 0);
     return consensus;
   }
 

@@ -52,10 +52,10 @@ void RobustStatistics::look(const Problem& problem, int overlap) {
   for (const MotionPair& pair : state_.waiting) parts.push_back(of_one(pair));
   const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap);
   if (!consensus) return;  // what was agreed on before stands
-  const std::vector<bool>& left_out = consensus->left_out;
+  const std::vector<bool>& outlier = consensus->outlier;
   state_.agreement = consensus->agreement;
-  const auto first_waiting = left_out.begin() + static_cast<std::ptrdiff_t>(blocks.size());
-  state_.blocks.leave_out({left_out.begin(), first_waiting});
+  const auto first_waiting = outlier.begin() + static_cast<std::ptrdiff_t>(blocks.size());
+  state_.blocks.leave_out({outlier.begin(), first_waiting});
   std::deque<MotionPair> waiting;
   for (std::size_t i = 0; i < state_.waiting.size(); ++i) {
     if (first_waiting[static_cast<std::ptrdiff_t>(i)])

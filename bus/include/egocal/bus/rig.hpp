@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "egocal/geometry/dual_quaternion.hpp"
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/problem/ground_plane.hpp"
 #include "egocal/problem/problem.hpp"
@@ -56,6 +56,6 @@ Rig parse_rig(const std::string& text, const std::string& file);
 const Sensor& sensor(const Rig& rig, const std::string& name);
 
 /// What pairing is to make of the rig's pair.
-DriveOptions drive_options(const Rig& rig, const PairConfig& pair);
+PairingOptions drive_options(const Rig& rig, const PairConfig& pair);
 
 }  // namespace egocal::bus

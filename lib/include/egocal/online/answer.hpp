@@ -20,17 +20,17 @@ std::string_view name(Method method);
 std::optional<Method> method_from_name(std::string_view name);  ///< also "global" (dual) and "fast" (sqp)
 
 /// Per direction x y z roll pitch yaw of sensor a's frame.
-struct Knowledge {
+struct Observability {
   std::array<bool, 6> observable{};
   std::array<double, 6> stddev{};  ///< [m, rad]; infinite where not observable
   std::string hint;                ///< which motion would help most; empty where nothing is missing
 };
 
-/// Fit (cost), optimality (certificate) and uncertainty (knowledge) are three different things.
+/// Fit (cost), optimality (certificate) and uncertainty (observability) are three different things.
 struct Answer {
   DualQuaternion T_a_b;  ///< pose of sensor b in sensor a, canonical sign
   Certificate certificate;
-  Knowledge knowledge;
+  Observability observability;
   SolverStatus status = SolverStatus::converged;
   Method method = Method::dual;
   std::int64_t solve_ns = 0;   ///< the solver alone; 0 without a clock [ns]

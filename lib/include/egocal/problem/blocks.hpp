@@ -15,12 +15,12 @@ namespace egocal {
 class BlockStatistics {
  public:
   static constexpr std::size_t max_blocks = 64;
-  /// As many as kept() returns at most: what a message carries and the jack-knife leaves out one by one.
-  static constexpr std::size_t max_kept = 32;
+  /// As many as inliers() returns at most: what a message carries and the jack-knife leaves out one by one.
+  static constexpr std::size_t max_inlier_blocks = 32;
 
   struct Block {
     Statistics statistics;
-    bool left_out = false;
+    bool outlier = false;
   };
   /// All there is; continuing from a copy gives the same bits.
   struct State {
@@ -32,13 +32,13 @@ class BlockStatistics {
   explicit BlockStatistics(State state) : state_(std::move(state)) {}
 
   /// To the newest block of that verdict.
-  void add(const MotionPair& pair, bool left_out = false);
+  void add(const MotionPair& pair, bool outlier = false);
   /// One verdict a block.
   void leave_out(const std::vector<bool>& verdicts);
 
-  /// The blocks that are not left out, neighbours joined where there are more than max_kept.
-  std::vector<Statistics> kept() const;
-  std::uint64_t kept_pairs() const;
+  /// The blocks that are not left out, neighbours joined where there are more than max_inlier_blocks.
+  std::vector<Statistics> inliers() const;
+  std::uint64_t inlier_pairs() const;
   const State& state() const { return state_; }
 
  private:

@@ -25,7 +25,7 @@ struct Agreement {
 /// Which parts of a drive agree on one extrinsic.
 struct Consensus {
   Agreement agreement;
-  std::vector<bool> left_out;  ///< per part
+  std::vector<bool> outlier;  ///< per part
 };
 
 /// Truncated least squares over parts of a drive (single motions or runs of them): the extrinsic for which

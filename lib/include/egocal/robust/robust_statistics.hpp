@@ -41,9 +41,9 @@ class RobustStatistics {
   /// The drive has grown by an eighth since the last look.
   bool look_is_due() const { return state_.given >= state_.next_look; }
 
-  std::vector<Statistics> kept() const { return state_.blocks.kept(); }
-  std::uint64_t kept_pairs() const { return state_.blocks.kept_pairs(); }
-  std::uint64_t left_out_pairs() const { return state_.given - kept_pairs(); }
+  std::vector<Statistics> inliers() const { return state_.blocks.inliers(); }
+  std::uint64_t inlier_pairs() const { return state_.blocks.inlier_pairs(); }
+  std::uint64_t outlier_pairs() const { return state_.given - inlier_pairs(); }
   const State& state() const { return state_; }
 
  private:

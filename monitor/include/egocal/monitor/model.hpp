@@ -75,7 +75,7 @@ struct PairState {
   bool silent = false;
   std::int64_t session = 0;
   std::vector<SolverTrack> solvers;
-  int counted = -1;  ///< the solver whose answer counts (egocal::counts_more); -1: no answer yet
+  int counted = -1;  ///< the solver whose answer counts (egocal::outranks); -1: no answer yet
   Shown shown;
   /// Measured time [s since the session began] from which on only the fast solver ran; empty while the global
   /// one does.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/pairing/drive.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,14 +86,14 @@ std::string_view name(Rejection reason) {
   return "unknown";
 }
 
-Drive::Drive(DriveOptions options) : Drive(std::move(options), DriveState{}) {
+MotionPairing::MotionPairing(PairingOptions options) : MotionPairing(std::move(options), PairingState{}) {
   state_.choice.stride = options_.stride.value_or(1);
   state_.choice.balance = options_.balance.value_or(Balance{});
   state_.choice.reason = options_.stride && options_.balance ? "fixed" : "too few motions to choose yet";
   state_.next_choice = first_choice;
 }
 
-Drive::Drive(DriveOptions options, DriveState state)
+MotionPairing::MotionPairing(PairingOptions options, PairingState state)
     : options_(std::move(options)), state_(std::move(state)) {
   if (options_.stride && *options_.stride < 1) throw Error("stride: expected at least 1");
   if (options_.mode == Mode::planar) {
@@ -104,7 +104,7 @@ Drive::Drive(DriveOptions options, DriveState state)
   }
 }
 
-std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
+std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given) {
   ++(side == Side::a ? state_.counts.poses_a : state_.counts.poses_b);
   StampedPose pose = given;
   const double norm = pose.pose.real.norm();
@@ -130,7 +130,7 @@ std::vector<MotionPair> Drive::push(Side side, const StampedPose& given) {
   return pairs;
 }
 
-std::vector<MotionPair> Drive::take(Side side, const StampedPose& pose) {
+std::vector<MotionPair> MotionPairing::take(Side side, const StampedPose& pose) {
   auto& newest = state_.newest_us[index(side)];
   auto& waiting = state_.waiting[index(side)];
   // a late pose still has its place while nothing after it has been paired
@@ -155,7 +155,7 @@ std::vector<MotionPair> Drive::take(Side side, const StampedPose& pose) {
   return state_.keys ? synchronise() : std::vector<MotionPair>{};
 }
 
-std::vector<MotionPair> Drive::finish() {
+std::vector<MotionPair> MotionPairing::finish() {
   if (!state_.keys && !state_.waiting[0].empty() && !state_.waiting[1].empty()) decide_keys();
   std::vector<MotionPair> pairs = state_.keys ? synchronise() : std::vector<MotionPair>{};
   for (; !state_.doubtful.empty(); state_.doubtful.pop_front()) reject(Rejection::screw_congruence);
@@ -169,7 +169,7 @@ std::vector<MotionPair> Drive::finish() {
   return pairs;
 }
 
-void Drive::decide_keys() {
+void MotionPairing::decide_keys() {
   // only the first poses decide, however many have come of one stream before the other spoke
   const auto first = [](const std::deque<StampedPose>& poses) {
     return std::deque<StampedPose>(
@@ -187,7 +187,7 @@ void Drive::decide_keys() {
   }
 }
 
-std::vector<MotionPair> Drive::synchronise() {
+std::vector<MotionPair> MotionPairing::synchronise() {
   std::vector<MotionPair> pairs;
   auto& keys = state_.waiting[index(*state_.keys)];
   auto& others = state_.waiting[1 - index(*state_.keys)];
@@ -238,11 +238,11 @@ std::vector<MotionPair> Drive::synchronise() {
 /// What was taken in before it was known what is typical is taken in anew: one wrong pose among the first
 /// would stay in every long motion across it. The motions handed out already cannot be taken back; what they
 /// taught is not learnt twice, and their rejections are not counted twice.
-void Drive::judge_first_ones() {
+void MotionPairing::judge_first_ones() {
   const std::vector<Instant> first = std::exchange(state_.unjudged, {});
   const CongruenceScale learnt = state_.congruence;
   const auto rejected = state_.counts.rejected;
-  for (DriveState::PerStride& entry : state_.strides) entry.statistics = {};
+  for (PairingState::PerStride& entry : state_.strides) entry.statistics = {};
   state_.instants.clear();
   std::vector<MotionPair> handed_out;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -258,7 +258,7 @@ void Drive::judge_first_ones() {
 /// those are congruent with each other: it alone is left out. Three poses that agree with each other and not
 /// with those before (tracking lost and found again elsewhere) begin a new chain; two might be a glitch that
 /// passes.
-void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
+void MotionPairing::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
   auto& doubtful = state_.doubtful;
   if (state_.instants.empty()) return accept(instant, pairs);
   const auto steps = [&](const Instant& from, const Instant& to) {
@@ -301,8 +301,8 @@ void Drive::judge(const Instant& instant, std::vector<MotionPair>& pairs) {
 }
 
 /// The instant and the doubtful ones that it agrees with are good; the other doubtful ones are not.
-void Drive::speak_for(const std::vector<Instant>& witnesses, const Instant& instant,
-                      std::vector<MotionPair>& pairs) {
+void MotionPairing::speak_for(const std::vector<Instant>& witnesses, const Instant& instant,
+                              std::vector<MotionPair>& pairs) {
   for (std::size_t wrong = state_.doubtful.size() - witnesses.size(); wrong > 0; --wrong)
     reject(Rejection::screw_congruence);
   state_.doubtful.clear();
@@ -310,14 +310,14 @@ void Drive::speak_for(const std::vector<Instant>& witnesses, const Instant& inst
   accept(instant, pairs);
 }
 
-void Drive::accept(Instant instant, std::vector<MotionPair>& pairs) {
+void MotionPairing::accept(Instant instant, std::vector<MotionPair>& pairs) {
   instant.chain = state_.chain;
   state_.instants.push_back(instant);
   const auto longest = static_cast<std::size_t>(state_.strides.back().stride);
   while (state_.instants.size() > longest + 1) state_.instants.pop_front();
 
   const Problem problem = empty_problem();
-  for (DriveState::PerStride& entry : state_.strides) {
+  for (PairingState::PerStride& entry : state_.strides) {
     const auto steps = static_cast<std::size_t>(entry.stride);
     if (state_.instants.size() <= steps) continue;
     const bool chosen = entry.stride == state_.choice.stride;
@@ -338,13 +338,13 @@ void Drive::accept(Instant instant, std::vector<MotionPair>& pairs) {
   }
   for (const auto& entry : state_.strides) {
     if (entry.stride != state_.choice.stride) continue;
-    state_.counts.matched = entry.statistics.kept_pairs();
-    state_.counts.left_out = entry.statistics.left_out_pairs();
+    state_.counts.matched = entry.statistics.inlier_pairs();
+    state_.counts.outliers = entry.statistics.outlier_pairs();
   }
 }
 
-std::optional<MotionPair> Drive::motion(const Instant& from, const Instant& to, int stride,
-                                        bool count_rejections) {
+std::optional<MotionPair> MotionPairing::motion(const Instant& from, const Instant& to, int stride,
+                                                bool count_rejections) {
   if (from.chain != to.chain) return std::nullopt;
   if (to.time_us - from.time_us > stretch * stride * state_.period_us) {
     if (count_rejections) reject(Rejection::gap);
@@ -362,19 +362,19 @@ std::optional<MotionPair> Drive::motion(const Instant& from, const Instant& to, 
   return pair;
 }
 
-void Drive::choose() {
+void MotionPairing::choose() {
   if (options_.stride && options_.balance) return;
   const Problem problem = empty_problem();
   std::vector<Candidate> candidates;
   std::optional<std::size_t> current;
-  for (DriveState::PerStride& entry : state_.strides) {
+  for (PairingState::PerStride& entry : state_.strides) {
     if (options_.robust) entry.statistics.look(problem, entry.stride);
     for (const double translation : balances) {
       const Balance balance = options_.balance.value_or(Balance{1, translation});
       if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
           balance.translation == state_.choice.balance.translation)
         current = candidates.size();
-      candidates.push_back({entry.stride, balance, entry.statistics.kept()});
+      candidates.push_back({entry.stride, balance, entry.statistics.inliers()});
       if (options_.balance) break;
     }
   }
@@ -390,7 +390,7 @@ void Drive::choose() {
   state_.choice.reason = text;
 }
 
-Problem Drive::empty_problem() const {
+Problem MotionPairing::empty_problem() const {
   Problem problem;
   problem.mode = options_.mode;
   problem.plane_a = options_.plane_a;
@@ -400,24 +400,24 @@ Problem Drive::empty_problem() const {
   return problem;
 }
 
-Problem Drive::problem() const {
+Problem MotionPairing::problem() const {
   Problem problem = empty_problem();
   for (const auto& [stride, statistics] : state_.strides)
-    if (stride == state_.choice.stride) problem.blocks = independent_blocks(statistics.kept(), stride);
+    if (stride == state_.choice.stride) problem.blocks = independent_blocks(statistics.inliers(), stride);
   return problem;
 }
 
-std::optional<double> Drive::time_offset() const {
+std::optional<double> MotionPairing::time_offset() const {
   return options_.track_time_offset ? state_.clock.in_force : options_.time_offset;
 }
 
-std::optional<std::int64_t> Drive::newest_us() const {
+std::optional<std::int64_t> MotionPairing::newest_us() const {
   if (state_.instants.empty()) return std::nullopt;
   return state_.instants.back().time_us;
 }
 
-DriveResult run_drive(const DriveOptions& options, const Trajectory& a, const Trajectory& b) {
-  DriveResult result{Drive(options), {}};
+PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
+  PairingResult result{MotionPairing(options), {}};
   const auto take = [&result](std::vector<MotionPair> pairs) {
     result.pairs.insert(result.pairs.end(), pairs.begin(), pairs.end());
   };

@@ -29,14 +29,14 @@ bool same_bits(const Problem& x, const Problem& y) {
   return true;
 }
 
-ExtrinsicError error_of(const Simulated& data, const Drive& drive) {
+ExtrinsicError error_of(const Simulated& data, const MotionPairing& drive) {
   return extrinsic_error(data.T, solve(drive.problem(), Method::dual).T_a_b);
 }
 
-TEST(Drive, PerfectDataGiveThePerfectAnswer) {
+TEST(MotionPairing, PerfectDataGiveThePerfectAnswer) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
     const Simulated data = simulated(terrain, 0);
-    const Drive drive = run_drive({}, data.a, data.b).drive;
+    const MotionPairing drive = pair_motions({}, data.a, data.b).drive;
     const Answer answer = solve(drive.problem(), Method::dual);
     EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
     EXPECT_LT(error_of(data, drive).rotation, 1e-9);
@@ -45,21 +45,21 @@ TEST(Drive, PerfectDataGiveThePerfectAnswer) {
   }
 }
 
-TEST(Drive, EveryMotionOfOneStepIsPaired) {
+TEST(MotionPairing, EveryMotionOfOneStepIsPaired) {
   const Simulated data = simulated(Terrain::rough, 0.01);
-  const DriveResult result = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b);
+  const PairingResult result = pair_motions({.stride = 1, .balance = Balance{}}, data.a, data.b);
   EXPECT_EQ(result.drive.counts().matched, 1000u);
   EXPECT_EQ(result.pairs.size(), 1000u);
   EXPECT_EQ(result.drive.counts().synchronised, 1001u);
   EXPECT_EQ(result.drive.choice().reason, "fixed");
 }
 
-TEST(Drive, DoesNotDependOnHowTheStreamsInterleave) {
+TEST(MotionPairing, DoesNotDependOnHowTheStreamsInterleave) {
   const Simulated data = simulated(Terrain::rough, 0.01, 600);
-  const Problem expected = run_drive({}, data.a, data.b).drive.problem();
+  const Problem expected = pair_motions({}, data.a, data.b).drive.problem();
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     testing::Random random(seed);
-    Drive drive{DriveOptions{}};
+    MotionPairing drive{PairingOptions{}};
     std::size_t i = 0, j = 0;
     while (i < data.a.size() || j < data.b.size()) {
       // one stream may run ahead of the other by many poses
@@ -73,16 +73,16 @@ TEST(Drive, DoesNotDependOnHowTheStreamsInterleave) {
   }
 }
 
-TEST(Drive, ContinuesFromItsStateBitForBit) {
+TEST(MotionPairing, ContinuesFromItsStateBitForBit) {
   const Simulated data = simulated(Terrain::rough, 0.01, 400);
-  const Problem expected = run_drive({}, data.a, data.b).drive.problem();
+  const Problem expected = pair_motions({}, data.a, data.b).drive.problem();
   for (const std::size_t cut : {0u, 3u, 9u, 63u, 64u, 65u, 200u, 399u}) {
-    Drive first{DriveOptions{}};
+    MotionPairing first{PairingOptions{}};
     for (std::size_t i = 0; i < cut; ++i) {
       first.push(Side::a, data.a[i]);
       first.push(Side::b, data.b[i]);
     }
-    Drive second(first.options(), first.state());
+    MotionPairing second(first.options(), first.state());
     for (std::size_t i = cut; i < data.a.size(); ++i) {
       second.push(Side::a, data.a[i]);
       second.push(Side::b, data.b[i]);
@@ -92,7 +92,7 @@ TEST(Drive, ContinuesFromItsStateBitForBit) {
   }
 }
 
-TEST(Drive, InterpolatesTheFasterStream) {
+TEST(MotionPairing, InterpolatesTheFasterStream) {
   // a ten times as fast as b, its stamps never the same
   const Simulated data = simulated(Terrain::free, 0, 4001);
   Trajectory slow;
@@ -102,38 +102,38 @@ TEST(Drive, InterpolatesTheFasterStream) {
   Trajectory fast;
   for (std::size_t i = 0; i < data.a.size(); ++i)
     if (i % 10 != 5) fast.push_back(data.a[i]);
-  const DriveResult result = run_drive({.stride = 1, .balance = Balance{1, 0.01}}, fast, slow);
+  const PairingResult result = pair_motions({.stride = 1, .balance = Balance{1, 0.01}}, fast, slow);
   EXPECT_EQ(result.drive.counts().matched, slow.size() - 1);
   EXPECT_EQ(result.drive.state().keys, Side::b);
-  const DriveResult swapped = run_drive({.stride = 1, .balance = Balance{1, 0.01}}, slow, fast);
+  const PairingResult swapped = pair_motions({.stride = 1, .balance = Balance{1, 0.01}}, slow, fast);
   EXPECT_EQ(swapped.drive.state().keys, Side::a);
   EXPECT_LT(error_of(data, result.drive).rotation, 2e-3);
   EXPECT_LT(error_of(data, result.drive).translation, 0.05);
 }
 
-TEST(Drive, ALostPoseMakesALongerMotionNotAWrongOne) {
+TEST(MotionPairing, ALostPoseMakesALongerMotionNotAWrongOne) {
   Simulated data = simulated(Terrain::rough, 0, 400);
   testing::Random random(3);
   for (Trajectory* trajectory : {&data.a, &data.b})
     std::erase_if(*trajectory, [&](const StampedPose&) { return random.uniform() < 0.2; });
-  DriveOptions options{.stride = 1, .balance = Balance{}};
+  PairingOptions options{.stride = 1, .balance = Balance{}};
   options.max_gap = 0.05;  // no interpolation: only instants that both have
-  const Drive drive = run_drive(options, data.a, data.b).drive;
+  const MotionPairing drive = pair_motions(options, data.a, data.b).drive;
   EXPECT_GT(drive.counts().matched, 200u);
   EXPECT_LT(error_of(data, drive).rotation, 1e-9);
   EXPECT_LT(error_of(data, drive).translation, 1e-8);
 }
 
 /// Packets overtake each other: a pose that comes late costs nothing while nothing after it has been paired.
-TEST(Drive, LatePosesFindTheirPlace) {
+TEST(MotionPairing, LatePosesFindTheirPlace) {
   const Simulated data = simulated(Terrain::rough, 0.01, 400);
-  const DriveOptions options{.stride = 1, .balance = Balance{}};
-  const Problem expected = run_drive(options, data.a, data.b).drive.problem();
+  const PairingOptions options{.stride = 1, .balance = Balance{}};
+  const Problem expected = pair_motions(options, data.a, data.b).drive.problem();
   testing::Random random(9);
   Trajectory late = data.a;
   for (std::size_t i = 20; i + 4 < late.size(); i += 4)
     if (random.uniform() < 0.3) std::swap(late[i], late[i + 1 + random.below(2)]);
-  Drive drive(options);
+  MotionPairing drive(options);
   for (std::size_t i = 0; i < late.size() + 4; ++i) {  // b comes a little later than a
     if (i < late.size()) drive.push(Side::a, late[i]);
     if (i >= 4) drive.push(Side::b, data.b[i - 4]);
@@ -143,7 +143,7 @@ TEST(Drive, LatePosesFindTheirPlace) {
   EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::out_of_order)], 0u);
 
   // too late: its neighbours have been paired without it
-  Drive strict(options);
+  MotionPairing strict(options);
   for (std::size_t i = 0; i < data.a.size(); ++i) {
     if (i != 200) strict.push(Side::a, data.a[i]);
     strict.push(Side::b, data.b[i]);
@@ -153,19 +153,19 @@ TEST(Drive, LatePosesFindTheirPlace) {
   EXPECT_EQ(strict.counts().rejected[static_cast<std::size_t>(Rejection::out_of_order)], 2u);
 }
 
-TEST(Drive, GapsAreNotBridged) {
+TEST(MotionPairing, GapsAreNotBridged) {
   Simulated data = simulated(Terrain::rough, 0.001, 600);
   std::erase_if(data.a, [&](const StampedPose& pose) {
     return pose.time_us > data.b[200].time_us && pose.time_us < data.b[300].time_us;
   });
-  const Drive drive = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
+  const MotionPairing drive = pair_motions({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
   EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::gap)], 99u + 1u);
   EXPECT_EQ(drive.counts().matched, 599u - 100u);
 }
 
-TEST(Drive, BadPosesAreCountedByReasonAndCostOnlyThemselves) {
+TEST(MotionPairing, BadPosesAreCountedByReasonAndCostOnlyThemselves) {
   const Simulated data = simulated(Terrain::rough, 0.001, 300);
-  Drive drive({.stride = 1, .balance = Balance{}});
+  MotionPairing drive({.stride = 1, .balance = Balance{}});
   for (std::size_t i = 0; i < data.a.size(); ++i) {
     drive.push(Side::a, data.a[i]);
     drive.push(Side::b, data.b[i]);
@@ -180,11 +180,11 @@ TEST(Drive, BadPosesAreCountedByReasonAndCostOnlyThemselves) {
   const auto& rejected = drive.counts().rejected;
   EXPECT_EQ(rejected[static_cast<std::size_t>(Rejection::not_finite)], 600u);
   EXPECT_EQ(rejected[static_cast<std::size_t>(Rejection::out_of_order)], 600u);
-  const Drive clean = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
+  const MotionPairing clean = pair_motions({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
   EXPECT_TRUE(same_bits(drive.problem(), clean.problem()));
 }
 
-TEST(Drive, JumpsAreLeftOut) {
+TEST(MotionPairing, JumpsAreLeftOut) {
   const Simulated clean = simulated(Terrain::rough, 0.01, 1001, 4);
   Simulated data = clean;
   testing::Random random(5);
@@ -198,7 +198,8 @@ TEST(Drive, JumpsAreLeftOut) {
     }
     data.b[i].pose = normalized(jump * data.b[i].pose);
   }
-  const Drive with = run_drive({}, data.a, data.b).drive, without = run_drive({}, clean.a, clean.b).drive;
+  const MotionPairing with = pair_motions({}, data.a, data.b).drive,
+                      without = pair_motions({}, clean.a, clean.b).drive;
   EXPECT_EQ(with.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)],
             static_cast<std::uint64_t>(jumps));
   EXPECT_EQ(without.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 0u);
@@ -206,97 +207,98 @@ TEST(Drive, JumpsAreLeftOut) {
 }
 
 /// Before anything is known of what is typical: a motion of many steps across the jump would stay wrong.
-TEST(Drive, JumpsAmongTheFirstPosesAreLeftOut) {
+TEST(MotionPairing, JumpsAmongTheFirstPosesAreLeftOut) {
   const Simulated clean = simulated(Terrain::free, 0.01, 1001, 4);
   for (const std::size_t first : {1u, 5u, 20u}) {
     Simulated data = clean;
     const DualQuaternion jump = testing::displacement({0.5, -2, 0.3}, {1, -3, 2});
     for (std::size_t i = first; i < data.b.size(); ++i) data.b[i].pose = normalized(jump * data.b[i].pose);
-    const Drive with = run_drive({}, data.a, data.b).drive, without = run_drive({}, clean.a, clean.b).drive;
+    const MotionPairing with = pair_motions({}, data.a, data.b).drive,
+                        without = pair_motions({}, clean.a, clean.b).drive;
     EXPECT_EQ(with.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 1u) << first;
     EXPECT_EQ(with.state().instants.back().chain, 1u) << first;
-    EXPECT_LE(with.counts().left_out, without.counts().left_out) << first;
+    EXPECT_LE(with.counts().outlier, without.counts().outlier) << first;
     EXPECT_LT(error_of(data, with).rotation, 2 * error_of(clean, without).rotation + 2e-4) << first;
   }
 }
 
-TEST(Drive, AFrozenSensorIsLeftOutAndAVehicleAtRestIsNot) {
+TEST(MotionPairing, AFrozenSensorIsLeftOutAndAVehicleAtRestIsNot) {
   const Simulated clean = simulated(Terrain::free, 0.01, 1001, 4);
-  const auto frozen = [](const Drive& drive) {
+  const auto frozen = [](const MotionPairing& drive) {
     return drive.counts().rejected[static_cast<std::size_t>(Rejection::frozen)];
   };
   // b samples between the poses of a: what is repeated is an interpolation
   for (const std::int64_t later_us : {0, 33'000}) {
     Simulated data = clean;
     for (StampedPose& pose : data.b) pose.time_us += later_us;
-    DriveOptions options;
+    PairingOptions options;
     options.time_offset = -1e-6 * static_cast<double>(later_us) / 2;
-    const double error_clean = error_of(data, run_drive(options, data.a, data.b).drive).rotation;
+    const double error_clean = error_of(data, pair_motions(options, data.a, data.b).drive).rotation;
     for (std::size_t i = 401; i < 600; ++i) data.b[i].pose = data.b[400].pose;
-    const Drive drive = run_drive(options, data.a, data.b).drive;
+    const MotionPairing drive = pair_motions(options, data.a, data.b).drive;
     EXPECT_NEAR(static_cast<double>(frozen(drive)), 199, 1) << later_us;
     if (later_us == 0) {
       EXPECT_LT(error_of(data, drive).rotation, 3 * error_clean);
     }
     for (std::size_t i = 401; i < 600; ++i) data.a[i].pose = data.a[400].pose;
-    EXPECT_LE(frozen(run_drive(options, data.a, data.b).drive), 2u) << later_us;
+    EXPECT_LE(frozen(pair_motions(options, data.a, data.b).drive), 2u) << later_us;
   }
-  DriveOptions trusting;
+  PairingOptions trusting;
   trusting.robust = false;
   Simulated data = clean;
   for (std::size_t i = 401; i < 600; ++i) data.b[i].pose = data.b[400].pose;
-  EXPECT_EQ(frozen(run_drive(trusting, data.a, data.b).drive), 0u);
+  EXPECT_EQ(frozen(pair_motions(trusting, data.a, data.b).drive), 0u);
 }
 
-TEST(Drive, TimeOffsetIsAddedToB) {
+TEST(MotionPairing, TimeOffsetIsAddedToB) {
   Simulated data = simulated(Terrain::rough, 0, 300);
   for (StampedPose& pose : data.b) pose.time_us -= 12'345'678;
-  DriveOptions options;
+  PairingOptions options;
   options.time_offset = 12.345678;
-  const Drive drive = run_drive(options, data.a, data.b).drive;
+  const MotionPairing drive = pair_motions(options, data.a, data.b).drive;
   EXPECT_LT(error_of(data, drive).rotation, 1e-9);
 }
 
-TEST(Drive, StreamsThatDoNotOverlapGiveNothingAndSaySo) {
+TEST(MotionPairing, StreamsThatDoNotOverlapGiveNothingAndSaySo) {
   Simulated data = simulated(Terrain::rough, 0, 300);
   for (StampedPose& pose : data.b) pose.time_us += 1'000'000'000;
-  const Drive drive = run_drive({}, data.a, data.b).drive;
+  const MotionPairing drive = pair_motions({}, data.a, data.b).drive;
   EXPECT_EQ(drive.counts().matched, 0u);
   EXPECT_TRUE(drive.problem().blocks.empty());
   EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)], 300u);
 }
 
-TEST(Drive, ShortDrivesArePairedAtTheEnd) {
+TEST(MotionPairing, ShortDrivesArePairedAtTheEnd) {
   const Simulated data = simulated(Terrain::rough, 0, 3);
-  EXPECT_EQ(run_drive({}, data.a, data.b).drive.counts().matched, 2u);
+  EXPECT_EQ(pair_motions({}, data.a, data.b).drive.counts().matched, 2u);
 }
 
-TEST(Drive, MemoryIsBoundedWhateverOneStreamDoes) {
-  Drive drive{DriveOptions{}};
+TEST(MotionPairing, MemoryIsBoundedWhateverOneStreamDoes) {
+  MotionPairing drive{PairingOptions{}};
   for (int i = 0; i < 100'000; ++i) drive.push(Side::a, {i * 1000, {}});
   EXPECT_LE(drive.state().waiting[0].size(), 4096u);
   EXPECT_GT(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)], 90'000u);
 }
 
-TEST(Drive, ChoosesLongMotionsForNoiseThatDoesNotGrow) {
+TEST(MotionPairing, ChoosesLongMotionsForNoiseThatDoesNotGrow) {
   // absolute poses with jitter (a camera that sees a target): short steps are useless, long ones good
   Simulated data = simulated(Terrain::free, 0, 2001);
   testing::Random random(6);
   for (StampedPose& pose : data.b)
     pose.pose = pose.pose * testing::displacement(random.normal3(0.01), random.normal3(0.02));
-  const Drive chosen = run_drive({}, data.a, data.b).drive;
-  const Drive equal = run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
+  const MotionPairing chosen = pair_motions({}, data.a, data.b).drive;
+  const MotionPairing equal = pair_motions({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
   EXPECT_GE(chosen.choice().stride, 8);
   EXPECT_LT(error_of(data, chosen).rotation, 0.6 * error_of(data, equal).rotation);
 }
 
-TEST(Drive, AutomaticSettingsBeatEqualWeights) {
+TEST(MotionPairing, AutomaticSettingsBeatEqualWeights) {
   std::vector<double> equal, chosen;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulated data = simulated(Terrain::rough, 0.01, 1001, seed);
     equal.push_back(
-        error_of(data, run_drive({.stride = 1, .balance = Balance{}}, data.a, data.b).drive).rotation);
-    chosen.push_back(error_of(data, run_drive({}, data.a, data.b).drive).rotation);
+        error_of(data, pair_motions({.stride = 1, .balance = Balance{}}, data.a, data.b).drive).rotation);
+    chosen.push_back(error_of(data, pair_motions({}, data.a, data.b).drive).rotation);
   }
   std::sort(equal.begin(), equal.end());
   std::sort(chosen.begin(), chosen.end());
@@ -304,12 +306,12 @@ TEST(Drive, AutomaticSettingsBeatEqualWeights) {
   EXPECT_LT(chosen[10], 0.3 * equal[10]);
 }
 
-TEST(Drive, RefusesOptionsThatMakeNoSense) {
-  EXPECT_THROW(Drive({.stride = 0}), Error);
-  DriveOptions planar;
+TEST(MotionPairing, RefusesOptionsThatMakeNoSense) {
+  EXPECT_THROW(MotionPairing({.stride = 0}), Error);
+  PairingOptions planar;
   planar.mode = Mode::planar;
   planar.plane_a.normal = {0, 0, 2};
-  EXPECT_THROW(Drive{planar}, Error);
+  EXPECT_THROW(MotionPairing{planar}, Error);
 }
 
 TEST(Simulation, IsTheSameForTheSameSeedAndAnotherForAnother) {

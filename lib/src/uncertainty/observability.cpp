@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/uncertainty/knowledge.hpp"
+#include "egocal/uncertainty/observability.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -82,9 +82,10 @@ constexpr std::size_t least_double_blocks = 8;
 /// Per direction the larger of the variances with single and with double blocks: where neighbours share their
 /// errors (noise that wanders) single ones say too little.
 template <typename Variance>
-Vector6d largest_variance(const Problem& problem, Blocks blocks, const Variance& variance) {
+Vector6d largest_variance(const Problem& problem, ErrorCorrelation errors, const Variance& variance) {
   Vector6d single = variance(problem);
-  if (blocks == Blocks::independent || problem.blocks.size() < 2 * least_double_blocks) return single;
+  if (errors == ErrorCorrelation::independent || problem.blocks.size() < 2 * least_double_blocks)
+    return single;
   Problem doubled = problem;
   doubled.blocks.clear();
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
@@ -143,9 +144,9 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, double 
   return jackknife.variance();
 }
 
-Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b,
-                            Blocks blocks) {
-  Knowledge result;
+Observability spatial_observability(const Problem& problem, const Matrix8d& Q_metres,
+                                    const DualQuaternion& T_a_b, ErrorCorrelation errors) {
+  Observability result;
   result.stddev.fill(infinity);
   const Statistics all = total(problem.blocks);
   const double length = detail::length_scale(Q_metres);
@@ -185,7 +186,7 @@ Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, co
 
   const int shown = 6 - hidden;
   if (shown == 0 || problem.blocks.size() < least_blocks) return result;
-  const Vector6d variance = largest_variance(problem, blocks, [&](const Problem& given) {
+  const Vector6d variance = largest_variance(problem, errors, [&](const Problem& given) {
     return shown == 6
                ? spatial_variance<6>(given, all, length, q, T, seen.vectors)
                : spatial_variance<Eigen::Dynamic>(given, all, length, q, T, seen.vectors.rightCols(shown));
@@ -205,9 +206,9 @@ Knowledge spatial_knowledge(const Problem& problem, const Matrix8d& Q_metres, co
   return result;
 }
 
-Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                           Blocks blocks) {
-  Knowledge result;
+Observability planar_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                                   ErrorCorrelation errors) {
+  Observability result;
   result.stddev.fill(infinity);
   const Statistics all = total(problem.blocks);
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
@@ -247,7 +248,7 @@ Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const Dual
     result.hint = translation_seen ? "still needed: motion" : "still needed: turns";
 
   if (problem.blocks.size() < least_blocks) return result;
-  const Vector6d variance = largest_variance(problem, blocks, [&](const Problem& given) {
+  const Vector6d variance = largest_variance(problem, errors, [&](const Problem& given) {
     Jackknife jackknife(count);
     for (const Statistics& block : given.blocks) {
       Statistics rest = all;
@@ -272,15 +273,16 @@ Knowledge planar_knowledge(const Problem& problem, const Matrix8d& Q, const Dual
 
 }  // namespace
 
-Knowledge knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b, Blocks blocks) {
+Observability assess_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                                   ErrorCorrelation errors) {
   if (!Q.allFinite() || !(Q.diagonal().maxCoeff() > 0)) {
-    Knowledge nothing;
+    Observability nothing;
     nothing.stddev.fill(infinity);
     nothing.hint = "still needed: motion";
     return nothing;
   }
-  return problem.mode == Mode::planar ? planar_knowledge(problem, Q, T_a_b, blocks)
-                                      : spatial_knowledge(problem, Q, T_a_b, blocks);
+  return problem.mode == Mode::planar ? planar_observability(problem, Q, T_a_b, errors)
+                                      : spatial_observability(problem, Q, T_a_b, errors);
 }
 
 FlatDirections flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {

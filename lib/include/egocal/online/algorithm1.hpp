@@ -34,11 +34,11 @@ struct OnlineStep {
 /// Algorithm 1: fast solution from the last answer, verified; the global one while the fast one has not been
 /// verified for t_no_fail. Pure: the same problem, time and state give the same step. time_us: of the
 /// problem's newest motion, not of any clock.
-OnlineStep calibrate(const Problem& problem, std::int64_t time_us, const OnlineState& state,
-                     const OnlineOptions& options = {});
+OnlineStep algorithm1_step(const Problem& problem, std::int64_t time_us, const OnlineState& state,
+                           const OnlineOptions& options = {});
 
 /// What is needed to choose between answers for the same pair.
-struct Claim {
+struct AnswerRank {
   std::int64_t session = 0;
   std::int64_t seq = 0;  ///< of the problem
   Optimality optimality = Optimality::undecided;
@@ -46,6 +46,6 @@ struct Claim {
 };
 /// Which of two answers counts: newest problem, certified before uncertified, lower cost. False for equal
 /// claims.
-bool counts_more(const Claim& x, const Claim& y);
+bool outranks(const AnswerRank& x, const AnswerRank& y);
 
 }  // namespace egocal

@@ -25,7 +25,7 @@ Problem problem_of(const std::vector<MotionPair>& pairs) {
   BlockStatistics blocks;
   for (const MotionPair& pair : pairs) blocks.add(pair);
   Problem problem;
-  problem.blocks = blocks.kept();
+  problem.blocks = blocks.inliers();
   return problem;
 }
 
@@ -54,47 +54,47 @@ DualQuaternion planar(Random& random) {
   return displacement({0, 0, yaw}, {x, y, 0});
 }
 
-TEST(Knowledge, FreeMotionShowsEverything) {
+TEST(Observability, FreeMotionShowsEverything) {
   Random random(1);
   const Answer answer =
       solve(problem_of(random_pairs(T_a_b, {.pairs = 300, .noise = 0.01}, random)), Method::dual);
-  EXPECT_EQ(answer.knowledge.observable, (Flags{true, true, true, true, true, true}));
-  for (const double stddev : answer.knowledge.stddev) {
+  EXPECT_EQ(answer.observability.observable, (Flags{true, true, true, true, true, true}));
+  for (const double stddev : answer.observability.stddev) {
     EXPECT_GT(stddev, 0);
     EXPECT_LT(stddev, 0.1);
   }
-  EXPECT_EQ(answer.knowledge.hint, "");
+  EXPECT_EQ(answer.observability.hint, "");
 }
 
-TEST(Knowledge, HeightIsNeverSeenInPlanarMotion) {
+TEST(Observability, HeightIsNeverSeenInPlanarMotion) {
   for (const double noise : {0.0, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.1})
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       const Answer answer = solve(problem_of(motions_of_a(T_a_b, 300, noise, seed, planar)), Method::dual);
-      const Flags& seen = answer.knowledge.observable;
+      const Flags& seen = answer.observability.observable;
       EXPECT_FALSE(seen[2]) << noise << " " << seed;
-      EXPECT_TRUE(std::isinf(answer.knowledge.stddev[2]));
+      EXPECT_TRUE(std::isinf(answer.observability.stddev[2]));
       if (noise <= 0.01) {
         EXPECT_EQ(seen, (Flags{true, true, false, true, true, true})) << noise << " " << seed;
       }
-      EXPECT_NE(answer.knowledge.hint, "");
+      EXPECT_NE(answer.observability.hint, "");
       EXPECT_EQ(answer.certificate.optimality, Optimality::certified);
     }
 }
 
-TEST(Knowledge, PureTranslationShowsNoTranslation) {
+TEST(Observability, PureTranslationShowsNoTranslation) {
   for (const double noise : {0.0, 0.01}) {
     const Answer answer = solve(problem_of(motions_of_a(T_a_b, 200, noise, 1,
                                                         [](Random& random) {
                                                           return displacement({0, 0, 0}, random.normal3());
                                                         })),
                                 Method::dual);
-    EXPECT_EQ(answer.knowledge.observable, (Flags{false, false, false, true, true, true})) << noise;
-    EXPECT_EQ(answer.knowledge.hint, "still needed: turns");
+    EXPECT_EQ(answer.observability.observable, (Flags{false, false, false, true, true, true})) << noise;
+    EXPECT_EQ(answer.observability.hint, "still needed: turns");
     EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 0.01);
   }
 }
 
-TEST(Knowledge, StraightOnShowsOnlyTheDirection) {
+TEST(Observability, StraightOnShowsOnlyTheDirection) {
   const Answer answer =
       solve(problem_of(motions_of_a(T_a_b, 200, 0, 1,
                                     [](Random& random) {
@@ -102,29 +102,29 @@ TEST(Knowledge, StraightOnShowsOnlyTheDirection) {
                                     })),
             Method::dual);
   // roll turns about the direction of travel
-  EXPECT_EQ(answer.knowledge.observable, (Flags{false, false, false, false, true, true}));
+  EXPECT_EQ(answer.observability.observable, (Flags{false, false, false, false, true, true}));
 }
 
-TEST(Knowledge, NoMotionShowsNothing) {
+TEST(Observability, NoMotionShowsNothing) {
   Problem problem = problem_of(std::vector<MotionPair>(50));
   problem.prior = T_a_b;
   for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
     const Answer answer = solve(problem, method);
-    EXPECT_EQ(answer.knowledge.observable, Flags{}) << name(method);
+    EXPECT_EQ(answer.observability.observable, Flags{}) << name(method);
     EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).translation, 1e-12);
     EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 1e-12);
-    EXPECT_NE(answer.knowledge.hint, "");
+    EXPECT_NE(answer.observability.hint, "");
   }
-  EXPECT_EQ(solve(Problem{}, Method::dual).knowledge.observable, Flags{});
+  EXPECT_EQ(solve(Problem{}, Method::dual).observability.observable, Flags{});
 }
 
-TEST(Knowledge, OnePairShowsNoTranslationAlongItsAxis) {
+TEST(Observability, OnePairShowsNoTranslationAlongItsAxis) {
   const Answer answer = solve(problem_of(motions_of_a(T_a_b, 1, 0, 1, planar)), Method::dual);
-  EXPECT_FALSE(answer.knowledge.observable[2]);
+  EXPECT_FALSE(answer.observability.observable[2]);
   EXPECT_TRUE(answer.T_a_b.vec().allFinite());
 }
 
-TEST(Knowledge, FlatDirectionsAreTakenFromThePrior) {
+TEST(Observability, FlatDirectionsAreTakenFromThePrior) {
   // true but for the height: the motions give x, y and the rotation, the prior gives z
   Problem problem = problem_of(motions_of_a(T_a_b, 100, 0, 1, planar));
   Pose prior = to_pose(T_a_b);
@@ -143,7 +143,7 @@ TEST(Knowledge, FlatDirectionsAreTakenFromThePrior) {
   }
 }
 
-TEST(Knowledge, PlanarModeShowsXYAndYaw) {
+TEST(Observability, PlanarModeShowsXYAndYaw) {
   const GroundPlane plane_a{Eigen::Vector3d::UnitZ(), -1.8}, plane_b{Eigen::Vector3d(0, -1, 0), -1.6};
   const DualQuaternion G_a = plane_frame(plane_a), G_b = plane_frame(plane_b);
   const DualQuaternion T = extrinsic_from_planar(displacement({0, 0, 0.4}, {1, 2, 0}), G_a, G_b);
@@ -156,13 +156,13 @@ TEST(Knowledge, PlanarModeShowsXYAndYaw) {
   for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
     const Answer answer = solve(problem, method);
     EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << name(method);
-    EXPECT_EQ(answer.knowledge.observable, (Flags{true, true, false, false, false, true}));
+    EXPECT_EQ(answer.observability.observable, (Flags{true, true, false, false, false, true}));
     EXPECT_LT(extrinsic_error(T, answer.T_a_b).translation, 0.1);
     EXPECT_LT(extrinsic_error(T, answer.T_a_b).rotation, 0.01);
   }
 }
 
-TEST(Knowledge, PlanarModeWithoutTurnsShowsNoTranslation) {
+TEST(Observability, PlanarModeWithoutTurnsShowsNoTranslation) {
   const GroundPlane plane{Eigen::Vector3d::UnitZ(), -1.8};
   Problem problem = problem_of(motions_of_a(displacement({0, 0, 0.4}, {1, 2, 0}), 100, 0, 1, [](Random&) {
     return displacement({0, 0, 0}, {1, 0, 0});
@@ -170,11 +170,11 @@ TEST(Knowledge, PlanarModeWithoutTurnsShowsNoTranslation) {
   problem.mode = Mode::planar;
   problem.plane_a = problem.plane_b = plane;
   const Answer answer = solve(problem, Method::dual);
-  EXPECT_EQ(answer.knowledge.observable, (Flags{false, false, false, false, false, true}));
-  EXPECT_EQ(answer.knowledge.hint, "still needed: turns");
+  EXPECT_EQ(answer.observability.observable, (Flags{false, false, false, false, false, true}));
+  EXPECT_EQ(answer.observability.hint, "still needed: turns");
 }
 
-TEST(Knowledge, IntervalsOfTwoSigmaCoverTheTruth) {
+TEST(Observability, IntervalsOfTwoSigmaCoverTheTruth) {
   // independent noise, free motion: each direction's 95 % interval must cover the truth in about 95 % of the
   // drives
   int covered = 0, cases = 0;
@@ -188,9 +188,9 @@ TEST(Knowledge, IntervalsOfTwoSigmaCoverTheTruth) {
     error << estimate.translation - truth.translation,
         rotation_log(estimate.rotation * truth.rotation.conjugate());
     for (std::size_t i = 0; i < 6; ++i) {
-      ASSERT_TRUE(answer.knowledge.observable[i]);
+      ASSERT_TRUE(answer.observability.observable[i]);
       ++cases;
-      if (std::abs(error[static_cast<int>(i)]) <= 1.96 * answer.knowledge.stddev[i]) ++covered;
+      if (std::abs(error[static_cast<int>(i)]) <= 1.96 * answer.observability.stddev[i]) ++covered;
     }
   }
   const double share = static_cast<double>(covered) / cases;

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/online/calibrate.hpp"
+#include "egocal/online/algorithm1.hpp"
 
 namespace egocal {
 
-OnlineStep calibrate(const Problem& problem, std::int64_t time_us, const OnlineState& state,
-                     const OnlineOptions& options) {
+OnlineStep algorithm1_step(const Problem& problem, std::int64_t time_us, const OnlineState& state,
+                           const OnlineOptions& options) {
   OnlineStep step;
   step.state = state;
   if (state.last || !options.global) {
@@ -24,7 +24,7 @@ OnlineStep calibrate(const Problem& problem, std::int64_t time_us, const OnlineS
   return step;
 }
 
-bool counts_more(const Claim& x, const Claim& y) {
+bool outranks(const AnswerRank& x, const AnswerRank& y) {
   if (x.session != y.session) return x.session > y.session;
   if (x.seq != y.seq) return x.seq > y.seq;
   const bool x_certified = x.optimality == Optimality::certified;

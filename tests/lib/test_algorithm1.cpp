@@ -4,7 +4,7 @@
 
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/online/calibrate.hpp"
+#include "egocal/online/algorithm1.hpp"
 #include "egocal/problem/blocks.hpp"
 
 namespace egocal {
@@ -15,32 +15,32 @@ using testing::Random;
 using testing::random_pairs;
 
 /// A drive, pair by pair.
-struct Drive {
+struct MotionPairing {
   DualQuaternion T = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
   std::vector<MotionPair> pairs;
   BlockStatistics blocks;
 
-  Drive() {
+  MotionPairing() {
     Random random(1);
     pairs = random_pairs(T, {.motion = testing::Motion::dominant_axis, .pairs = 300, .noise = 0.01}, random);
   }
   Problem next(std::size_t i) {
     blocks.add(pairs[i]);
     Problem problem;
-    problem.blocks = blocks.kept();
+    problem.blocks = blocks.inliers();
     return problem;
   }
 };
 
 TEST(Calibrate, BeginsWithTheGlobalSolverAndThenRunsFastAndCertified) {
-  Drive drive;
+  MotionPairing drive;
   OnlineState state;
   const OnlineOptions options{.t_no_fail = 2};
   std::int64_t last_global = -1;
   for (std::size_t i = 0; i < drive.pairs.size(); ++i) {
     const Problem problem = drive.next(i);
     const auto time = static_cast<std::int64_t>(i) * 100'000;
-    const OnlineStep step = calibrate(problem, time, state, options);
+    const OnlineStep step = algorithm1_step(problem, time, state, options);
     if (i == 0) {
       EXPECT_TRUE(step.global_used);
     }
@@ -59,7 +59,7 @@ TEST(Calibrate, BeginsWithTheGlobalSolverAndThenRunsFastAndCertified) {
 }
 
 TEST(Calibrate, AWrongLastAnswerIsCaughtAndRepaired) {
-  Drive drive;
+  MotionPairing drive;
   Problem problem;
   for (std::size_t i = 0; i < 200; ++i) problem = drive.next(i);
   Random random(2);
@@ -67,7 +67,7 @@ TEST(Calibrate, AWrongLastAnswerIsCaughtAndRepaired) {
   for (int i = 0; i < 200; ++i) {
     OnlineState state;
     state.last = testing::random_extrinsic(random, 50);
-    const OnlineStep step = calibrate(problem, 1'000'000'000, state);
+    const OnlineStep step = algorithm1_step(problem, 1'000'000'000, state);
     EXPECT_EQ(step.answer.certificate.optimality, Optimality::certified);
     if (!step.fast_verified) {
       ++caught;
@@ -79,35 +79,35 @@ TEST(Calibrate, AWrongLastAnswerIsCaughtAndRepaired) {
 }
 
 TEST(Calibrate, GlobalIsAskedUntilTNoFailHasPassed) {
-  Drive drive;
+  MotionPairing drive;
   Problem problem;
   for (std::size_t i = 0; i < 200; ++i) problem = drive.next(i);
   OnlineState state;
   const OnlineOptions options{.t_no_fail = 1};
-  state = calibrate(problem, 0, state, options).state;
-  EXPECT_TRUE(calibrate(problem, 1'000'000, state, options).global_used);
-  EXPECT_FALSE(calibrate(problem, 1'000'001, state, options).global_used);
+  state = algorithm1_step(problem, 0, state, options).state;
+  EXPECT_TRUE(algorithm1_step(problem, 1'000'000, state, options).global_used);
+  EXPECT_FALSE(algorithm1_step(problem, 1'000'001, state, options).global_used);
 }
 
 TEST(Calibrate, IsPure) {
-  Drive drive;
+  MotionPairing drive;
   Problem problem;
   for (std::size_t i = 0; i < 50; ++i) problem = drive.next(i);
   OnlineState state;
   state.last = drive.T;
-  const OnlineStep first = calibrate(problem, 5, state), second = calibrate(problem, 5, state);
+  const OnlineStep first = algorithm1_step(problem, 5, state), second = algorithm1_step(problem, 5, state);
   EXPECT_EQ(first.answer.T_a_b.vec(), second.answer.T_a_b.vec());
-  EXPECT_EQ(first.answer.knowledge.stddev, second.answer.knowledge.stddev);
+  EXPECT_EQ(first.answer.observability.stddev, second.answer.observability.stddev);
 }
 
 TEST(WhichCounts, NewestThenCertifiedThenCheapest) {
-  const Claim old{1, 5, Optimality::certified, 1}, recent{1, 6, Optimality::undecided, 9};
-  const Claim other_session{2, 1, Optimality::not_optimal, 99};
-  EXPECT_TRUE(counts_more(recent, old));
-  EXPECT_TRUE(counts_more(other_session, recent));
-  EXPECT_TRUE(counts_more({1, 5, Optimality::certified, 2}, {1, 5, Optimality::undecided, 1}));
-  EXPECT_TRUE(counts_more({1, 5, Optimality::certified, 1}, {1, 5, Optimality::certified, 2}));
-  EXPECT_FALSE(counts_more(old, old));
+  const AnswerRank old{1, 5, Optimality::certified, 1}, recent{1, 6, Optimality::undecided, 9};
+  const AnswerRank other_session{2, 1, Optimality::not_optimal, 99};
+  EXPECT_TRUE(outranks(recent, old));
+  EXPECT_TRUE(outranks(other_session, recent));
+  EXPECT_TRUE(outranks({1, 5, Optimality::certified, 2}, {1, 5, Optimality::undecided, 1}));
+  EXPECT_TRUE(outranks({1, 5, Optimality::certified, 1}, {1, 5, Optimality::certified, 2}));
+  EXPECT_FALSE(outranks(old, old));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace egocal {
 
 /// Whether the errors of neighbouring blocks may be related. If so, double blocks are left out as well as
 /// single ones, and the larger spread counts: safer to report, noisier to compare settings by.
-enum class Blocks { related, independent };
+enum class ErrorCorrelation { correlated, independent };
 
 /// What the motions tell of each direction around the minimiser of (18), in the coordinates (t, rotation
 /// vector) of sensor a's frame.
@@ -19,8 +19,8 @@ enum class Blocks { related, independent };
 /// systematic error of one sensor stays. To it is added the attenuation that noisy rotations cause
 /// (docs/method.md, "Uncertainty"). Planar mode: z, roll and pitch come from the planes; they are not
 /// observable.
-Knowledge knowledge(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                    Blocks blocks = Blocks::related);
+Observability assess_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                                   ErrorCorrelation errors = ErrorCorrelation::correlated);
 
 /// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of the
 /// directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is

@@ -19,7 +19,7 @@
 namespace egocal {
 
 /// How motions are made from two streams of poses, and what the solvers are to minimise.
-struct DriveOptions {
+struct PairingOptions {
   Mode mode = Mode::spatial;
   GroundPlane plane_a{}, plane_b{};  ///< planar mode
   std::optional<int> stride{};  ///< steps of the slower stream in one motion; empty: chosen by the jack-knife
@@ -46,11 +46,11 @@ enum class Rejection {
 };
 std::string_view name(Rejection reason);
 
-struct DriveCounts {
+struct PairingCounts {
   std::uint64_t poses_a = 0, poses_b = 0;  ///< handed in
   std::uint64_t synchronised = 0;          ///< instants for which both poses are known
   std::uint64_t matched = 0;               ///< motion pairs in the statistics (of the chosen stride)
-  std::uint64_t left_out =
+  std::uint64_t outliers =
       0;  ///< motion pairs (of the chosen stride) that contradict the others; may come back
   std::array<std::uint64_t, static_cast<std::size_t>(Rejection::count_)> rejected{};
 };
@@ -69,15 +69,15 @@ struct Instant {
   std::uint64_t chain = 0;
 };
 
-/// Everything that a Drive remembers; bounded whatever the length of the drive. Continuing from a copy gives
-/// the same bits as never having stopped.
-struct DriveState {
+/// Everything that a MotionPairing remembers; bounded whatever the length of the drive. Continuing from a
+/// copy gives the same bits as never having stopped.
+struct PairingState {
   struct PerStride {
     int stride = 1;
     RobustStatistics statistics;
   };
 
-  DriveCounts counts;
+  PairingCounts counts;
   Choice choice;
   ClockState clock;                                      ///< only where the time offset is tracked
   std::array<std::optional<std::int64_t>, 2> newest_us;  ///< of each stream, b's with the offset
@@ -100,10 +100,10 @@ struct DriveState {
 /// motions, accumulates them in blocks for every stride under consideration, leaves out blocks that
 /// contradict the others, and chooses stride and balance. Used offline and by egocal-pairing alike; the
 /// result depends on the poses of each stream alone, not on how the two streams interleave.
-class Drive {
+class MotionPairing {
  public:
-  explicit Drive(DriveOptions options);
-  Drive(DriveOptions options, DriveState state);
+  explicit MotionPairing(PairingOptions options);
+  MotionPairing(PairingOptions options, PairingState state);
 
   /// Takes in the next pose of one stream. Returns the motion pairs of the chosen stride that it completed.
   std::vector<MotionPair> push(Side side, const StampedPose& pose);
@@ -114,9 +114,9 @@ class Drive {
   /// What is known so far.
   Problem problem() const;
   const Choice& choice() const { return state_.choice; }
-  const DriveCounts& counts() const { return state_.counts; }
-  const DriveOptions& options() const { return options_; }
-  const DriveState& state() const { return state_; }
+  const PairingCounts& counts() const { return state_.counts; }
+  const PairingOptions& options() const { return options_; }
+  const PairingState& state() const { return state_; }
   std::optional<std::int64_t> newest_us() const;  ///< time of the newest synchronised instant [us]
   /// What is added to the stamps of b. Empty while it is looked for.
   std::optional<double> time_offset() const;
@@ -135,16 +135,16 @@ class Drive {
   std::optional<MotionPair> motion(const Instant& from, const Instant& to, int stride, bool count_rejections);
   void choose();
 
-  DriveOptions options_;
+  PairingOptions options_;
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
-  DriveState state_;
+  PairingState state_;
 };
 
-/// Both trajectories through a Drive, in the order of time.
-struct DriveResult {
-  Drive drive;
+/// Both trajectories through a MotionPairing, in the order of time.
+struct PairingResult {
+  MotionPairing drive;
   std::vector<MotionPair> pairs;  ///< of the stride in force when each was completed
 };
-DriveResult run_drive(const DriveOptions& options, const Trajectory& a, const Trajectory& b);
+PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b);
 
 }  // namespace egocal
