@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What values from files, messages and options must obey. One place for all of them, so that a trajectory
+// which is accepted from a file can be sent, and a message that is accepted cannot overflow later arithmetic.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace egocal {
+
+/// A closed range of an option or a value.
+struct Range {
+  double least = 0, most = 0;
+  /// False for NaN, too.
+  constexpr bool contains(double value) const { return value >= least && value <= most; }
+};
+
+namespace limits {
+
+/// 1970-01-01 and 2100-01-01 [us]. Times that count from another event than 1970 (relative times) begin at
+/// zero and stay far below.
+inline constexpr std::int64_t earliest_us = 0;
+inline constexpr std::int64_t latest_us = 4'102'444'800'000'000;
+
+/// Of a pose in its odometry frame, in each coordinate [m]. Beyond it a double resolves no micrometres.
+inline constexpr double largest_distance = 1e9;
+
+/// How far the length of a rotation's quaternion may be from 1: what a few printed digits leave.
+inline constexpr double unit_tolerance = 0.01;
+
+/// Sequence numbers and counts: doubles hold them exactly, and adding to them does not overflow.
+inline constexpr std::int64_t largest_count = std::int64_t{1} << 53;
+
+inline constexpr Range max_gap{1e-3, 3600};          ///< [s]
+inline constexpr Range time_offset{-1e9, 1e9};       ///< [s]
+inline constexpr Range t_no_fail{0, 1e6};            ///< [s]
+inline constexpr Range stride{1, 10'000};            ///< steps of the slower stream
+inline constexpr Range rotation_weight{0, 1e12};     ///< Balance::rotation
+inline constexpr Range translation_weight{0, 1e12};  ///< Balance::translation; zero itself is not allowed
+
+}  // namespace limits
+
+/// On the wire: a date.
+constexpr bool plausible_time(std::int64_t time_us) {
+  return time_us >= limits::earliest_us && time_us <= limits::latest_us;
+}
+
+/// In files and inside the library: a date or a relative time, which an offset may have moved below zero.
+constexpr bool plausible_relative_time(std::int64_t time_us) {
+  return time_us >= -limits::latest_us && time_us <= limits::latest_us;
+}
+
+/// Sequence numbers; -1 is an unknown one where a message allows it.
+constexpr bool plausible_count(std::int64_t count) {
+  return count >= 0 && count <= limits::largest_count;
+}
+
+/// False for NaN and infinity, too.
+inline bool plausible_distance(double metres) {
+  return std::abs(metres) <= limits::largest_distance;
+}
+
+/// Of the rotation quaternion's length.
+inline bool plausible_norm(double norm) {
+  return std::abs(norm - 1) <= limits::unit_tolerance;
+}
+
+}  // namespace egocal
