@@ -217,7 +217,7 @@ TEST(MotionPairing, JumpsAmongTheFirstPosesAreLeftOut) {
                         without = pair_motions({}, clean.a, clean.b).drive;
     EXPECT_EQ(with.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 1u) << first;
     EXPECT_EQ(with.state().instants.back().chain, 1u) << first;
-    EXPECT_LE(with.counts().outlier, without.counts().outlier) << first;
+    EXPECT_LE(with.counts().outliers, without.counts().outliers) << first;
     EXPECT_LT(error_of(data, with).rotation, 2 * error_of(clean, without).rotation + 2e-4) << first;
   }
 }

@@ -26,8 +26,8 @@ struct Options {
   bool json = false;
 };
 
-CalibrationOptions understood(const Options& options) {
-  CalibrationOptions result;
+SolveRequest understood(const Options& options) {
+  SolveRequest result;
   result.source = options.source;
   if (!options.times.empty()) {
     if (result.source.times_a.empty()) result.source.times_a = options.times;
@@ -46,41 +46,43 @@ CalibrationOptions understood(const Options& options) {
       options.plane_a.empty() != options.plane_b.empty())
     throw UsageError("--planar: goes with both --plane-a and --plane-b");
   if (options.planar) {
-    result.drive.mode = Mode::planar;
-    result.drive.plane_a = plane("--plane-a", options.plane_a);
-    result.drive.plane_b = plane("--plane-b", options.plane_b);
+    result.calibration.pairing.mode = Mode::planar;
+    result.calibration.pairing.plane_a = plane("--plane-a", options.plane_a);
+    result.calibration.pairing.plane_b = plane("--plane-b", options.plane_b);
   }
 
   // equal weights are the paper's plain method: every motion of one step, none left out
   if (options.weights == "equal") {
-    result.drive.balance = Balance{};
-    result.drive.robust = false;
-    if (options.stride.empty()) result.drive.stride = 1;
+    result.calibration.pairing.balance = Balance{};
+    result.calibration.pairing.robust = false;
+    if (options.stride.empty()) result.calibration.pairing.stride = 1;
   } else if (options.weights != "auto") {
-    result.drive.balance = balance("--weights", options.weights);
+    result.calibration.pairing.balance = balance("--weights", options.weights);
   }
   if (!options.stride.empty() && options.stride != "auto") {
     const double stride = number("--stride", options.stride);
     if (stride < 1 || stride > 100000 || stride != static_cast<int>(stride))
       throw UsageError("--stride: expected auto or a whole number from 1 to 100000, got '" + options.stride +
                        "'");
-    result.drive.stride = static_cast<int>(stride);
+    result.calibration.pairing.stride = static_cast<int>(stride);
   }
   if (options.time_offset == "auto")
-    result.estimate_time_offset = true;
+    result.calibration.estimate_time_offset = true;
   else if (!options.time_offset.empty())
-    result.drive.time_offset = number("--time-offset", options.time_offset);
-  if (std::abs(result.drive.time_offset) > 1e10) throw UsageError("--time-offset: out of range");
+    result.calibration.pairing.time_offset = number("--time-offset", options.time_offset);
+  if (std::abs(result.calibration.pairing.time_offset) > 1e10)
+    throw UsageError("--time-offset: out of range");
   if (!(options.max_gap > 0) || options.max_gap > 1e6) throw UsageError("--max-gap: expected more than 0 s");
-  result.drive.max_gap = options.max_gap;
+  result.calibration.pairing.max_gap = options.max_gap;
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
-  if (!options.nominal.empty()) result.drive.prior = to_dual_quaternion(pose("--nominal", options.nominal));
+  if (!options.nominal.empty())
+    result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
   return result;
 }
 
 void run(const Options& options) {
-  const CalibrationOptions understood_options = understood(options);
-  const CalibrationResult result = calibrate_offline(understood_options);
+  const SolveRequest understood_options = understood(options);
+  const SolveResult result = calibrate_offline(understood_options);
   fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
                                   : report_text(result, understood_options.truth));
 }

@@ -4,11 +4,8 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "egocal/online/answer.hpp"
-#include "egocal/pairing/motion_pairing.hpp"
-#include "egocal/pairing/time_offset.hpp"
+#include "egocal/calibrate.hpp"
 
 namespace egocal::tools {
 
@@ -20,11 +17,11 @@ struct MotionSource {
   std::string pairs;
 };
 
-struct CalibrationOptions {
+/// What `egocal solve` was asked for.
+struct SolveRequest {
   MotionSource source;
-  std::string method = "global";  ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
-  PairingOptions drive;           ///< stride, balance: empty means auto
-  bool estimate_time_offset = false;
+  std::string method = "global";   ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
+  CalibrationOptions calibration;  ///< its method is set from the name above
   std::optional<Pose> truth;
 };
 
@@ -34,21 +31,17 @@ struct StreamSpan {
   double first = 0, last = 0;  ///< [s]
 };
 
-struct CalibrationResult {
-  Answer answer;
-  std::string method;  ///< that answered, with the planar closed form as "planar"
-  std::string note;    ///< of a baseline: why its answer is not valid
-  Problem problem;
-  Choice choice;
-  PairingCounts counts;
+/// A calibration with what only the command line adds.
+struct SolveResult {
+  Calibration calibration;
+  std::string method;              ///< that answered, with the planar closed form as "planar"
+  std::string note;                ///< of a baseline: why its answer is not valid
   std::optional<StreamSpan> a, b;  ///< not for a file of pairs
-  std::optional<TimeOffset> time_offset;
-  double time_offset_applied = 0;  ///< [s]
   double solve_us = 0;             ///< the solve alone, median of repeats [us]
 };
 
 /// From the source to the answer. Throws Error where nothing can be read or paired, UsageError where options
-/// contradict.
-CalibrationResult calibrate_offline(const CalibrationOptions& options);
+/// contradict each other.
+SolveResult calibrate_offline(const SolveRequest& request);
 
 }  // namespace egocal::tools

@@ -52,13 +52,13 @@ Pose with_positive_scalar(Pose T) {
 
 }  // namespace
 
-std::string report_json(const CalibrationResult& result, const std::optional<Pose>& truth) {
-  const Pose T = to_pose(result.answer.T_a_b);
-  const Certificate& certificate = result.answer.certificate;
+std::string report_json(const SolveResult& result, const std::optional<Pose>& truth) {
+  const Pose T = result.calibration.T_a_b;
+  const Certificate& certificate = result.calibration.certificate;
   nlohmann::ordered_json json;
   json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
   json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
-  json["pairs"] = total(result.problem.blocks).count;
+  json["pairs"] = total(result.calibration.problem.blocks).count;
   json["cost"] = certificate.cost;
   json["lower_bound"] = certificate.lower_bound;
   json["gap"] = certificate.gap;
@@ -68,68 +68,71 @@ std::string report_json(const CalibrationResult& result, const std::optional<Pos
                                                                        : "undecided";
   json["reach_translation"] = certificate.reach_translation;
   json["reach_rotation"] = certificate.reach_rotation;
-  json["observable"] = result.answer.observability.observable;
-  json["stddev"] = result.answer.observability.stddev;
-  json["hint"] = result.answer.observability.hint;
+  json["observable"] = result.calibration.observability.observable;
+  json["stddev"] = result.calibration.observability.stddev;
+  json["hint"] = result.calibration.observability.hint;
   json["method"] = result.method;
   json["note"] = result.note;
   json["solve_us"] = result.solve_us;
-  json["mode"] = result.problem.mode == Mode::planar ? "planar" : "spatial";
-  json["stride"] = result.choice.stride;
-  json["weights"] = {{"rotation", result.choice.balance.rotation},
-                     {"translation", result.choice.balance.translation}};
-  json["choice"] = result.choice.reason;
-  json["time_offset_s"] = result.time_offset_applied;
-  if (result.time_offset)
-    json["time_offset_estimate"] = {{"seconds", result.time_offset->seconds},
-                                    {"stddev", result.time_offset->stddev},
-                                    {"correlation", result.time_offset->correlation}};
-  json["synchronised"] = result.counts.synchronised;
-  json["outliers"] = result.counts.outliers;
+  json["mode"] = result.calibration.problem.mode == Mode::planar ? "planar" : "spatial";
+  json["stride"] = result.calibration.choice.stride;
+  json["weights"] = {{"rotation", result.calibration.choice.balance.rotation},
+                     {"translation", result.calibration.choice.balance.translation}};
+  json["choice"] = result.calibration.choice.reason;
+  json["time_offset_s"] = result.calibration.time_offset_applied;
+  if (result.calibration.time_offset)
+    json["time_offset_estimate"] = {{"seconds", result.calibration.time_offset->seconds},
+                                    {"stddev", result.calibration.time_offset->stddev},
+                                    {"correlation", result.calibration.time_offset->correlation}};
+  json["synchronised"] = result.calibration.counts.synchronised;
+  json["outliers"] = result.calibration.counts.outliers;
   json["rejected"] = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
-    json["rejected"][std::string(name(static_cast<Rejection>(i)))] = result.counts.rejected[i];
+  for (std::size_t i = 0; i < result.calibration.counts.rejected.size(); ++i)
+    json["rejected"][std::string(name(static_cast<Rejection>(i)))] = result.calibration.counts.rejected[i];
   if (result.a) json["a"] = stream_json(*result.a);
   if (result.b) json["b"] = stream_json(*result.b);
   if (truth) {
-    const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*truth), result.answer.T_a_b);
+    const ExtrinsicError error =
+        extrinsic_error(to_dual_quaternion(*truth), to_dual_quaternion(result.calibration.T_a_b));
     json["error_translation_m"] = error.translation;
     json["error_rotation_deg"] = error.rotation * degrees;
   }
   return json.dump(2);
 }
 
-std::string report_text(const CalibrationResult& result, const std::optional<Pose>& truth) {
-  const Answer& answer = result.answer;
-  const Pose T = to_pose(answer.T_a_b);
+std::string report_text(const SolveResult& result, const std::optional<Pose>& truth) {
+  const Calibration& calibration = result.calibration;
+  const Pose T = calibration.T_a_b;
   std::string text = pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", T);
-  text += pose_text("T_b_a, its inverse", with_positive_scalar(inverse(T)));
+  text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a));
 
   text +=
       fmt::format("\nmotions       {} pairs, stride {}, weights rotation : translation = {:g} : {:g} ({})\n",
-                  total(result.problem.blocks).count, result.choice.stride, result.choice.balance.rotation,
-                  result.choice.balance.translation, result.choice.reason);
-  if (result.counts.outliers > 0)
-    text += fmt::format("outliers      {} more pairs contradict these\n", result.counts.outliers);
+                  total(result.calibration.problem.blocks).count, result.calibration.choice.stride,
+                  result.calibration.choice.balance.rotation, result.calibration.choice.balance.translation,
+                  result.calibration.choice.reason);
+  if (result.calibration.counts.outliers > 0)
+    text += fmt::format("outliers      {} more pairs contradict these\n", result.calibration.counts.outliers);
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
     if (stream)
       text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,
                           stream->first, stream->last);
   std::vector<std::string> pairing;
-  if (result.a) pairing.push_back(fmt::format("{} instants synchronised", result.counts.synchronised));
-  for (std::size_t i = 0; i < result.counts.rejected.size(); ++i)
-    if (result.counts.rejected[i] > 0)
-      pairing.push_back(
-          fmt::format("{} rejected: {}", result.counts.rejected[i], name(static_cast<Rejection>(i))));
+  if (result.a)
+    pairing.push_back(fmt::format("{} instants synchronised", result.calibration.counts.synchronised));
+  for (std::size_t i = 0; i < result.calibration.counts.rejected.size(); ++i)
+    if (result.calibration.counts.rejected[i] > 0)
+      pairing.push_back(fmt::format("{} rejected: {}", result.calibration.counts.rejected[i],
+                                    name(static_cast<Rejection>(i))));
   if (!pairing.empty()) text += fmt::format("pairing       {}\n", fmt::join(pairing, ", "));
-  if (result.time_offset)
-    text +=
-        fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
-                    result.time_offset->seconds, result.time_offset->stddev, result.time_offset->correlation);
-  else if (result.time_offset_applied != 0)
-    text += fmt::format("time offset   {:.4f} s added to b\n", result.time_offset_applied);
+  if (result.calibration.time_offset)
+    text += fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
+                        result.calibration.time_offset->seconds, result.calibration.time_offset->stddev,
+                        result.calibration.time_offset->correlation);
+  else if (result.calibration.time_offset_applied != 0)
+    text += fmt::format("time offset   {:.4f} s added to b\n", result.calibration.time_offset_applied);
 
-  const Certificate& certificate = answer.certificate;
+  const Certificate& certificate = calibration.certificate;
   text += fmt::format("\nfit           cost {:.6g}\n", certificate.cost);
   text += fmt::format("optimality    {} (method {}, {:.2f} us)\n", verdict(certificate.optimality),
                       result.method, result.solve_us);
@@ -141,20 +144,21 @@ std::string report_text(const CalibrationResult& result, const std::optional<Pos
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   text += "uncertainty   in the frame of a, one standard deviation\n";
   for (std::size_t i = 0; i < 6; ++i) {
-    const double stddev = answer.observability.stddev[i];
+    const double stddev = calibration.observability.stddev[i];
     const bool rotation = i >= 3;
     std::string value = "NOT OBSERVABLE, the number above is not a measurement";
-    if (!answer.observability.observable[i] && result.problem.mode == Mode::planar)
+    if (!calibration.observability.observable[i] && result.calibration.problem.mode == Mode::planar)
       value = "from the ground planes";
-    if (answer.observability.observable[i])
+    if (calibration.observability.observable[i])
       value = std::isfinite(stddev)
                   ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")
                   : "observable, too few motions for a standard deviation";
     text += fmt::format("  {:<12}{}\n", directions[i], value);
   }
-  if (!answer.observability.hint.empty()) text += fmt::format("  {}\n", answer.observability.hint);
+  if (!calibration.observability.hint.empty()) text += fmt::format("  {}\n", calibration.observability.hint);
   if (truth) {
-    const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*truth), answer.T_a_b);
+    const ExtrinsicError error =
+        extrinsic_error(to_dual_quaternion(*truth), to_dual_quaternion(result.calibration.T_a_b));
     text += fmt::format("\nerror against the truth (32)   {:.3f} deg, {:.2f} cm\n", error.rotation * degrees,
                         error.translation * 100);
   }

@@ -9,8 +9,8 @@
 namespace egocal::tools {
 
 /// One JSON object; numbers that are not finite are null.
-std::string report_json(const CalibrationResult& result, const std::optional<Pose>& truth);
+std::string report_json(const SolveResult& result, const std::optional<Pose>& truth);
 /// For people: degrees and centimetres, both directions of T, fit and optimality and uncertainty kept apart.
-std::string report_text(const CalibrationResult& result, const std::optional<Pose>& truth);
+std::string report_text(const SolveResult& result, const std::optional<Pose>& truth);
 
 }  // namespace egocal::tools

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "egocal/geometry/pose.hpp"
+#include "egocal/online/answer.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
+#include "egocal/pairing/time_offset.hpp"
+
+namespace egocal {
+
+/// Options of calibrate(). The defaults need no tuning.
+struct CalibrationOptions {
+  PairingOptions pairing;             ///< mode, ground planes, stride, weights, time offset, outliers, prior
+  Method method = Method::dual;       ///< solver of (18); every answer is verified, whichever solver found it
+  bool estimate_time_offset = false;  ///< estimate the clock offset of b first; replaces pairing.time_offset
+};
+
+/// Everything that is known about one pair of sensors. Lengths in metres, angles in radians.
+struct Calibration {
+  Pose T_a_b;                             ///< pose of sensor b in the frame of sensor a: p_a = T_a_b p_b
+  Pose T_b_a;                             ///< its inverse: p_b = T_b_a p_a
+  Certificate certificate;                ///< optimality: whether a better extrinsic for (18) can exist
+  Observability observability;            ///< per direction x y z roll pitch yaw, in the frame of a
+  SolverStatus status{};                  ///< of the solver
+  Choice choice;                          ///< stride and weights in force, and why
+  PairingCounts counts;                   ///< poses, instants, inliers, outliers, rejections by reason
+  std::optional<TimeOffset> time_offset;  ///< the estimate, where one was asked for
+  double time_offset_applied = 0;         ///< added to the stamps of b [s]
+  Problem problem;                        ///< the statistics that were solved, in blocks
+};
+
+/// The extrinsic of two rigidly mounted sensors from their trajectories, each in its own odometry frame.
+/// Throws Error where the options contradict each other, the time offset cannot be estimated, or no motion
+/// pair is found; the message counts the rejections by reason. Deterministic. Thread-safe: no shared state.
+Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options = {});
+
+/// The same from motion pairs of unit dual quaternions, in any order. Of options.pairing it uses mode,
+/// planes, balance, robust and prior. Throws Error where `pairs` is empty.
+Calibration calibrate(std::span<const MotionPair> pairs, const CalibrationOptions& options = {});
+
+/// The same, one pose at a time, in bounded memory: the answer after the last pose and
+/// finish() is that of calibrate() on the whole trajectories. Use one object per pair of sensors; one thread
+/// at a time.
+class Calibrator {
+ public:
+  /// Throws Error where the options contradict each other.
+  explicit Calibrator(CalibrationOptions options = {});
+
+  /// Takes the next pose of one sensor. The two streams may interleave in any way.
+  void add(Side side, const StampedPose& pose) { pairing_.push(side, pose); }
+
+  /// No more poses will come: pairs what a drive too short to tell its slower stream has held back.
+  void finish() { pairing_.finish(); }
+
+  /// The answer from all poses so far; empty while there is no motion pair. A few microseconds.
+  std::optional<Calibration> answer() const;
+
+  const PairingCounts& counts() const { return pairing_.counts(); }
+
+ private:
+  CalibrationOptions options_;
+  MotionPairing pairing_;
+};
+
+/// The rejections of a pairing in words, for messages: "rejected: 3 gap, 1 out of order", or "none rejected".
+std::string rejections_in_words(const PairingCounts& counts);
+
+}  // namespace egocal

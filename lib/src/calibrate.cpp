@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/calibrate.hpp"
+
+#include <cstdio>
+#include <utility>
+
+#include "egocal/error.hpp"
+#include "egocal/pairing/congruence.hpp"
+#include "egocal/pairing/selection.hpp"
+#include "egocal/robust/robust_statistics.hpp"
+
+namespace egocal {
+
+namespace {
+
+Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, Method method) {
+  Calibration result;
+  result.choice = std::move(choice);
+  result.counts = counts;
+  const Answer answer = solve(problem, method);
+  result.T_a_b = to_pose(answer.T_a_b);
+  result.T_b_a = inverse(result.T_a_b);
+  result.certificate = answer.certificate;
+  result.observability = answer.observability;
+  result.status = answer.status;
+  result.problem = std::move(problem);
+  return result;
+}
+
+std::string span_in_words(const char* label, const Trajectory& trajectory) {
+  if (trajectory.empty()) return std::string(label) + ": no poses";
+  char text[128];
+  std::snprintf(text, sizeof text, "%s: %zu poses from %.3f to %.3f s", label, trajectory.size(),
+                1e-6 * static_cast<double>(trajectory.front().time_us),
+                1e-6 * static_cast<double>(trajectory.back().time_us));
+  return text;
+}
+
+/// Mode, planes, balance and prior; no motions yet.
+Problem formulation(const PairingOptions& options) {
+  Problem problem;
+  problem.mode = options.mode;
+  problem.plane_a = options.plane_a;
+  problem.plane_b = options.plane_b;
+  problem.balance = options.balance.value_or(Balance{});
+  problem.prior = options.prior;
+  return problem;
+}
+
+/// The balance with the smallest jack-knife spread; the motions of a file have no strides to choose from.
+Choice choose_balance(const Problem& problem, const PairingOptions& options) {
+  Choice choice;
+  choice.balance = problem.balance;
+  choice.reason = "fixed";
+  if (options.balance) return choice;
+  std::vector<Candidate> candidates;
+  for (const double translation : {1.0, 0.1, 0.01, 0.001})
+    candidates.push_back({1, {1, translation}, problem.blocks});
+  choice.reason = "too few motions to choose";
+  if (const auto selection = select(problem, candidates, std::nullopt)) {
+    choice.balance = candidates[selection->index].balance;
+    choice.reason = "smallest jack-knife spread of 4 balances";
+  }
+  return choice;
+}
+
+}  // namespace
+
+std::string rejections_in_words(const PairingCounts& counts) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.rejected.size(); ++i)
+    if (counts.rejected[i] > 0)
+      text += (text.empty() ? "rejected: " : ", ") + std::to_string(counts.rejected[i]) + " " +
+              std::string(name(static_cast<Rejection>(i)));
+  return text.empty() ? "none rejected" : text;
+}
+
+Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+  PairingOptions pairing_options = options.pairing;
+  std::optional<TimeOffset> time_offset;
+  if (options.estimate_time_offset) {
+    time_offset = estimate_time_offset(a, b);
+    if (!time_offset)
+      throw Error("time offset: cannot be estimated, the streams are too short or never turn");
+    pairing_options.time_offset = time_offset->seconds;
+  }
+  const MotionPairing pairing = pair_motions(pairing_options, a, b).drive;
+  Problem problem = pairing.problem();
+  if (problem.blocks.empty())
+    throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
+                rejections_in_words(pairing.counts()));
+  Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
+  result.time_offset = time_offset;
+  result.time_offset_applied = pairing_options.time_offset;
+  return result;
+}
+
+Calibration calibrate(std::span<const MotionPair> given, const CalibrationOptions& options) {
+  if (given.empty()) throw Error("no motion pairs");
+  const PairingOptions& pairing = options.pairing;
+  PairingCounts counts;
+  std::vector<MotionPair> pairs(given.begin(), given.end());
+  if (pairing.robust) {
+    const std::vector<bool> wrong = incongruent(pairs);
+    std::size_t i = 0;
+    counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)] =
+        std::erase_if(pairs, [&](const MotionPair&) { return wrong[i++]; });
+  }
+  Problem problem = formulation(pairing);
+  if (pairing.mode == Mode::planar) {
+    const DualQuaternion G_a = plane_frame(pairing.plane_a), G_b = plane_frame(pairing.plane_b);
+    for (MotionPair& pair : pairs) {
+      pair.a = planar_motion(pair.a, G_a);
+      pair.b = planar_motion(pair.b, G_b);
+    }
+  }
+  RobustStatistics statistics;
+  for (const MotionPair& pair : pairs) {
+    if (!pairing.robust) {
+      statistics.add_unjudged(pair);
+      continue;
+    }
+    statistics.add(pair, problem);
+    if (statistics.look_is_due()) statistics.look(problem);
+  }
+  if (pairing.robust) statistics.look(problem);
+  problem.blocks = statistics.inliers();
+  counts.matched = statistics.inlier_pairs();
+  counts.outliers = statistics.outlier_pairs();
+  Choice choice = choose_balance(problem, pairing);
+  problem.balance = choice.balance;
+  return solved(std::move(problem), std::move(choice), counts, options.method);
+}
+
+Calibrator::Calibrator(CalibrationOptions options)
+    : options_(std::move(options)), pairing_([this] {
+        PairingOptions pairing = options_.pairing;
+        if (options_.estimate_time_offset) pairing.track_time_offset = true;
+        return pairing;
+      }()) {}
+
+std::optional<Calibration> Calibrator::answer() const {
+  Problem problem = pairing_.problem();
+  if (problem.blocks.empty()) return std::nullopt;
+  Calibration result = solved(std::move(problem), pairing_.choice(), pairing_.counts(), options_.method);
+  result.time_offset_applied = pairing_.time_offset().value_or(0);
+  return result;
+}
+
+}  // namespace egocal
