@@ -39,7 +39,9 @@ std::int64_t time_in(bus::Bytes message) {
 }
 
 Accumulation::Accumulation(const bus::Rig& rig) {
-  for (const bus::Sensor& sensor : rig.sensors) channels_.push_back({sensor, Stream(rig.reorder_window), {}});
+  StreamOptions options;
+  options.reorder_window = rig.reorder_window;
+  for (const bus::Sensor& sensor : rig.sensors) channels_.push_back({sensor, Stream(options), {}});
   for (std::size_t i = 0; i < rig.pairs.size(); ++i) pairs_.emplace_back(rig, i);
 }
 
@@ -76,8 +78,8 @@ void Accumulation::take(Channel& channel, const Input& input) {
   }
 }
 
-void Accumulation::route(const Channel& channel, const std::vector<Sample>& samples) {
-  for (const Sample& sample : samples)
+void Accumulation::route(const Channel& channel, const std::vector<NumberedPose>& samples) {
+  for (const NumberedPose& sample : samples)
     for (PairSession& pair : pairs_) {
       if (pair.config().a == channel.sensor.name) pair.push(Side::a, sample, motions_);
       if (pair.config().b == channel.sensor.name) pair.push(Side::b, sample, motions_);

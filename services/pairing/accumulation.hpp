@@ -9,8 +9,8 @@
 
 #include "egocal/bus/decode.hpp"
 #include "egocal/bus/rig.hpp"
+#include "egocal/pairing/stream.hpp"
 #include "pairing/pair_session.hpp"
-#include "pairing/stream.hpp"
 
 namespace egocal::services {
 
@@ -75,7 +75,7 @@ class Accumulation {
     ChannelState state;  // without the stream's
   };
   void take(Channel& channel, const Input& input);
-  void route(const Channel& channel, const std::vector<Sample>& samples);
+  void route(const Channel& channel, const std::vector<NumberedPose>& samples);
 
   std::vector<Channel> channels_;
   std::vector<PairSession> pairs_;

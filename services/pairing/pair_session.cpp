@@ -51,7 +51,7 @@ void PairSession::timeline_restarts(Side side) {
   state_.restarted_by.reset();
 }
 
-void PairSession::push(Side side, const Sample& sample, std::vector<MotionOut>& out) {
+void PairSession::push(Side side, const NumberedPose& sample, std::vector<MotionOut>& out) {
   if (sample.begins_anew) timeline_restarts(side);
   if (state_.paused) return;
   if (state_.session < 0) begin(sample.pose.time_us);

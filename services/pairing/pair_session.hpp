@@ -12,7 +12,7 @@
 #include "egocal/bus/decode.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
-#include "pairing/stream.hpp"
+#include "egocal/pairing/stream.hpp"
 
 namespace egocal::services {
 
@@ -47,7 +47,7 @@ class PairSession {
   const bus::PairConfig& config() const { return config_; }
   std::int64_t session() const { return state_.session; }
 
-  void push(Side side, const Sample& sample, std::vector<MotionOut>& out);
+  void push(Side side, const NumberedPose& sample, std::vector<MotionOut>& out);
   /// The next pose begins a new session.
   void reset();
   void pause(bool paused) { state_.paused = paused; }

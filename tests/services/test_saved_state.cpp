@@ -15,8 +15,8 @@
 #include "egocal/bus/glue.hpp"
 #include "egocal/error.hpp"
 #include "egocal/simulation/simulation.hpp"
-#include "pairing/saved_state.hpp"
-#include "pairing/state_fields.hpp"
+#include "pairing/state/saved_state.hpp"
+#include "pairing/state/state_fields.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::services {

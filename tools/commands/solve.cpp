@@ -83,6 +83,7 @@ SolveRequest understood(const Options& options) {
 void run(const Options& options) {
   const SolveRequest understood_options = understood(options);
   const SolveResult result = calibrate_offline(understood_options);
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
   fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
                                   : report_text(result, understood_options.truth));
 }

@@ -27,6 +27,7 @@ namespace {
 struct Motions {
   Trajectory a, b;                ///< from trajectories or a log
   std::vector<MotionPair> pairs;  ///< from a file of pairs
+  std::vector<std::string> warnings;
 };
 
 StreamSpan span_of(const Trajectory& trajectory) {
@@ -35,10 +36,15 @@ StreamSpan span_of(const Trajectory& trajectory) {
 }
 
 Motions read_motions(const MotionSource& source) {
-  if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs)};
-  if (!source.log.empty())
-    return {read_log_trajectory(source.log, source.a), read_log_trajectory(source.log, source.b), {}};
-  return {read_trajectory(source.a, source.times_a), read_trajectory(source.b, source.times_b), {}};
+  if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
+  if (source.log.empty())
+    return {read_trajectory(source.a, source.times_a), read_trajectory(source.b, source.times_b), {}, {}};
+  LogTrajectory a = read_log_trajectory(source.log, source.a);
+  LogTrajectory b = read_log_trajectory(source.log, source.b);
+  Motions motions{std::move(a.poses), std::move(b.poses), {}, {}};
+  for (std::string* not_used : {&a.not_used, &b.not_used})
+    if (!not_used->empty()) motions.warnings.push_back(std::move(*not_used));
+  return motions;
 }
 
 Calibration calibrate_motions(const MotionSource& source, const Motions& motions,
@@ -125,6 +131,7 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   options.method = method.value_or(Method::dual);
   const Motions motions = read_motions(request.source);
   SolveResult result;
+  result.warnings = motions.warnings;
   result.calibration = calibrate_motions(request.source, motions, options);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);

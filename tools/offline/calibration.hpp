@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "egocal/calibrate.hpp"
 
@@ -34,10 +35,11 @@ struct StreamSpan {
 /// A calibration with what only the command line adds.
 struct SolveResult {
   Calibration calibration;
-  std::string method;              ///< that answered, with the planar closed form as "planar"
-  std::string note;                ///< of a baseline: why its answer is not valid
-  std::optional<StreamSpan> a, b;  ///< not for a file of pairs
-  double solve_us = 0;             ///< the solve alone, median of repeats [us]
+  std::string method;                 ///< that answered, with the planar closed form as "planar"
+  std::vector<std::string> warnings;  ///< one line each: what the source holds and the answer does not use
+  std::string note;                   ///< of a baseline: why its answer is not valid
+  std::optional<StreamSpan> a, b;     ///< not for a file of pairs
+  double solve_us = 0;                ///< the solve alone, median of repeats [us]
 };
 
 /// From the source to the answer. Throws Error where nothing can be read or paired, UsageError where options

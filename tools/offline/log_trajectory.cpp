@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 
 #include "egocal/bus/glue.hpp"
@@ -14,48 +15,109 @@ namespace egocal::tools {
 
 namespace {
 
+/// A clock that is set back by less goes on as the same session; the poses that it repeats are not used [us].
+constexpr std::int64_t session_jump_us = 10'000'000;
+/// Names in an error message: a damaged or hostile log may hold any number of channels.
+constexpr std::size_t most_names = 10, most_known = 1000;
+
+struct Decoded {
+  bus::Checked<StampedPose> pose;
+  std::int64_t seq = -1;
+};
+
 /// Either type of pose message; a message of another type, or with values that are no pose, is refused.
-bus::Checked<StampedPose> pose_of(const bus::LogEvent& event) {
+Decoded decode_pose(const bus::LogEvent& event) {
   odometry_t odometry{};
-  if (bus::decode(event.data, odometry)) return bus::to_stamped_pose(odometry);
+  if (bus::decode(event.data, odometry)) return {bus::to_stamped_pose(odometry), odometry.seq};
   bot_core::pose_t pose{};
-  if (bus::decode(event.data, pose)) return bus::to_stamped_pose(pose);
-  return {std::nullopt, "not a pose message"};
+  if (bus::decode(event.data, pose)) return {bus::to_stamped_pose(pose), -1};
+  return {{std::nullopt, "not a pose message"}, -1};
+}
+
+class Collector {
+ public:
+  void take(const Decoded& message) {
+    ++messages_;
+    if (!message.pose)
+      ++refused_[message.pose.reason];
+    else
+      add(stream_.push({*message.pose.value, message.seq, 0, false}));
+  }
+
+  LogTrajectory finished(const std::string& file, const std::string& channel) {
+    add(stream_.flush());
+    return {std::move(poses_), not_used(file, channel)};
+  }
+  bool empty() const { return messages_ == 0; }
+
+ private:
+  void add(const std::vector<NumberedPose>& in_order) {
+    for (const NumberedPose& next : in_order) {
+      const std::int64_t time_us = next.pose.time_us;
+      other_session_ = other_session_ || (!poses_.empty() && next.begins_anew &&
+                                          time_us < poses_.back().time_us - session_jump_us);
+      if (other_session_)
+        ++later_sessions_;
+      else if (!poses_.empty() && time_us <= poses_.back().time_us)
+        ++late_;
+      else
+        poses_.push_back(next.pose);
+    }
+  }
+
+  std::string not_used(const std::string& file, const std::string& channel) const {
+    const StreamCounts& counts = stream_.counts();
+    std::string text;
+    const auto say = [&text](auto count, const std::string& what) {
+      if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+    };
+    for (const auto& [reason, count] : refused_) say(count, "refused (" + reason + ")");
+    say(counts.jump, "with a damaged time or number");
+    say(counts.duplicate, "duplicate");
+    say(late_ + static_cast<std::size_t>(counts.out_of_order), "too late");
+    say(counts.lost, "missing by their numbers");
+    say(later_sessions_, "of a later session");
+    if (text.empty()) return {};
+    return fmt::format("{}: {}: {} of {} messages are used; {}", file, channel, poses_.size(), messages_,
+                       text);
+  }
+
+  Stream stream_{StreamOptions{.look_ahead = true}};
+  Trajectory poses_;
+  std::map<std::string, std::size_t> refused_;
+  std::size_t messages_ = 0, late_ = 0, later_sessions_ = 0;
+  bool other_session_ = false;
+};
+
+std::string listed(const std::set<std::string>& names) {
+  if (names.empty()) return "none";
+  std::string text;
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (count == most_names) break;
+    text += (count++ ? ", " : "") + bus::printable(name, 63);
+  }
+  if (names.size() >= most_known) return text + fmt::format(" and more than {} others", most_known - count);
+  return names.size() > count ? text + fmt::format(" and {} others", names.size() - count) : text;
 }
 
 }  // namespace
 
-Trajectory read_log_trajectory(const std::string& file, const std::string& channel) {
+LogTrajectory read_log_trajectory(const std::string& file, const std::string& channel) {
   bus::LogReader log(file);
-  Trajectory trajectory;
+  Collector collector;
   std::set<std::string> channels;
-  std::string refused;
   while (const std::optional<bus::LogEvent> event = log.next()) {
-    if (event->channel != channel) {
+    if (event->channel == channel)
+      collector.take(decode_pose(*event));
+    else if (channels.size() < most_known)
       channels.insert(event->channel);
-      continue;
-    }
-    const bus::Checked<StampedPose> pose = pose_of(*event);
-    if (!pose) {
-      refused = pose.reason;
-      continue;
-    }
-    if (!trajectory.empty() && pose.value->time_us <= trajectory.back().time_us) {
-      // repeated and late messages are not taken; a jump back begins another session
-      constexpr std::int64_t session_jump_us = 10'000'000;
-      if (pose.value->time_us < trajectory.back().time_us - session_jump_us) break;
-      continue;
-    }
-    trajectory.push_back(*pose.value);
   }
-  if (trajectory.empty()) {
-    if (!refused.empty()) throw error_at(file, 0, channel, "no pose in this channel: " + refused);
-    std::string known;
-    for (const std::string& name : channels) known += (known.empty() ? "" : ", ") + name;
-    throw error_at(file, 0, channel,
-                   "no such channel in the log; there are: " + (known.empty() ? "none" : known));
-  }
-  return trajectory;
+  if (collector.empty())
+    throw error_at(file, 0, channel, "no such channel in the log; there are: " + listed(channels));
+  LogTrajectory result = collector.finished(file, channel);
+  if (result.poses.empty()) throw error_at(file, 0, channel, "no pose in this channel: " + result.not_used);
+  return result;
 }
 
 }  // namespace egocal::tools

@@ -3,25 +3,30 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pairing/stream.hpp"
+#include <algorithm>
+#include <limits>
 
-namespace egocal::services {
+#include "egocal/error.hpp"
+#include "egocal/limits.hpp"
+#include "egocal/pairing/stream.hpp"
+
+namespace egocal {
 namespace {
 
 using testing::ElementsAre;
 
 /// Messages at 10 Hz, numbered from 0; time in steps of 0.1 s.
-Sample sample(std::int64_t step, std::int64_t seq) {
-  Sample s;
+NumberedPose sample(std::int64_t step, std::int64_t seq) {
+  NumberedPose s;
   s.pose.time_us = 1'000'000'000 + step * 100'000;
   s.seq = seq;
   return s;
 }
 
-std::vector<std::int64_t> feed(Stream& stream, std::initializer_list<Sample> samples) {
+std::vector<std::int64_t> feed(Stream& stream, std::initializer_list<NumberedPose> samples) {
   std::vector<std::int64_t> steps;
-  for (const Sample& s : samples)
-    for (const Sample& out : stream.push(s)) {
+  for (const NumberedPose& s : samples)
+    for (const NumberedPose& out : stream.push(s)) {
       if (out.begins_anew) steps.push_back(-1);
       steps.push_back((out.pose.time_us - 1'000'000'000) / 100'000);
     }
@@ -29,19 +34,19 @@ std::vector<std::int64_t> feed(Stream& stream, std::initializer_list<Sample> sam
 }
 
 TEST(Stream, InOrderPassesAtOnce) {
-  Stream stream(0.2);
+  Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(1, 1), sample(2, 2)}), ElementsAre(0, 1, 2));
 }
 
 TEST(Stream, SwappedMessagesAreSwappedBack) {
-  Stream stream(0.2);
+  Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(2, 2), sample(1, 1), sample(3, 3)}),
               ElementsAre(0, 1, 2, 3));
   EXPECT_EQ(stream.counts().lost, 0);
 }
 
 TEST(Stream, ALostOneIsWaitedForByMeasuredTime) {
-  Stream stream(0.2);
+  Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(2, 2), sample(3, 3)}), ElementsAre(0));
   EXPECT_TRUE(stream.waiting());
   EXPECT_THAT(feed(stream, {sample(4, 4)}), ElementsAre(2, 3, 4));
@@ -52,21 +57,21 @@ TEST(Stream, ALostOneIsWaitedForByMeasuredTime) {
 }
 
 TEST(Stream, FlushGivesUpWaiting) {
-  Stream stream(0.2);
+  Stream stream;
   feed(stream, {sample(0, 0), sample(2, 2)});
   EXPECT_EQ(stream.flush().size(), 1u);
   EXPECT_EQ(stream.counts().lost, 1);
 }
 
 TEST(Stream, DuplicatesAreCounted) {
-  Stream stream(0.2);
+  Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(1, 1), sample(1, 1), sample(0, 0), sample(2, 2)}),
               ElementsAre(0, 1, 2));
   EXPECT_EQ(stream.counts().duplicate, 2);
 }
 
 TEST(Stream, OneDamagedTimeOrNumberEndsNothing) {
-  Stream stream(0.2);
+  Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(1, 1), sample(-9000, 2), sample(2, 3), sample(5'000'000, 4),
                             sample(3, 5), sample(4, 1'000'000), sample(5, 6), sample(6, 7), sample(7, 8)}),
               ElementsAre(0, 1, 2, 3, 5, 6, 7));
@@ -74,7 +79,7 @@ TEST(Stream, OneDamagedTimeOrNumberEndsNothing) {
 }
 
 TEST(Stream, ALogThatStartsAgainBeginsANewTimelineAndLosesNothing) {
-  Stream stream(0.2);
+  Stream stream;
   for (int i = 0; i < 100; ++i) stream.push(sample(i, i));
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(1, 1), sample(2, 2), sample(3, 3)}),
               ElementsAre(-1, 0, 1, 2, 3));
@@ -82,21 +87,21 @@ TEST(Stream, ALogThatStartsAgainBeginsANewTimelineAndLosesNothing) {
 }
 
 TEST(Stream, AGapInTheLogIsNoNewTimeline) {
-  Stream stream(0.2);
+  Stream stream;
   feed(stream, {sample(0, -1), sample(1, -1)});
   EXPECT_THAT(feed(stream, {sample(5000, -1), sample(5001, -1), sample(5002, -1)}),
               ElementsAre(5000, 5001, 5002));
 }
 
 TEST(Stream, ASourceThatCountsAnewGoesOn) {
-  Stream stream(0.2);
+  Stream stream;
   for (int i = 0; i < 2000; ++i) stream.push(sample(i, i));
   EXPECT_THAT(feed(stream, {sample(2000, 0), sample(2001, 1), sample(2002, 2), sample(2003, 3)}),
               ElementsAre(2000, 2001, 2002, 2003));
 }
 
 TEST(Stream, MemoryIsBounded) {
-  Stream stream(1e9);
+  Stream stream({.reorder_window = 1e6});
   stream.push(sample(0, 0));
   std::size_t out = 0;
   for (int i = 2; i < 5000; ++i) out += stream.push(sample(i, i)).size();
@@ -104,7 +109,7 @@ TEST(Stream, MemoryIsBounded) {
 }
 
 TEST(Stream, APatientOneWaitsForWhatWillBeSentAgain) {
-  Stream stream(0.2);
+  Stream stream;
   stream.be_patient(true);
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(3, 3), sample(20, 20), sample(40, 40)}), ElementsAre(0));
   EXPECT_THAT(feed(stream, {sample(1, 1), sample(2, 2), sample(3, 3)}), ElementsAre(1, 2, 3));
@@ -112,7 +117,7 @@ TEST(Stream, APatientOneWaitsForWhatWillBeSentAgain) {
 }
 
 TEST(Stream, APatientOneGivesUpWhatTheSenderDoesNotHave) {
-  Stream stream(0.2);
+  Stream stream;
   stream.be_patient(true);
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(2, 2), sample(3, 3), sample(2, 2), sample(3, 3)}),
               ElementsAre(0));
@@ -122,7 +127,7 @@ TEST(Stream, APatientOneGivesUpWhatTheSenderDoesNotHave) {
 }
 
 TEST(Stream, WithoutNumbersLateOnesPassOnceForTheDriveToJudge) {
-  Stream stream(0.2);
+  Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, -1), sample(2, -1), sample(1, -1), sample(3, -1), sample(1, -1)}),
               ElementsAre(0, 2, 1, 3));
   EXPECT_EQ(stream.counts().duplicate, 1);
@@ -130,7 +135,7 @@ TEST(Stream, WithoutNumbersLateOnesPassOnceForTheDriveToJudge) {
 }
 
 TEST(Stream, WhatWasLostAndComesVeryLateBeginsNoNewTimeline) {
-  Stream stream(0.2);
+  Stream stream;
   feed(stream, {sample(0, 0), sample(1, 1)});
   for (std::int64_t i = 6; i < 60; ++i) feed(stream, {sample(i, i)});
   EXPECT_EQ(stream.counts().lost, 4);
@@ -141,7 +146,7 @@ TEST(Stream, WhatWasLostAndComesVeryLateBeginsNoNewTimeline) {
 }
 
 TEST(Stream, ADamagedNumberFarAheadCostsOneMessage) {
-  Stream stream(0.2);
+  Stream stream;
   feed(stream, {sample(0, 0), sample(1, 513)});
   EXPECT_THAT(feed(stream, {sample(2, 2), sample(3, 3), sample(4, 4)}), ElementsAre(2, 3, 4));
   EXPECT_FALSE(stream.waiting());
@@ -151,7 +156,7 @@ TEST(Stream, ADamagedNumberFarAheadCostsOneMessage) {
 }
 
 TEST(Stream, AfterAnInterruptionMessagesWithoutNumbersArePutInOrder) {
-  Stream stream(0.2);
+  Stream stream;
   feed(stream, {sample(0, -1), sample(1, -1)});
   stream.settle();
   EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(1, -1), sample(2, -1), sample(3, -1),
@@ -160,5 +165,72 @@ TEST(Stream, AfterAnInterruptionMessagesWithoutNumbersArePutInOrder) {
   EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(7, -1)}), ElementsAre(2, 3, 4, 5, 6, 7));
 }
 
+TEST(Stream, NumbersAtTheEdgeOfTheirTypeAreRefusedAndCostNoTime) {
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t edge : {most, most - 1, -most, limits::largest_count + 1, std::int64_t{-2}}) {
+    Stream stream;
+    EXPECT_THAT(feed(stream, {sample(0, edge), sample(1, 0), sample(2, 1), sample(3, edge), sample(4, 2)}),
+                ElementsAre(1, 2, 4))
+        << edge;
+    EXPECT_EQ(stream.counts().jump, 2);
+    EXPECT_LE(stream.counts().lost, 1);
+  }
+  Stream stream;
+  NumberedPose late = sample(0, 0);
+  late.pose.time_us = most;
+  EXPECT_THAT(stream.push(late), testing::IsEmpty());
+  EXPECT_THAT(feed(stream, {sample(0, limits::largest_count), sample(1, 0), sample(2, 1), sample(3, 2)}),
+              ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Stream, AStateThatNoStreamCanHaveIsRefused) {
+  const auto refused = [](auto&& change) {
+    Stream stream;
+    feed(stream, {sample(0, 0), sample(1, 1), sample(3, 3)});
+    StreamState state = stream.state();
+    stream.restore(state);
+    change(state);
+    EXPECT_THROW(stream.restore(state), Error);
+  };
+  refused([](StreamState& state) { state.next_seq = std::numeric_limits<std::int64_t>::min(); });
+  refused([](StreamState& state) { state.newest_us = std::numeric_limits<std::int64_t>::max(); });
+  refused([](StreamState& state) { state.period_us = std::numeric_limits<std::int64_t>::max(); });
+  refused([](StreamState& state) { state.next_seq.reset(); });
+  refused([](StreamState& state) { state.recent_next = state.recent.size(); });
+  refused([](StreamState& state) { state.early.begin()->second.seq = 7; });
+  refused([](StreamState& state) { state.candidates.resize(1000); });
+}
+
+TEST(Stream, WithALookAheadADamagedStampCostsOnlyItsOwnPose) {
+  for (const bool numbered : {true, false})
+    for (const std::size_t damaged : {std::size_t{0}, std::size_t{30}, std::size_t{58}, std::size_t{59}})
+      for (int bit = 0; bit < 64; ++bit) {
+        SCOPED_TRACE(std::to_string(damaged) + ", bit " + std::to_string(bit) + ", " +
+                     (numbered ? "numbered" : "without numbers"));
+        Stream stream({.look_ahead = true});
+        std::vector<std::int64_t> times, expected;
+        const auto take = [&times](const std::vector<NumberedPose>& out) {
+          for (const NumberedPose& pose : out)
+            if (times.empty() || pose.pose.time_us > times.back()) times.push_back(pose.pose.time_us);
+        };
+        for (std::size_t i = 0; i < 60; ++i) {
+          // 50 Hz: a stamp that is less than a second off lies among others
+          NumberedPose pose;
+          pose.pose.time_us = 1'700'000'000'000'000 + 20'000 * static_cast<std::int64_t>(i);
+          if (numbered) pose.seq = static_cast<std::int64_t>(i);
+          if (i == damaged)
+            pose.pose.time_us =
+                static_cast<std::int64_t>(static_cast<std::uint64_t>(pose.pose.time_us) ^ (1ULL << bit));
+          else
+            expected.push_back(pose.pose.time_us);
+          take(stream.push(pose));
+        }
+        take(stream.flush());
+        std::size_t found = 0;
+        for (const std::int64_t time : expected) found += std::count(times.begin(), times.end(), time) > 0;
+        EXPECT_GE(found + 1, expected.size());
+      }
+}
+
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal

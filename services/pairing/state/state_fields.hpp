@@ -5,8 +5,9 @@
 #pragma once
 
 #include "egocal/pairing/motion_pairing.hpp"
+#include "egocal/pairing/stream.hpp"
 #include "pairing/accumulation.hpp"
-#include "pairing/archive.hpp"
+#include "pairing/state/archive.hpp"
 
 namespace egocal {
 
@@ -141,27 +142,27 @@ void fields(auto& archive, services::Is<PairingState> auto& value) {
           next_choice, congruence, newest, unjudged, doubtful);
 }
 
-namespace services {
-
-/// Of the fields in this file.
-constexpr int state_layout = 5;
-
-void fields(auto& archive, Is<Sample> auto& value) {
+void fields(auto& archive, services::Is<NumberedPose> auto& value) {
   auto& [pose, seq, mono_us, begins_anew] = value;
   archive(pose, seq, mono_us, begins_anew);
 }
 
-void fields(auto& archive, Is<StreamCounts> auto& value) {
+void fields(auto& archive, services::Is<StreamCounts> auto& value) {
   auto& [lost, duplicate, out_of_order, jump] = value;
   archive(lost, duplicate, out_of_order, jump);
 }
 
-void fields(auto& archive, Is<StreamState> auto& value) {
-  auto& [newest_us, period_us, next_seq, lost, early, candidates, recent, recent_next, patient, gap,
-         gap_repeats, settling, held, counts] = value;
-  archive(newest_us, period_us, next_seq, lost, early, candidates, recent, recent_next, patient, gap,
-          gap_repeats, settling, held, counts);
+void fields(auto& archive, services::Is<StreamState> auto& value) {
+  auto& [newest_us, period_us, next_seq, lost, early, candidates, ahead, checked_us, recent, recent_next,
+         patient, gap, gap_repeats, settling, held, counts] = value;
+  archive(newest_us, period_us, next_seq, lost, early, candidates, ahead, checked_us, recent, recent_next,
+          patient, gap, gap_repeats, settling, held, counts);
 }
+
+namespace services {
+
+/// Of the fields in this file.
+constexpr int state_layout = 6;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pairing/accumulation.hpp"
-#include "pairing/archive.hpp"
-#include "pairing/state_file.hpp"
+#include "pairing/state/archive.hpp"
+#include "pairing/state/state_file.hpp"
 
 namespace egocal::services {
 

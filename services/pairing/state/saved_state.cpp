@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/saved_state.hpp"
+#include "pairing/state/saved_state.hpp"
 
 #include <cinttypes>
 #include <cstdio>
 #include <exception>
 #include <utility>
 
-#include "pairing/state_fields.hpp"
+#include "pairing/state/state_fields.hpp"
 
 namespace egocal::services {
 

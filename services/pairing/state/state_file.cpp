@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/state_file.hpp"
+#include "pairing/state/state_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "pairing/archive.hpp"
+#include "pairing/state/archive.hpp"
 
 namespace egocal::services {
 

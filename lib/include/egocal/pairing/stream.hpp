@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal {
+
+/// A pose with its number, as one odometry source sends or has recorded them.
+struct NumberedPose {
+  StampedPose pose;
+  std::int64_t seq = -1;     ///< -1: not counted
+  std::int64_t mono_us = 0;  ///< arrival by a clock of the caller [us]; handed on, never looked at
+  bool begins_anew = false;  ///< set by Stream: the first one of a new timeline
+};
+
+struct StreamOptions {
+  /// A missing number is waited for during this much measured time [s]: several periods of usual sensors, and
+  /// little beside the time that a drive takes.
+  double reorder_window = 0.2;
+  /// Judges every time stamp by its two neighbours, which delays the poses by two: for recordings, where
+  /// nobody waits. Without it a stamp that is damaged by less than largest_jump costs the poses in between.
+  bool look_ahead = false;
+  /// Time that jumps by more is not believed until other messages confirm it [s], nor by more than
+  /// jump_periods periods of the source. Longer than the gaps that a busy source leaves.
+  double largest_jump = 1;
+  std::int64_t jump_periods = 4;
+  /// Nor numbers that jump by more; and no more than this is held back or remembered as lost. 10 s at 100 Hz.
+  std::int64_t most_missing = 1000;
+  /// Messages in a row that confirm a jump. One damaged message must not, two might be damaged alike.
+  std::size_t confirmations = 3;
+  /// Messages that confirm each other are no further apart than this [s].
+  double largest_confirming_step = 60;
+};
+
+struct StreamCounts {
+  std::int64_t lost = 0;  ///< numbers that never came
+  std::int64_t duplicate = 0;
+  std::int64_t out_of_order = 0;  ///< too late to be used
+  std::int64_t jump = 0;          ///< time or number damaged or far off, and nothing followed there
+};
+
+/// Everything that a Stream remembers.
+struct StreamState {
+  std::optional<std::int64_t> newest_us;
+  std::int64_t period_us = 0;
+  std::optional<std::int64_t> next_seq;
+  std::set<std::int64_t> lost;                 ///< the newest numbers that were given up
+  std::map<std::int64_t, NumberedPose> early;  ///< by number, behind a gap
+  std::vector<NumberedPose> candidates;        ///< for a jump
+  std::vector<NumberedPose> ahead;             ///< see StreamOptions::look_ahead
+  std::optional<std::int64_t> checked_us;      ///< time of the last one that left ahead
+  std::array<std::int64_t, 64> recent{};       ///< times released last
+  std::uint64_t recent_next = 0;               ///< in recent
+  bool patient = false;                        ///< see be_patient()
+  std::int64_t gap = -1;                       ///< the number last missed by a sender that went back,
+  std::int32_t gap_repeats = 0;                ///< and how often
+  bool settling = false;                       ///< see settle()
+  std::map<std::int64_t, NumberedPose> held;   ///< by time, while settling
+  StreamCounts counts;
+};
+
+/// Puts the poses of one odometry source in order: live, replayed or read from a log. Its clock is the time
+/// inside the messages. Time and memory of a call are bounded, whatever a message claims.
+///
+/// - A gap in the numbers is waited for until reorder_window of measured time has gone by, or for as long as
+///   it is patient.
+/// - Time or number far off: kept back until three messages in a row go on from there, for one damaged
+///   message must not end a session. If time then turns out to run backwards (a log that was started again, a
+///   clock that was set), a new timeline begins; nothing of it is lost.
+/// - Times and numbers that no source can have (limits.hpp) are counted as jumps and not used.
+class Stream {
+ public:
+  explicit Stream(const StreamOptions& options = {});
+
+  /// The poses that are now in order, oldest first.
+  std::vector<NumberedPose> push(NumberedPose sample);
+  /// Stops waiting: nothing has come for long.
+  std::vector<NumberedPose> flush();
+  /// Something is missing before what is held back.
+  bool waiting() const { return !state_.early.empty() || !state_.held.empty(); }
+  std::size_t held_back() const { return state_.early.size() + state_.held.size(); }
+  /// The number that it waits for or expects next; -1: none.
+  std::int64_t expected() const { return state_.next_seq.value_or(-1); }
+  std::optional<std::int64_t> newest_us() const { return state_.newest_us; }
+  const StreamCounts& counts() const { return state_.counts; }
+
+  /// While the sender sends again what is missing, however long that takes in measured time, it is waited
+  /// for: until flush(), or until the first message behind the gap has come twice again, for then the sender
+  /// has been there twice and had nothing for the gap.
+  void be_patient(bool patient) { state_.patient = patient; }
+  bool settling() const { return state_.settling; }
+  /// After an interruption: the messages of a stream without numbers, or of one not heard before, are
+  /// collected, and put in order when one of them comes a second time, or by flush().
+  void settle();
+
+  const StreamState& state() const { return state_; }
+  /// Throws Error where no Stream can have had this state.
+  void restore(StreamState state);
+
+ private:
+  bool plausible(const NumberedPose& sample) const;
+  bool follows(const NumberedPose& x, const NumberedPose& y) const;
+  bool too_many(std::size_t count) const { return count > static_cast<std::size_t>(options_.most_missing); }
+  bool known(std::int64_t time_us) const;
+  std::vector<NumberedPose> look_ahead(NumberedPose sample);
+  void pass_checked(std::vector<NumberedPose>& out);
+  std::vector<NumberedPose> in_order(NumberedPose sample);
+  std::vector<NumberedPose> hold(NumberedPose sample);
+  std::vector<NumberedPose> settled();
+  void release(NumberedPose sample, std::vector<NumberedPose>& out);
+  void give_up_until(std::int64_t number);
+  void release_early(std::vector<NumberedPose>& out, bool give_up);
+  void give_up_first_gap(std::vector<NumberedPose>& out);
+  std::vector<NumberedPose> take_candidates();
+
+  StreamOptions options_;
+  StreamState state_;
+};
+
+}  // namespace egocal

@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/stream.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "egocal/error.hpp"
+#include "egocal/limits.hpp"
+
+namespace egocal {
+
+namespace {
+
+constexpr std::int32_t repeats_of_nothing = 2;
+constexpr std::int64_t no_time = std::numeric_limits<std::int64_t>::min();
+
+std::int64_t microseconds(double seconds) {
+  return static_cast<std::int64_t>(seconds * 1e6);
+}
+
+/// What every calculation below relies on: differences and products of such values do not overflow.
+bool possible(const NumberedPose& sample) {
+  return plausible_relative_time(sample.pose.time_us) && (sample.seq == -1 || plausible_count(sample.seq));
+}
+
+/// They are recorded in the order in which they were sent.
+bool sent_in_order(const NumberedPose& x, const NumberedPose& y) {
+  return x.seq < 0 || y.seq < 0 ? x.seq == y.seq : y.seq > x.seq;
+}
+
+void append(std::vector<NumberedPose>& out, std::vector<NumberedPose> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(out));
+}
+
+bool has_time(const std::map<std::int64_t, NumberedPose>& samples, std::int64_t time_us) {
+  return std::any_of(samples.begin(), samples.end(),
+                     [time_us](const auto& entry) { return entry.second.pose.time_us == time_us; });
+}
+
+/// Of all that wait (not none): a damaged number may be the highest with an early time.
+std::int64_t newest_time(const std::map<std::int64_t, NumberedPose>& samples) {
+  std::int64_t newest = samples.begin()->second.pose.time_us;
+  for (const auto& [number, sample] : samples) newest = std::max(newest, sample.pose.time_us);
+  return newest;
+}
+
+}  // namespace
+
+Stream::Stream(const StreamOptions& options) : options_(options) {
+  state_.recent.fill(no_time);
+}
+
+/// y may be the message after x, or a few later.
+bool Stream::follows(const NumberedPose& x, const NumberedPose& y) const {
+  const std::int64_t step = y.pose.time_us - x.pose.time_us;
+  if (step <= 0 || step > microseconds(options_.largest_confirming_step)) return false;
+  return sent_in_order(x, y) && y.seq - x.seq <= options_.most_missing;
+}
+
+bool Stream::known(std::int64_t time_us) const {
+  return std::find(state_.recent.begin(), state_.recent.end(), time_us) != state_.recent.end() ||
+         has_time(state_.early, time_us);
+}
+
+bool Stream::plausible(const NumberedPose& sample) const {
+  if (!state_.newest_us) return true;
+  const std::int64_t limit =
+      std::max(microseconds(options_.largest_jump), options_.jump_periods * state_.period_us);
+  const std::int64_t newest = state_.early.empty() ? *state_.newest_us : newest_time(state_.early);
+  // numbers that are missing take their time
+  std::int64_t ahead = 0;
+  if (sample.seq >= 0 && state_.next_seq) {
+    ahead = sample.seq - *state_.next_seq;
+    if (ahead > options_.most_missing || ahead < -options_.most_missing) return false;
+  }
+  return sample.pose.time_us >= *state_.newest_us - limit &&
+         sample.pose.time_us <= newest + limit + std::max<std::int64_t>(0, ahead) * state_.period_us;
+}
+
+void Stream::release(NumberedPose sample, std::vector<NumberedPose>& out) {
+  const bool late = state_.newest_us && sample.pose.time_us <= *state_.newest_us;
+  if (late && sample.seq >= 0) {
+    ++state_.counts.out_of_order;
+    return;
+  }
+  if (late) {
+    // not numbered, so nothing waited for it: the synchroniser knows whether it can still use it
+    state_.recent[state_.recent_next] = sample.pose.time_us;
+    state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
+    out.push_back(std::move(sample));
+    return;
+  }
+  if (state_.newest_us) state_.period_us = sample.pose.time_us - *state_.newest_us;
+  state_.newest_us = sample.pose.time_us;
+  state_.recent[state_.recent_next] = sample.pose.time_us;
+  state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
+  out.push_back(std::move(sample));
+}
+
+/// What comes after all is known to be late, however old it is, and is no longer counted as lost.
+void Stream::give_up_until(std::int64_t number) {
+  state_.counts.lost += number - *state_.next_seq;
+  // only the newest are remembered: a large gap costs no more than a small one
+  for (std::int64_t lost = std::max(*state_.next_seq, number - options_.most_missing); lost < number; ++lost)
+    state_.lost.insert(lost);
+  state_.next_seq = number;
+  while (too_many(state_.lost.size())) state_.lost.erase(state_.lost.begin());
+}
+
+void Stream::release_early(std::vector<NumberedPose>& out, bool give_up) {
+  while (!state_.early.empty()) {
+    const auto first = state_.early.begin();
+    if (first->first != *state_.next_seq) {
+      const bool waited_enough = too_many(state_.early.size()) ||
+                                 (!state_.patient && newest_time(state_.early) - first->second.pose.time_us >=
+                                                         microseconds(options_.reorder_window));
+      if (!give_up && !waited_enough) return;
+      give_up_until(first->first);
+    }
+    state_.next_seq = first->first + 1;
+    release(first->second, out);
+    state_.early.erase(first);
+    // a damaged number may have put one far ahead that will not be of use there
+    state_.counts.out_of_order += static_cast<std::int64_t>(std::erase_if(
+        state_.early, [this](const auto& entry) { return entry.second.pose.time_us <= *state_.newest_us; }));
+  }
+}
+
+void Stream::give_up_first_gap(std::vector<NumberedPose>& out) {
+  give_up_until(state_.early.begin()->first);
+  release_early(out, false);
+}
+
+std::vector<NumberedPose> Stream::flush() {
+  std::vector<NumberedPose> out = settled();
+  while (!state_.ahead.empty()) pass_checked(out);
+  release_early(out, true);
+  return out;
+}
+
+void Stream::restore(StreamState state) {
+  const auto all_possible = [](const auto& samples) {
+    return std::all_of(samples.begin(), samples.end(),
+                       [](const auto& entry) { return possible(entry.second); });
+  };
+  const auto possible_time = [](const std::optional<std::int64_t>& time) {
+    return !time || plausible_relative_time(*time);
+  };
+  const std::size_t most = static_cast<std::size_t>(options_.most_missing) + 1;
+  const bool fits =
+      possible_time(state.newest_us) && possible_time(state.checked_us) && state.period_us >= 0 &&
+      state.period_us <= 2 * limits::latest_us &&
+      (!state.next_seq || (*state.next_seq >= 0 && *state.next_seq <= limits::largest_count + 1)) &&
+      state.early.size() <= most && state.held.size() <= most && state.lost.size() <= most &&
+      state.candidates.size() <= options_.confirmations && state.ahead.size() <= 3 &&
+      state.recent_next < state.recent.size() &&
+      (state.early.empty() || (state.next_seq && state.newest_us)) &&
+      (state.candidates.empty() || state.newest_us) && all_possible(state.early) &&
+      all_possible(state.held) && std::all_of(state.candidates.begin(), state.candidates.end(), possible) &&
+      std::all_of(state.ahead.begin(), state.ahead.end(), possible) &&
+      std::all_of(state.early.begin(), state.early.end(), [&](const auto& entry) {
+        return entry.first == entry.second.seq && entry.first >= *state.next_seq &&
+               entry.first - *state.next_seq <= 2 * options_.most_missing;
+      });
+  if (!fits) throw Error("holds values that no stream of poses can have");
+  state_ = std::move(state);
+}
+
+std::vector<NumberedPose> Stream::take_candidates() {
+  std::vector<NumberedPose> out;
+  release_early(out, true);
+  const bool backwards = state_.candidates.front().pose.time_us <= *state_.newest_us;
+  if (backwards) {
+    state_.newest_us.reset();
+    state_.recent.fill(no_time);
+    state_.lost.clear();
+    state_.candidates.front().begins_anew = true;
+  }
+  state_.next_seq.reset();
+  for (NumberedPose& sample : std::exchange(state_.candidates, {})) {
+    if (state_.next_seq && sample.seq > *state_.next_seq) give_up_until(sample.seq);
+    if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
+    release(std::move(sample), out);
+  }
+  return out;
+}
+
+void Stream::settle() {
+  state_.settling = !state_.next_seq;
+  state_.gap_repeats = 0;
+  state_.held.clear();  // not acknowledged yet: they come again, in order
+}
+
+std::vector<NumberedPose> Stream::settled() {
+  state_.settling = false;
+  std::vector<NumberedPose> out;
+  for (auto& [time_us, sample] : std::exchange(state_.held, {})) {
+    append(out, in_order(std::move(sample)));
+  }
+  return out;
+}
+
+std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
+  const std::int64_t time_us = sample.pose.time_us;
+  const bool backwards = state_.newest_us && time_us <= *state_.newest_us;
+  const bool again = state_.held.contains(time_us);
+  if (!backwards && !again && !too_many(state_.held.size() + 1)) {
+    state_.held.emplace(time_us, std::move(sample));
+    return {};
+  }
+  if (backwards && known(time_us)) {  // the sender has begun a little before what is missing
+    ++state_.counts.duplicate;
+    return {};
+  }
+  std::vector<NumberedPose> out = settled();
+  append(out, in_order(std::move(sample)));
+  return out;
+}
+
+std::vector<NumberedPose> Stream::push(NumberedPose sample) {
+  if (!possible(sample)) {
+    ++state_.counts.jump;
+    return {};
+  }
+  if (state_.settling) return hold(std::move(sample));
+  return options_.look_ahead ? look_ahead(std::move(sample)) : in_order(std::move(sample));
+}
+
+std::vector<NumberedPose> Stream::look_ahead(NumberedPose sample) {
+  state_.ahead.push_back(std::move(sample));
+  std::vector<NumberedPose> out;
+  while (state_.ahead.size() >= 3) pass_checked(out);
+  return out;
+}
+
+/// The first of those ahead goes on, unless its time contradicts the next one's and order is restored by
+/// leaving it out. Where that holds for the next one as well, that one will be too late.
+void Stream::pass_checked(std::vector<NumberedPose>& out) {
+  std::vector<NumberedPose>& ahead = state_.ahead;
+  const std::int64_t time = ahead[0].pose.time_us;
+  bool damaged = false;
+  if (ahead.size() > 1 && sent_in_order(ahead[0], ahead[1]) && ahead[1].pose.time_us < time) {
+    const std::int64_t next = ahead[1].pose.time_us;
+    const bool without_it = (!state_.checked_us || *state_.checked_us < next) &&
+                            (ahead.size() < 3 || next < ahead[2].pose.time_us);
+    const bool without_next = ahead.size() < 3 || time < ahead[2].pose.time_us;
+    damaged = without_it && !without_next;
+  }
+  NumberedPose first = std::move(ahead.front());
+  ahead.erase(ahead.begin());
+  if (damaged) {
+    ++state_.counts.jump;
+    return;
+  }
+  state_.checked_us = time;
+  append(out, in_order(std::move(first)));
+}
+
+std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
+  if (known(sample.pose.time_us)) {
+    ++state_.counts.duplicate;
+    std::vector<NumberedPose> out;
+    if (state_.patient && !state_.early.empty() &&
+        state_.early.begin()->second.pose.time_us == sample.pose.time_us) {
+      if (std::exchange(state_.gap, *state_.next_seq) != state_.gap) state_.gap_repeats = 0;
+      if (++state_.gap_repeats == repeats_of_nothing) give_up_first_gap(out);
+    }
+    return out;
+  }
+  if (sample.seq >= 0 && state_.newest_us && sample.pose.time_us < *state_.newest_us &&
+      state_.lost.erase(sample.seq) > 0) {
+    ++state_.counts.out_of_order;
+    --state_.counts.lost;
+    return {};
+  }
+  if (!plausible(sample)) {
+    if (!state_.candidates.empty() && !follows(state_.candidates.back(), sample)) {
+      state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
+      state_.candidates.clear();
+    }
+    state_.candidates.push_back(std::move(sample));
+    if (state_.candidates.size() < options_.confirmations) return {};
+    return take_candidates();
+  }
+  state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
+  state_.candidates.clear();
+
+  std::vector<NumberedPose> out;
+  if (sample.seq < 0 || !state_.next_seq) {
+    if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
+    release(std::move(sample), out);
+  } else if (sample.seq < *state_.next_seq) {
+    ++state_.counts.out_of_order;
+  } else {
+    const std::int64_t seq = sample.seq;
+    if (!state_.early.emplace(seq, std::move(sample)).second) {
+      ++state_.counts.duplicate;
+      return out;
+    }
+    release_early(out, false);
+  }
+  return out;
+}
+
+}  // namespace egocal
