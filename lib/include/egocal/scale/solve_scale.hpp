@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "egocal/problem/problem.hpp"
+#include "egocal/scale/scale_statistics.hpp"
+
+namespace egocal {
+
+/// Which sensor's translations are noisy. Noise in the translations that the scale multiplies pulls it
+/// towards zero (errors in variables), noise in the other ones does not.
+enum class ScaleNoise {
+  both,     ///< both alike: the cost counts lengths in the geometric mean of both units; the pulls cancel
+  metric,   ///< only the sensor with the known unit: least squares in metres
+  unscaled  ///< only the sensor with the unknown unit: least squares in its unit
+};
+
+struct ScaleOptions {
+  Side side = Side::a;  ///< whose translations the scale multiplies; the extrinsic is in the other's unit
+  double least = 0.01;  ///< scales looked at; four decades hold every camera and odometer met so far
+  double most = 100;
+  ScaleNoise noise = ScaleNoise::both;
+  Mode mode = Mode::spatial;  ///< planar: the motions are those seen from the planes (24)
+  /// Rotation against translation; the translation weight holds at the scale found.
+  Balance balance{};
+  /// The bound may lie this far below the cost, in parts of the weighted translation energy: a scale further
+  /// off than about its root is excluded by proof.
+  double tolerance = 1e-7;
+  /// A limit on time only: 5 to 15 are the rule, a drive that shows no scale may take them all.
+  int most_solves = 400;
+  /// The scale counts as observable where noise explains at most this part of what shows it. A quarter leaves
+  /// a bias below 13 % with noise on both sides.
+  double most_noise_share = 0.25;
+};
+
+/// The scale and the extrinsic that minimise the cost together.
+struct ScaleSolution {
+  double scale = 1;  ///< what the translations of `side` are multiplied by
+  DualQuaternion q;  ///< the minimiser of (18) at that scale: T_a_b (planar mode: T_p)
+  double cost = 0;   ///< J
+  Balance balance;   ///< in force at that scale: the q above minimises cost_matrix(at_scale(...), balance)
+  double lower_bound = 0;  ///< no scale in the range and no extrinsic has a cost below it, up to rounding
+  double gap = 0;          ///< cost - lower_bound, >= 0
+  double rounding = 0;     ///< costs that differ by less than this cannot be told apart
+  /// No scale outside of these two has as low a cost.
+  double least_scale = 0, most_scale = 0;
+  bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale
+  bool at_limit = false;   ///< the best scale is the end of the range
+  double stddev = 0;       ///< by the jack-knife over blocks, with `attenuation`; infinite where unknown
+  /// Errors in variables: the true scale lies within this part of the scale of it, if all translation noise
+  /// is in one sensor or the other; with noise as ScaleOptions::noise assumes nothing of it is left.
+  double attenuation = 0;
+  /// Curvature of the cost over the scale against that at a fixed extrinsic, in [0, 1]: 0 shows no scale
+  /// (pure rotation, or one circle at constant speed, where another lever arm explains another scale).
+  double observability = 0;
+  bool observable = false;
+  int solves = 0;  ///< certified solves of the branch and bound
+};
+
+/// Global minimum over scale and extrinsic by branch and bound over the scale (docs/scale.md has the proof).
+/// The blocks are consecutive parts of one drive; the solution depends on their sum, the standard deviation
+/// on the parts. Where the rotations are perfect, extrinsics longer than a thousand times what the drive
+/// moves per radian do not count as competitors. Never throws; without motion the solution is not certified
+/// and not observable.
+ScaleSolution solve_scale(std::span<const ScaleStatistics> blocks, const ScaleOptions& options = {});
+
+}  // namespace egocal
