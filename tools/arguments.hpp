@@ -4,21 +4,17 @@
 
 #include <cstddef>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "egocal/cli/cli.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/problem/ground_plane.hpp"
 
 namespace egocal::tools {
 
-/// An option that cannot be understood: exit code 2.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using cli::UsageError;
 
 /// Exactly `count` finite numbers. Throws UsageError naming the option.
 std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program/program.hpp"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <memory>
 
 #include "egocal/bus/glue.hpp"
+#include "egocal/cli/cli.hpp"
 #include "egocal/error.hpp"
 
 namespace egocal::services {
@@ -15,30 +15,20 @@ namespace egocal::services {
 int run_program(
     int argc, char** argv, const ProgramDescription& description,
     const std::function<std::shared_ptr<void>(bus::Loop&, bus::Heartbeat&, const bus::Rig&)>& start) {
-  CLI::App app(description.help, description.name);
+  cli::Program app(description.name, description.help, description.version);
   app.footer("Exit codes: 0 ended by SIGINT or SIGTERM, 1 failure, 2 wrong usage.");
   std::string rig_file, url, name = description.name;
-  app.set_version_flag("--version", description.name + " " + description.version);
-  app.add_option("--rig", rig_file, "the rig file (docs/rig.md)")->required();
+  app.add_option("--rig", rig_file, "the rig file (docs/rig.md)").required();
   app.add_option("--lcm-url", url, "LCM URL instead of the rig's");
-  app.add_option("--name", name, "name of this process on the bus")->capture_default_str();
+  app.add_option("--name", name, "name of this process on the bus").show_default();
   for (const TextOption& option : description.options) {
-    CLI::Option* added = app.add_option(option.name, *option.value, option.help)->capture_default_str();
-    if (!option.choices.empty()) added->check(CLI::IsMember(option.choices));
+    cli::Option added = app.add_option(option.name, *option.value, option.help).show_default();
+    if (!option.choices.empty()) added.check(cli::Check::one_of(option.choices));
   }
   for (const FlagOption& flag : description.flags) app.add_flag(flag.name, *flag.value, flag.help);
-  try {
-    app.parse(argc, argv);
-    if (!bus::plausible_name(name))
-      throw CLI::ValidationError("--name", "expected 1 to 40 letters, digits, _ or -");
-  } catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
-    return 0;
-  } catch (const CLI::CallForVersion& version) {
-    std::cout << version.what() << '\n';
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    std::cerr << description.name << ": " << bus::printable(error.what()) << "; see --help\n";
+  if (const auto code = app.parse(argc, argv)) return *code;
+  if (!bus::plausible_name(name)) {
+    std::cerr << description.name << ": --name: expected 1 to 40 letters, digits, _ or -\n";
     return 2;
   }
   try {

@@ -3,11 +3,11 @@
 
 // How often the 95 % interval (1.96 reported standard deviations) covers the truth, per direction, with
 // stride and weights chosen by the data: cars and free motion, white noise and noise that wanders.
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "egocal/cli/cli.hpp"
 #include "egocal/online/answer.hpp"
 #include "support/simulated_drive.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -45,11 +45,13 @@ void print(const char* label, const Coverage& coverage) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  egocal::cli::Program app(
+      "coverage_study",
       "how often the 95 % interval covers the truth; exit code 1 where it is not in 92 to 98 % of the cases");
   int drives = 500;
-  app.add_option("--drives", drives, "simulated ones, in all [500]")->check(CLI::Range(4, 1000000));
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--drives", drives, "simulated ones, in all [500]")
+      .check(egocal::cli::Check::range(4, 1000000));
+  if (const auto code = app.parse(argc, argv)) return *code;
 
   std::printf("%-24s", "");
   for (const char* direction : directions) std::printf(" %7s", direction);

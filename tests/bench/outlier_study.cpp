@@ -3,13 +3,13 @@
 
 // What a fifth of the poses of one stream being grossly wrong costs, for every kind of corruption, in either
 // stream, over several draws: the table of docs/accuracy.md.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "egocal/cli/cli.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "support/corruption.hpp"
@@ -64,9 +64,11 @@ void print(const char* drive, const Errors& errors) {
 
 int main(int argc, char** argv) {
   std::uint64_t seeds = 6;
-  CLI::App app{"Rotation error [deg] with a fifth of the poses of one stream wrong"};
-  app.add_option("--draws", seeds, "of what is wrong, per kind and stream")->check(CLI::Range(1, 1000));
-  CLI11_PARSE(app, argc, argv);
+  egocal::cli::Program app("outlier_study",
+                           "Rotation error [deg] with a fifth of the poses of one stream wrong");
+  app.add_option("--draws", seeds, "of what is wrong, per kind and stream")
+      .check(egocal::cli::Check::range(1, 1000));
+  if (const auto code = app.parse(argc, argv)) return *code;
 
   std::printf("%-24s %7s   %15s   %23s\n%-24s %7s   %7s %7s   %7s %7s %7s\n", "", "clean", "a fifth missing",
               "a fifth wrong", "", "", "median", "worst", "median", "95 %", "worst");

@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -19,6 +18,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/glue.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/cli/cli.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
@@ -304,27 +304,27 @@ int endurance(const Options& options) {
 
 int main(int argc, char** argv) {
   egocal::Options options;
-  CLI::App app("Measures the real processes over real LCM.", "bench_processes");
-  app.require_subcommand(1);
+  egocal::cli::Program app("bench_processes", "Measures the real processes over real LCM.");
+  app.require_subcommand();
   app.add_flag("--monitor", options.monitor, "with egocal-monitor --follow");
   app.add_flag("--state", options.state, "with a state file");
-  CLI::App* latency = app.add_subcommand("latency", "from odometry to the verified answer");
-  latency->add_option("--pairs", options.pairs)->check(CLI::Range(1, 16))->capture_default_str();
-  latency->add_option("--rate", options.rate, "[Hz] of each sensor")->capture_default_str();
-  latency->add_option("--seconds", options.seconds)->capture_default_str();
-  latency->add_flag("--spread", options.spread, "sensors one after the other, not at the same instant");
-  CLI::App* replay = app.add_subcommand("replay", "a log at full speed");
-  replay->add_option("--motions", options.motions)->capture_default_str();
-  replay->add_option("--repeats", options.repeats)->capture_default_str();
-  CLI::App* endurance =
+  egocal::cli::App latency = app.add_subcommand("latency", "from odometry to the verified answer");
+  latency.add_option("--pairs", options.pairs).check(egocal::cli::Check::range(1, 16)).show_default();
+  latency.add_option("--rate", options.rate, "[Hz] of each sensor").show_default();
+  latency.add_option("--seconds", options.seconds).show_default();
+  latency.add_flag("--spread", options.spread, "sensors one after the other, not at the same instant");
+  egocal::cli::App replay = app.add_subcommand("replay", "a log at full speed");
+  replay.add_option("--motions", options.motions).show_default();
+  replay.add_option("--repeats", options.repeats).show_default();
+  egocal::cli::App endurance =
       app.add_subcommand("endurance", "memory and file descriptors over hours, at full speed");
-  endurance->add_option("--hours", options.hours)->capture_default_str();
-  endurance->add_option("--rate", options.rate, "[Hz] of each sensor")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  endurance.add_option("--hours", options.hours).show_default();
+  endurance.add_option("--rate", options.rate, "[Hz] of each sensor").show_default();
+  if (const auto code = app.parse(argc, argv)) return *code;
   if (!egocal::test::enter_network_namespace()) return 1;
   try {
-    if (*latency) return egocal::latency(options);
-    if (*replay) return egocal::replay(options);
+    if (latency.given()) return egocal::latency(options);
+    if (replay.given()) return egocal::replay(options);
     return egocal::endurance(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_processes: %s\n", error.what());

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A drive is replayed twice, once undisturbed and once while pairing and solvers are killed at random and
 // solvers are swapped: both must end in the same bits. See --help and docs/processes.md.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "egocal/bus/glue.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/cli/cli.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "support/child_process.hpp"
@@ -304,22 +304,21 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   egocal::Options options;
-  CLI::App app(
+  egocal::cli::Program app(
+      "egocal_chaos",
       "Replays a drive undisturbed, then again while processes are killed with SIGKILL and solvers are "
       "swapped "
-      "at random, and compares the bits.",
-      "egocal_chaos");
-  app.add_option("--kills", options.kills)->check(CLI::Range(1, 100000))->capture_default_str();
-  app.add_option("--minutes", options.minutes, "length of the drive")->capture_default_str();
-  app.add_option("--rate", options.rate, "poses a second of each sensor")->capture_default_str();
-  app.add_option("--kill-distance", options.kill_distance, "[s] on average")->capture_default_str();
-  app.add_option("--within", options.within, "[s] until certified again after a restart")
-      ->capture_default_str();
-  app.add_option("--seed", options.seed)->capture_default_str();
+      "at random, and compares the bits.");
+  app.add_option("--kills", options.kills).check(egocal::cli::Check::range(1, 100000)).show_default();
+  app.add_option("--minutes", options.minutes, "length of the drive").show_default();
+  app.add_option("--rate", options.rate, "poses a second of each sensor").show_default();
+  app.add_option("--kill-distance", options.kill_distance, "[s] on average").show_default();
+  app.add_option("--within", options.within, "[s] until certified again after a restart").show_default();
+  app.add_option("--seed", options.seed).show_default();
   app.add_option("--type", options.type, "of the messages: odometry or pose (without numbers)")
-      ->check(CLI::IsMember({"odometry", "pose"}))
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+      .check(egocal::cli::Check::one_of({"odometry", "pose"}))
+      .show_default();
+  if (const auto code = app.parse(argc, argv)) return *code;
   if (!egocal::test::enter_network_namespace()) return 1;
   char folder[] = "/tmp/egocal-chaos-XXXXXX";
   if (!mkdtemp(folder)) return 1;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A bad network between two LCM URLs, for tests.
 #include "support/lossy_relay.hpp"
+#include "egocal/cli/cli.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "egocal/bus/loop.hpp"
@@ -15,19 +15,19 @@ int main(int argc, char** argv) {
   std::vector<std::string> channels;
   test::Losses losses;
   std::uint64_t seed = 1;
-  CLI::App app("Hands messages on from one LCM URL to another: loses, doubles, reorders and damages some.",
-               "egocal_lossy_relay");
+  cli::Program app(
+      "egocal_lossy_relay",
+      "Hands messages on from one LCM URL to another: loses, doubles, reorders and damages some.");
   app.footer("Prints its exact counts when it is ended by SIGINT or SIGTERM.");
-  app.add_option("--from", from, "LCM URL")->required();
-  app.add_option("--to", to, "LCM URL")->required();
-  app.add_option("--channel", channels, "name; one or more")->required();
-  app.add_option("--drop", losses.dropped, "probability")->capture_default_str();
-  app.add_option("--double", losses.doubled, "probability")->capture_default_str();
-  app.add_option("--reorder", losses.reordered, "probability")->capture_default_str();
-  app.add_option("--flip", losses.flipped, "probability of one wrong bit in a message")
-      ->capture_default_str();
-  app.add_option("--seed", seed)->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--from", from, "LCM URL").required();
+  app.add_option("--to", to, "LCM URL").required();
+  app.add_option("--channel", channels, "name; one or more").required();
+  app.add_option("--drop", losses.dropped, "probability").show_default();
+  app.add_option("--double", losses.doubled, "probability").show_default();
+  app.add_option("--reorder", losses.reordered, "probability").show_default();
+  app.add_option("--flip", losses.flipped, "probability of one wrong bit in a message").show_default();
+  app.add_option("--seed", seed).show_default();
+  if (const auto code = app.parse(argc, argv)) return *code;
   try {
     bus::Loop in(from), out(to, bus::LoopOptions{.handle_signals = false});
     test::LossyRelay relay(losses, seed, [&](const std::string& channel, bus::Bytes bytes) {

@@ -7,7 +7,7 @@
 
 namespace egocal::tools {
 
-void add_commands(CLI::App& program) {
+void add_commands(cli::App program) {
   add_solve(program);
   add_simulate(program);
   add_log(program);

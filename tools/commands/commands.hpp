@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "egocal/cli/cli.hpp"
 
 namespace egocal::tools {
 
 /// Every command of the program; each parses its options and does its work when it is called.
-void add_commands(CLI::App& program);
+void add_commands(cli::App program);
 
-void add_solve(CLI::App& program);
-void add_simulate(CLI::App& program);
-void add_log(CLI::App& program);
-void add_up(CLI::App& program);
-void add_tell(CLI::App& program);
-void add_export(CLI::App& program);
+void add_solve(cli::App program);
+void add_simulate(cli::App program);
+void add_log(cli::App program);
+void add_up(cli::App program);
+void add_tell(cli::App program);
+void add_export(cli::App program);
 
 }  // namespace egocal::tools

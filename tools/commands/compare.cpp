@@ -54,16 +54,16 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& program) {
+void add_compare(cli::App program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  cli::App command =
       program.add_subcommand("compare", "every method on one data set: the paper's Tables I and II");
-  add_source_options(*command, options->source);
-  command->add_option("--repeats", options->repeats, "of each method, for its time")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  command->add_flag("--json", options->json, "one JSON object on standard output");
-  command->callback([options] { run(*options); });
+  add_source_options(command, options->source);
+  command.add_option("--repeats", options->repeats, "of each method, for its time")
+      .show_default()
+      .check(cli::Check::range(1, 100000));
+  command.add_flag("--json", options->json, "one JSON object on standard output");
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace egocal::tools

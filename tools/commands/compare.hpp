@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "egocal/cli/cli.hpp"
 
 namespace egocal::tools {
 
 /// `egocal compare`: every method on one data set, Tables I and II.
-void add_compare(CLI::App& program);
+void add_compare(cli::App program);
 
 }  // namespace egocal::tools

@@ -47,37 +47,37 @@ void finish(const Points& points, const std::string& directory, const std::strin
   }
 }
 
-void add_noise(CLI::App& experiment) {
+void add_noise(cli::App experiment) {
   struct Options {
     NoiseOptions noise;
     std::string out = ".";
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = experiment.add_subcommand(
+  cli::App command = experiment.add_subcommand(
       "noise", "Fig. 4: error over the number of motion pairs for several noise levels");
-  command->add_option("--levels", options->noise.levels, "noise relative to the mean motion")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--pairs", options->noise.most_pairs, "most motion pairs")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 1000000));
-  command->add_option("--sizes", options->noise.sizes, "how many numbers of pairs, from 10 to the most")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--sensors", options->noise.sensors, "poses of sensor b, 2 to 8 m away")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--repeats", options->noise.repeats, "runs of each")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--seed", options->noise.seed, "of the random numbers")->capture_default_str();
-  command->add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
-      ->capture_default_str();
-  command->callback(
+  command.add_option("--levels", options->noise.levels, "noise relative to the mean motion")
+      .comma_separated()
+      .show_default();
+  command.add_option("--pairs", options->noise.most_pairs, "most motion pairs")
+      .show_default()
+      .check(cli::Check::range(2, 1000000));
+  command.add_option("--sizes", options->noise.sizes, "how many numbers of pairs, from 10 to the most")
+      .show_default()
+      .check(cli::Check::range(1, 1000));
+  command.add_option("--sensors", options->noise.sensors, "poses of sensor b, 2 to 8 m away")
+      .show_default()
+      .check(cli::Check::range(1, 1000));
+  command.add_option("--repeats", options->noise.repeats, "runs of each")
+      .show_default()
+      .check(cli::Check::range(1, 1000));
+  command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
+  command.add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
+      .show_default();
+  command.callback(
       [options] { finish(noise_experiment(options->noise, Progress{}), options->out, "noise"); });
 }
 
-void add_online(CLI::App& experiment) {
+void add_online(cli::App experiment) {
   struct Options {
     Source source;
     std::size_t frames = 150;
@@ -86,23 +86,23 @@ void add_online(CLI::App& experiment) {
     std::string out = ".";
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = experiment.add_subcommand(
+  cli::App command = experiment.add_subcommand(
       "online", "Fig. 6: Algorithm 1 frame by frame; planar where both ground planes are given");
-  add_source_options(*command, options->source);
-  command->add_option("--frames", options->frames, "motion pairs")->capture_default_str();
+  add_source_options(command, options->source);
+  command.add_option("--frames", options->frames, "motion pairs").show_default();
   command
-      ->add_option("--t-no-fail", options->t_no_fail,
-                   "time that the fast solution must have been verified for [s]")
-      ->capture_default_str();
-  command->add_option("--fast", options->fast, "sqp or slsqp")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"sqp", "slsqp"}));
-  command->add_option("--global", options->global, "dual or sdp")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"dual", "sdp"}));
-  command->add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
-      ->capture_default_str();
-  command->callback([options] {
+      .add_option("--t-no-fail", options->t_no_fail,
+                  "time that the fast solution must have been verified for [s]")
+      .show_default();
+  command.add_option("--fast", options->fast, "sqp or slsqp")
+      .show_default()
+      .check(cli::Check::one_of({"sqp", "slsqp"}));
+  command.add_option("--global", options->global, "dual or sdp")
+      .show_default()
+      .check(cli::Check::one_of({"dual", "sdp"}));
+  command.add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
+      .show_default();
+  command.callback([options] {
     const DataSet data = load(options->source);
     OnlineOptions online;
     online.t_no_fail = options->t_no_fail;
@@ -113,34 +113,34 @@ void add_online(CLI::App& experiment) {
   });
 }
 
-void add_globality(CLI::App& experiment) {
+void add_globality(cli::App experiment) {
   struct Options {
     Source source;
     GlobalityOptions globality;
     std::string out = ".";
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = experiment.add_subcommand(
+  cli::App command = experiment.add_subcommand(
       "globality", "section V-F: the optimum falsified by growing amounts, and its duality gap");
-  add_source_options(*command, options->source);
-  command->add_option("--directions", options->globality.directions, "of each amount")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
-      ->capture_default_str();
-  command->callback([options] {
+  add_source_options(command, options->source);
+  command.add_option("--directions", options->globality.directions, "of each amount")
+      .show_default()
+      .check(cli::Check::range(1, 100000));
+  command.add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
+      .show_default();
+  command.callback([options] {
     finish(globality_experiment(load(options->source), options->globality), options->out, "globality");
   });
 }
 
 }  // namespace
 
-void add_experiment(CLI::App& program) {
-  CLI::App* experiment = program.add_subcommand("experiment", "the paper's experiments as CSV and plot");
-  experiment->require_subcommand(1);
-  add_noise(*experiment);
-  add_online(*experiment);
-  add_globality(*experiment);
+void add_experiment(cli::App program) {
+  cli::App experiment = program.add_subcommand("experiment", "the paper's experiments as CSV and plot");
+  experiment.require_subcommand();
+  add_noise(experiment);
+  add_online(experiment);
+  add_globality(experiment);
 }
 
 }  // namespace egocal::tools

@@ -174,43 +174,43 @@ void repair(const std::string& file, const std::string& out) {
   fmt::print("{}: {} events; {}\n", out, events, damage_text(log.damage()));
 }
 
-void add_create(CLI::App& log) {
+void add_create(cli::App log) {
   const auto options = std::make_shared<CreateOptions>();
-  CLI::App* command = log.add_subcommand("create", "trajectory files to a log that can be played");
-  command->add_option("RIG", options->rig, "rig file: sensors, channels, types")->required();
-  command->add_option("--from", options->from, "SENSOR=FILE, once for each sensor")->required();
-  command->add_option("--times", options->times, "times of KITTI poses [s]");
-  command->add_option("--out", options->out, "the log")->required();
-  command->callback([options] { create(*options); });
+  cli::App command = log.add_subcommand("create", "trajectory files to a log that can be played");
+  command.add_option("RIG", options->rig, "rig file: sensors, channels, types").required();
+  command.add_option("--from", options->from, "SENSOR=FILE, once for each sensor").required();
+  command.add_option("--times", options->times, "times of KITTI poses [s]");
+  command.add_option("--out", options->out, "the log").required();
+  command.callback([options] { create(*options); });
 }
 
 }  // namespace
 
-void add_log(CLI::App& program) {
-  CLI::App* log = program.add_subcommand("log", "make, look into, check and repair LCM logs");
-  log->require_subcommand(1);
-  add_create(*log);
+void add_log(cli::App program) {
+  cli::App log = program.add_subcommand("log", "make, look into, check and repair LCM logs");
+  log.require_subcommand();
+  add_create(log);
 
   const auto file = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  CLI::App* info = log->add_subcommand("info", "what is in a log");
-  info->add_option("LOG", *file)->required();
-  info->add_flag("--json", *json, "one JSON object on standard output");
-  info->callback([file, json] { print_info(*file, *json); });
+  cli::App info = log.add_subcommand("info", "what is in a log");
+  info.add_option("LOG", *file).required();
+  info.add_flag("--json", *json, "one JSON object on standard output");
+  info.callback([file, json] { print_info(*file, *json); });
 
-  CLI::App* check = log->add_subcommand("check", "reads all of a log; fails where it is damaged");
-  check->add_option("LOG", *file)->required();
-  check->callback([file] {
+  cli::App check = log.add_subcommand("check", "reads all of a log; fails where it is damaged");
+  check.add_option("LOG", *file).required();
+  check.callback([file] {
     const Info found = inspect(*file);
     if (found.damage.any()) throw error_at(*file, 0, "", damage_text(found.damage));
     fmt::print("{}: {}\n", *file, damage_text(found.damage));
   });
 
   const auto out = std::make_shared<std::string>();
-  CLI::App* mend = log->add_subcommand("repair", "all events that can be read, as a new log");
-  mend->add_option("LOG", *file)->required();
-  mend->add_option("--out", *out, "the new log")->required();
-  mend->callback([file, out] { repair(*file, *out); });
+  cli::App mend = log.add_subcommand("repair", "all events that can be read, as a new log");
+  mend.add_option("LOG", *file).required();
+  mend.add_option("--out", *out, "the new log").required();
+  mend.callback([file, out] { repair(*file, *out); });
 }
 
 }  // namespace egocal::tools

@@ -120,43 +120,41 @@ void run(Options options) {
 
 }  // namespace
 
-void add_simulate(CLI::App& program) {
+void add_simulate(cli::App program) {
   const auto options = std::make_shared<Options>();
   SimulationOptions& simulation = options->simulation;
-  CLI::App* command =
+  cli::App command =
       program.add_subcommand("simulate", "a drive with known truth, as an LCM log or as TUM files");
-  command->add_option("--out", options->out, "a file .log, or a directory for TUM files")->required();
-  command->add_option("--rig-out", options->rig_out, "also writes a rig file for it");
+  command.add_option("--out", options->out, "a file .log, or a directory for TUM files").required();
+  command.add_option("--rig-out", options->rig_out, "also writes a rig file for it");
   command
-      ->add_option("--terrain", options->terrain,
-                   "flat (planar motion), rough (a road) or free (6 degrees of freedom)")
-      ->check(CLI::IsMember({"flat", "rough", "free"}))
-      ->capture_default_str();
+      .add_option("--terrain", options->terrain,
+                  "flat (planar motion), rough (a road) or free (6 degrees of freedom)")
+      .check(cli::Check::one_of({"flat", "rough", "free"}))
+      .show_default();
   command
-      ->add_option("--sensor", options->sensors,
-                   "NAME=X,Y,Z,QW,QX,QY,QZ: its pose on the vehicle; two or more")
-      ->capture_default_str();
-  command->add_option("--poses", simulation.poses, "of each sensor")
-      ->check(CLI::Range(2, 10'000'000))
-      ->capture_default_str();
-  command->add_option("--rate", simulation.rate, "poses a second [Hz]")->capture_default_str();
-  command->add_option("--speed", simulation.speed, "[m/s]")->capture_default_str();
-  command->add_option("--roughness", simulation.roughness, "amplitude of the road's surface [m]")
-      ->capture_default_str();
-  command->add_option("--noise", simulation.relative_noise, "of each motion, as a part of the mean one")
-      ->capture_default_str();
-  command->add_option("--noise-rotation", simulation.noise_rotation, "added to it [rad]")
-      ->capture_default_str();
-  command->add_option("--noise-translation", simulation.noise_translation, "added to it [m]")
-      ->capture_default_str();
-  command->add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
-  command->add_option("--seed", simulation.seed, "of path, surface and noise")->capture_default_str();
+      .add_option("--sensor", options->sensors,
+                  "NAME=X,Y,Z,QW,QX,QY,QZ: its pose on the vehicle; two or more")
+      .show_default();
+  command.add_option("--poses", simulation.poses, "of each sensor")
+      .check(cli::Check::range(2, 10'000'000))
+      .show_default();
+  command.add_option("--rate", simulation.rate, "poses a second [Hz]").show_default();
+  command.add_option("--speed", simulation.speed, "[m/s]").show_default();
+  command.add_option("--roughness", simulation.roughness, "amplitude of the road's surface [m]")
+      .show_default();
+  command.add_option("--noise", simulation.relative_noise, "of each motion, as a part of the mean one")
+      .show_default();
+  command.add_option("--noise-rotation", simulation.noise_rotation, "added to it [rad]").show_default();
+  command.add_option("--noise-translation", simulation.noise_translation, "added to it [m]").show_default();
+  command.add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
+  command.add_option("--seed", simulation.seed, "of path, surface and noise").show_default();
   command
-      ->add_option("--type", options->type,
-                   "of the messages: odometry (egocal.odometry_t) or pose (bot_core.pose_t)")
-      ->check(CLI::IsMember({"odometry", "pose"}))
-      ->capture_default_str();
-  command->callback([options] { run(*options); });
+      .add_option("--type", options->type,
+                  "of the messages: odometry (egocal.odometry_t) or pose (bot_core.pose_t)")
+      .check(cli::Check::one_of({"odometry", "pose"}))
+      .show_default();
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace egocal::tools

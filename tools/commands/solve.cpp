@@ -90,41 +90,40 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_solve(CLI::App& program) {
+void add_solve(cli::App program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  cli::App command =
       program.add_subcommand("solve", "two trajectories in, the extrinsic of b in a out, with proof");
-  command->add_option(
-      "A", options->source.a,
-      "trajectory of sensor a: TUM, EuRoC csv, or KITTI with --times; with --log its channel");
-  command->add_option("B", options->source.b, "trajectory of sensor b");
-  command->add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
-  command->add_option("--pairs", options->source.pairs,
-                      "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
-  command->add_option("--times", options->times, "times of KITTI poses, one a line [s]");
-  command->add_option("--times-a", options->source.times_a, "times of A alone");
-  command->add_option("--times-b", options->source.times_b, "times of B alone");
-  command->add_option("--method", options->method, "solver, or a baseline of the paper")
-      ->check(CLI::IsMember({"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))
-      ->capture_default_str();
-  command->add_flag("--planar", options->planar, "x, y and yaw only; the rest from the ground planes");
-  command->add_option("--plane-a", options->plane_a,
-                      "NX,NY,NZ,D: ground seen from a, n . x = D, unit normal n up [m]");
-  command->add_option("--plane-b", options->plane_b, "ground seen from b");
-  command->add_option(
+  command.add_option("A", options->source.a,
+                     "trajectory of sensor a: TUM, EuRoC csv, or KITTI with --times; with --log its channel");
+  command.add_option("B", options->source.b, "trajectory of sensor b");
+  command.add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
+  command.add_option("--pairs", options->source.pairs,
+                     "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
+  command.add_option("--times", options->times, "times of KITTI poses, one a line [s]");
+  command.add_option("--times-a", options->source.times_a, "times of A alone");
+  command.add_option("--times-b", options->source.times_b, "times of B alone");
+  command.add_option("--method", options->method, "solver, or a baseline of the paper")
+      .check(cli::Check::one_of(
+          {"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))
+      .show_default();
+  command.add_flag("--planar", options->planar, "x, y and yaw only; the rest from the ground planes");
+  command.add_option("--plane-a", options->plane_a,
+                     "NX,NY,NZ,D: ground seen from a, n . x = D, unit normal n up [m]");
+  command.add_option("--plane-b", options->plane_b, "ground seen from b");
+  command.add_option(
       "--stride", options->stride,
       "steps of the slower stream in one motion: a number or auto [auto; 1 with --weights equal]");
-  command->add_option("--weights", options->weights, "of rotation and translation: auto, equal or R:T")
-      ->capture_default_str();
-  command->add_option("--time-offset", options->time_offset, "added to the times of B: seconds or auto [0]");
-  command->add_option("--max-gap", options->max_gap, "poses further apart are not interpolated between [s]")
-      ->capture_default_str();
-  command->add_option("--nominal", options->nominal,
-                      "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
-  command->add_option("--truth", options->truth,
-                      "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
-  command->add_flag("--json", options->json, "one JSON object on standard output");
-  command->callback([options] { run(*options); });
+  command.add_option("--weights", options->weights, "of rotation and translation: auto, equal or R:T")
+      .show_default();
+  command.add_option("--time-offset", options->time_offset, "added to the times of B: seconds or auto [0]");
+  command.add_option("--max-gap", options->max_gap, "poses further apart are not interpolated between [s]")
+      .show_default();
+  command.add_option("--nominal", options->nominal,
+                     "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
+  command.add_option("--truth", options->truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
+  command.add_flag("--json", options->json, "one JSON object on standard output");
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace egocal::tools

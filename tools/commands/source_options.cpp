@@ -9,42 +9,41 @@
 
 namespace egocal::tools {
 
-void add_source_options(CLI::App& command, Source& source) {
-  CLI::Option* a = command.add_option(
+void add_source_options(cli::App command, Source& source) {
+  cli::Option a = command.add_option(
       "A", source.file_a,
       "trajectory of sensor a (TUM, KITTI or EuRoC csv); without files: a simulated drive");
-  CLI::Option* b = command.add_option("B", source.file_b, "trajectory of sensor b");
-  a->needs(b);
+  cli::Option b = command.add_option("B", source.file_b, "trajectory of sensor b");
+  a.needs(b);
   command.add_option("--times-a", source.times_a, "times of A, for a KITTI file");
   command.add_option("--times-b", source.times_b, "times of B, for a KITTI file");
   const auto text = [&](const char* name, const char* help, auto&& take) {
-    return command.add_option_function<std::string>(name, std::forward<decltype(take)>(take), help);
+    return command.add_option_function(name, std::forward<decltype(take)>(take), help);
   };
   text("--truth", "X,Y,Z,QW,QX,QY,QZ: pose of sensor b in sensor a [m]",
        [&source](const std::string& value) { source.truth = pose("--truth", value); });
-  CLI::Option* plane_a =
+  cli::Option plane_a =
       text("--plane-a", "NX,NY,NZ,D: the ground seen from sensor a, n . x = D, n up [m]",
            [&source](const std::string& value) { source.plane_a = plane("--plane-a", value); });
-  CLI::Option* plane_b =
+  cli::Option plane_b =
       text("--plane-b", "the ground seen from sensor b",
            [&source](const std::string& value) { source.plane_b = plane("--plane-b", value); });
-  plane_a->needs(plane_b);
-  plane_b->needs(plane_a);
+  plane_a.needs(plane_b);
+  plane_b.needs(plane_a);
   text("--weights", "equal, or R:T of rotation and translation (default: equal)",
        [&source](const std::string& value) {
          if (value != "equal") source.balance = balance("--weights", value);
        });
   command.add_option("--stride", source.stride, "steps of the slower stream in one motion")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
-  command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]")
-      ->capture_default_str();
+      .show_default()
+      .check(cli::Check::range(1, 1000000));
+  command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]").show_default();
   command.add_option("--poses", source.poses, "of the simulated drive")
-      ->capture_default_str()
-      ->check(CLI::Range(3, 10000000));
+      .show_default()
+      .check(cli::Check::range(3, 10000000));
   command.add_option("--noise", source.noise, "of the simulated drive, relative to the mean motion")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      .show_default()
+      .check(cli::Check::range(0.0, 10.0));
   text("--terrain", "of the simulated drive: flat, rough or free (default: rough)",
        [&source](const std::string& value) {
          const std::map<std::string, Terrain> terrains{
@@ -54,7 +53,7 @@ void add_source_options(CLI::App& command, Source& source) {
            throw UsageError("--terrain: expected flat, rough or free, got '" + value + "'");
          source.terrain = found->second;
        });
-  command.add_option("--seed", source.seed, "of the simulated drive")->capture_default_str();
+  command.add_option("--seed", source.seed, "of the simulated drive").show_default();
 }
 
 }  // namespace egocal::tools

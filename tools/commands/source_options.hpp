@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "egocal/cli/cli.hpp"
 
 #include "experiments/source.hpp"
 
 namespace egocal::tools {
 
 /// The options that say which data an experiment is run on: two files, or a simulated drive.
-void add_source_options(CLI::App& command, Source& source);
+void add_source_options(cli::App command, Source& source);
 
 }  // namespace egocal::tools

@@ -56,18 +56,18 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_tell(CLI::App& program) {
+void add_tell(cli::App program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  cli::App command =
       program.add_subcommand("tell", "a word to a process that runs: pause, step, seek, reset");
-  command->add_option("NAME", options->to, "of the process, e.g. egocal-player; * for all")->required();
-  command->add_option("VERB", options->verb, "pause, resume, reset; the player also: step, seek S, speed S")
-      ->check(CLI::IsMember({"pause", "resume", "reset", "step", "seek", "speed"}))
-      ->required();
-  command->add_option("VALUE", options->value, "of seek: so far into the log [s]; of speed: times real time");
-  command->add_option("--rig", options->rig, "rig file, for its LCM URL");
-  command->add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
-  command->callback([options] { run(*options); });
+  command.add_option("NAME", options->to, "of the process, e.g. egocal-player; * for all").required();
+  command.add_option("VERB", options->verb, "pause, resume, reset; the player also: step, seek S, speed S")
+      .check(cli::Check::one_of({"pause", "resume", "reset", "step", "seek", "speed"}))
+      .required();
+  command.add_option("VALUE", options->value, "of seek: so far into the log [s]; of speed: times real time");
+  command.add_option("--rig", options->rig, "rig file, for its LCM URL");
+  command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace egocal::tools

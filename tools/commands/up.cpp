@@ -105,33 +105,33 @@ void run(const Options& options) {
   }
   const int code = supervise(programs, supervisor);
   if (passing) remove_passing_state(supervisor.output_dir, getpid());
-  if (code != 0) throw CLI::RuntimeError(1);
+  if (code != 0) throw cli::Exit{1};
 }
 
 }  // namespace
 
-void add_up(CLI::App& program) {
+void add_up(cli::App program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("up", "all processes of a rig, kept alive and ended together");
-  command->add_option("RIG", options->rig, "rig file")->required();
-  command->add_option("--log", options->log, "also plays this log; at its end all end");
-  command->add_option("--speed", options->speed, "of the player; 0: as fast as possible")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--fast", options->fast, "fast solver")
-      ->check(CLI::IsMember({"sqp", "slsqp"}))
-      ->capture_default_str();
-  command->add_option("--global", options->global, "global solver")
-      ->check(CLI::IsMember({"dual", "sdp"}))
-      ->capture_default_str();
-  command->add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
-  command->add_flag("--follow", options->follow, "with the monitor's lines on standard output");
-  command->add_option(
+  cli::App command = program.add_subcommand("up", "all processes of a rig, kept alive and ended together");
+  command.add_option("RIG", options->rig, "rig file").required();
+  command.add_option("--log", options->log, "also plays this log; at its end all end");
+  command.add_option("--speed", options->speed, "of the player; 0: as fast as possible")
+      .check(cli::Check::not_negative())
+      .show_default();
+  command.add_option("--fast", options->fast, "fast solver")
+      .check(cli::Check::one_of({"sqp", "slsqp"}))
+      .show_default();
+  command.add_option("--global", options->global, "global solver")
+      .check(cli::Check::one_of({"dual", "sdp"}))
+      .show_default();
+  command.add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
+  command.add_flag("--follow", options->follow, "with the monitor's lines on standard output");
+  command.add_option(
       "--output-dir", options->output_dir,
       "each process's output in a file there; -: here; default: ~/.local/state/egocal/NAME OF RIG");
-  command->add_option("--state", options->state, "file in which the statistics outlive this command");
-  command->add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
-  command->callback([options] { run(*options); });
+  command.add_option("--state", options->state, "file in which the statistics outlive this command");
+  command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace egocal::tools

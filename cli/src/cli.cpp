@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/cli/cli.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace egocal::cli {
+
+namespace {
+
+/// Insertions, deletions and exchanges that make one word of the other (Levenshtein).
+std::size_t edit_distance(const std::string& from, const std::string& to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      const std::size_t exchanged = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({exchanged, row[j] + 1, row[j - 1] + 1}));
+    }
+  }
+  return row.back();
+}
+
+/// The name of the given ones that a mistyped word most likely meant; empty where none is close.
+std::string closest(const std::string& word, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& name : names) {
+    const std::size_t distance = edit_distance(word, name);
+    if (distance >= best_distance) continue;
+    best = name;
+    best_distance = distance;
+  }
+  return best;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_single_name();
+    if (!option->get_positional()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// "egocal solve --topic x" was given: the command at which parsing ended.
+const CLI::App& innermost(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
+  return *at;
+}
+
+/// What the user may have meant, as the end of an error's line.
+std::string advice(const CLI::App& program, int argc, char** argv) {
+  const CLI::App& command = innermost(program);
+  const std::vector<std::string> options = option_names(command), commands = subcommand_names(command);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (word == "--topic" || word == "--topics")
+      return "; a topic is written behind its file: recording.bag:/odom";
+    const bool is_option = word.rfind("--", 0) == 0;
+    const auto& names = is_option ? options : commands;
+    if (names.empty() || std::find(names.begin(), names.end(), word) != names.end()) continue;
+    if (!is_option && &command != &program) continue;
+    const std::string meant = closest(word, names);
+    if (!meant.empty()) return "; did you mean " + meant + "?";
+    if (!is_option) break;
+  }
+  const std::string name = &command == &program ? "" : program.get_name() + " ";
+  return "; see " + name + command.get_name() + " --help";
+}
+
+void print_error(const std::string& name, const std::string& message) {
+  std::string line = message;
+  // what was typed may hold control characters
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = c == '\n' ? ' ' : '?';
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+}
+
+}  // namespace
+
+Check Check::one_of(std::vector<std::string> values) {
+  Check check;
+  check.kind_ = Kind::one_of;
+  check.values_ = std::move(values);
+  return check;
+}
+
+Check Check::range(double least, double most) {
+  Check check;
+  check.least_ = least;
+  check.most_ = most;
+  return check;
+}
+
+Check Check::not_negative() {
+  Check check;
+  check.kind_ = Kind::not_negative;
+  return check;
+}
+
+Check Check::existing_file() {
+  Check check;
+  check.kind_ = Kind::existing_file;
+  return check;
+}
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::check(const Check& check) {
+  switch (check.kind_) {
+    case Check::Kind::one_of:
+      option_->check(CLI::IsMember(check.values_));
+      break;
+    case Check::Kind::range:
+      option_->check(CLI::Range(check.least_, check.most_));
+      break;
+    case Check::Kind::not_negative:
+      option_->check(CLI::Validator(
+          [](std::string& text) {
+            double value = 0;
+            const bool good = CLI::detail::lexical_cast(text, value) && value >= 0;
+            return good ? std::string() : "expected a number from 0 up, got '" + text + "'";
+          },
+          "NUMBER >= 0"));
+      break;
+    case Check::Kind::existing_file:
+      option_->check(CLI::ExistingFile);
+      break;
+  }
+  return *this;
+}
+
+Option& Option::show_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option& Option::needs(Option other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
+Option& Option::excludes(Option other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option& Option::each_a_value() {
+  option_->expected(1)->take_all();
+  return *this;
+}
+
+Option& Option::comma_separated() {
+  option_->delimiter(',');
+  return *this;
+}
+
+template <class Value>
+Option App::add_option(const std::string& name, Value& value, const std::string& help) {
+  return Option(app_->add_option(name, value, help));
+}
+template Option App::add_option(const std::string&, std::string&, const std::string&);
+template Option App::add_option(const std::string&, bool&, const std::string&);
+template Option App::add_option(const std::string&, int&, const std::string&);
+template Option App::add_option(const std::string&, unsigned&, const std::string&);
+template Option App::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option App::add_option(const std::string&, std::int64_t&, const std::string&);
+template Option App::add_option(const std::string&, double&, const std::string&);
+template Option App::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option App::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option App::add_option(const std::string&, std::optional<int>&, const std::string&);
+template Option App::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option App::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+
+Option App::add_option_function(const std::string& name, std::function<void(const std::string&)> take,
+                                const std::string& help) {
+  return Option(app_->add_option_function<std::string>(name, std::move(take), help));
+}
+
+Option App::add_flag(const std::string& name, bool& value, const std::string& help) {
+  return Option(app_->add_flag(name, value, help));
+}
+
+App App::add_subcommand(const std::string& name, const std::string& help) {
+  return App(app_->add_subcommand(name, help));
+}
+
+void App::require_subcommand() {
+  app_->require_subcommand(1);
+}
+
+void App::callback(std::function<void()> work) {
+  app_->callback(std::move(work));
+}
+
+bool App::given() const {
+  return app_->parsed();
+}
+
+void App::footer(const std::string& text) {
+  app_->footer(text);
+}
+
+Program::Program(const std::string& name, const std::string& help, const std::string& version)
+    : App(nullptr), owned_(std::make_unique<CLI::App>(help, name)) {
+  app_ = owned_.get();
+  if (!version.empty()) app_->set_version_flag("--version", name + " " + version);
+}
+
+Program::~Program() = default;
+
+std::optional<int> Program::parse(int argc, char** argv) {
+  const std::string name = app_->get_name();
+  // `egocal help solve` is `egocal solve --help`
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (!arguments.empty() && arguments.front() == "help" && !app_->get_subcommands({}).empty()) {
+    arguments.erase(arguments.begin());
+    arguments.emplace_back("--help");
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    app_->parse(arguments);
+    return std::nullopt;
+  } catch (const CLI::Success& success) {
+    return app_->exit(success);
+  } catch (const CLI::ParseError& error) {
+    print_error(name, error.what() + advice(*app_, argc, argv));
+    return 2;
+  } catch (const Exit& exit) {
+    return exit.code;
+  } catch (const UsageError& error) {
+    print_error(name, error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    print_error(name, error.what());
+    return 1;
+  }
+}
+
+}  // namespace egocal::cli
