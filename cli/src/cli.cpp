@@ -71,7 +71,7 @@ std::string advice(const CLI::App& program, int argc, char** argv) {
     const bool is_option = word.rfind("--", 0) == 0;
     const auto& names = is_option ? options : commands;
     if (names.empty() || std::find(names.begin(), names.end(), word) != names.end()) continue;
-    if (!is_option && &command != &program) continue;
+    if (!is_option && word == command.get_name()) continue;
     const std::string meant = closest(word, names);
     if (!meant.empty()) return "; did you mean " + meant + "?";
     if (!is_option) break;
