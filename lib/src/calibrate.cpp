@@ -102,7 +102,7 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   PairingCounts counts;
   std::vector<MotionPair> pairs(given.begin(), given.end());
   if (pairing.robust) {
-    const std::vector<bool> wrong = incongruent(pairs);
+    const std::vector<bool> wrong = incongruent(pairs, pairing.screening);
     std::size_t i = 0;
     counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)] =
         std::erase_if(pairs, [&](const MotionPair&) { return wrong[i++]; });

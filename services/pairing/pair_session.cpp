@@ -93,9 +93,9 @@ std::optional<problem_t> PairSession::message() {
   }
   message.time_offset = drive_.time_offset().value_or(0);
   message.time_offset_stddev = -1;
-  if (const std::optional<TimeOffset>& estimate = drive_.state().clock.newest)
+  if (const std::optional<TimeOffset>& estimate = drive_.estimated_time_offset())
     message.time_offset_stddev = estimate->stddev;
-  const PairingCounts& counts = drive_.counts();
+  const PairingCounts counts = drive_.counts();
   message.matched = static_cast<std::int64_t>(counts.matched);
   message.left_out = static_cast<std::int64_t>(counts.outliers);
   for (const std::uint64_t rejected : counts.rejected)
@@ -107,7 +107,7 @@ std::optional<problem_t> PairSession::message() {
 }
 
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
-  const PairingCounts& counts = drive_.counts();
+  const PairingCounts counts = drive_.counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
   counters["left out"] += static_cast<std::int64_t>(counts.outliers);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)

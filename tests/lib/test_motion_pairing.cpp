@@ -104,9 +104,9 @@ TEST(MotionPairing, InterpolatesTheFasterStream) {
     if (i % 10 != 5) fast.push_back(data.a[i]);
   const PairingResult result = pair_motions({.stride = 1, .balance = Balance{1, 0.01}}, fast, slow);
   EXPECT_EQ(result.drive.counts().matched, slow.size() - 1);
-  EXPECT_EQ(result.drive.state().keys, Side::b);
+  EXPECT_EQ(result.drive.state().synchroniser.keys, Side::b);
   const PairingResult swapped = pair_motions({.stride = 1, .balance = Balance{1, 0.01}}, slow, fast);
-  EXPECT_EQ(swapped.drive.state().keys, Side::a);
+  EXPECT_EQ(swapped.drive.state().synchroniser.keys, Side::a);
   EXPECT_LT(error_of(data, result.drive).rotation, 2e-3);
   EXPECT_LT(error_of(data, result.drive).translation, 0.05);
 }
@@ -216,7 +216,7 @@ TEST(MotionPairing, JumpsAmongTheFirstPosesAreLeftOut) {
     const MotionPairing with = pair_motions({}, data.a, data.b).drive,
                         without = pair_motions({}, clean.a, clean.b).drive;
     EXPECT_EQ(with.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 1u) << first;
-    EXPECT_EQ(with.state().instants.back().chain, 1u) << first;
+    EXPECT_EQ(with.state().accumulator.instants.back().chain, 1u) << first;
     EXPECT_LE(with.counts().outliers, without.counts().outliers) << first;
     EXPECT_LT(error_of(data, with).rotation, 2 * error_of(clean, without).rotation + 2e-4) << first;
   }
@@ -276,7 +276,7 @@ TEST(MotionPairing, ShortDrivesArePairedAtTheEnd) {
 TEST(MotionPairing, MemoryIsBoundedWhateverOneStreamDoes) {
   MotionPairing drive{PairingOptions{}};
   for (int i = 0; i < 100'000; ++i) drive.push(Side::a, {i * 1000, {}});
-  EXPECT_LE(drive.state().waiting[0].size(), 4096u);
+  EXPECT_LE(drive.state().synchroniser.waiting[0].size(), 4096u);
   EXPECT_GT(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)], 90'000u);
 }
 

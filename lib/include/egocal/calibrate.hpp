@@ -60,7 +60,7 @@ class Calibrator {
   /// The answer from all poses so far; empty while there is no motion pair. A few microseconds.
   std::optional<Calibration> answer() const;
 
-  const PairingCounts& counts() const { return pairing_.counts(); }
+  PairingCounts counts() const { return pairing_.counts(); }
 
  private:
   CalibrationOptions options_;

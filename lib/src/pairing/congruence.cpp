@@ -27,8 +27,7 @@ constexpr double most_growing = 0.2;
 /// Noise of no odometry is as large as that from one pose to the next: an angle [rad], and lengths as a
 /// multiple of the longer half of the motions.
 constexpr double gross_angle = 20 * std::numbers::pi / 180, gross_lengths = 10;
-/// Sensors are not further apart [m].
-constexpr double longest_arm = 10;
+
 struct Difference {
   Seen angle, slide, length;
   bool turns;
@@ -94,13 +93,13 @@ void estimate(TypicalDifference& typical) {
 }
 
 /// From the motions that turn more than others: three times the median covers the directions in between.
-double arm_of(const TypicalDifference& lever) {
+double arm_of(const TypicalDifference& lever, double longest) {
   std::vector<double> arms;
   for (const Seen& one : halves(lever.newest).second)
     if (one.size > 0) arms.push_back(one.difference / one.size);
   if (arms.empty()) return 0;
   std::nth_element(arms.begin(), arms.begin() + static_cast<std::ptrdiff_t>(arms.size() / 2), arms.end());
-  return std::min(longest_arm, 3 * arms[arms.size() / 2]);
+  return std::min(longest, 3 * arms[arms.size() / 2]);
 }
 
 void remember(const Seen& seen, TypicalDifference& typical) {
@@ -139,7 +138,8 @@ bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, doubl
          unexplained_length(d, scale) > gross_lengths * steps * scale.length.large;
 }
 
-void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale) {
+void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
+           double longest_lever_arm) {
   if (doubted && ++scale.doubted % doubted_that_teach != 0) return;
   const Difference d = difference(a, b);
   remember(d.angle, scale.angle);
@@ -150,18 +150,19 @@ void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, Congr
   if (scale.taught != first_estimate && (scale.taught < first_estimate || scale.taught % estimate_every != 0))
     return;
   for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical);
-  scale.arm = arm_of(scale.lever);
+  scale.arm = arm_of(scale.lever, longest_lever_arm);
 }
 
-std::vector<bool> incongruent(std::span<const MotionPair> pairs) {
+std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& options) {
   std::vector<bool> verdicts;
   while (!pairs.empty()) {
     // the last ones are judged with those before them
     const std::size_t count = pairs.size() < 2 * memory ? pairs.size() : memory;
     CongruenceScale scale;
-    for (const MotionPair& pair : pairs.first(count)) learn(pair.a, pair.b, false, scale);
     for (const MotionPair& pair : pairs.first(count))
-      verdicts.push_back(incongruence(pair.a, pair.b, scale) > doubtful_incongruence);
+      learn(pair.a, pair.b, false, scale, options.longest_lever_arm);
+    for (const MotionPair& pair : pairs.first(count))
+      verdicts.push_back(incongruence(pair.a, pair.b, scale) > options.doubtful);
     pairs = pairs.subspan(count);
   }
   return verdicts;

@@ -36,10 +36,26 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
   archive(normal, distance);
 }
 
+void fields(auto& archive, services::Is<SynchroniserOptions> auto& value) {
+  auto& [poses_to_decide, most_waiting, slower_by] = value;
+  archive(poses_to_decide, most_waiting, slower_by);
+}
+
+void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
+  auto& [doubtful, break_chain, most_doubtful, longest_lever_arm] = value;
+  archive(doubtful, break_chain, most_doubtful, longest_lever_arm);
+}
+
+void fields(auto& archive, services::Is<AccumulatorOptions> auto& value) {
+  auto& [longest_motion, stretch, most_rotation, balances, first_choice] = value;
+  archive(longest_motion, stretch, most_rotation, balances, first_choice);
+}
+
 void fields(auto& archive, services::Is<PairingOptions> auto& value) {
-  auto& [mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior] =
-      value;
-  archive(mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior);
+  auto& [mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior,
+         synchroniser, screening, accumulator] = value;
+  archive(mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior,
+          synchroniser, screening, accumulator);
 }
 
 void fields(auto& archive, services::Is<MotionPair> auto& value) {
@@ -100,9 +116,9 @@ void fields(auto& archive, services::Is<CongruenceScale> auto& value) {
   archive(angle, slide, length, lever, arm, taught, doubted);
 }
 
-void fields(auto& archive, services::Is<PairingCounts> auto& value) {
-  auto& [poses_a, poses_b, synchronised, matched, outliers, rejected] = value;
-  archive(poses_a, poses_b, synchronised, matched, outliers, rejected);
+void fields(auto& archive, services::Is<Rejections> auto& value) {
+  auto& [by_reason] = value;
+  archive(by_reason);
 }
 
 void fields(auto& archive, services::Is<Choice> auto& value) {
@@ -126,20 +142,33 @@ void fields(auto& archive, services::Is<ClockState> auto& value) {
 }
 
 void fields(auto& archive, services::Is<Instant> auto& value) {
-  auto& [time_us, a, b, chain] = value;
-  archive(time_us, a, b, chain);
+  auto& [time_us, a, b, chain, number] = value;
+  archive(time_us, a, b, chain, number);
 }
 
-void fields(auto& archive, services::Is<PairingState::PerStride> auto& value) {
+void fields(auto& archive, services::Is<SynchroniserState> auto& value) {
+  auto& [newest_us, waiting, keys, period_us, last_key_us, synchronised, rejections] = value;
+  archive(newest_us, waiting, keys, period_us, last_key_us, synchronised, rejections);
+}
+
+void fields(auto& archive, services::Is<ScreeningState> auto& value) {
+  auto& [chain, congruence, newest, accepted, first, doubtful, rejections] = value;
+  archive(chain, congruence, newest, accepted, first, doubtful, rejections);
+}
+
+void fields(auto& archive, services::Is<AccumulatorState::PerStride> auto& value) {
   auto& [stride, statistics] = value;
   archive(stride, statistics);
 }
 
+void fields(auto& archive, services::Is<AccumulatorState> auto& value) {
+  auto& [choice, period_us, instants, strides, next_choice, rejections] = value;
+  archive(choice, period_us, instants, strides, next_choice, rejections);
+}
+
 void fields(auto& archive, services::Is<PairingState> auto& value) {
-  auto& [counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
-         next_choice, congruence, newest, unjudged, doubtful] = value;
-  archive(counts, choice, clock, newest_us, waiting, keys, period_us, last_key_us, instants, chain, strides,
-          next_choice, congruence, newest, unjudged, doubtful);
+  auto& [poses_a, poses_b, rejections, clock, synchroniser, screening, accumulator] = value;
+  archive(poses_a, poses_b, rejections, clock, synchroniser, screening, accumulator);
 }
 
 void fields(auto& archive, services::Is<NumberedPose> auto& value) {
@@ -162,7 +191,7 @@ void fields(auto& archive, services::Is<StreamState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 6;
+constexpr int state_layout = 7;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

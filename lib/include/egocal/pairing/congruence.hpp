@@ -7,12 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "egocal/pairing/options.hpp"
 #include "egocal/problem/cost.hpp"
 
 namespace egocal {
-
-/// Further from congruent than so many standard deviations is doubtful.
-inline constexpr double doubtful_incongruence = 10;
 
 /// How much two measurements of one quantity typically differ: constant + growing * size, learnt from the
 /// newest of them.
@@ -54,10 +52,11 @@ bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, doubl
 
 /// Which motion pairs are not congruent, judged by what is typical of the thousand around each: without
 /// poses, there are no witnesses. In three dimensions, in any order.
-std::vector<bool> incongruent(std::span<const MotionPair> pairs);
+std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& options = {});
 
 /// Learns what is typical. Of motions that were doubted only one in eight teaches: they may be wrong, or the
-/// beginning of another regime.
-void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale);
+/// beginning of another regime. longest_lever_arm [m]: see ScreeningOptions.
+void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
+           double longest_lever_arm = ScreeningOptions{}.longest_lever_arm);
 
 }  // namespace egocal

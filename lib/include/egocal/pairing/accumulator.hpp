@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "egocal/pairing/counts.hpp"
+#include "egocal/pairing/instant.hpp"
+#include "egocal/pairing/options.hpp"
+#include "egocal/problem/problem.hpp"
+#include "egocal/robust/robust_statistics.hpp"
+
+namespace egocal {
+
+/// The setting that is in force and why.
+struct Choice {
+  int stride = 1;
+  Balance balance;
+  std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
+};
+
+/// All that an Accumulator remembers. Bounded; continuing from a copy gives the same bits.
+struct AccumulatorState {
+  struct PerStride {
+    int stride = 1;
+    RobustStatistics statistics;
+  };
+
+  Choice choice;
+  std::int64_t period_us = 0;      ///< typical time between instants
+  std::deque<Instant> instants;    ///< the newest, as many as the longest motion needs
+  std::vector<PerStride> strides;  ///< under consideration
+  std::uint64_t next_choice = 0;   ///< number of the instant at which to choose again
+  Rejections rejections;           ///< gap, too much rotation; of motions of the chosen stride
+};
+
+/// Instants in, statistics of every stride under consideration and the choice among them out.
+class Accumulator {
+ public:
+  /// Uses mode, planes, stride, balance, robust, prior and the options of its own stage; checked() ones.
+  explicit Accumulator(const PairingOptions& options);
+  Accumulator(const PairingOptions& options, AccumulatorState state);
+
+  /// Typical time between instants [us]. To be called before the first add().
+  void begin(std::int64_t period_us);
+  /// Takes the next instant; chains must not decrease. Returns the motion pairs of the chosen stride that it
+  /// completed.
+  std::vector<MotionPair> add(const Instant& instant);
+  /// Forgets all instants and statistics, but not the choice.
+  void restart();
+
+  /// What is known so far, at the choice in force.
+  Problem problem() const;
+  const Choice& choice() const { return state_.choice; }
+  std::uint64_t inlier_pairs() const;   ///< in the statistics of the chosen stride
+  std::uint64_t outlier_pairs() const;  ///< of the chosen stride, that contradict the others; may come back
+  std::optional<std::int64_t> newest_us() const;  ///< time of the newest instant
+  const AccumulatorState& state() const { return state_; }
+
+ private:
+  Problem empty_problem() const;
+  const AccumulatorState::PerStride* chosen() const;
+  std::optional<MotionPair> motion(const Instant& from, const Instant& to, int stride,
+                                   Rejections& rejections);
+  void choose();
+
+  PairingOptions options_;
+  DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
+  AccumulatorState state_;
+};
+
+}  // namespace egocal

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace egocal {
+
+/// Why a pose or a motion is not in the statistics.
+enum class Rejection {
+  not_finite,        ///< NaN, infinity, a quaternion far from unit length, or beyond egocal::limits
+  out_of_order,      ///< known, or so late that poses after it have been paired
+  no_partner,        ///< the other stream has no pose on one side of it (before its start, after its end)
+  gap,               ///< the neighbours in the other stream, or the two ends of the motion, are too far apart
+  frozen,            ///< one sensor repeats its pose to the last digit while the other one moves
+  screw_congruence,  ///< the motions to and from a pose differ in angle or slide by more than noise explains
+  too_much_rotation,  ///< so near to half a turn that the sign of its quaternion is a guess
+  count_
+};
+std::string_view name(Rejection reason);
+
+/// Number of rejections by reason.
+struct Rejections {
+  std::array<std::uint64_t, static_cast<std::size_t>(Rejection::count_)> by_reason{};
+
+  void add(Rejection reason, std::uint64_t count = 1) {
+    by_reason[static_cast<std::size_t>(reason)] += count;
+  }
+};
+
+}  // namespace egocal

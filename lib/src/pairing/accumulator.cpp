@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/accumulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "egocal/pairing/selection.hpp"
+
+namespace egocal {
+
+Accumulator::Accumulator(const PairingOptions& options) : Accumulator(options, AccumulatorState{}) {
+  state_.choice.stride = options_.stride.value_or(1);
+  state_.choice.balance = options_.balance.value_or(Balance{});
+  state_.choice.reason = options_.stride && options_.balance ? "fixed" : "too few motions to choose yet";
+  state_.next_choice = options_.accumulator.first_choice;
+}
+
+Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state)
+    : options_(options), state_(std::move(state)) {
+  if (options_.mode == Mode::planar) {
+    G_a_ = plane_frame(options_.plane_a);
+    G_b_ = plane_frame(options_.plane_b);
+  }
+}
+
+void Accumulator::begin(std::int64_t period_us) {
+  state_.period_us = period_us;
+  state_.strides.clear();
+  if (options_.stride) {
+    state_.strides.push_back({*options_.stride, {}});
+    return;
+  }
+  const double longest_us = 1e6 * options_.accumulator.longest_motion;
+  for (int stride = 1; stride == 1 || stride * static_cast<double>(period_us) <= longest_us; stride *= 2)
+    state_.strides.push_back({stride, {}});
+}
+
+void Accumulator::restart() {
+  for (AccumulatorState::PerStride& entry : state_.strides) entry.statistics = {};
+  state_.instants.clear();
+  state_.rejections = {};
+}
+
+std::vector<MotionPair> Accumulator::add(const Instant& instant) {
+  state_.instants.push_back(instant);
+  const auto longest = static_cast<std::size_t>(state_.strides.back().stride);
+  while (state_.instants.size() > longest + 1) state_.instants.pop_front();
+
+  std::vector<MotionPair> pairs;
+  const Problem problem = empty_problem();
+  for (AccumulatorState::PerStride& entry : state_.strides) {
+    const auto steps = static_cast<std::size_t>(entry.stride);
+    if (state_.instants.size() <= steps) continue;
+    const bool chosen = entry.stride == state_.choice.stride;
+    Rejections not_counted;
+    const std::optional<MotionPair> pair =
+        motion(state_.instants[state_.instants.size() - 1 - steps], instant, entry.stride,
+               chosen ? state_.rejections : not_counted);
+    if (!pair) continue;
+    if (options_.robust)
+      entry.statistics.add(*pair, problem, entry.stride);
+    else
+      entry.statistics.add_unjudged(*pair);
+    if (!chosen) continue;
+    pairs.push_back(*pair);
+    if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem, entry.stride);
+  }
+  if (instant.number >= state_.next_choice) {
+    choose();
+    state_.next_choice = instant.number + instant.number / 4;
+  }
+  return pairs;
+}
+
+std::optional<MotionPair> Accumulator::motion(const Instant& from, const Instant& to, int stride,
+                                              Rejections& rejections) {
+  if (from.chain != to.chain) return std::nullopt;
+  const double longest_us = options_.accumulator.stretch * stride * static_cast<double>(state_.period_us);
+  if (static_cast<double>(to.time_us - from.time_us) > longest_us) {
+    rejections.add(Rejection::gap);
+    return std::nullopt;
+  }
+  MotionPair pair{motion_between(from.a, to.a), motion_between(from.b, to.b), from.time_us, to.time_us, 1};
+  if (std::max(screw_of(pair.a).angle, screw_of(pair.b).angle) > options_.accumulator.most_rotation) {
+    rejections.add(Rejection::too_much_rotation);
+    return std::nullopt;
+  }
+  if (options_.mode == Mode::planar) {
+    pair.a = planar_motion(pair.a, G_a_);
+    pair.b = planar_motion(pair.b, G_b_);
+  }
+  return pair;
+}
+
+void Accumulator::choose() {
+  if (options_.stride && options_.balance) return;
+  const Problem problem = empty_problem();
+  std::vector<Candidate> candidates;
+  std::optional<std::size_t> current;
+  for (AccumulatorState::PerStride& entry : state_.strides) {
+    if (options_.robust) entry.statistics.look(problem, entry.stride);
+    for (const double translation : options_.accumulator.balances) {
+      const Balance balance = options_.balance.value_or(Balance{1, translation});
+      if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
+          balance.translation == state_.choice.balance.translation)
+        current = candidates.size();
+      candidates.push_back({entry.stride, balance, entry.statistics.inliers()});
+      if (options_.balance) break;
+    }
+  }
+  const std::optional<Selection> selection = select(problem, candidates, current);
+  if (!selection) return;
+  const Candidate& chosen = candidates[selection->index];
+  state_.choice.stride = chosen.stride;
+  state_.choice.balance = chosen.balance;
+  char text[160];
+  std::snprintf(text, sizeof text, "smallest jack-knife spread of %zu settings: %.3f deg, %.2f cm",
+                candidates.size(), selection->spread.rotation * 180 / std::numbers::pi,
+                100 * selection->spread.translation);
+  state_.choice.reason = text;
+}
+
+Problem Accumulator::empty_problem() const {
+  Problem problem;
+  problem.mode = options_.mode;
+  problem.plane_a = options_.plane_a;
+  problem.plane_b = options_.plane_b;
+  problem.balance = state_.choice.balance;
+  problem.prior = options_.prior;
+  return problem;
+}
+
+const AccumulatorState::PerStride* Accumulator::chosen() const {
+  for (const AccumulatorState::PerStride& entry : state_.strides)
+    if (entry.stride == state_.choice.stride) return &entry;
+  return nullptr;
+}
+
+Problem Accumulator::problem() const {
+  Problem problem = empty_problem();
+  if (const auto* entry = chosen())
+    problem.blocks = independent_blocks(entry->statistics.inliers(), entry->stride);
+  return problem;
+}
+
+std::uint64_t Accumulator::inlier_pairs() const {
+  const auto* entry = chosen();
+  return entry ? entry->statistics.inlier_pairs() : 0;
+}
+
+std::uint64_t Accumulator::outlier_pairs() const {
+  const auto* entry = chosen();
+  return entry ? entry->statistics.outlier_pairs() : 0;
+}
+
+std::optional<std::int64_t> Accumulator::newest_us() const {
+  if (state_.instants.empty()) return std::nullopt;
+  return state_.instants.back().time_us;
+}
+
+}  // namespace egocal

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/options.hpp"
+
+#include <cstdio>
+#include <string>
+
+#include "egocal/error.hpp"
+#include "egocal/limits.hpp"
+
+namespace egocal {
+
+namespace {
+
+void require(const char* option, double value, const Range& range, const char* unit) {
+  if (range.contains(value)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: expected %g to %g%s, got %g", option, range.least, range.most, unit,
+                value);
+  throw Error(text);
+}
+
+void require(const char* option, bool holds, const char* expected) {
+  if (!holds) throw Error(std::string(option) + ": expected " + expected);
+}
+
+void check(const SynchroniserOptions& options) {
+  require("poses_to_decide", options.poses_to_decide >= 2, "at least 2");
+  require("most_waiting", options.most_waiting >= options.poses_to_decide, "at least poses_to_decide");
+  require("slower_by", options.slower_by, {1, 100}, "");
+}
+
+void check(const ScreeningOptions& options) {
+  require("doubtful", options.doubtful, {1, 1e6}, " standard deviations");
+  require("break_chain", options.break_chain, {options.doubtful, 1e6}, " standard deviations");
+  require("most_doubtful", options.most_doubtful >= 2 && options.most_doubtful <= 1000, "2 to 1000");
+  require("longest_lever_arm", options.longest_lever_arm, {0, 1e4}, " m");
+}
+
+void check(const AccumulatorOptions& options) {
+  require("longest_motion", options.longest_motion, {1e-3, 3600}, " s");
+  require("stretch", options.stretch, {1, 1000}, " strides");
+  require("most_rotation", options.most_rotation, {1e-3, std::numbers::pi}, " rad");
+  require("balances", !options.balances.empty() && options.balances.size() <= 100, "1 to 100 of them");
+  for (const double weight : options.balances) {
+    require("balances", weight, limits::translation_weight, " 1/m^2");
+    require("balances", weight > 0, "weights above 0");
+  }
+}
+
+}  // namespace
+
+PairingOptions checked(PairingOptions options) {
+  if (options.stride) require("stride", *options.stride, limits::stride, " steps");
+  if (options.balance) {
+    require("rotation weight", options.balance->rotation, limits::rotation_weight, "");
+    require("translation weight", options.balance->translation, limits::translation_weight, "");
+    require("translation weight", options.balance->translation > 0, "more than 0");
+  }
+  require("time_offset", options.time_offset, limits::time_offset, " s");
+  require("max_gap", options.max_gap, limits::max_gap, " s");
+  check(options.synchroniser);
+  check(options.screening);
+  check(options.accumulator);
+  if (options.mode == Mode::planar) {
+    options.plane_a = checked(options.plane_a);
+    options.plane_b = checked(options.plane_b);
+  }
+  return options;
+}
+
+}  // namespace egocal

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/screening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace egocal {
+
+namespace {
+
+/// One sensor repeats its pose to the last digit while the other one moves. (At rest, both may.) Rounding of
+/// the interpolation is no motion.
+bool one_repeats(const Instant& before, const Instant& now) {
+  const auto repeats = [](const DualQuaternion& x, const DualQuaternion& y) {
+    return (x.vec() - y.vec()).cwiseAbs().maxCoeff() <= 1e-14 * std::max(1.0, y.dual.norm());
+  };
+  return repeats(before.a, now.a) != repeats(before.b, now.b);
+}
+
+/// In periods, at least one.
+double steps(const Instant& from, const Instant& to, double period_us) {
+  return std::max(1.0, static_cast<double>(to.time_us - from.time_us) / period_us);
+}
+
+/// How far the motion is from congruent, in standard deviations; noise grows with the root of the steps.
+double difference(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale) {
+  return incongruence(motion_between(from.a, to.a), motion_between(from.b, to.b), scale) /
+         std::sqrt(steps(from, to, period_us));
+}
+
+bool grossly_different(const Instant& from, const Instant& to, double period_us,
+                       const CongruenceScale& scale) {
+  return grossly_incongruent(motion_between(from.a, to.a), motion_between(from.b, to.b),
+                             steps(from, to, period_us), scale);
+}
+
+}  // namespace
+
+Screening::Screening(const ScreeningOptions& options, ScreeningState state)
+    : options_(options), state_(std::move(state)) {}
+
+Screened Screening::push(const Instant& instant, std::int64_t period_us) {
+  const std::optional<Instant> before = std::exchange(state_.newest, instant);
+  if (before && one_repeats(*before, instant)) {
+    state_.rejections.add(Rejection::frozen);
+    return {};
+  }
+  const auto period = static_cast<double>(period_us);
+  const bool known = knows_typical(state_.congruence);
+  if (!known) {
+    state_.first.push_back(instant);
+    state_.first.back().chain = state_.chain;
+  }
+  Screened result;
+  screen(instant, period, result.accepted);
+  if (!known && knows_typical(state_.congruence)) {
+    result.replaces = true;
+    result.accepted = screen_first_ones_again(period);
+  }
+  return result;
+}
+
+void Screening::finish() {
+  state_.rejections.add(Rejection::screw_congruence, state_.doubtful.size());
+  state_.doubtful.clear();
+}
+
+/// Learns nothing: the motions were learnt from already.
+std::vector<Instant> Screening::screen_first_ones_again(double period_us) {
+  const std::vector<Instant> first = std::exchange(state_.first, {});
+  const CongruenceScale learnt = state_.congruence;
+  state_.accepted.reset();
+  std::vector<Instant> accepted;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (i > 0 && first[i].chain != first[i - 1].chain) ++state_.chain;
+    screen(first[i], period_us, accepted);
+  }
+  state_.congruence = learnt;
+  return accepted;
+}
+
+void Screening::screen(const Instant& instant, double period_us, std::vector<Instant>& accepted) {
+  auto& doubtful = state_.doubtful;
+  if (!state_.accepted) return accept(instant, instant.number, accepted);
+  const auto agree = [&](const Instant& from, const Instant& to) {
+    return difference(from, to, period_us, state_.congruence) <= options_.doubtful;
+  };
+  const auto learn_from = [&](const Instant& from, bool doubted) {
+    learn(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted, state_.congruence,
+          options_.longest_lever_arm);
+  };
+  const Instant newest = *state_.accepted;
+  if (agree(newest, instant)) {
+    if (doubtful.empty()) learn_from(newest, false);
+    return confirm({}, instant, accepted);
+  }
+  for (std::size_t i = 0; i < doubtful.size(); ++i) {
+    if (!agree(doubtful[i], instant)) continue;
+    const bool one_chain =
+        difference(newest, doubtful[i], period_us, state_.congruence) <= options_.break_chain &&
+        !grossly_different(newest, doubtful[i], period_us, state_.congruence);
+    if (one_chain) return confirm({doubtful[i]}, instant, accepted);
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!agree(doubtful[k], doubtful[i])) continue;
+      ++state_.chain;
+      state_.rejections.add(Rejection::screw_congruence);
+      return confirm({doubtful[k], doubtful[i]}, instant, accepted);
+    }
+  }
+  learn_from(doubtful.empty() ? newest : doubtful.back(), true);
+  doubtful.push_back(instant);
+  if (doubtful.size() > options_.most_doubtful) {
+    doubtful.pop_front();
+    state_.rejections.add(Rejection::screw_congruence);
+  }
+}
+
+/// The instant and the doubtful ones that it confirms are good; the other doubtful ones are not.
+void Screening::confirm(const std::vector<Instant>& confirmed, const Instant& instant,
+                        std::vector<Instant>& accepted) {
+  state_.rejections.add(Rejection::screw_congruence, state_.doubtful.size() - confirmed.size());
+  state_.doubtful.clear();
+  for (const Instant& one : confirmed) accept(one, instant.number, accepted);
+  accept(instant, instant.number, accepted);
+}
+
+void Screening::accept(Instant instant, std::uint64_t number, std::vector<Instant>& accepted) {
+  instant.chain = state_.chain;
+  instant.number = number;
+  state_.accepted = instant;
+  accepted.push_back(instant);
+}
+
+}  // namespace egocal

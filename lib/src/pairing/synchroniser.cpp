@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/synchroniser.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace egocal {
+
+namespace {
+
+std::size_t index(Side side) {
+  return side == Side::a ? 0 : 1;
+}
+
+/// Of the first `count` poses. 0 where there are fewer than two.
+std::int64_t median_period(const std::deque<StampedPose>& poses, std::size_t count) {
+  std::vector<std::int64_t> periods;
+  for (std::size_t i = 1; i < std::min(poses.size(), count); ++i)
+    periods.push_back(poses[i].time_us - poses[i - 1].time_us);
+  if (periods.empty()) return 0;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return *middle;
+}
+
+}  // namespace
+
+Synchroniser::Synchroniser(const PairingOptions& options, SynchroniserState state)
+    : options_(options.synchroniser),
+      max_gap_us_(static_cast<std::int64_t>(options.max_gap * 1e6)),
+      state_(std::move(state)) {}
+
+std::vector<Instant> Synchroniser::push(Side side, const StampedPose& pose) {
+  auto& newest = state_.newest_us[index(side)];
+  auto& waiting = state_.waiting[index(side)];
+  // a late pose still has its place while nothing after it has been paired
+  auto place = waiting.end();
+  if (newest && pose.time_us <= *newest) {
+    while (place != waiting.begin() && std::prev(place)->time_us > pose.time_us) --place;
+    const bool known = place != waiting.begin() && std::prev(place)->time_us == pose.time_us;
+    if (known || (state_.last_key_us && pose.time_us <= *state_.last_key_us)) {
+      state_.rejections.add(Rejection::out_of_order);
+      return {};
+    }
+  }
+  newest = std::max(newest.value_or(pose.time_us), pose.time_us);
+  waiting.insert(place, pose);
+  if (waiting.size() > options_.most_waiting) {
+    waiting.pop_front();
+    state_.rejections.add(Rejection::no_partner);
+  }
+  if (!state_.keys && state_.waiting[0].size() >= options_.poses_to_decide &&
+      state_.waiting[1].size() >= options_.poses_to_decide)
+    decide_keys();
+  return state_.keys ? synchronise() : std::vector<Instant>{};
+}
+
+std::vector<Instant> Synchroniser::finish() {
+  if (!state_.keys && !state_.waiting[0].empty() && !state_.waiting[1].empty()) decide_keys();
+  if (!state_.keys) return {};
+  std::vector<Instant> instants = synchronise();
+  auto& keys = state_.waiting[index(*state_.keys)];
+  state_.rejections.add(Rejection::no_partner, keys.size());
+  keys.clear();
+  return instants;
+}
+
+void Synchroniser::decide_keys() {
+  // the first poses decide, however many of one stream came before the other one's first
+  const std::int64_t period_a = median_period(state_.waiting[0], options_.poses_to_decide);
+  const std::int64_t period_b = median_period(state_.waiting[1], options_.poses_to_decide);
+  const bool a_is_slower = static_cast<double>(period_a) > options_.slower_by * static_cast<double>(period_b);
+  state_.keys = a_is_slower ? Side::a : Side::b;
+  state_.period_us = std::max<std::int64_t>(1, std::max(period_a, period_b));
+}
+
+std::vector<Instant> Synchroniser::synchronise() {
+  std::vector<Instant> instants;
+  auto& keys = state_.waiting[index(*state_.keys)];
+  auto& others = state_.waiting[1 - index(*state_.keys)];
+  while (!keys.empty() && !others.empty()) {
+    const StampedPose& key = keys.front();
+    if (key.time_us < others.front().time_us) {
+      state_.last_key_us = key.time_us;
+      state_.rejections.add(Rejection::no_partner);
+      keys.pop_front();
+      continue;
+    }
+    while (others.size() > 1 && others[1].time_us <= key.time_us) others.pop_front();
+    const bool exact = others.front().time_us == key.time_us;
+    if (!exact && others.size() < 2) break;
+    state_.last_key_us = key.time_us;
+    if (!exact && others[1].time_us - others[0].time_us > max_gap_us_) {
+      state_.rejections.add(Rejection::gap);
+      keys.pop_front();
+      continue;
+    }
+    DualQuaternion other = others[0].pose;
+    if (!exact)
+      other = interpolate(others[0].pose, others[1].pose,
+                          static_cast<double>(key.time_us - others[0].time_us) /
+                              static_cast<double>(others[1].time_us - others[0].time_us));
+    Instant instant{key.time_us, key.pose, other, 0, ++state_.synchronised};
+    if (*state_.keys == Side::b) std::swap(instant.a, instant.b);
+    keys.pop_front();
+    instants.push_back(instant);
+  }
+  return instants;
+}
+
+}  // namespace egocal
