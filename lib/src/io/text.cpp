@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "egocal/error.hpp"
+#include "egocal/limits.hpp"
 
 namespace egocal::detail {
 
@@ -17,7 +18,8 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
-/// What was found in place of something, for one line that can be read.
+}  // namespace
+
 std::string quoted(std::string_view text) {
   constexpr std::size_t most = 40;
   std::string out = "'" + std::string(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
@@ -25,12 +27,6 @@ std::string quoted(std::string_view text) {
       out.begin(), out.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return out;
 }
-
-bool all_digits(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-}  // namespace
 
 std::vector<Line> read_lines(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -49,40 +45,53 @@ std::vector<Line> read_lines(const std::string& file) {
 
 std::vector<std::string_view> fields(std::string_view text, bool commas) {
   std::vector<std::string_view> result;
+  split(text, commas ? ',' : ' ', result);
+  return result;
+}
+
+void split(std::string_view text, char separator, std::vector<std::string_view>& fields) {
+  fields.clear();
   std::size_t begin = 0;
+  if (separator == ' ') {
+    while (begin < text.size()) {
+      while (begin < text.size() && blank(text[begin])) ++begin;
+      std::size_t end = begin;
+      while (end < text.size() && !blank(text[end])) ++end;
+      if (end > begin) fields.push_back(text.substr(begin, end - begin));
+      begin = end;
+    }
+    return;
+  }
   const auto trimmed = [](std::string_view part) {
     while (!part.empty() && blank(part.front())) part.remove_prefix(1);
     while (!part.empty() && blank(part.back())) part.remove_suffix(1);
     return part;
   };
-  if (commas) {
-    while (begin <= text.size()) {
-      const std::size_t end = std::min(text.find(',', begin), text.size());
-      result.push_back(trimmed(text.substr(begin, end - begin)));
-      begin = end + 1;
-    }
-    while (!result.empty() && result.back().empty()) result.pop_back();
-    return result;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    fields.push_back(trimmed(text.substr(begin, end - begin)));
+    begin = end + 1;
   }
-  while (begin < text.size()) {
-    while (begin < text.size() && blank(text[begin])) ++begin;
-    std::size_t end = begin;
-    while (end < text.size() && !blank(text[end])) ++end;
-    if (end > begin) result.push_back(text.substr(begin, end - begin));
-    begin = end;
-  }
-  return result;
+  while (!fields.empty() && fields.back().empty()) fields.pop_back();
+}
+
+bool parse_number(std::string_view text, double& value) {
+  const char* begin = text.data();
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++begin;
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+void throw_not_a_number(const std::string& file, long line, const std::string& field, std::string_view text) {
+  double value = 0;
+  throw error_at(file, line, field,
+                 std::string("expected a ") + (parse_number(text, value) ? "finite " : "") + "number, got " +
+                     quoted(text));
 }
 
 double number(const std::string& file, long line, const std::string& field, std::string_view text) {
   double value = 0;
-  const char* begin = text.data();
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++begin;
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw error_at(file, line, field, "expected a number, got " + quoted(text));
-  if (!std::isfinite(value))
-    throw error_at(file, line, field, "expected a finite number, got " + quoted(text));
+  if (!parse_number(text, value) || !std::isfinite(value)) throw_not_a_number(file, line, field, text);
   return value;
 }
 
@@ -90,31 +99,35 @@ std::int64_t time_us(const std::string& file, long line, std::string_view text, 
   std::string_view digits = text;
   const bool negative = !digits.empty() && digits.front() == '-';
   if (negative) digits.remove_prefix(1);
-  const std::size_t point = std::min(digits.find('.'), digits.size());
-  std::string whole(digits.substr(0, point));
-  std::string fraction(point < digits.size() ? digits.substr(point + 1) : "");
-  if (whole.size() + fraction.size() == 0 || !all_digits(whole) || !all_digits(fraction)) {
-    // 1.5e9 and the like: as good as a double is
-    const double value = number(file, line, "time", text) * (unit == TimeUnit::seconds ? 1e6 : 1e-3);
-    if (!(std::abs(value) < 9e18)) throw error_at(file, line, "time", "out of range: " + quoted(text));
-    return std::llround(value);
-  }
-  // move the decimal point to microseconds, on the text
-  if (unit == TimeUnit::seconds) {
-    fraction.resize(std::max<std::size_t>(fraction.size(), 6), '0');
-    whole += fraction.substr(0, 6);
-    fraction.erase(0, 6);
-  } else {
-    whole.insert(0, 3, '0');
-    fraction.insert(0, whole.substr(whole.size() - 3));
-    whole.erase(whole.size() - 3);
-  }
+  // move the decimal point to microseconds, on the text: a double cannot hold nanoseconds since 1970
   std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
-  if (whole.size() > 0 && (error != std::errc() || value > std::int64_t{9'000'000'000'000'000'000}))
+  const auto whole = static_cast<std::ptrdiff_t>(std::min(digits.find('.'), digits.size()));
+  std::ptrdiff_t left = whole + static_cast<int>(unit);  // digits still to be taken
+  bool decimal = digits.size() > 0 && digits != ".", overflow = false;
+  int next_digit = 0;  // behind the last one taken, for rounding
+  const auto take = [&](int digit) {
+    if (left == 0) next_digit = digit;
+    if (left-- <= 0) return;
+    overflow = overflow || value > (INT64_MAX - 9) / 10;
+    if (!overflow) value = value * 10 + digit;
+  };
+  for (std::size_t i = 0; i < digits.size() && decimal; ++i) {
+    if (static_cast<std::ptrdiff_t>(i) == whole) continue;
+    decimal = digits[i] >= '0' && digits[i] <= '9';
+    take(digits[i] - '0');
+  }
+  while (left > 0) take(0);
+  if (!decimal) {  // 1.5e9 and the like: as good as a double is
+    const double us = number(file, line, "time", text) * std::pow(10.0, static_cast<int>(unit));
+    overflow = !(std::abs(us) < 9e18);
+    value = overflow ? 0 : std::llround(us);
+  } else {
+    if (next_digit >= 5) ++value;
+    if (negative) value = -value;
+  }
+  if (overflow || !plausible_relative_time(value))
     throw error_at(file, line, "time", "out of range: " + quoted(text));
-  if (!fraction.empty() && fraction.front() >= '5') ++value;
-  return negative ? -value : value;
+  return value;
 }
 
 }  // namespace egocal::detail

@@ -9,7 +9,7 @@
 
 namespace egocal::detail {
 
-/// One line of a text file that holds data: comments (#) and empty lines are left out.
+/// One line of a text file that holds data: comments (#) and empty lines are not among them.
 struct Line {
   long number = 0;  ///< from 1
   std::string text;
@@ -17,14 +17,25 @@ struct Line {
 /// Throws Error where the file cannot be read or holds no data.
 std::vector<Line> read_lines(const std::string& file);
 
+/// Fields between blanks, or between commas.
 std::vector<std::string_view> fields(std::string_view text, bool commas);
+/// The same into a vector that is kept between lines; separator: ' ' for blanks and tabs, ',' or ';'.
+void split(std::string_view text, char separator, std::vector<std::string_view>& fields);
 
+/// The number that fills the whole text. False where there is none; it may be infinite or NaN.
+bool parse_number(std::string_view text, double& value);
 /// A finite number. Throws Error naming file, line and field.
 double number(const std::string& file, long line, const std::string& field, std::string_view text);
+/// The error of a text that is no finite number.
+[[noreturn]] void throw_not_a_number(const std::string& file, long line, const std::string& field,
+                                     std::string_view text);
 
-/// A time in microseconds from its decimal text, rounded once, in seconds (TUM, KITTI) or nanoseconds
-/// (EuRoC). Throws Error naming file and line.
-enum class TimeUnit { seconds, nanoseconds };
+/// What a text said, for one line that can be read: quoted, cut to 40 characters, no control characters.
+std::string quoted(std::string_view text);
+
+/// Of the numbers in a column of times: the power of ten that makes microseconds of them.
+enum class TimeUnit { seconds = 6, milliseconds = 3, microseconds = 0, nanoseconds = -3 };
+/// A time in microseconds from its decimal text, rounded once. Throws Error naming file and line.
 std::int64_t time_us(const std::string& file, long line, std::string_view text, TimeUnit unit);
 
 }  // namespace egocal::detail

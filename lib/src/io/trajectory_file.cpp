@@ -2,145 +2,164 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/trajectory_file.hpp"
 
-#include <array>
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
+#include <cstdint>
 
 #include "egocal/error.hpp"
-#include "egocal/io/whole_file.hpp"
-#include "io/text.hpp"
+#include "io/stream_list.hpp"
+#include "io/transform_chain.hpp"
 
 namespace egocal {
 
 namespace {
 
-using detail::fields;
-using detail::Line;
-using detail::number;
-
-constexpr double largest_distance = 1e9;  // [m]; as on the wire
-
-void require_distance(const std::string& file, long line, const Eigen::Vector3d& t) {
-  if (t.cwiseAbs().maxCoeff() > largest_distance)
-    throw error_at(file, line, "position", "expected less than 1e9 m");
+/// The poses of one stream, in the order of the file.
+void read_stream(Recording& recording, const std::string& topic, TrajectoryReading& reading) {
+  std::vector<signed char> wanted;  // by stream; -1: not looked at yet
+  recording.read(topic.substr(0, topic.find(':')), [&](std::size_t stream, const StampedPose& pose) {
+    if (stream >= wanted.size()) wanted.resize(stream + 1, -1);
+    if (wanted[stream] < 0) {
+      const RecordedStream& from = recording.streams()[stream];
+      wanted[stream] = from.name == topic && !from.fixed ? 1 : 0;
+    }
+    if (wanted[stream] == 1) reading.trajectory.push_back(pose);
+  });
 }
 
-/// x y z and a quaternion, in the order of the columns given.
-DualQuaternion pose_of(const std::string& file, long line, const std::array<double, 3>& t,
-                       const Eigen::Vector4d& q) {
-  const double norm = q.norm();
-  if (!(norm > 1e-6)) throw error_at(file, line, "quaternion", "is zero");
-  if (std::abs(norm - 1) > 0.01)
-    throw error_at(file, line, "quaternion", "expected length 1, got " + std::to_string(norm));
-  const Eigen::Vector3d position(t[0], t[1], t[2]);
-  require_distance(file, line, position);
-  return to_dual_quaternion({Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(), position});
-}
-
-std::vector<double> numbers(const std::string& file, const Line& line,
-                            const std::vector<std::string_view>& columns, std::size_t first,
-                            const std::vector<const char*>& names) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    values.push_back(number(file, line.number,
-                            "field " + std::to_string(first + i + 1) + " (" + names[i] + ")",
-                            columns[first + i]));
-  return values;
-}
-
-StampedPose tum_line(const std::string& file, const Line& line) {
-  const auto columns = fields(line.text, false);
-  if (columns.size() != 8)
-    throw error_at(file, line.number, "",
-                   "expected 8 fields (time tx ty tz qx qy qz qw), got " + std::to_string(columns.size()));
-  const auto v = numbers(file, line, columns, 1, {"tx", "ty", "tz", "qx", "qy", "qz", "qw"});
-  return {detail::time_us(file, line.number, columns[0], detail::TimeUnit::seconds),
-          pose_of(file, line.number, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]})};
-}
-
-StampedPose euroc_line(const std::string& file, const Line& line) {
-  const auto columns = fields(line.text, true);
-  if (columns.size() < 8)
-    throw error_at(file, line.number, "",
-                   "expected at least 8 fields (time[ns], x, y, z, qw, qx, qy, qz), got " +
-                       std::to_string(columns.size()));
-  const auto v = numbers(file, line, columns, 1, {"x", "y", "z", "qw", "qx", "qy", "qz"});
-  return {detail::time_us(file, line.number, columns[0], detail::TimeUnit::nanoseconds),
-          pose_of(file, line.number, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]})};
-}
-
-DualQuaternion kitti_line(const std::string& file, const Line& line) {
-  const auto columns = fields(line.text, false);
-  if (columns.size() != 12)
-    throw error_at(file, line.number, "",
-                   "expected 12 fields (3 x 4 pose), got " + std::to_string(columns.size()));
-  const auto v = numbers(file, line, columns, 0,
-                         {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty", "r31", "r32", "r33", "tz"});
-  Eigen::Matrix3d R;
-  R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
-  // negated: products of large numbers are not even comparable
-  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= 0.01 && R.determinant() > 0))
-    throw error_at(file, line.number, "", "the 3 x 3 part is not a rotation");
-  const Eigen::Vector3d position(v[3], v[7], v[11]);
-  require_distance(file, line.number, position);
-  return to_dual_quaternion({Eigen::Quaterniond(R).normalized(), position});
-}
-
-std::vector<std::int64_t> read_times(const std::string& file) {
-  std::vector<std::int64_t> times;
-  for (const Line& line : detail::read_lines(file)) {
-    const auto columns = fields(line.text, false);
-    if (columns.size() != 1)
-      throw error_at(file, line.number, "",
-                     "expected one time, got " + std::to_string(columns.size()) + " fields");
-    times.push_back(detail::time_us(file, line.number, columns[0], detail::TimeUnit::seconds));
+/// FILE:/tf:PARENT/CHILD over several transforms; the streams are known from a first pass.
+void read_chain(Recording& recording, const std::string& topic, TrajectoryReading& reading) {
+  const std::vector<RecordedStream> streams = recording.streams();
+  const std::string tf = topic.substr(0, topic.find(':'));
+  const auto frames = detail::split_frames(streams, topic.substr(tf.size() + 1));
+  const auto links = frames ? detail::find_chain(streams, tf, frames->first, frames->second) : std::nullopt;
+  if (!links)
+    throw error_at(recording.file(), 0, detail::printable(topic),
+                   "no transforms lead from one frame to the other; " + detail::topics_in_words(streams));
+  std::vector<TrajectoryReading> parts(links->size());
+  std::vector<bool> fixed(links->size());
+  recording.read("", [&](std::size_t stream, const StampedPose& pose) {
+    for (std::size_t i = 0; i < links->size(); ++i)
+      if (recording.streams()[stream].name == streams[(*links)[i].stream].name) {
+        // of a static transform the newest one counts
+        if (streams[(*links)[i].stream].fixed) parts[i].trajectory.clear();
+        parts[i].trajectory.push_back(pose);
+      }
+  });
+  std::vector<Trajectory> poses;
+  for (std::size_t i = 0; i < links->size(); ++i) {
+    fixed[i] = streams[(*links)[i].stream].fixed;
+    put_in_order(parts[i]);
+    reading.out_of_order += parts[i].out_of_order;
+    reading.duplicates += parts[i].duplicates;
+    poses.push_back(std::move(parts[i].trajectory));
   }
-  return times;
+  std::size_t dropped = 0;
+  reading.trajectory = detail::resolve_chain(*links, fixed, poses, dropped);
+  if (reading.trajectory.empty())
+    throw error_at(recording.file(), 0, detail::printable(topic),
+                   dropped > 0 ? "the transforms of this chain never overlap in time"
+                               : "all transforms of this chain are static: nothing moves");
+  if (dropped > 0)
+    reading.notes.push_back(std::to_string(dropped) +
+                            " poses dropped: another transform of the chain has none near their time");
+}
+
+/// The name under which the stream is known: "odom" may be "/odom", and a tf topic with one moving transform
+/// needs no frames.
+std::string full_name(const std::vector<RecordedStream>& streams, const std::string& topic) {
+  std::vector<std::string> transforms;
+  for (const RecordedStream& stream : streams)
+    if (stream.poses && !stream.fixed && stream.name != stream.topic &&
+        (stream.topic == topic || stream.topic == "/" + topic))
+      transforms.push_back(stream.name);
+  if (transforms.size() == 1) return transforms.front();
+  const auto known = [&](const std::string& name) {
+    return std::any_of(streams.begin(), streams.end(), [&](const RecordedStream& stream) {
+      return stream.name == name || stream.topic == name;
+    });
+  };
+  const std::string head = topic.substr(0, topic.find(':'));
+  return !topic.empty() && !known(head) && known("/" + head) ? "/" + topic : topic;
 }
 
 }  // namespace
 
-Trajectory read_trajectory(const std::string& file, const std::string& times_file) {
-  const std::vector<Line> lines = detail::read_lines(file);
-  Trajectory trajectory;
-  trajectory.reserve(lines.size());
-  const bool csv = lines.front().text.find(',') != std::string::npos;
-  const bool kitti = !csv && fields(lines.front().text, false).size() == 12;
-  if (!kitti && !times_file.empty())
-    throw error_at(file, 0, "", "a file of times belongs to KITTI poses (12 fields a line), this is not one");
-  if (kitti) {
-    if (times_file.empty()) throw error_at(file, 0, "", "KITTI poses need a file of times (--times)");
-    const std::vector<std::int64_t> times = read_times(times_file);
-    if (times.size() != lines.size())
-      throw error_at(times_file, 0, "",
-                     "expected " + std::to_string(lines.size()) + " times, one for each pose of " + file +
-                         ", got " + std::to_string(times.size()));
-    for (std::size_t i = 0; i < lines.size(); ++i)
-      trajectory.push_back({times[i], kitti_line(file, lines[i])});
-  } else {
-    for (const Line& line : lines) trajectory.push_back(csv ? euroc_line(file, line) : tum_line(file, line));
+void put_in_order(TrajectoryReading& reading) {
+  Trajectory& poses = reading.trajectory;
+  std::int64_t latest = INT64_MIN;
+  for (const StampedPose& pose : poses) {
+    if (pose.time_us < latest) ++reading.out_of_order;
+    latest = std::max(latest, pose.time_us);
   }
-  for (std::size_t i = 1; i < trajectory.size(); ++i)
-    if (trajectory[i].time_us <= trajectory[i - 1].time_us)
-      throw error_at(file, lines[i].number, "time", "does not increase (times must, line by line)");
-  return trajectory;
+  if (reading.out_of_order > 0)
+    std::stable_sort(poses.begin(), poses.end(),
+                     [](const StampedPose& x, const StampedPose& y) { return x.time_us < y.time_us; });
+  const auto same = [](const StampedPose& x, const StampedPose& y) { return x.time_us == y.time_us; };
+  const auto end = std::unique(poses.begin(), poses.end(), same);
+  reading.duplicates = static_cast<std::uint64_t>(poses.end() - end);
+  poses.erase(end, poses.end());
 }
 
-void write_tum(const std::string& file, const Trajectory& trajectory) {
-  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
-  char line[256];
-  for (const StampedPose& stamped : trajectory) {
-    const Pose pose = to_pose(stamped.pose);
-    const Eigen::Vector3d& t = pose.translation;
-    const Eigen::Quaterniond& q = pose.rotation;
-    const std::int64_t magnitude = std::abs(stamped.time_us);
-    std::snprintf(line, sizeof line, "%s%lld.%06lld %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n",
-                  stamped.time_us < 0 ? "-" : "", static_cast<long long>(magnitude / 1'000'000),
-                  static_cast<long long>(magnitude % 1'000'000), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
-                  q.w());
-    text += line;
+TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic) {
+  TrajectoryReading reading;
+  std::string name = topic;
+  bool looked = false;
+  if (name.empty()) {
+    // the only stream with poses, where there is only one
+    std::size_t first = SIZE_MAX;
+    bool several = false;
+    recording.read("", [&](std::size_t stream, const StampedPose& pose) {
+      if (recording.streams()[stream].fixed) return;
+      several = several || (first != SIZE_MAX && first != stream);
+      first = std::min(first, stream);
+      if (several)
+        reading.trajectory.clear();
+      else
+        reading.trajectory.push_back(pose);
+    });
+    looked = true;
+    if (several)
+      throw error_at(recording.file(), 0, "",
+                     "holds several streams, choose one with " + detail::printable(recording.file()) +
+                         ":TOPIC; " + detail::topics_in_words(recording.streams()));
+    if (first != SIZE_MAX) name = recording.streams()[first].name;
+  } else {
+    read_stream(recording, name, reading);
+    if (reading.trajectory.empty()) {
+      name = full_name(recording.streams(), topic);
+      if (name != topic) read_stream(recording, name, reading);
+    }
   }
-  write_whole_file(file, text);
+  if (reading.trajectory.empty() && !looked && name.find(':') != std::string::npos)
+    read_chain(recording, name, reading);
+  reading.losses = recording.losses();
+  if (reading.trajectory.empty())
+    throw error_at(recording.file(), 0, detail::printable(name),
+                   "no pose under this name; " + detail::topics_in_words(recording.streams()) +
+                       (reading.losses.any() ? "; " + losses_in_words(reading.losses) : ""));
+  reading.format = recording.format();
+  reading.stream = name;
+  put_in_order(reading);
+  reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
+  if (reading.out_of_order > 0)
+    reading.notes.push_back(std::to_string(reading.out_of_order) +
+                            " poses were out of order: sorted by time");
+  if (reading.duplicates > 0)
+    reading.notes.push_back(std::to_string(reading.duplicates) +
+                            " poses have the time of another one: the first of each is kept");
+  if (reading.losses.any()) reading.notes.push_back(losses_in_words(reading.losses));
+  return reading;
+}
+
+TrajectoryReading read_trajectory_file(const std::string& name, const ReadOptions& options) {
+  const RecordingName parts = parse_recording_name(name);
+  return read_trajectory_of(*open_recording(parts.file, options), parts.topic);
+}
+
+Trajectory read_trajectory(const std::string& name, const std::string& times_file) {
+  ReadOptions options;
+  options.times_file = times_file;
+  return read_trajectory_file(name, options).trajectory;
 }
 
 }  // namespace egocal

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "egocal/io/read_losses.hpp"
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal {
+
+/// What cannot be told from a file itself. The defaults need no setting for most files.
+struct ReadOptions {
+  std::string times_file;  ///< KITTI: one time a line [s]
+  /// Names of the columns of a table, in order and separated by commas, where it has no header or one that is
+  /// not understood: t x y z qw qx qy qz, or roll pitch yaw, yaw, latitude longitude height; `-` skips one.
+  /// A unit may follow in brackets: t[ns], yaw[deg].
+  std::string columns;
+  double rate = 0;  ///< poses without times: so many a second [Hz]; 0: 10 is assumed, and said in the notes
+};
+
+/// One stream of a recording: a topic of a bag, one transform of a tf topic, a channel of a log, or the only
+/// one of a text file.
+struct RecordedStream {
+  std::string name;            ///< what follows the file and a colon; empty where the file holds only one
+  std::string type;            ///< of its messages, e.g. "nav_msgs/Odometry"
+  std::uint64_t messages = 0;  ///< read so far
+  bool poses = false;          ///< whether poses can be taken from it
+  std::string topic, parent, child;  ///< of a transform on a tf topic: topic and frames
+  bool fixed = false;                ///< a static transform
+};
+
+/// A file with poses, whatever its format, behind one interface. Reading is streaming: memory does not grow
+/// with the file, except by the names of its streams. Not thread-safe; different objects are independent.
+class Recording {
+ public:
+  using TakePose = std::function<void(std::size_t stream, const StampedPose& pose)>;
+
+  virtual ~Recording() = default;
+
+  /// "TUM", "MCAP", ...
+  virtual std::string format() const = 0;
+  /// One pass over the whole file: every pose in the order of the file. Damaged places are skipped and
+  /// counted. `topic`, where not empty, limits the work to streams of that name or topic. Throws Error where
+  /// the file cannot be read at all.
+  virtual void read(const std::string& topic, const TakePose& take) = 0;
+
+  const std::string& file() const { return file_; }
+  /// Those that the last pass has met; all of them after a pass over everything.
+  const std::vector<RecordedStream>& streams() const { return streams_; }
+  /// Of the last pass.
+  const ReadLosses& losses() const { return losses_; }
+  /// What was assumed about the file, one sentence each: units, rate, order of columns.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ protected:
+  explicit Recording(std::string file) : file_(std::move(file)) {}
+
+  std::string file_;
+  std::vector<RecordedStream> streams_;
+  ReadLosses losses_;
+  std::vector<std::string> notes_;
+};
+
+/// Opens a file by its content: MCAP, rosbag 1 and 2, or text (TUM, KITTI, EuRoC, tables with named columns),
+/// each also as .gz or .zst. A folder is taken as a bag of rosbag2. Throws Error where the file cannot be
+/// opened, or is known and not readable.
+std::unique_ptr<Recording> open_recording(const std::string& file, const ReadOptions& options = {});
+
+/// "drive.mcap:/lidar/odom" in its parts. A colon that belongs to the name of an existing file stays there.
+struct RecordingName {
+  std::string file, topic;
+};
+RecordingName parse_recording_name(const std::string& text);
+
+}  // namespace egocal

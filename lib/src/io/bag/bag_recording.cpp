@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/bag/bag_recording.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "egocal/limits.hpp"
+#include "io/checked_pose.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+constexpr std::size_t largest_number_of_streams = 10'000;  // names alone may not fill the memory
+
+bool is_static(const std::string& topic) {
+  constexpr std::string_view end = "tf_static";
+  return topic.size() >= end.size() && topic.compare(topic.size() - end.size(), end.size(), end) == 0;
+}
+
+/// tf1 wrote frames with a leading slash, tf2 without.
+std::string_view frame(std::string_view name) {
+  return !name.empty() && name.front() == '/' ? name.substr(1) : name;
+}
+
+}  // namespace
+
+void BagRecording::read(const std::string& topic, const TakePose& take) {
+  streams_.clear();
+  topics_.clear();
+  transforms_.clear();
+  losses_ = {};
+  notes_.clear();
+  unstamped_ = 0;
+  for (const auto& part : parts_) {
+    if (read_before_) part->rewind();
+    read_part(*part, topic, take);
+    const ReadLosses& lost = part->losses();
+    losses_.regions += lost.regions;
+    losses_.bytes += lost.bytes;
+    losses_.truncated = losses_.truncated || lost.truncated;
+    losses_.checksum = losses_.checksum || lost.checksum;
+  }
+  read_before_ = true;
+  if (unstamped_ > 0)
+    notes_.push_back(std::to_string(unstamped_) +
+                     " messages have no time stamp in their header: the time of recording was taken");
+}
+
+void BagRecording::read_part(MessageReader& part, const std::string& topic, const TakePose& take) {
+  std::vector<std::size_t> stream_of_topic;
+  const auto announce = [&] {
+    for (std::size_t i = stream_of_topic.size(); i < part.topics().size(); ++i)
+      stream_of_topic.push_back(stream_of(part.topics()[i]));
+  };
+  BagMessage message;
+  while (part.next(message)) {
+    announce();
+    const std::size_t stream = stream_of_topic[message.topic];
+    ++streams_[stream].messages;
+    const BagTopic& from = part.topics()[message.topic];
+    if (!is_pose_type(from.type)) continue;
+    // of a chain of transforms, the static ones come on another topic
+    const bool wanted = topic.empty() || from.name == topic || is_transforms_type(from.type);
+    if (wanted) take_message(part, message, stream, take);
+  }
+  announce();
+}
+
+std::size_t BagRecording::stream_of(const BagTopic& topic) {
+  const auto known = topics_.find({topic.name, topic.type});
+  if (known != topics_.end()) return known->second;
+  const std::size_t index = streams_.size();
+  const bool decodable = topic.encoding == "cdr" || topic.encoding == "ros1";
+  RecordedStream stream;
+  stream.name = stream.topic = topic.name;
+  stream.type = topic.type;
+  stream.poses = decodable && is_pose_type(topic.type) && !is_transforms_type(topic.type);
+  streams_.push_back(std::move(stream));
+  topics_[{topic.name, topic.type}] = index;
+  return index;
+}
+
+std::size_t BagRecording::transform_stream(const BagTopic& topic, const MessagePose& pose) {
+  const std::string parent(frame(pose.parent)), child(frame(pose.child));
+  const auto key = std::pair(topics_[{topic.name, topic.type}], parent + '\n' + child);
+  const auto known = transforms_.find(key);
+  if (known != transforms_.end()) return known->second;
+  if (streams_.size() >= largest_number_of_streams) return streams_.size();
+  RecordedStream stream;
+  stream.name = topic.name + ":" + parent + "/" + child;
+  stream.type = "geometry_msgs/TransformStamped";
+  stream.poses = true;
+  stream.topic = topic.name;
+  stream.parent = parent;
+  stream.child = child;
+  stream.fixed = is_static(topic.name);
+  streams_.push_back(std::move(stream));
+  transforms_[key] = streams_.size() - 1;
+  return streams_.size() - 1;
+}
+
+void BagRecording::take_message(MessageReader& part, const BagMessage& message, std::size_t stream,
+                                const TakePose& take) {
+  const BagTopic& topic = part.topics()[message.topic];
+  const bool transforms = is_transforms_type(topic.type);
+  const auto refuse = [&](const std::string& reason) {
+    if (losses_.refused++ == 0) losses_.first_refused = topic.name + ": " + reason;
+  };
+  const bool decoded = decode_poses(topic.type, topic.encoding, message.data, [&](const MessagePose& pose) {
+    const std::size_t target = transforms ? transform_stream(topic, pose) : stream;
+    if (target == streams_.size()) return refuse("too many frames");
+    if (transforms) {
+      ++streams_[target].messages;
+    } else if (streams_[target].parent.empty()) {
+      streams_[target].parent = frame(pose.parent);
+      streams_[target].child = frame(pose.child);
+    }
+    const bool fixed = streams_[target].fixed;
+    if (pose.time_ns == 0 && !fixed) ++unstamped_;
+    const std::int64_t time_ns = pose.time_ns != 0 ? pose.time_ns : message.log_time_ns;
+    const std::int64_t time_us = time_ns / 1000 + (time_ns % 1000 >= 500 ? 1 : 0);
+    if (!plausible_relative_time(time_us)) return refuse("its time is not between 1840 and 2100");
+    const CheckedPose checked = checked_pose(pose.translation, pose.wxyz);
+    if (!checked.reason.empty()) return refuse(checked.reason);
+    take(target, {time_us, checked.pose});
+  });
+  if (!decoded)
+    refuse("the message is damaged or not a " + topic.type + " in the encoding " + topic.encoding);
+}
+
+}  // namespace egocal::detail

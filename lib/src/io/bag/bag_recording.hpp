@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "egocal/io/recording.hpp"
+#include "io/bag/message_reader.hpp"
+#include "io/bag/pose_messages.hpp"
+
+namespace egocal::detail {
+
+/// The poses of a bag: one stream a topic, and one a transform for tf topics. Several files are parts of one
+/// bag, in order.
+class BagRecording : public Recording {
+ public:
+  using Parts = std::vector<std::unique_ptr<MessageReader>>;
+  BagRecording(std::string file, std::string format, Parts parts)
+      : Recording(std::move(file)), format_(std::move(format)), parts_(std::move(parts)) {}
+
+  std::string format() const override { return format_; }
+  void read(const std::string& topic, const TakePose& take) override;
+
+ private:
+  void read_part(MessageReader& part, const std::string& topic, const TakePose& take);
+  std::size_t stream_of(const BagTopic& topic);
+  std::size_t transform_stream(const BagTopic& topic, const MessagePose& pose);
+  void take_message(MessageReader& part, const BagMessage& message, std::size_t stream, const TakePose& take);
+
+  std::string format_;
+  Parts parts_;
+  bool read_before_ = false;
+  std::map<std::pair<std::string, std::string>, std::size_t> topics_;      ///< stream by topic and type
+  std::map<std::pair<std::size_t, std::string>, std::size_t> transforms_;  ///< by stream of the topic, frames
+  std::uint64_t unstamped_ = 0;
+};
+
+}  // namespace egocal::detail

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/bag/rosbag2_reader.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "egocal/error.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// A file name as part of a URI.
+std::string uri_of(const std::string& file) {
+  std::string uri = "file:";
+  constexpr const char* digits = "0123456789abcdef";
+  for (const char c : std::filesystem::absolute(file).string()) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '%' || c == '?' || c == '#' || code < 0x20 || code > 0x7e)
+      uri += {'%', digits[code >> 4], digits[code & 15]};
+    else
+      uri += c;
+  }
+  // a recorder that was killed leaves its newest rows in a -wal file; without one nothing needs a lock
+  std::error_code none;
+  return uri + (std::filesystem::exists(file + "-wal", none) ? "?mode=ro" : "?mode=ro&immutable=1");
+}
+
+std::string text_of(sqlite3_stmt* statement, int column) {
+  const unsigned char* text = sqlite3_column_text(statement, column);
+  return text ? std::string(reinterpret_cast<const char*>(text),
+                            static_cast<std::size_t>(sqlite3_column_bytes(statement, column)))
+              : std::string();
+}
+
+}  // namespace
+
+void Rosbag2Reader::Close::operator()(sqlite3* database) const {
+  sqlite3_close_v2(database);
+}
+void Rosbag2Reader::Close::operator()(sqlite3_stmt* statement) const {
+  sqlite3_finalize(statement);
+}
+
+Rosbag2Reader::Rosbag2Reader(const std::string& file) : file_(file) {
+  sqlite3* database = nullptr;
+  const int result = sqlite3_open_v2(uri_of(file).c_str(), &database,
+                                     SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
+  database_.reset(database);
+  if (result != SQLITE_OK) throw error_at(file, 0, "", "cannot be opened as a rosbag2 database");
+  // what a hostile or damaged database may ask for is bounded
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(largest_record));
+  sqlite3_limit(database, SQLITE_LIMIT_ATTACHED, 0);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_exec(database, "PRAGMA cell_size_check=ON; PRAGMA mmap_size=0; PRAGMA cache_size=-4096", nullptr,
+               nullptr, nullptr);
+  for (const char* table : {"topics", "messages"}) {
+    const Statement look = prepare(
+        "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1 AND sql NOT LIKE '%VIRTUAL%'");
+    sqlite3_bind_text(look.get(), 1, table, -1, SQLITE_STATIC);
+    const int found = sqlite3_step(look.get());
+    if (found == SQLITE_ROW) continue;
+    if (found == SQLITE_DONE)
+      throw error_at(
+          file, 0, "",
+          std::string("is an SQLite database without the table '") + table + "': expected a bag of rosbag2");
+    throw error_at(file, 0, "",
+                   std::string("cannot be read as a rosbag2 database: ") + sqlite3_errmsg(database_.get()));
+  }
+  rewind();
+}
+
+Rosbag2Reader::Statement Rosbag2Reader::prepare(const char* sql) const {
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(database_.get(), sql, -1, &statement, nullptr) != SQLITE_OK)
+    throw error_at(file_, 0, "",
+                   std::string("cannot be read as a rosbag2 database: ") + sqlite3_errmsg(database_.get()));
+  return Statement(statement);
+}
+
+void Rosbag2Reader::rewind() {
+  losses_ = {};
+  read_topics();
+  const Statement most = prepare("SELECT max(rowid) FROM messages");
+  largest_id_ = sqlite3_step(most.get()) == SQLITE_ROW ? sqlite3_column_int64(most.get(), 0) : 0;
+  last_id_ = std::numeric_limits<std::int64_t>::min();
+  stride_ = 1;
+  messages_ =
+      prepare("SELECT rowid, topic_id, timestamp, data FROM messages WHERE rowid > ?1 ORDER BY rowid");
+  sqlite3_bind_int64(messages_.get(), 1, last_id_);
+}
+
+void Rosbag2Reader::read_topics() {
+  topics_.clear();
+  topic_of_id_.clear();
+  const Statement rows = prepare("SELECT id, name, type, serialization_format FROM topics");
+  int result = SQLITE_ROW;
+  while ((result = sqlite3_step(rows.get())) == SQLITE_ROW) {
+    topic_of_id_[sqlite3_column_int64(rows.get(), 0)] = topics_.size();
+    topics_.push_back(
+        {text_of(rows.get(), 1), ros1_type_name(text_of(rows.get(), 2)), text_of(rows.get(), 3)});
+  }
+  if (result != SQLITE_DONE) ++losses_.regions;
+}
+
+bool Rosbag2Reader::next(BagMessage& message) {
+  while (true) {
+    const int result = sqlite3_step(messages_.get());
+    if (result == SQLITE_DONE) return false;
+    if (result != SQLITE_ROW) {
+      if (!step_over_damage()) return false;
+      continue;
+    }
+    const std::int64_t id = sqlite3_column_int64(messages_.get(), 0);
+    if (id <= last_id_) {  // damaged pages that lead in a circle
+      if (!step_over_damage()) return false;
+      continue;
+    }
+    last_id_ = id;
+    const auto topic = topic_of_id_.find(sqlite3_column_int64(messages_.get(), 1));
+    if (topic == topic_of_id_.end() || sqlite3_column_type(messages_.get(), 3) != SQLITE_BLOB) {
+      ++losses_.regions;
+      continue;
+    }
+    stride_ = 1;
+    message.topic = topic->second;
+    message.log_time_ns = sqlite3_column_int64(messages_.get(), 2);
+    const void* const data = sqlite3_column_blob(messages_.get(), 3);
+    const int size = sqlite3_column_bytes(messages_.get(), 3);
+    message.data = {static_cast<const unsigned char*>(data), data ? static_cast<std::size_t>(size) : 0};
+    return true;
+  }
+}
+
+/// Goes on behind the row that cannot be read, further with every failure: at most some sixty of them in a
+/// row.
+bool Rosbag2Reader::step_over_damage() {
+  ++losses_.regions;
+  if (last_id_ == std::numeric_limits<std::int64_t>::min()) last_id_ = 0;
+  if (last_id_ >= largest_id_ || stride_ > largest_id_) return false;
+  last_id_ += std::min(stride_, largest_id_ - last_id_);
+  stride_ *= 2;
+  sqlite3_reset(messages_.get());
+  sqlite3_bind_int64(messages_.get(), 1, last_id_);
+  return true;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/bytes/byte_source.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "egocal/error.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+constexpr std::size_t window_size = 256 << 10;  // [bytes]; larger ones are not faster from the page cache
+
+}  // namespace
+
+ByteSource::ByteSource(const std::string& file) : file_(file) {
+  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0)
+    throw error_at(file, 0, "", std::string("cannot be opened for reading: ") + std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) {
+    ::close(descriptor_);
+    throw error_at(file, 0, "", "is a folder, expected a file");
+  }
+  seekable_ = S_ISREG(status.st_mode);
+  size_ = seekable_ ? static_cast<std::uint64_t>(status.st_size) : 0;
+  window_.resize(window_size);
+  fill(8);
+  unpacker_ = make_unpacker({window_.data(), filled_});
+  if (!unpacker_) return;
+  packed_.assign(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(filled_));
+  packed_end_ = filled_;
+  packed_.resize(window_size);
+  filled_ = 0;
+  end_ = false;
+}
+
+ByteSource::~ByteSource() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::size_t ByteSource::read_raw(unsigned char* to, std::size_t size) {
+  while (true) {
+    const ssize_t got = ::read(descriptor_, to, size);
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) throw error_at(file_, 0, "", std::string("reading failed: ") + std::strerror(errno));
+  }
+}
+
+std::size_t ByteSource::read_unpacked(unsigned char* to, std::size_t size) {
+  while (true) {
+    if (packed_at_ == packed_end_) {
+      packed_at_ = 0;
+      packed_end_ = read_raw(packed_.data(), packed_.size());
+    }
+    const bool last = packed_at_ == packed_end_;
+    const Unpacker::Step step =
+        unpacker_->unpack({packed_.data() + packed_at_, packed_end_ - packed_at_}, {to, size});
+    packed_at_ += step.consumed;
+    const bool stuck = step.consumed == 0 && step.produced == 0;
+    unpacking_failed_ = step.failed || (stuck && !(last && unpacker_->complete()));
+    if (step.produced > 0 || stuck || step.failed) return step.produced;
+  }
+}
+
+void ByteSource::fill(std::size_t size) {
+  if (filled_ - position_ >= size || end_) return;
+  std::copy(window_.begin() + static_cast<std::ptrdiff_t>(position_),
+            window_.begin() + static_cast<std::ptrdiff_t>(filled_), window_.begin());
+  window_offset_ += position_;
+  filled_ -= position_;
+  position_ = 0;
+  while (filled_ < size && !end_) {
+    // grows as bytes really come: a length that lies in a short file costs nothing
+    if (filled_ == window_.size()) window_.resize(std::min(std::max(size, window_size), 2 * window_.size()));
+    const std::size_t room = window_.size() - filled_;
+    const std::size_t got =
+        unpacker_ ? read_unpacked(window_.data() + filled_, room) : read_raw(window_.data() + filled_, room);
+    end_ = got == 0 || unpacking_failed_;
+    filled_ += got;
+  }
+}
+
+ByteSpan ByteSource::peek(std::size_t size) {
+  fill(size);
+  return {window_.data() + position_, std::min(size, filled_ - position_)};
+}
+
+std::uint64_t ByteSource::skip(std::uint64_t size) {
+  std::uint64_t passed = std::min<std::uint64_t>(size, filled_ - position_);
+  position_ += passed;
+  if (passed < size && seekable_ && !unpacker_) {
+    const std::uint64_t jump = std::min(size - passed, size_ > offset() ? size_ - offset() : 0);
+    if (jump > 0 && ::lseek(descriptor_, static_cast<off_t>(jump), SEEK_CUR) >= 0) {
+      window_offset_ += position_ + jump;
+      position_ = filled_ = 0;
+      return passed + jump;
+    }
+  }
+  while (passed < size) {
+    const std::size_t there =
+        peek(static_cast<std::size_t>(std::min<std::uint64_t>(window_size, size - passed))).size();
+    if (there == 0) break;
+    position_ += there;
+    passed += there;
+  }
+  return passed;
+}
+
+void ByteSource::rewind() {
+  if (window_offset_ == 0) {
+    position_ = 0;
+    return;
+  }
+  if (!seekable_ || ::lseek(descriptor_, 0, SEEK_SET) != 0)
+    throw error_at(file_, 0, "", "is a pipe and has to be read twice; save it to a file first");
+  window_offset_ = 0;
+  position_ = filled_ = packed_at_ = packed_end_ = 0;
+  end_ = unpacking_failed_ = false;
+  if (unpacker_) unpacker_->restart();
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/bytes/unpacker.hpp"
+
+namespace egocal::detail {
+
+using ByteSpan = std::span<const unsigned char>;
+
+/// The bytes of a file from its beginning to its end, unpacked on the way where it is gzip or zstd (told by
+/// its first bytes). Memory: a window of 256 KiB, or as much as peek() asks for. Throws Error where the file
+/// cannot be opened or read.
+class ByteSource {
+ public:
+  explicit ByteSource(const std::string& file);
+  ~ByteSource();
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+
+  const std::string& file() const { return file_; }
+
+  /// The next `size` bytes, fewer only at the end. Valid until the next call of peek() or skip().
+  ByteSpan peek(std::size_t size);
+  /// Passes over `size` bytes; returns how many there were.
+  std::uint64_t skip(std::uint64_t size);
+  /// Of the next byte, after unpacking.
+  std::uint64_t offset() const { return window_offset_ + position_; }
+  /// Bytes of the whole file where that is known: a plain file on a disk; otherwise 0.
+  std::uint64_t plain_size() const { return unpacker_ ? 0 : size_; }
+  /// The packed file is damaged or cut off: unpacking ended before its end.
+  bool unpacking_failed() const { return unpacking_failed_; }
+
+  /// Back to the first byte. Throws Error where the file is a pipe that has been read from.
+  void rewind();
+
+ private:
+  void fill(std::size_t size);
+  std::size_t read_raw(unsigned char* to, std::size_t size);
+  std::size_t read_unpacked(unsigned char* to, std::size_t size);
+
+  std::string file_;
+  int descriptor_ = -1;
+  bool seekable_ = false;
+  std::uint64_t size_ = 0;
+  std::unique_ptr<Unpacker> unpacker_;
+  std::vector<unsigned char> packed_;           ///< input of the unpacker
+  std::size_t packed_at_ = 0, packed_end_ = 0;  ///< what of it is still to be unpacked
+  bool unpacking_failed_ = false, end_ = false;
+  std::vector<unsigned char> window_;
+  std::size_t position_ = 0, filled_ = 0;  ///< in the window
+  std::uint64_t window_offset_ = 0;        ///< of the window's first byte
+};
+
+}  // namespace egocal::detail

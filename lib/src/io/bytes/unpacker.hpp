@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace egocal::detail {
+
+/// Unpacks one stream of bytes piece by piece: gzip, zstd, lz4 frames or bz2.
+class Unpacker {
+ public:
+  struct Step {
+    std::size_t consumed = 0, produced = 0;  ///< [bytes]
+    bool failed = false;                     ///< the packed bytes are damaged; nothing more can be unpacked
+  };
+  virtual ~Unpacker() = default;
+  virtual Step unpack(std::span<const unsigned char> from, std::span<unsigned char> to) = 0;
+  virtual void restart() = 0;
+  /// At the end of a packed stream (several may follow each other), where a file may end.
+  virtual bool complete() const = 0;
+};
+
+/// For a whole file by its first bytes: gzip or zstd; empty for anything else.
+std::unique_ptr<Unpacker> make_unpacker(std::span<const unsigned char> first_bytes);
+/// By the name that bags use: "zstd", "lz4", "bz2". Empty for an unknown name.
+std::unique_ptr<Unpacker> make_unpacker(std::string_view name);
+
+/// All of `packed`, at most `most` bytes of it. False where it is damaged, cut off or longer than that; `out`
+/// then holds what could be unpacked. Memory grows with what comes out, whatever a file claims.
+bool unpack_all(Unpacker& unpacker, std::span<const unsigned char> packed, std::size_t most,
+                std::vector<unsigned char>& out);
+
+}  // namespace egocal::detail

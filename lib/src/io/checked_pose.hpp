@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "egocal/geometry/dual_quaternion.hpp"
+
+namespace egocal::detail {
+
+struct CheckedPose {
+  DualQuaternion pose;
+  std::string reason;  ///< why these numbers are no pose; empty where they are one
+};
+
+/// Position [m] and quaternion (w x y z) within 1 % of unit length, as a unit dual quaternion.
+CheckedPose checked_pose(const Eigen::Vector3d& position, const Eigen::Vector4d& wxyz);
+
+}  // namespace egocal::detail

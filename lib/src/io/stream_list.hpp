@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "egocal/io/recording.hpp"
+
+namespace egocal::detail {
+
+/// A name from a file for one line on a terminal: no control characters, valid UTF-8, at most 200 bytes.
+std::string printable(const std::string& text);
+
+/// "topics with poses: /odom (nav_msgs/Odometry, 517), /tf:odom/base_link (12)", or that there are none and
+/// what there is instead. At most some 700 characters.
+std::string topics_in_words(const std::vector<RecordedStream>& streams);
+
+}  // namespace egocal::detail

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/text/columns.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace egocal::detail {
+
+namespace {
+
+using Words = std::initializer_list<std::string_view>;
+
+bool is_one_of(std::string_view word, Words words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// A column's name in lower-case words, and its unit.
+struct ColumnName {
+  std::vector<std::string> words;
+  std::string joined;  ///< all words in one
+  std::string unit;
+
+  bool any_of(Words list) const {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& w) { return is_one_of(w, list); });
+  }
+};
+
+ColumnName parse(std::string_view text) {
+  ColumnName name;
+  const std::size_t bracket = text.find_first_of("[(");
+  if (bracket != std::string_view::npos) {
+    const std::size_t end = text.find_first_of("])", bracket);
+    for (const char c : text.substr(bracket + 1, end == std::string_view::npos ? end : end - bracket - 1))
+      if (c != ' ') name.unit += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    text = text.substr(0, bracket);
+  }
+  std::string word;
+  const auto finish = [&] {
+    if (!word.empty()) name.words.push_back(word);
+    word.clear();
+  };
+  for (const char c : text) {
+    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if ((lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9'))
+      word += lower;
+    else
+      finish();
+  }
+  finish();
+  if (name.unit.empty() && name.words.size() > 1 &&
+      is_one_of(name.words.back(), {"s", "ms", "us", "ns", "deg", "rad", "m", "cm", "mm", "degrees"})) {
+    name.unit = name.words.back();
+    name.words.pop_back();
+  }
+  for (const std::string& w : name.words) name.joined += w;
+  return name;
+}
+
+struct Meaning {
+  Quantity quantity{};
+  int rank = 0;  ///< the more specific name is taken; 0: not understood
+};
+
+Meaning meaning_of_time(const ColumnName& name) {
+  const std::string_view last = name.words.back();
+  if (is_one_of(last, {"nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"}))
+    return {Quantity::nanoseconds, 1};
+  if (is_one_of(last, {"sec", "secs", "seconds"})) return {Quantity::seconds, 1};
+  if (is_one_of(last, {"stamp", "timestamp", "timestamps"})) return {Quantity::time, 3};
+  if (is_one_of(name.joined, {"t", "time", "times", "ts", "utime", "epoch", "unixtime", "timestampns",
+                              "timens", "timestamps"}) ||
+      is_one_of(last, {"time", "utime"}))
+    return {Quantity::time, 2};
+  return {};
+}
+
+Meaning meaning_of_axis(const ColumnName& name) {
+  const std::string_view last = name.words.back();
+  const char axis = last.back();
+  if (!is_one_of(std::string_view(&axis, 1), {"w", "x", "y", "z"})) return {};
+  const int index = axis == 'w' ? 0 : 1 + (axis - 'x');
+  const std::string_view stem = last.substr(0, last.size() - 1);
+  constexpr Quantity rotations[] = {Quantity::qw, Quantity::qx, Quantity::qy, Quantity::qz};
+  constexpr Quantity positions[] = {Quantity::time, Quantity::x, Quantity::y, Quantity::z};
+  const bool rotation = is_one_of(stem, {"q", "quat", "quaternion", "orientation", "rotation", "rot"});
+  const bool in_rotation = name.any_of({"q", "quat", "quaternion", "orientation", "rotation", "rot"});
+  if (rotation || (stem.empty() && (in_rotation || (index == 0 && name.words.size() == 1))))
+    return {rotations[index], 2};
+  if (index == 0 || in_rotation) return {};
+  if (is_one_of(stem, {"p", "t", "pos", "position", "trans", "translation", "loc", "location"}))
+    return {positions[index], 2};
+  if (!stem.empty()) return {};
+  const bool in_position = name.any_of({"p", "pos", "position", "translation", "trans", "t", "location"});
+  return {positions[index], in_position ? 3 : 1};
+}
+
+Meaning meaning_of(const ColumnName& name) {
+  if (name.words.empty()) return {};
+  // velocities, rates, biases and uncertainties are named like poses
+  if (name.words.size() > 1 &&
+      name.any_of({"v",     "vel",          "velocity", "linear", "angular",    "twist", "acc",
+                   "accel", "acceleration", "gyro",     "rate",   "covariance", "cov",   "std",
+                   "sigma", "stddev",       "sd",       "b",      "bias",       "var",   "error"}))
+    return {};
+  const std::string_view last = name.words.back();
+  if (is_one_of(last, {"lat", "latitude"})) return {Quantity::latitude, 2};
+  if (is_one_of(last, {"lon", "long", "lng", "longitude"})) return {Quantity::longitude, 2};
+  if (is_one_of(last, {"alt", "altitude", "height", "elevation"})) return {Quantity::height, 2};
+  if (is_one_of(last, {"easting", "east"})) return {Quantity::x, 1};
+  if (is_one_of(last, {"northing", "north"})) return {Quantity::y, 1};
+  if (is_one_of(last, {"up"})) return {Quantity::z, 1};
+  if (last == "roll") return {Quantity::roll, 2};
+  if (last == "pitch") return {Quantity::pitch, 2};
+  if (is_one_of(last, {"yaw", "theta", "psi"})) return {Quantity::yaw, 2};
+  if (is_one_of(last, {"heading", "azimuth"})) return {Quantity::heading, 2};
+  if (const Meaning axis = meaning_of_axis(name); axis.rank > 0) return axis;
+  return meaning_of_time(name);
+}
+
+}  // namespace
+
+std::string_view name(Quantity quantity) {
+  constexpr std::string_view names[] = {"time", "seconds", "nanoseconds", "x",         "y",     "z",
+                                        "qw",   "qx",      "qy",          "qz",        "roll",  "pitch",
+                                        "yaw",  "heading", "latitude",    "longitude", "height"};
+  return names[static_cast<std::size_t>(quantity)];
+}
+
+bool ColumnMap::has_position() const {
+  return has(Quantity::x) && has(Quantity::y);
+}
+
+bool ColumnMap::has_quaternion() const {
+  return has(Quantity::qw) && has(Quantity::qx) && has(Quantity::qy) && has(Quantity::qz);
+}
+
+std::string ColumnMap::missing() const {
+  std::string text;
+  if (!has_position() && !has_geodetic()) text = "no position (x y z, or latitude longitude height)";
+  if (!has_attitude())
+    text +=
+        std::string(text.empty() ? "" : ", ") + "no orientation (qw qx qy qz, roll pitch yaw, or yaw alone)";
+  return text;
+}
+
+std::size_t ColumnMap::width() const {
+  std::size_t width = 0;
+  for (const auto& column : of)
+    if (column) width = std::max(width, column->index + 1);
+  return width;
+}
+
+ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
+  ColumnMap map;
+  std::array<int, quantities> rank{};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const ColumnName parsed = parse(names[i]);
+    const Meaning meaning = meaning_of(parsed);
+    int& best = rank[static_cast<std::size_t>(meaning.quantity)];
+    if (meaning.rank <= best) continue;
+    best = meaning.rank;
+    map.set(meaning.quantity, i, parsed.unit);
+  }
+  // one column of seconds or nanoseconds alone is the time
+  const bool seconds = map.has(Quantity::seconds), rest = map.has(Quantity::nanoseconds);
+  if (seconds != rest && !map.has(Quantity::time))
+    map.set(Quantity::time, map[seconds ? Quantity::seconds : Quantity::nanoseconds].index,
+            seconds ? "s" : "ns");
+  if (seconds != rest || map.has(Quantity::time)) {
+    map.of[static_cast<std::size_t>(Quantity::seconds)].reset();
+    map.of[static_cast<std::size_t>(Quantity::nanoseconds)].reset();
+  }
+  return map;
+}
+
+}  // namespace egocal::detail

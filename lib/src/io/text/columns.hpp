@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace egocal::detail {
+
+/// What a column of a table can mean.
+enum class Quantity {
+  time,         ///< since 1970 or any other event
+  seconds,      ///< whole seconds of a time in two columns ...
+  nanoseconds,  ///< ... and the rest of it
+  x,
+  y,
+  z,  ///< position
+  qw,
+  qx,
+  qy,
+  qz,
+  roll,
+  pitch,
+  yaw,
+  heading,  ///< clockwise from north
+  latitude,
+  longitude,
+  height,
+  count_
+};
+inline constexpr std::size_t quantities = static_cast<std::size_t>(Quantity::count_);
+std::string_view name(Quantity quantity);
+
+/// Which column holds which quantity, and in which unit where a header says so.
+struct ColumnMap {
+  struct Column {
+    std::size_t index = 0;
+    std::string unit;  ///< as in brackets behind the name; empty: not given
+  };
+  std::array<std::optional<Column>, quantities> of;
+
+  bool has(Quantity quantity) const { return of[static_cast<std::size_t>(quantity)].has_value(); }
+  const Column& operator[](Quantity quantity) const { return *of[static_cast<std::size_t>(quantity)]; }
+  void set(Quantity quantity, std::size_t index, std::string unit = {}) {
+    of[static_cast<std::size_t>(quantity)] = Column{index, std::move(unit)};
+  }
+
+  bool has_position() const;
+  bool has_geodetic() const { return has(Quantity::latitude) && has(Quantity::longitude); }
+  bool has_quaternion() const;
+  bool has_attitude() const { return has_quaternion() || has(Quantity::yaw) || has(Quantity::heading); }
+  bool has_time() const { return has(Quantity::time) || has(Quantity::seconds); }
+  /// A pose can be made of it (times can be made up).
+  bool complete() const { return (has_position() || has_geodetic()) && has_attitude(); }
+  /// What is missing, in words.
+  std::string missing() const;
+  /// Columns that a row needs at least.
+  std::size_t width() const;
+};
+
+/// Finds the quantities by the names that people use: "t", "timestamp [ns]", "field.pose.pose.position.x",
+/// "p_RS_R_x [m]", "q_w", "Yaw (deg)", "Latitude", ... Columns of other names are not used.
+ColumnMap columns_from_names(const std::vector<std::string_view>& names);
+
+}  // namespace egocal::detail

@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/text/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "egocal/error.hpp"
+#include "io/text/rotation_rows.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+constexpr std::size_t sniffed_bytes = 64 << 10;
+
+/// The first lines of a file.
+struct Sniffed {
+  std::vector<Line> comments;  ///< before the first data
+  std::vector<Line> data;      ///< the first may be a header
+};
+
+bool is_blank(std::string_view text) {
+  return text.find_first_not_of(" \t\r") == std::string_view::npos;
+}
+
+Sniffed sniff(ByteSource& source) {
+  ByteSpan bytes = source.peek(sniffed_bytes);
+  const bool all = bytes.size() < sniffed_bytes;
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.find('\0') != std::string_view::npos)
+    throw error_at(
+        source.file(), 0, "",
+        "is neither text nor a known recording; expected TUM, KITTI, EuRoC csv, a table with named "
+        "columns, MCAP, a ROS 1 bag or a rosbag2 database");
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
+  Sniffed sniffed;
+  long number = 0;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos && !all && !sniffed.data.empty()) break;  // a part of a line
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    ++number;
+    if (is_blank(line)) continue;
+    const char first = line[line.find_first_not_of(" \t")];
+    if (first == '#' || first == '%') {
+      if (sniffed.data.empty()) sniffed.comments.push_back({number, std::string(line)});
+    } else {
+      sniffed.data.push_back({number, std::string(line)});
+    }
+  }
+  return sniffed;
+}
+
+char separator_of(std::string_view line) {
+  if (line.find(';') != std::string_view::npos) return ';';
+  return line.find(',') != std::string_view::npos ? ',' : ' ';
+}
+
+bool is_number(std::string_view text) {
+  double value = 0;
+  return parse_number(text, value);
+}
+
+/// Names instead of numbers: the first field is a word, and so are most of the others.
+bool is_header(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  split(line, separator, fields);
+  const auto words =
+      std::count_if(fields.begin(), fields.end(), [](std::string_view field) { return !is_number(field); });
+  return fields.size() >= 3 && !is_number(fields[0]) &&
+         2 * words > static_cast<std::ptrdiff_t>(fields.size());
+}
+
+void name_columns(TextLayout& layout, std::string_view header) {
+  std::vector<std::string_view> names;
+  split(header, layout.separator, names);
+  layout.columns = columns_from_names(names);
+  layout.names.assign(names.begin(), names.end());
+}
+
+/// The columns of a format without a header.
+void set_columns(TextLayout& layout, std::initializer_list<std::pair<const char*, Quantity>> columns) {
+  std::size_t index = 0;
+  for (const auto& [label, quantity] : columns) {
+    layout.columns.set(quantity, index++);
+    layout.names.emplace_back(label);
+  }
+}
+
+void set_tum(TextLayout& layout) {
+  using enum Quantity;
+  set_columns(
+      layout,
+      {{"time", time}, {"tx", x}, {"ty", y}, {"tz", z}, {"qx", qx}, {"qy", qy}, {"qz", qz}, {"qw", qw}});
+  layout.format = "TUM";
+  layout.fields = 8;
+}
+
+void set_euroc(TextLayout& layout) {
+  using enum Quantity;
+  set_columns(
+      layout,
+      {{"time[ns]", time}, {"x", x}, {"y", y}, {"z", z}, {"qw", qw}, {"qx", qx}, {"qy", qy}, {"qz", qz}});
+  layout.format = "EuRoC csv";
+  layout.fields = 8;
+  layout.more_fields = true;
+}
+
+/// A table whose columns have names, from the option or a header.
+bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& options,
+               const std::string& file) {
+  const bool header = is_header(sniffed.data.front().text, layout.separator);
+  if (header) layout.header_line = sniffed.data.front().number;
+  if (!options.columns.empty()) {
+    TextLayout named;
+    named.separator = ',';
+    name_columns(named, options.columns);
+    if (!named.columns.complete())
+      throw error_at(file, 0, "--columns", named.columns.missing() + " among '" + options.columns + "'");
+    layout.columns = named.columns;
+    layout.names = named.names;
+  } else if (header) {
+    name_columns(layout, sniffed.data.front().text);
+    if (!layout.columns.complete())
+      throw error_at(file, layout.header_line, "",
+                     "the header names " + layout.columns.missing() +
+                         "; name the columns with --columns t,x,y,z,qx,qy,qz,qw");
+  } else {
+    // a header in a comment is taken where it makes sense
+    std::vector<std::string_view> row;
+    split(sniffed.data.front().text, layout.separator, row);
+    for (const Line& comment : sniffed.comments) {
+      TextLayout named;
+      named.separator = layout.separator;
+      name_columns(named, std::string_view(comment.text).substr(comment.text.find_first_of("#%") + 1));
+      if (!named.columns.complete() || !named.columns.has_time() || named.names.size() != row.size())
+        continue;
+      layout.columns = named.columns;
+      layout.names = named.names;
+    }
+    if (!layout.columns.complete()) return false;
+  }
+  layout.format = "table";
+  layout.fields = layout.columns.width();
+  layout.more_fields = true;
+  layout.times = layout.columns.has_time();
+  return true;
+}
+
+/// Rows of a pose matrix: 12 numbers (3 x 4) or 16 (4 x 4), with the time or number of the frame before them
+/// or not.
+bool set_matrix(TextLayout& layout, const std::vector<std::string_view>& row) {
+  const std::size_t n = row.size();
+  if (n != 12 && n != 13 && n != 16 && n != 17) return false;
+  const std::size_t first = n % 4 == 1 ? 1 : 0;
+  if (n != 12 && !looks_like_pose_matrix(row, first)) return false;
+  layout.format = "KITTI";
+  layout.matrix = true;
+  layout.first_column = first;
+  layout.fields = n;
+  layout.times = first == 1;
+  layout.names.clear();
+  return true;
+}
+
+/// Times in the first rows, as numbers.
+std::vector<double> sniffed_times(const TextLayout& layout, const Sniffed& sniffed, std::size_t column) {
+  std::vector<double> times;
+  std::vector<std::string_view> row;
+  for (const Line& line : sniffed.data) {
+    if (line.number == layout.header_line) continue;
+    split(line.text, layout.separator, row);
+    double value = 0;
+    if (column < row.size() && parse_number(row[column], value) && std::isfinite(value))
+      times.push_back(value);
+  }
+  return times;
+}
+
+struct UnitName {
+  TimeUnit unit;
+  const char* name;
+  double in_seconds;
+};
+constexpr UnitName units[] = {{TimeUnit::seconds, "seconds", 1},
+                              {TimeUnit::milliseconds, "milliseconds", 1e-3},
+                              {TimeUnit::microseconds, "microseconds", 1e-6},
+                              {TimeUnit::nanoseconds, "nanoseconds", 1e-9}};
+
+const UnitName& unit_by_size(const std::vector<double>& times) {
+  constexpr double latest = 4.1e9;  // [s], the year 2100
+  double largest = 0;
+  for (const double time : times) largest = std::max(largest, std::abs(time));
+  for (const UnitName& unit : units)
+    if (unit.in_seconds < 1 && largest * unit.in_seconds * 1e3 > latest &&
+        largest * unit.in_seconds <= latest)
+      return unit;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(std::abs(times[i] - times[i - 1]));
+  if (steps.empty()) return units[0];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  // times that begin near zero: no sensor that is worth calibrating sends a pose every ten seconds and less
+  // often; the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the likely one
+  if (!(*middle >= 10)) return units[0];
+  const UnitName* best = &units[0];
+  for (const UnitName& unit : units)
+    if (std::abs(std::log(*middle * unit.in_seconds / 0.06)) <
+        std::abs(std::log(*middle * best->in_seconds / 0.06)))
+      best = &unit;
+  return *best;
+}
+
+const UnitName* unit_by_name(const std::string& name) {
+  if (name == "s" || name == "sec" || name == "seconds") return &units[0];
+  if (name == "ms") return &units[1];
+  if (name == "us") return &units[2];
+  if (name == "ns") return &units[3];
+  return nullptr;
+}
+
+void set_time_unit(TextLayout& layout, const Sniffed& sniffed) {
+  if (layout.columns.has(Quantity::seconds) && !layout.matrix) return;
+  const std::size_t column = layout.matrix ? 0 : layout.columns[Quantity::time].index;
+  const std::vector<double> times = sniffed_times(layout, sniffed, column);
+  if (layout.matrix) {  // numbers of frames are whole, begin small and do not leap
+    layout.index = !times.empty() && times.front() < 1e6 && times.back() < 1e7;
+    for (const double time : times) layout.index = layout.index && time == std::floor(time);
+    layout.times = !layout.index;
+    if (layout.index) return;
+  }
+  const std::string given = layout.matrix ? "" : layout.columns[Quantity::time].unit;
+  if (const UnitName* unit = unit_by_name(given)) {
+    layout.unit = unit->unit;
+    return;
+  }
+  const UnitName& unit = unit_by_size(times);
+  layout.unit = unit.unit;
+  const bool usual = layout.format == "EuRoC csv" ? unit.unit == TimeUnit::nanoseconds : unit.in_seconds == 1;
+  if (!usual) layout.notes.push_back(std::string("times are taken as ") + unit.name + ", by their size");
+}
+
+}  // namespace
+
+TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
+  const Sniffed sniffed = sniff(source);
+  if (sniffed.data.empty()) throw error_at(source.file(), 0, "", "holds no data");
+  TextLayout layout;
+  layout.separator = separator_of(sniffed.data.back().text);
+  const std::string_view sample = sniffed.data.back().text;
+  layout.decimal_comma = layout.separator == ';' && sample.find(',') != std::string_view::npos &&
+                         sample.find('.') == std::string_view::npos;
+  std::vector<std::string_view> row;
+  split(sniffed.data.front().text, layout.separator, row);
+  if (!set_named(layout, sniffed, options, source.file()) && !set_matrix(layout, row)) {
+    if (layout.separator == ' ') {
+      set_tum(layout);
+    } else {
+      // with commas: EuRoC's nanoseconds go with w first, seconds with TUM's w last
+      double first = 0;
+      if (!row.empty()) parse_number(row[0], first);
+      const bool seconds = row.size() == 8 && std::abs(first) < 4.1e9;
+      seconds ? set_tum(layout) : set_euroc(layout);
+      if (seconds)
+        layout.notes.push_back(
+            "no header: columns are taken as time x y z qx qy qz qw (name others with --columns)");
+    }
+  }
+  if (layout.times) set_time_unit(layout, sniffed);
+  return layout;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "egocal/io/recording.hpp"
+#include "io/bytes/byte_source.hpp"
+#include "io/text.hpp"
+#include "io/text/columns.hpp"
+
+namespace egocal::detail {
+
+/// How the rows of a text file are to be read.
+struct TextLayout {
+  std::string format;          ///< "TUM", "EuRoC csv", "KITTI", "table"
+  char separator = ' ';        ///< ' ' for blanks and tabs, ',' or ';'
+  bool decimal_comma = false;  ///< 1,5 between semicolons
+  long header_line = 0;        ///< that holds names and no data; 0: none
+  ColumnMap columns;           ///< of formats with columns
+  bool matrix = false;         ///< rows of a 3 x 4 pose matrix, after a first column where first_column is 1
+  std::size_t first_column = 0;
+  std::size_t fields = 0;  ///< of a row: exactly so many, or at least where more_fields
+  bool more_fields = false;
+  bool times = true;   ///< the rows have times of their own
+  bool index = false;  ///< the first column is the number of a frame
+  TimeUnit unit = TimeUnit::seconds;
+  std::vector<std::string> names;  ///< of the first columns, for messages
+  std::vector<std::string> notes;  ///< what was assumed
+};
+
+/// Decides by the first 64 KiB of the file. Throws Error where the file holds no data, is no text, or its
+/// columns are not understood.
+TextLayout detect_layout(ByteSource& source, const ReadOptions& options);
+
+}  // namespace egocal::detail

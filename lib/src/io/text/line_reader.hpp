@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+
+#include "io/bytes/byte_source.hpp"
+
+namespace egocal::detail {
+
+/// The lines of a text file, one at a time, without copying them. A byte order mark and line ends are left
+/// away.
+class LineReader {
+ public:
+  explicit LineReader(ByteSource& source) : source_(source) {}
+
+  /// False at the end. The line is valid until the next call. Throws Error for a line above 1 MiB, which no
+  /// text has.
+  bool next(std::string_view& line);
+  long number() const { return number_; }          ///< of the line handed out last, from 1
+  bool terminated() const { return terminated_; }  ///< it had a line end
+
+ private:
+  ByteSource& source_;
+  std::size_t pending_ = 0;  ///< bytes of the line handed out last
+  long number_ = 0;
+  bool terminated_ = true;
+};
+
+}  // namespace egocal::detail

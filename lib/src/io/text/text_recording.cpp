@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/text/text_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "egocal/error.hpp"
+#include "egocal/limits.hpp"
+#include "io/checked_pose.hpp"
+#include "io/text/geodesy.hpp"
+#include "io/text/line_reader.hpp"
+#include "io/text/rotation_rows.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+bool is_data(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  return first != std::string_view::npos && line[first] != '#' && line[first] != '%';
+}
+
+}  // namespace
+
+/// The rows of the file, one at a time.
+struct TextRecording::Rows {
+  Rows(ByteSource& source, const TextLayout& text_layout) : lines(source), layout(text_layout) {}
+
+  bool next() {
+    std::string_view line;
+    while (lines.next(line)) {
+      if (lines.number() == layout.header_line || !is_data(line)) continue;
+      if (layout.decimal_comma) {
+        points.assign(line);
+        std::replace(points.begin(), points.end(), ',', '.');
+        line = points;
+      }
+      split(line, layout.separator, fields);
+      ++count;
+      return true;
+    }
+    return false;
+  }
+
+  LineReader lines;
+  const TextLayout& layout;
+  std::vector<std::string_view> fields;
+  std::string points;
+  std::size_t count = 0;  ///< rows so far
+};
+
+TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions options)
+    : Recording(source->file()), source_(std::move(source)), options_(std::move(options)) {
+  layout_ = detect_layout(*source_, options_);
+  if (!options_.times_file.empty()) {
+    if (!layout_.matrix || layout_.first_column != 0)
+      throw error_at(file_, 0, "",
+                     "a file of times belongs to KITTI poses (12 fields a line), this is not one");
+    read_times();
+  }
+  if (options_.rate != 0 && !(options_.rate > 0 && options_.rate <= 1e6))
+    throw error_at(file_, 0, "--rate", "expected more than 0 and at most 1e6 Hz");
+  if (options_.rate > 0) rate_ = options_.rate;
+  find_angle_unit();
+}
+
+void TextRecording::read_times() {
+  ByteSource source(options_.times_file);
+  const std::string& file = options_.times_file;
+  ReadOptions one_column;
+  LineReader lines(source);
+  std::string_view line;
+  std::vector<std::string_view> fields;
+  while (lines.next(line)) {
+    if (!is_data(line)) continue;
+    split(line, ' ', fields);
+    if (fields.size() != 1)
+      throw error_at(file, lines.number(), "",
+                     "expected one time, got " + std::to_string(fields.size()) + " fields");
+    double size = 0;
+    const bool epoch_ns = parse_number(fields[0], size) && std::abs(size) > 4.1e15;
+    times_.push_back(
+        time_us(file, lines.number(), fields[0], epoch_ns ? TimeUnit::nanoseconds : TimeUnit::seconds));
+  }
+  if (times_.empty()) throw error_at(file, 0, "", "holds no data");
+}
+
+/// Angles above a turn are degrees. All of the file counts: a drive may begin straight.
+void TextRecording::find_angle_unit() {
+  constexpr Quantity angles[] = {Quantity::roll, Quantity::pitch, Quantity::yaw, Quantity::heading};
+  std::vector<std::size_t> unknown;
+  for (const Quantity quantity : angles)
+    if (layout_.columns.has(quantity) && layout_.columns[quantity].unit.empty())
+      unknown.push_back(layout_.columns[quantity].index);
+  if (unknown.empty() || layout_.columns.has_quaternion()) return;
+  double largest = 0;
+  Rows rows(*source_, layout_);
+  while (rows.next())
+    for (const std::size_t index : unknown) {
+      double value = 0;
+      if (index < rows.fields.size() && parse_number(rows.fields[index], value) && std::isfinite(value))
+        largest = std::max(largest, std::abs(value));
+    }
+  source_->rewind();
+  degrees_ = largest > 2 * std::numbers::pi + 0.1;
+  layout_.notes.push_back(std::string("angles are taken as ") + (degrees_ ? "degrees" : "radians") +
+                          ", by their size");
+}
+
+void TextRecording::read(const std::string& topic, const TakePose& take) {
+  if (!topic.empty())
+    throw error_at(file_, 0, "",
+                   "is a file of format " + layout_.format + " without topics, got ':" + topic + "'");
+  if (read_before_) source_->rewind();
+  read_before_ = true;
+  streams_.assign(1, {});
+  streams_[0].type = layout_.format;
+  streams_[0].poses = true;
+  losses_ = {};
+  notes_ = layout_.notes;
+  T_earth_origin_.reset();
+  Rows rows(*source_, layout_);
+  while (rows.next()) {
+    const std::optional<StampedPose> pose = pose_of_row(rows);
+    if (pose) {
+      ++streams_[0].messages;
+      take(0, *pose);
+    }
+  }
+  losses_.truncated = losses_.truncated || source_->unpacking_failed();
+  if (rows.count == 0) throw error_at(file_, 0, "", "holds no data");
+  if (!times_.empty() && times_.size() != rows.count)
+    throw error_at(options_.times_file, 0, "",
+                   "expected " + std::to_string(rows.count) + " times, one for each pose of " + file_ +
+                       ", got " + std::to_string(times_.size()));
+  if (!layout_.times && times_.empty()) {
+    char rate[32];
+    std::snprintf(rate, sizeof rate, "%g", rate_);
+    notes_.push_back(std::string("the poses have no times: ") + rate + " Hz " +
+                     (options_.rate > 0 ? "as given" : "assumed (--rate, or --times FILE)"));
+  }
+}
+
+/// Empty: the row is skipped and counted.
+std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
+  const std::size_t n = rows.fields.size();
+  if (layout_.more_fields ? n < layout_.fields : n != layout_.fields) {
+    if (!rows.lines.terminated() && n < layout_.fields && rows.count > 1) {
+      losses_.truncated = true;
+      return std::nullopt;
+    }
+    std::string expected;
+    for (const std::string& name : layout_.names) expected += (expected.empty() ? "" : " ") + name;
+    if (expected.size() > 200) expected = expected.substr(0, 200) + "...";
+    throw error_at(file_, rows.lines.number(), "",
+                   std::string("expected ") + (layout_.more_fields ? "at least " : "") +
+                       std::to_string(layout_.fields) + " fields" +
+                       (layout_.matrix ? " (3 x 4 pose)" : " (" + expected + ")") + ", got " +
+                       std::to_string(n) +
+                       (rows.count == 1 && !layout_.matrix ? "; name other columns with --columns" : ""));
+  }
+  if (layout_.format == "table")
+    for (const auto& column : layout_.columns.of)
+      if (column && rows.fields[column->index].empty()) {
+        if (losses_.refused++ == 0)
+          losses_.first_refused = "line " + std::to_string(rows.lines.number()) + ": an empty field";
+        return std::nullopt;
+      }
+  StampedPose pose;
+  pose.time_us = time_of_row(rows);
+  pose.pose = layout_.matrix ? pose_of_matrix(rows) : pose_of_columns(rows);
+  return pose;
+}
+
+std::int64_t TextRecording::time_of_row(const Rows& rows) const {
+  const long line = rows.lines.number();
+  if (!times_.empty()) return rows.count <= times_.size() ? times_[rows.count - 1] : 0;
+  if (!layout_.times) {
+    const double frame = layout_.index ? value(rows, 0) : static_cast<double>(rows.count - 1);
+    return std::llround(frame / rate_ * 1e6);
+  }
+  if (layout_.columns.has(Quantity::seconds)) {
+    const auto part = [&](Quantity quantity, TimeUnit unit) {
+      return time_us(file_, line, rows.fields[layout_.columns[quantity].index], unit);
+    };
+    return part(Quantity::seconds, TimeUnit::seconds) + part(Quantity::nanoseconds, TimeUnit::nanoseconds);
+  }
+  const std::size_t column = layout_.matrix ? 0 : layout_.columns[Quantity::time].index;
+  return time_us(file_, line, rows.fields[column], layout_.unit);
+}
+
+double TextRecording::value(const Rows& rows, std::size_t index) const {
+  double number = 0;
+  if (!parse_number(rows.fields[index], number) || !std::isfinite(number)) {
+    constexpr const char* matrix[] = {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty",
+                                      "r31", "r32", "r33", "tz", "0",   "0",   "0",   "1"};
+    const std::string name =
+        layout_.matrix ? (index >= layout_.first_column ? matrix[index - layout_.first_column] : "time")
+                       : (index < layout_.names.size() ? layout_.names[index] : "");
+    throw_not_a_number(file_, rows.lines.number(),
+                       "field " + std::to_string(index + 1) + " (" + name.substr(0, 100) + ")",
+                       rows.fields[index]);
+  }
+  return number;
+}
+
+double TextRecording::value(const Rows& rows, Quantity quantity) const {
+  return layout_.columns.has(quantity) ? value(rows, layout_.columns[quantity].index) : 0;
+}
+
+double TextRecording::angle(const Rows& rows, Quantity quantity) const {
+  if (!layout_.columns.has(quantity)) return 0;
+  const std::string& unit = layout_.columns[quantity].unit;
+  const bool in_degrees = unit.empty() ? degrees_ : unit.rfind("deg", 0) == 0 || unit == "\xc2\xb0";
+  return value(rows, quantity) * (in_degrees ? degree : 1);
+}
+
+double TextRecording::length_scale(Quantity quantity) const {
+  if (!layout_.columns.has(quantity)) return 1;
+  const std::string& unit = layout_.columns[quantity].unit;
+  return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1;
+}
+
+DualQuaternion TextRecording::pose_of_matrix(const Rows& rows) const {
+  double v[12];
+  for (std::size_t i = 0; i < 12; ++i) v[i] = value(rows, layout_.first_column + i);
+  Eigen::Matrix3d R;
+  R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
+  if (!is_rotation(R)) throw error_at(file_, rows.lines.number(), "", "the 3 x 3 part is not a rotation");
+  const Eigen::Quaterniond q = Eigen::Quaterniond(R).normalized();
+  const CheckedPose pose = checked_pose({v[3], v[7], v[11]}, {q.w(), q.x(), q.y(), q.z()});
+  if (!pose.reason.empty()) throw error_at(file_, rows.lines.number(), "", pose.reason);
+  return pose.pose;
+}
+
+DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {
+  using enum Quantity;
+  const ColumnMap& columns = layout_.columns;
+  const long line = rows.lines.number();
+  Eigen::Vector4d q;
+  Eigen::Vector3d t(value(rows, x) * length_scale(x), value(rows, y) * length_scale(y),
+                    value(rows, z) * length_scale(z));
+  if (columns.has_quaternion()) {
+    q = {value(rows, qw), value(rows, qx), value(rows, qy), value(rows, qz)};
+  } else {
+    // mathematical yaw, or a heading clockwise from north in a frame of east and north
+    const double about_z = columns.has(yaw) ? angle(rows, yaw) : std::numbers::pi / 2 - angle(rows, heading);
+    const Eigen::Quaterniond R = rotation_exp({0, 0, about_z}) * rotation_exp({0, angle(rows, pitch), 0}) *
+                                 rotation_exp({angle(rows, roll), 0, 0});
+    q = {R.w(), R.x(), R.y(), R.z()};
+  }
+  if (columns.has_geodetic() && !columns.has_position()) {
+    const GeodeticPosition place{value(rows, latitude) * degree, value(rows, longitude) * degree,
+                                 value(rows, height) * length_scale(height)};
+    if (!(std::abs(place.latitude) <= std::numbers::pi / 2 &&
+          std::abs(place.longitude) <= 2 * std::numbers::pi))
+      throw error_at(file_, line, "latitude, longitude", "expected at most 90 and 360 degrees");
+    const Pose T_earth_local = east_north_up(place);
+    if (!T_earth_origin_) T_earth_origin_ = T_earth_local;
+    const Pose local = inverse(*T_earth_origin_) * T_earth_local;
+    const Eigen::Quaterniond R = local.rotation * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    t = local.translation;
+    q = {R.w(), R.x(), R.y(), R.z()};
+  }
+  const CheckedPose pose = checked_pose(t, q);
+  if (!pose.reason.empty()) throw error_at(file_, line, "", pose.reason);
+  return pose.pose;
+}
+
+}  // namespace egocal::detail

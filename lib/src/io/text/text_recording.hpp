@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "egocal/io/recording.hpp"
+#include "io/bytes/byte_source.hpp"
+#include "io/text/layout.hpp"
+
+namespace egocal::detail {
+
+/// A trajectory as text: one stream without a name. A row that makes no sense is an Error; only a last row
+/// that is cut off, and rows of a table with empty fields, are counted and skipped.
+class TextRecording : public Recording {
+ public:
+  TextRecording(std::unique_ptr<ByteSource> source, ReadOptions options);
+
+  std::string format() const override { return layout_.format; }
+  void read(const std::string& topic, const TakePose& take) override;
+
+ private:
+  struct Rows;
+  void read_times();
+  void find_angle_unit();
+  std::optional<StampedPose> pose_of_row(const Rows& rows);
+  std::int64_t time_of_row(const Rows& rows) const;
+  DualQuaternion pose_of_matrix(const Rows& rows) const;
+  DualQuaternion pose_of_columns(const Rows& rows);
+  double value(const Rows& rows, std::size_t index) const;
+  double value(const Rows& rows, Quantity quantity) const;
+  double angle(const Rows& rows, Quantity quantity) const;
+  double length_scale(Quantity quantity) const;
+
+  std::unique_ptr<ByteSource> source_;
+  ReadOptions options_;
+  TextLayout layout_;
+  std::vector<std::int64_t> times_;  ///< of the file of times
+  double rate_ = 10;                 ///< of rows without times [Hz]
+  bool degrees_ = false;             ///< angles without a unit
+  bool read_before_ = false;
+  std::optional<Pose> T_earth_origin_;  ///< local frame of the first geodetic position
+};
+
+}  // namespace egocal::detail
