@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
+#include "commands/simulated_faults.hpp"
 #include "egocal/bus/glue.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
@@ -24,6 +27,7 @@ struct Options {
   std::string out, rig_out, terrain = "rough", type = "odometry";
   std::vector<std::string> sensors = {"lidar=1.0,0.0,1.8,1,0,0,0", "camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5"};
   SimulationOptions simulation;
+  FaultTexts faults;
 };
 
 struct MountedSensor {
@@ -62,22 +66,47 @@ std::string rig_text(const std::vector<MountedSensor>& sensors, const std::strin
   return text;
 }
 
+/// A pose on its way into the log: by the time of the drive at which it was sent, whatever its clock said.
+struct Sent {
+  std::int64_t time_us = 0;
+  std::size_t sensor = 0, index = 0;
+};
+
+std::vector<Sent> in_order_of_time(const std::vector<Trajectory>& trajectories,
+                                   const SimulationOptions& simulation) {
+  std::vector<Sent> sent;
+  for (std::size_t k = 0; k < trajectories.size(); ++k) {
+    const SensorFaults faults = k < simulation.faults.size() ? simulation.faults[k] : SensorFaults{};
+    const std::int64_t start_us = trajectories[k].front().time_us;
+    const double offset = 1e6 * faults.clock_offset;
+    for (std::size_t i = 0; i < trajectories[k].size(); ++i) {
+      const auto elapsed = static_cast<double>(trajectories[k][i].time_us - start_us);
+      const double drifted = elapsed * faults.clock_drift / (1 + faults.clock_drift);
+      sent.push_back({trajectories[k][i].time_us - std::llround(offset + drifted), k, i});
+    }
+  }
+  std::stable_sort(sent.begin(), sent.end(), [](const Sent& i, const Sent& j) {
+    return i.time_us != j.time_us ? i.time_us < j.time_us : i.index < j.index;
+  });
+  return sent;
+}
+
 /// All sensors' poses into one log, in the order of time.
 void write_log(const std::string& file, const std::vector<MountedSensor>& sensors,
-               const std::vector<Trajectory>& trajectories, const std::string& type) {
+               const std::vector<Trajectory>& trajectories, const SimulationOptions& simulation,
+               const std::string& type) {
   bus::LogWriter log(file);
   Progress progress("writing");
-  const std::size_t count = trajectories.front().size();
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < sensors.size(); ++k) {
-      const StampedPose& pose = trajectories[k][i];
-      if (type == "pose")
-        log.write(pose.time_us, sensors[k].channel, bus::encode(bus::to_pose_message(pose)));
-      else
-        log.write(pose.time_us, sensors[k].channel,
-                  bus::encode(bus::to_message(pose, static_cast<std::int64_t>(i))));
-    }
-    progress(static_cast<double>(i + 1) / static_cast<double>(count));
+  const std::vector<Sent> sent = in_order_of_time(trajectories, simulation);
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    const auto& [time_us, k, index] = sent[i];
+    const StampedPose& pose = trajectories[k][index];
+    if (type == "pose")
+      log.write(time_us, sensors[k].channel, bus::encode(bus::to_pose_message(pose)));
+    else
+      log.write(time_us, sensors[k].channel,
+                bus::encode(bus::to_message(pose, static_cast<std::int64_t>(index))));
+    progress(static_cast<double>(i + 1) / static_cast<double>(sent.size()));
   }
   log.close();
 }
@@ -110,9 +139,12 @@ void run(Options options) {
                                                    : Terrain::rough;
   simulation.T_vehicle_sensor.clear();
   for (const MountedSensor& sensor : sensors) simulation.T_vehicle_sensor.push_back(sensor.T_vehicle_sensor);
+  std::vector<std::string> names;
+  for (const MountedSensor& sensor : sensors) names.push_back(sensor.name);
+  simulation.faults = understood(options.faults, names);
   const std::vector<Trajectory> trajectories = simulate(simulation);
   if (std::filesystem::path(options.out).extension() == ".log")
-    write_log(options.out, sensors, trajectories, options.type);
+    write_log(options.out, sensors, trajectories, simulation, options.type);
   else
     write_directory(options.out, sensors, trajectories);
   if (!options.rig_out.empty()) write_whole_file(options.rig_out, rig_text(sensors, options.type));
@@ -148,7 +180,9 @@ void add_simulate(cli::App program) {
   command.add_option("--noise-rotation", simulation.noise_rotation, "added to it [rad]").show_default();
   command.add_option("--noise-translation", simulation.noise_translation, "added to it [m]").show_default();
   command.add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
-  command.add_option("--seed", simulation.seed, "of path, surface and noise").show_default();
+  command.add_flag("--heavy-tails", simulation.heavy_tails, "noise with rare large errors (Student, 3)");
+  add_fault_options(command, options->faults);
+  command.add_option("--seed", simulation.seed, "of path, surface, noise and faults").show_default();
   command
       .add_option("--type", options->type,
                   "of the messages: odometry (egocal.odometry_t) or pose (bot_core.pose_t)")

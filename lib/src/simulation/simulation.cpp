@@ -10,6 +10,7 @@
 
 #include "egocal/error.hpp"
 #include "simulation/random.hpp"
+#include "simulation/sensor.hpp"
 
 namespace egocal {
 
@@ -114,6 +115,20 @@ void check(const SimulationOptions& options) {
              std::isfinite(options.relative_noise + options.noise_rotation + options.noise_translation),
          "expected noise of at least 0");
   expect(!options.T_vehicle_sensor.empty(), "expected at least one sensor");
+  expect(options.faults.size() <= options.T_vehicle_sensor.size(), "expected no more faults than sensors");
+  for (const SensorFaults& faults : options.faults) {
+    expect(faults.rate >= 0 && faults.rate <= 1e5, "expected a sensor's rate between 0 and 100000 Hz");
+    expect(faults.phase >= 0 && std::isfinite(faults.phase), "expected a phase of at least 0");
+    expect(faults.scale > 0 && std::isfinite(faults.scale), "expected a scale above 0");
+    expect(std::abs(faults.scale_drift) <= 1, "expected a scale drift within 1 per second");
+    expect(std::abs(faults.clock_offset) <= 1e6, "expected a clock offset within 1000000 s");
+    expect(std::abs(faults.clock_drift) <= 0.1, "expected a clock drift within 0.1 s per second");
+    expect(faults.dropped >= 0 && faults.dropped < 1, "expected a share of dropped poses in [0, 1)");
+    expect(faults.outliers >= 0 && faults.outliers <= 1, "expected a share of outliers in [0, 1]");
+    expect(faults.outlier_rotation >= 0 && faults.outlier_translation >= 0 && faults.noise_factor >= 0 &&
+               std::isfinite(faults.outlier_rotation + faults.outlier_translation + faults.noise_factor),
+           "expected outliers and a noise factor of at least 0");
+  }
 }
 
 }  // namespace
@@ -121,48 +136,16 @@ void check(const SimulationOptions& options) {
 std::vector<Trajectory> simulate(const SimulationOptions& options) {
   check(options);
   detail::Random random(options.seed);
-  std::vector<std::int64_t> stamps;
-  std::vector<double> times;
+  detail::Path path;
   for (int i = 0; i < options.poses; ++i) {
-    stamps.push_back(std::llround(1e6 * i / options.rate));
-    times.push_back(1e-6 * static_cast<double>(stamps.back()));
+    path.stamps.push_back(std::llround(1e6 * i / options.rate));
+    path.times.push_back(1e-6 * static_cast<double>(path.stamps.back()));
   }
-  const std::vector<Pose> vehicle = options.terrain == Terrain::free ? free_path(options, times, random)
-                                                                     : ground_path(options, times, random);
+  path.poses = options.terrain == Terrain::free ? free_path(options, path.times, random)
+                                                : ground_path(options, path.times, random);
   std::vector<Trajectory> trajectories;
-  for (const Pose& T_vehicle_sensor : options.T_vehicle_sensor) {
-    const DualQuaternion mounting = to_dual_quaternion(T_vehicle_sensor);
-    std::vector<DualQuaternion> motions;
-    double rotation = 0, translation = 0;
-    for (std::size_t i = 1; i < vehicle.size(); ++i) {
-      const DualQuaternion motion = to_dual_quaternion(inverse(vehicle[i - 1]) * vehicle[i]);
-      motions.push_back(canonical_sign(normalized(conjugate(mounting) * motion * mounting)));
-      const Pose seen = to_pose(motions.back());
-      rotation += rotation_log(seen.rotation).norm();
-      translation += seen.translation.norm();
-    }
-    const double count = static_cast<double>(motions.size());
-    const double sigma_r = options.noise_rotation + options.relative_noise * rotation / count;
-    const double sigma_t = options.noise_translation + options.relative_noise * translation / count;
-
-    constexpr std::int64_t epoch_us =
-        1'700'000'000'000'000;  // a plausible date: times of zero are refused on the wire
-    constexpr double correlation = 0.9;
-    Trajectory trajectory;
-    DualQuaternion pose;
-    Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
-    trajectory.push_back({epoch_us + stamps[0], pose});
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      const double keep = options.random_walk && i > 0 ? correlation : 0;
-      turn = keep * turn + std::sqrt(1 - keep * keep) * sigma_r * random.normal3();
-      shift = keep * shift + std::sqrt(1 - keep * keep) * sigma_t * random.normal3();
-      DualQuaternion motion = motions[i];
-      if (sigma_r > 0 || sigma_t > 0) motion = motion * to_dual_quaternion({rotation_exp(turn), shift});
-      pose = canonical_sign(normalized(pose * motion));
-      trajectory.push_back({epoch_us + stamps[i + 1], pose});
-    }
-    trajectories.push_back(std::move(trajectory));
-  }
+  for (std::size_t k = 0; k < options.T_vehicle_sensor.size(); ++k)
+    trajectories.push_back(detail::drive_sensor(options, path, k, random));
   return trajectories;
 }
 

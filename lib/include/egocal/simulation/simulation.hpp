@@ -17,6 +17,36 @@ enum class Terrain {
   free,   ///< motion in all six degrees of freedom (a hand-held rig, a flying robot)
 };
 
+/// A sensor whose mount moves, which its odometry sees as its own motion.
+struct MountChange {
+  double begin = 0;  ///< [s] from the start of the drive
+  double end = 0;    ///< [s]; not after begin: a bump; later: it creeps evenly from begin to end
+  Pose change;       ///< pose of the sensor after the change in the sensor before it
+};
+
+/// An odometry that jumps in its own frame (relocalisation, a closed loop); the mount stays.
+struct OdometryJump {
+  double time = 0;  ///< [s] from the start of the drive
+  Pose jump;        ///< of the newest pose, in the sensor's frame
+};
+
+/// What goes wrong with one sensor. The defaults are a sensor with none of it.
+struct SensorFaults {
+  double rate = 0;          ///< poses a second [Hz]; 0: that of the drive
+  double phase = 0;         ///< time of the first pose [s]
+  double scale = 1;         ///< its lengths must be multiplied by this to be metres (a monocular camera)
+  double scale_drift = 0;   ///< relative change of the scale [1/s]
+  double clock_offset = 0;  ///< added to its stamps [s]
+  double clock_drift = 0;   ///< and this much more every second [s/s]
+  double dropped = 0;       ///< share of its poses that are missing, at random
+  double outliers = 0;      ///< share of its poses that are wrong, each by itself
+  double outlier_rotation = 0.2;   ///< of a wrong pose, standard deviation per axis [rad]
+  double outlier_translation = 1;  ///< [m]
+  double noise_factor = 1;         ///< of the drive's noise
+  std::vector<MountChange> mount_changes;
+  std::vector<OdometryJump> jumps;
+};
+
 struct SimulationOptions {
   Terrain terrain = Terrain::rough;
   int poses = 1001;
@@ -29,11 +59,17 @@ struct SimulationOptions {
   double noise_rotation = 0;     ///< added to it [rad]
   double noise_translation = 0;  ///< [m]
   bool random_walk = false;  ///< the noise of consecutive motions is correlated (0.9 from one to the next)
-  std::uint64_t seed = 1;    ///< of path, surface and noise
+  bool heavy_tails = false;  ///< the noise has Student's distribution with three degrees of freedom
+  std::uint64_t seed = 1;    ///< of path, surface, noise and faults
+  std::vector<SensorFaults> faults;  ///< per sensor; empty or shorter: none
 };
 
 /// One trajectory a sensor, each in its own start frame, with the motions' noise accumulated. The same
-/// options give the same bits (own random numbers). Throws Error on values out of range.
+/// options give the same bits (own random numbers), and a fault of one sensor changes no other sensor's
+/// poses. Throws Error on values out of range.
 std::vector<Trajectory> simulate(const SimulationOptions& options);
+
+/// Pose of sensor b in sensor a at a time of the drive [s], with the mount changes up to then.
+Pose true_extrinsic(const SimulationOptions& options, std::size_t a, std::size_t b, double time = 0);
 
 }  // namespace egocal

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/simulated_faults.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "arguments.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+constexpr double radians = std::numbers::pi / 180;
+
+/// Splits at every `separator`.
+std::vector<std::string> parts(const std::string& text, char separator) {
+  std::vector<std::string> result;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = text.find(separator, begin);
+    result.push_back(text.substr(begin, end - begin));
+    if (end == std::string::npos) return result;
+    begin = end + 1;
+  }
+}
+
+/// Hands the value of each NAME=VALUE to `take`, with the faults of that sensor.
+template <typename Take>
+void for_each(const char* option, const std::vector<std::string>& texts,
+              const std::vector<std::string>& names, std::vector<SensorFaults>& faults, const Take& take) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    const auto name = std::find(names.begin(), names.end(), text.substr(0, equals));
+    if (equals == std::string::npos || name == names.end())
+      throw UsageError(std::string(option) + ": expected NAME=VALUE with the name of a --sensor, got '" +
+                       text + "'");
+    take(faults[static_cast<std::size_t>(name - names.begin())], text.substr(equals + 1));
+  }
+}
+
+/// DX,DY,DZ,ROLL,PITCH,YAW in metres and degrees.
+Pose change(const char* option, const std::string& text) {
+  const std::vector<std::string> numbers = parts(text, ',');
+  if (numbers.size() != 6)
+    throw UsageError(std::string(option) + ": expected DX,DY,DZ,ROLL,PITCH,YAW [m, deg], got '" + text + "'");
+  double value[6];
+  for (std::size_t i = 0; i < 6; ++i) value[i] = number(option, numbers[i]);
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  const Eigen::Quaterniond rotation = AngleAxisd(radians * value[5], Vector3d::UnitZ()) *
+                                      AngleAxisd(radians * value[4], Vector3d::UnitY()) *
+                                      AngleAxisd(radians * value[3], Vector3d::UnitX());
+  return {rotation, {value[0], value[1], value[2]}};
+}
+
+/// The parts of TIME:...:CHANGE.
+std::vector<std::string> timed(const char* option, const std::string& text, std::size_t count,
+                               const char* expected) {
+  std::vector<std::string> result = parts(text, ':');
+  if (result.size() != count)
+    throw UsageError(std::string(option) + ": expected NAME=" + expected + ", got '" + text + "'");
+  return result;
+}
+
+}  // namespace
+
+void add_fault_options(cli::App command, FaultTexts& texts) {
+  const auto add = [&](const char* option, std::vector<std::string>& values, const char* help) {
+    command.add_option(option, values, std::string("fault: ") + help).each_a_value();
+  };
+  add("--sensor-rate", texts.rates, "NAME=HZ: its own rate");
+  add("--phase", texts.phases, "NAME=S: time of its first pose");
+  add("--scale", texts.scales, "NAME=S: its lengths are S times too short");
+  add("--scale-drift", texts.scale_drifts, "NAME=R: its scale grows by the part R every second");
+  add("--clock-offset", texts.clock_offsets, "NAME=S: added to its stamps");
+  add("--clock-drift", texts.clock_drifts, "NAME=R: and R more every second [s/s]");
+  add("--drop", texts.dropped, "NAME=SHARE of its poses that are missing");
+  add("--outliers", texts.outliers, "NAME=SHARE of its poses that are wrong");
+  add("--noise-factor", texts.noise_factors, "NAME=F: its noise is F times the drive's");
+  add("--bump", texts.bumps, "NAME=TIME:DX,DY,DZ,ROLL,PITCH,YAW: its mount moves at a time [s, m, deg]");
+  add("--creep", texts.creeps, "NAME=BEGIN:END:DX,DY,DZ,ROLL,PITCH,YAW: its mount moves slowly");
+  add("--jump", texts.jumps, "NAME=TIME:DX,DY,DZ,ROLL,PITCH,YAW: its odometry jumps, the mount stays");
+}
+
+std::vector<SensorFaults> understood(const FaultTexts& texts, const std::vector<std::string>& names) {
+  std::vector<SensorFaults> faults(names.size());
+  const auto set = [&](const char* option, const std::vector<std::string>& values,
+                       double SensorFaults::*field) {
+    for_each(option, values, names, faults,
+             [&](SensorFaults& sensor, const std::string& text) { sensor.*field = number(option, text); });
+  };
+  set("--sensor-rate", texts.rates, &SensorFaults::rate);
+  set("--phase", texts.phases, &SensorFaults::phase);
+  set("--scale", texts.scales, &SensorFaults::scale);
+  set("--scale-drift", texts.scale_drifts, &SensorFaults::scale_drift);
+  set("--clock-offset", texts.clock_offsets, &SensorFaults::clock_offset);
+  set("--clock-drift", texts.clock_drifts, &SensorFaults::clock_drift);
+  set("--drop", texts.dropped, &SensorFaults::dropped);
+  set("--outliers", texts.outliers, &SensorFaults::outliers);
+  set("--noise-factor", texts.noise_factors, &SensorFaults::noise_factor);
+  for_each("--bump", texts.bumps, names, faults, [](SensorFaults& sensor, const std::string& text) {
+    const auto part = timed("--bump", text, 2, "TIME:DX,DY,DZ,ROLL,PITCH,YAW");
+    const double time = number("--bump", part[0]);
+    sensor.mount_changes.push_back({time, time, change("--bump", part[1])});
+  });
+  for_each("--creep", texts.creeps, names, faults, [](SensorFaults& sensor, const std::string& text) {
+    const auto part = timed("--creep", text, 3, "BEGIN:END:DX,DY,DZ,ROLL,PITCH,YAW");
+    sensor.mount_changes.push_back(
+        {number("--creep", part[0]), number("--creep", part[1]), change("--creep", part[2])});
+  });
+  for_each("--jump", texts.jumps, names, faults, [](SensorFaults& sensor, const std::string& text) {
+    const auto part = timed("--jump", text, 2, "TIME:DX,DY,DZ,ROLL,PITCH,YAW");
+    sensor.jumps.push_back({number("--jump", part[0]), change("--jump", part[1])});
+  });
+  return faults;
+}
+
+}  // namespace egocal::tools
