@@ -3,11 +3,13 @@
 #include "egocal/bus/log_file.hpp"
 
 #include <endian.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 
 #include "egocal/error.hpp"
@@ -25,6 +27,8 @@ constexpr std::int32_t largest_data = 64 << 20;
 constexpr std::size_t window_size = 1 << 16;
 /// A damaged log may hold any number of names.
 constexpr std::size_t most_channels = 1000;
+/// Events of several sources are not exactly in order [us].
+constexpr std::int64_t disorder_us = 1'000'000;
 
 std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
   std::uint64_t value = 0;
@@ -36,12 +40,35 @@ void put(std::vector<unsigned char>& out, std::uint64_t value, std::size_t count
   for (std::size_t i = count; i > 0; --i) out.push_back(static_cast<unsigned char>(value >> (8 * (i - 1))));
 }
 
+/// A pipe that is opened would wait for its other end.
+std::FILE* open_file(const std::string& file) {
+  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0)
+    throw error_at(file, 0, "", std::string("cannot be opened for reading: ") + std::strerror(errno));
+  struct stat status {};
+  const bool regular = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  std::FILE* const stream = regular ? fdopen(fd, "rb") : nullptr;
+  if (!stream) {
+    close(fd);
+    throw error_at(file, 0, "", "cannot be read as a log: it is not a file");
+  }
+  return stream;
+}
+
 /// Damaged numbers may be the largest there are.
 bool follows(std::int64_t number, std::int64_t before) {
   return static_cast<std::uint64_t>(number) == static_cast<std::uint64_t>(before) + 1;
 }
 
 }  // namespace
+
+void EventNumbers::begin_at(std::int64_t number) {
+  *this = {};
+  if (number <= 0 || number == INT64_MAX) return;
+  has_zero_ = true;
+  last_ = number - 1;
+  top_ = count_ = number;
+}
 
 bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
   bool in_order = follows(number, last_);
@@ -82,12 +109,10 @@ struct LogReader::Place {
   std::uint64_t end() const { return data() + static_cast<std::uint64_t>(data_size); }
 };
 
-LogReader::LogReader(const std::string& file)
-    : file_(file), stream_(std::fopen(file.c_str(), "rb"), std::fclose) {
-  if (!stream_) throw error_at(file, 0, "", "cannot be opened for reading");
-  const off_t end = fseeko(stream_.get(), 0, SEEK_END) == 0 ? ftello(stream_.get()) : -1;
-  if (end < 0) throw error_at(file, 0, "", "cannot be read as a log");
-  size_ = static_cast<std::uint64_t>(end);
+LogReader::LogReader(const std::string& file) : file_(file), stream_(open_file(file), std::fclose) {
+  struct stat status {};
+  if (fstat(fileno(stream_.get()), &status) != 0) throw error_at(file, 0, "", "cannot be read as a log");
+  size_ = static_cast<std::uint64_t>(status.st_size);
   rewind();
   if (!next()) throw error_at(file, 0, "", "is not an LCM log: there is no event in it");
   rewind();
@@ -98,6 +123,44 @@ void LogReader::rewind() {
   usual_size_.clear();
   numbers_ = {};
   damage_ = {};
+}
+
+std::optional<LogReader::Place> LogReader::event_from(std::uint64_t from, std::uint64_t to) const {
+  while (const std::optional<Place> place = find_header(from, to)) {
+    if (believable(*place)) return place;
+    from = place->offset + 1;
+  }
+  return std::nullopt;
+}
+
+/// Of an event and the two after it the middle time: one may be damaged.
+std::int64_t LogReader::typical_time(const Place& place) const {
+  std::array<std::int64_t, 3> times{place.time_us, place.time_us, place.time_us};
+  std::optional<Place> next = place;
+  for (std::size_t i = 1; i < times.size() && next; ++i)
+    if ((next = header_at(next->end()))) times[i] = next->time_us;
+  std::sort(times.begin(), times.end());
+  return times[1];
+}
+
+void LogReader::seek(std::int64_t time_us) {
+  rewind();
+  const std::int64_t target = std::max(time_us, INT64_MIN + disorder_us) - disorder_us;
+  std::uint64_t before = 0, behind = size_;
+  std::optional<Place> found;
+  while (behind - before > window_size) {
+    const std::uint64_t middle = before + (behind - before) / 2;
+    const std::optional<Place> place = event_from(middle, behind);
+    if (place && typical_time(*place) < target) {
+      before = place->offset;
+      found = place;
+    } else {
+      behind = middle;
+    }
+  }
+  if (!found) return;
+  position_ = found->offset;
+  numbers_.begin_at(found->number);
 }
 
 /// All of these bytes of the file.
@@ -229,22 +292,7 @@ std::optional<LogEvent> LogReader::next() {
   return std::nullopt;
 }
 
-LogWriter::LogWriter(const std::string& file)
-    : file_(file), stream_(std::fopen((file + ".part").c_str(), "wb"), std::fclose) {
-  if (!stream_) throw error_at(file, 0, "", "cannot be written");
-  struct stat there {};
-  if (stat(file.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
-    stream_.reset();
-    std::remove((file + ".part").c_str());
-    throw error_at(file, 0, "", "is there and is not a file that could be replaced");
-  }
-}
-
-LogWriter::~LogWriter() {
-  if (!stream_) return;
-  stream_.reset();
-  std::remove((file_ + ".part").c_str());
-}
+LogWriter::LogWriter(const std::string& file) : file_(file), out_(file) {}
 
 void LogWriter::write(std::int64_t time_us, const std::string& channel, Bytes data) {
   if (channel.empty() || channel.size() > static_cast<std::size_t>(longest_channel) ||
@@ -258,20 +306,12 @@ void LogWriter::write(std::int64_t time_us, const std::string& channel, Bytes da
   put(header, channel.size(), 4);
   put(header, data.size(), 4);
   header.insert(header.end(), channel.begin(), channel.end());
-  if (std::fwrite(header.data(), 1, header.size(), stream_.get()) != header.size() ||
-      (!data.empty() && std::fwrite(data.data(), 1, data.size(), stream_.get()) != data.size()))
-    throw error_at(file_, 0, "", "cannot be written");
+  out_.write(std::as_bytes(std::span(header)));
+  out_.write(data);
 }
 
 void LogWriter::close() {
-  // on the disk before it takes the name: a power cut leaves the old file or the new one
-  const bool flushed = std::fflush(stream_.get()) == 0 && fsync(fileno(stream_.get())) == 0;
-  const bool written = std::fclose(stream_.release()) == 0 && flushed;
-  const std::string part = file_ + ".part";
-  if (!written || std::rename(part.c_str(), file_.c_str()) != 0) {
-    std::remove(part.c_str());
-    throw error_at(file_, 0, "", "cannot be written");
-  }
+  out_.commit();
 }
 
 }  // namespace egocal::bus

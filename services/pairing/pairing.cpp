@@ -52,6 +52,7 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   loop_.after_batch([this](bool caught_up) { after_batch(caught_up); });
   loop_.every(100ms, [this] { watch_gaps(); });
   loop_.every(1s, [this] { every_second(); });
+  if (saved_ && !saved_->not_saved().empty()) not_saved(saved_->not_saved());
   heartbeat_.set_state("running");
   if (saved_ && saved_->restored()) {
     patient_ = true;
@@ -82,11 +83,15 @@ void Pairing::save() {
     saved_->save(accumulation_);
     save_error_.clear();
   } catch (const Error& error) {
-    // better to go on without than to stand still; every attempt is a whole snapshot from now on
-    if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", error.what());
-    save_error_ = error.what();
-    save_again_mono_us_ = bus::mono_us() + save_retry_us;
+    not_saved(error.what());
   }
+}
+
+/// Better to go on without than to stand still; every attempt is a whole snapshot from now on.
+void Pairing::not_saved(const std::string& why) {
+  if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", why.c_str());
+  save_error_ = why;
+  save_again_mono_us_ = bus::mono_us() + save_retry_us;
 }
 
 void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {

@@ -41,6 +41,7 @@ class Pairing {
 
   void feed(const Input& input);
   void save();
+  void not_saved(const std::string& why);
   void take(std::uint16_t channel, const bus::Arrival& arrival);
   void after_batch(bool caught_up);
   void publish_new_problems();

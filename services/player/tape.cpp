@@ -11,7 +11,8 @@ namespace egocal::services {
 
 namespace {
 
-constexpr std::int64_t disorder_us = 1'000'000;         // events of several sources are not exactly in order
+constexpr std::int64_t disorder_us = 1'000'000;  // events of several sources are not exactly in order
+constexpr double largest_time_us = 9e18;         // fits an int64; times that are damaged may be anything
 constexpr std::int64_t longest_gap_us = 3'600'000'000;  // where only one neighbour says what to believe
 
 /// a - b is more than that; times that are damaged may be anything.
@@ -45,7 +46,12 @@ Tape::Tape(const std::string& file, const TapeOptions& options) : log_(file), op
 }
 
 void Tape::rewind(double from) {
-  log_.rewind();
+  // the events in between are not read: a seek in a log of 10 GB takes no longer than in a small one
+  const double target_us = static_cast<double>(begin_us_) + 1e6 * from;
+  if (from > 0 && std::abs(target_us) < largest_time_us)
+    log_.seek(std::llround(target_us));
+  else
+    log_.rewind();
   ahead_.clear();
   last_us_.reset();
   damaged_times_ = left_out_ = 0;

@@ -3,11 +3,13 @@
 // What pairing has accumulated outlives the process: to the bit, or it is refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -171,14 +173,135 @@ TEST_F(SavedStates, OfAnotherRigAreRefused) {
 
 TEST_F(SavedStates, ThatAreStaleAreRefused) {
   write_state(rig("egocal.odometry_t"), 100);
-  std::filesystem::last_write_time(file,
-                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
-  SavedState saved(file, rig("egocal.odometry_t"));
+  const auto two_hours_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(2);
+  for (const auto& [what, now] :
+       {std::pair{"two hours later", BootTime{boot_time().boot, boot_time().us + 7'200'000'000}},
+        std::pair{"after another start", BootTime{"another", 1'000'000}}}) {
+    SCOPED_TRACE(what);
+    std::filesystem::last_write_time(file, two_hours_ago);
+    SavedState saved(file, rig("egocal.odometry_t"), [now = now] { return now; });
+    saved.restore();
+    EXPECT_FALSE(saved.restored());
+    EXPECT_THAT(saved.refused(), HasSubstr("is stale: written 7"));
+    // a new one has taken its place
+    EXPECT_GT(std::filesystem::file_size(file), 0u);
+  }
+  EXPECT_TRUE(std::filesystem::exists(file + ".refused"));
+  EXPECT_TRUE(std::filesystem::exists(file + ".refused-2")) << "the first one is kept";
+}
+
+TEST_F(SavedStates, AClockThatIsSetBetweenDeathAndRestartCostsNothing) {
+  for (const auto jump : {std::chrono::hours(5), std::chrono::hours(-5), std::chrono::hours(24 * 365 * 20)}) {
+    write_state(rig("egocal.odometry_t"), 100);
+    std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now() - jump);
+    SavedState saved(file, rig("egocal.odometry_t"));
+    saved.restore();
+    EXPECT_TRUE(saved.restored()) << saved.refused();
+    std::filesystem::remove(file);
+  }
+}
+
+TEST_F(SavedStates, ThatSomebodyTouchedAreNotStale) {
+  write_state(rig("egocal.odometry_t"), 100);
+  SavedState saved(file, rig("egocal.odometry_t"), [] {
+    return BootTime{boot_time().boot, boot_time().us + 7'200'000'000};
+  });
   saved.restore();
-  EXPECT_FALSE(saved.restored());
-  EXPECT_THAT(saved.refused(), HasSubstr("is stale: written 72"));
-  // a new one has taken its place
-  EXPECT_GT(std::filesystem::file_size(file), 0u);
+  EXPECT_TRUE(saved.restored()) << saved.refused();
+}
+
+TEST_F(SavedStates, ADiskThatTakesNothingEndsNothing) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  write_state(config, 100);
+  std::filesystem::remove(file + ".lock");
+  // as a full disk does: no file can become larger than nothing
+  const auto limit_files = [](rlim_t most) {
+    const rlimit limit{most, RLIM_INFINITY};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  };
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  {
+    limit_files(0);
+    SavedState saved(file, config);
+    Accumulation accumulation = saved.restore();
+    EXPECT_TRUE(saved.restored()) << saved.refused();
+    EXPECT_THAT(saved.not_saved(), HasSubstr("cannot be written: File too large"));
+    EXPECT_THROW(saved.save(accumulation), Error);
+    limit_files(RLIM_INFINITY);
+    saved.save(accumulation);
+  }
+  std::signal(SIGXFSZ, handler);
+  SavedState saved(file, config);
+  saved.restore();
+  EXPECT_TRUE(saved.restored()) << saved.refused();
+  EXPECT_EQ(saved.not_saved(), "");
+}
+
+TEST_F(SavedStates, AFolderThatIsRemovedWhileRunningCostsNothing) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  const auto messages = drive("egocal.odometry_t", 50);
+  std::filesystem::create_directories(folder + "/gone");
+  auto saved = std::make_unique<SavedState>(folder + "/gone/state", config);
+  Accumulation accumulation = saved->restore();
+  for (const Message& message : messages) {
+    const Input input{Input::Kind::message, message.channel, message.bytes};
+    saved->note(input);
+    accumulation.apply(input);
+    if (&message == &messages[60]) std::filesystem::remove_all(folder + "/gone");
+    saved->save(accumulation);
+  }
+  saved.reset();
+  SavedState again(folder + "/gone/state", config);
+  const Accumulation restored = again.restore();
+  EXPECT_TRUE(again.restored());
+  EXPECT_EQ(restored.pairs()[0].state().seq, accumulation.pairs()[0].state().seq);
+}
+
+TEST_F(SavedStates, ThatAreNoFilesAreRefusedAtOnce) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THROW(SavedState(file, config).restore(), Error);
+  std::filesystem::remove(file);
+  write("");
+  std::filesystem::resize_file(file, std::uintmax_t{3} << 30);  // sparse
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THROW(SavedState(file, config).restore(), Error);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1)) << "it was read";
+  EXPECT_EQ(std::filesystem::file_size(file), std::uintmax_t{3} << 30);
+}
+
+TEST_F(SavedStates, ReachedByALinkAreLockedOnceAndStayWhereTheyAre) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  write_state(config, 100);
+  std::filesystem::create_symlink("pairing.state", folder + "/link");
+  {
+    SavedState saved(folder + "/link", config);
+    EXPECT_THROW(SavedState(file, config), Error);
+    saved.restore();
+    EXPECT_TRUE(saved.restored());
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(folder + "/link"));
+  EXPECT_TRUE(std::filesystem::is_regular_file(file));
+}
+
+TEST_F(SavedStates, WithoutTheirLockFileAreNotWrittenByTwo) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  SavedState first(file, config);
+  const Accumulation accumulation = first.restore();
+  std::filesystem::remove(file + ".lock");
+  first.snapshot(accumulation);
+  EXPECT_THROW(SavedState(file, config), Error) << "the first one has it again";
+  std::filesystem::remove(file + ".lock");
+  SavedState second(file, config);
+  second.restore();
+  EXPECT_THROW(first.snapshot(accumulation), Error);
+}
+
+TEST_F(SavedStates, LeaveNoTemporaryFilesBehind) {
+  const std::string left = file + ".4711-0.part";
+  std::ofstream(left) << "of a process that was killed";
+  write_state(rig("egocal.odometry_t"), 100);
+  EXPECT_FALSE(std::filesystem::exists(left));
 }
 
 TEST_F(SavedStates, WithAnyByteDamagedAreRefused) {

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/extrinsic_text.hpp"
 
-#include <charconv>
 #include <cmath>
 
 #include "egocal/error.hpp"
+#include "io/number_text.hpp"
 
 namespace egocal {
 namespace {
 
 std::string exact(double value) {
-  char buffer[64];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value).ptr;
-  std::string text(buffer, end);
+  std::string text;
+  detail::append_number(text, value == 0 ? 0.0 : value);
   // YAML 1.1 takes 1e-05 for a word, 1.0e-05 for a number
   if (const auto e = text.find('e'); e != std::string::npos && text.find('.') == std::string::npos)
     text.insert(e, ".0");

@@ -3,10 +3,10 @@
 #include "egocal/io/pairs_file.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "egocal/error.hpp"
 #include "egocal/io/whole_file.hpp"
+#include "io/number_text.hpp"
 #include "io/text.hpp"
 
 namespace egocal {
@@ -42,15 +42,12 @@ std::vector<MotionPair> read_pairs(const std::string& file) {
 
 void write_pairs(const std::string& file, const std::vector<MotionPair>& pairs) {
   std::string text = "# motions of a, then of b: w x y z real, w x y z dual [m]\n";
-  char number[32];
-  for (const MotionPair& pair : pairs) {
+  for (const MotionPair& pair : pairs)
     for (const DualQuaternion* q : {&pair.a, &pair.b})
       for (int i = 0; i < 8; ++i) {
-        std::snprintf(number, sizeof number, "%.17g", q->vec()[i]);
-        text += number;
+        detail::append_number(text, q->vec()[i]);
         text += q == &pair.b && i == 7 ? '\n' : ' ';
       }
-  }
   write_whole_file(file, text);
 }
 

@@ -2,40 +2,145 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/whole_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "egocal/error.hpp"
 
 namespace egocal {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t buffer_size = 1 << 16;
+constexpr int most_links = 40;  // as the kernel follows
+constexpr int most_temporaries = 1000;
+constexpr std::string_view temporary_suffix = ".part";
+
+bool write_all(int fd, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+/// The name itself must reach the disk, too. Not every file system can.
+void sync_folder(const std::string& file) {
+  const std::string folder = fs::path(file).parent_path();
+  const int fd = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  fsync(fd);
+  close(fd);
+}
+
+}  // namespace
+
+std::string without_links(const std::string& path) {
+  fs::path file(path);
+  std::error_code error;
+  for (int i = 0; i < most_links && fs::is_symlink(file, error); ++i) {
+    const fs::path to = fs::read_symlink(file, error);
+    if (error) break;
+    file = to.is_absolute() ? to : file.parent_path() / to;
+  }
+  const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
+  return error ? file.string() : (folder / file.filename()).string();
+}
+
+void remove_temporaries(const std::string& file) {
+  const fs::path target(without_links(file));
+  const std::string start = target.filename().string() + ".";
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(target.parent_path(), error)) {
+    const std::string name = entry.path().filename();
+    std::error_code none;
+    if (name.starts_with(start) && name.ends_with(temporary_suffix)) fs::remove(entry.path(), none);
+  }
+}
+
+WholeFile::WholeFile(const std::string& file) : file_(file), target_(without_links(file)) {
+  struct stat there {};
+  const bool exists = stat(target_.c_str(), &there) == 0;
+  if (exists && !S_ISREG(there.st_mode)) fail("is there and is not a file that could be replaced");
+  for (int n = 0; fd_ < 0; ++n) {
+    temporary_ =
+        target_ + "." + std::to_string(getpid()) + "-" + std::to_string(n) + std::string(temporary_suffix);
+    fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+    if (fd_ < 0 && (errno != EEXIST || n == most_temporaries))
+      fail(std::string("cannot be written: ") + std::strerror(errno));
+  }
+  if (exists && fchmod(fd_, there.st_mode & 07777) != 0) {
+    // a file of somebody else: it gets the usual permissions
+  }
+  buffer_.reserve(buffer_size);
+}
+
+WholeFile::~WholeFile() {
+  if (fd_ >= 0) close(fd_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+void WholeFile::fail(const std::string& why) const {
+  throw error_at(file_, 0, "", why);
+}
+
+void WholeFile::flush() {
+  if (!write_all(fd_, buffer_)) fail(std::string("cannot be written: ") + std::strerror(errno));
+  buffer_.clear();
+}
+
+void WholeFile::write(std::span<const std::byte> bytes) {
+  if (temporary_.empty()) fail("is complete; nothing can be written to it any more");
+  if (buffer_.size() + bytes.size() > buffer_size) flush();
+  if (bytes.size() < buffer_size)
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  else if (!write_all(fd_, bytes))
+    fail(std::string("cannot be written: ") + std::strerror(errno));
+}
+
+void WholeFile::write(std::string_view text) {
+  write(std::as_bytes(std::span(text)));
+}
+
+void WholeFile::commit() {
+  if (temporary_.empty()) return;
+  flush();
+  if (fsync(fd_) != 0 || std::rename(temporary_.c_str(), target_.c_str()) != 0)
+    fail(std::string("cannot be written: ") + std::strerror(errno));
+  temporary_.clear();
+  sync_folder(target_);
+}
+
+int WholeFile::release_descriptor() {
+  return std::exchange(fd_, -1);
+}
+
 void write_whole_file(const std::string& file, std::string_view content) {
-  // a device or a pipe (/dev/stdout) is written to, never replaced
   std::error_code none;
-  const std::filesystem::file_status there = std::filesystem::status(file, none);
-  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << content;
-    stream.close();
-    if (!stream) throw error_at(file, 0, "", "cannot be written");
+  const fs::file_status there = fs::status(file, none);
+  if (!fs::exists(there) || fs::is_regular_file(there) || fs::is_directory(there)) {
+    WholeFile whole(file);
+    whole.write(content);
+    whole.commit();
     return;
   }
-  const std::string temporary = file + ".part";
-  {
-    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    stream << content;
-    stream.close();
-    if (!stream) {
-      std::remove(temporary.c_str());
-      throw error_at(file, 0, "", "cannot be written");
-    }
-  }
-  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw error_at(file, 0, "", "cannot be written");
-  }
+  const int fd = open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  const bool written = fd >= 0 && write_all(fd, std::as_bytes(std::span(content)));
+  const int reason = errno;
+  if (fd >= 0) close(fd);
+  if (!written) throw error_at(file, 0, "", std::string("cannot be written: ") + std::strerror(reason));
 }
 
 }  // namespace egocal

@@ -13,7 +13,7 @@ namespace egocal::services {
 
 namespace {
 
-/// So many bytes of inputs are taken in again within a fraction of a second.
+/// Bytes of inputs that are taken in again within a fraction of a second.
 constexpr std::uint64_t most_added = 4 << 20;
 
 /// Whose state it is: what is accumulated means nothing to another rig, nor to another version of the
@@ -46,14 +46,14 @@ void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
     reader(input.kind, input.index, size);
     input.bytes = reader.view(size);
     accumulation.apply(input);
-    accumulation.take_motions();  // whoever wanted them has them
+    accumulation.take_motions();  // were sent before
   }
 }
 
 }  // namespace
 
-SavedState::SavedState(const std::string& file, const bus::Rig& rig)
-    : rig_(rig), file_(file, identity(rig)) {}
+SavedState::SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock)
+    : rig_(rig), file_(file, identity(rig), std::move(clock)) {}
 
 Accumulation SavedState::restore() {
   Accumulation accumulation(rig_);
@@ -72,7 +72,11 @@ Accumulation SavedState::restore() {
       accumulation = Accumulation(rig_);
     }
   }
-  snapshot(accumulation);
+  try {
+    snapshot(accumulation);
+  } catch (const Error& error) {
+    not_saved_ = error.what();
+  }
   return accumulation;
 }
 
@@ -83,7 +87,7 @@ void SavedState::note(const Input& input) {
 }
 
 void SavedState::save(const Accumulation& accumulation) {
-  if (broken_ || file_.added() >= most_added) return snapshot(accumulation);
+  if (broken_ || file_.added() >= most_added || !file_.in_place()) return snapshot(accumulation);
   if (inputs_.bytes().empty()) return;
   broken_ = true;
   file_.add(inputs_.bytes());

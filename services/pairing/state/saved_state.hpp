@@ -15,14 +15,18 @@ namespace egocal::services {
 class SavedState {
  public:
   /// Throws Error as StateFile does.
-  SavedState(const std::string& file, const bus::Rig& rig);
+  SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time);
 
-  /// What is on disk, with all inputs applied; a new one where there is nothing or it is refused. Takes a
-  /// snapshot, so that the next restart is quick. settled: see Accumulation::settle().
+  /// What is on disk, with all inputs applied and settled (Accumulation::settle()); a new one where there is
+  /// nothing or it is refused. Takes a snapshot, so that the next restart is quick. A disk that does not take
+  /// it ends nothing, see not_saved().
   Accumulation restore();
   bool restored() const { return restored_; }
   /// One line: why what was there is refused; empty: it is not.
   const std::string& refused() const { return file_.refused(); }
+
+  /// One line: why the snapshot of restore() could not be written; empty: it was.
+  const std::string& not_saved() const { return not_saved_; }
 
   /// Takes note of an input that is being applied.
   void note(const Input& input);
@@ -34,6 +38,7 @@ class SavedState {
   bus::Rig rig_;
   StateFile file_;
   Writer inputs_;
+  std::string not_saved_;
   bool restored_ = false;
   bool broken_ = false;  ///< inputs are missing in the file: only a snapshot helps
 };

@@ -3,19 +3,20 @@
 #include "pairing/state/state_file.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <sstream>
 #include <utility>
 
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "pairing/state/archive.hpp"
 
 namespace egocal::services {
@@ -27,20 +28,26 @@ const std::string magic = [] {
   const std::uint16_t one = 1;
   std::uint8_t low = 0;
   std::memcpy(&low, &one, 1);
-  return std::string("egocal-pairing state 1") + (low ? "l" : "b") + "\n";
+  return std::string("egocal-pairing state 2") + (low ? "l" : "b") + "\n";
 }();
+constexpr int most_refused = 100;
 const std::string magic_of_any_version = "egocal-pairing state ";
 
 /// Before each part: identity, snapshot, additions.
 struct PartHeader {
   std::uint64_t size = 0;
   std::uint64_t checksum = 0;         ///< of the part
-  std::uint64_t header_checksum = 0;  ///< of the two above
+  std::int64_t boot_us = 0;           ///< when it was written, see BootTime
+  std::uint64_t header_checksum = 0;  ///< of those above
 };
 
-PartHeader header_of(std::span<const std::byte> bytes) {
-  PartHeader header{bytes.size(), checksum(bytes), 0};
-  header.header_checksum = checksum(std::as_bytes(std::span(&header, 1)).first(16));
+std::uint64_t own_checksum(const PartHeader& header) {
+  return checksum(std::as_bytes(std::span(&header, 1)).first(sizeof header - sizeof header.header_checksum));
+}
+
+PartHeader header_of(std::span<const std::byte> bytes, std::int64_t boot_us) {
+  PartHeader header{bytes.size(), checksum(bytes), boot_us, 0};
+  header.header_checksum = own_checksum(header);
   return header;
 }
 
@@ -57,36 +64,65 @@ void write_all(int fd, std::span<const std::byte> bytes) {
   }
 }
 
-void append_part(std::vector<std::byte>& out, std::span<const std::byte> part) {
-  const PartHeader header = header_of(part);
+void append_part(std::vector<std::byte>& out, std::span<const std::byte> part, std::int64_t boot_us) {
+  const PartHeader header = header_of(part, boot_us);
   const auto header_bytes = std::as_bytes(std::span(&header, 1));
   out.insert(out.end(), header_bytes.begin(), header_bytes.end());
   out.insert(out.end(), part.begin(), part.end());
 }
 
-std::vector<std::byte> whole(int fd) {
+/// A state of the largest rigs has some megabytes.
+constexpr std::int64_t largest_state = std::int64_t{256} << 20;
+
+/// The file, checked before its content is read: somebody's own file must not be moved away because of a
+/// slip on the command line, nor a pipe be waited for. Empty: there is none.
+std::optional<std::vector<std::byte>> whole(const std::string& file, std::int64_t& time_s) {
+  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0 && errno == ENOENT) return std::nullopt;
+  const auto fail = [&](const std::string& why) {
+    if (fd >= 0) close(fd);
+    throw error_at(file, 0, "", why);
+  };
+  if (fd < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
+  struct stat status {};
+  if (fstat(fd, &status) != 0) fail(std::string("cannot be read: ") + std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) fail("is not a file; expected a state of egocal-pairing, or no file");
+  time_s = status.st_mtime;
   std::vector<std::byte> bytes;
-  std::vector<std::byte> buffer(1 << 20);
-  for (;;) {
-    const ssize_t got = ::read(fd, buffer.data(), buffer.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw Error(std::strerror(errno));
-    if (got == 0) return bytes;
-    bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + got);
-  }
+  const std::int64_t most = std::min<std::int64_t>(status.st_size, largest_state);
+  const auto read_up_to = [&](std::size_t size) {
+    std::size_t have = bytes.size();
+    bytes.resize(size);
+    while (have < size) {
+      const ssize_t got = ::read(fd, bytes.data() + have, size - have);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
+      if (got == 0) break;
+      have += static_cast<std::size_t>(got);
+    }
+    bytes.resize(have);
+  };
+  read_up_to(std::min(static_cast<std::size_t>(most), magic_of_any_version.size()));
+  if (bytes.size() == magic_of_any_version.size() &&
+      std::memcmp(bytes.data(), magic_of_any_version.data(), bytes.size()) != 0)
+    fail("is not a state of egocal-pairing; expected one, or no file");
+  read_up_to(static_cast<std::size_t>(most));
+  close(fd);
+  return bytes;
 }
 
 /// The next part; empty where the bytes end before it does.
-std::optional<std::span<const std::byte>> next_part(std::span<const std::byte>& rest) {
+std::optional<std::span<const std::byte>> next_part(std::span<const std::byte>& rest, std::int64_t& boot_us) {
   PartHeader header;
   if (rest.size() < sizeof header) return std::nullopt;
   std::memcpy(&header, rest.data(), sizeof header);
-  if (checksum(rest.first(16)) != header.header_checksum) throw Error("is damaged");
+  if (own_checksum(header) != header.header_checksum) throw Error("is damaged");
   const std::span<const std::byte> behind = rest.subspan(sizeof header);
   if (header.size > behind.size()) return std::nullopt;
   const auto part = behind.first(header.size);
   if (checksum(part) != header.checksum) throw Error("is damaged");
   rest = behind.subspan(header.size);
+  boot_us = header.boot_us;
   return part;
 }
 
@@ -105,74 +141,55 @@ std::string difference(const std::string& found, const std::string& expected) {
   }
 }
 
-std::int64_t age_s(int fd) {
-  struct stat status {};
-  if (fstat(fd, &status) != 0) throw Error(std::strerror(errno));
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return static_cast<std::int64_t>(now) - static_cast<std::int64_t>(status.st_mtime);
-}
+struct Parsed {
+  StateFile::Content content;
+  BootTime written;  ///< the last part
+};
 
-StateFile::Content parsed(std::span<const std::byte> bytes, const std::string& identity) {
+Parsed parsed(std::span<const std::byte> bytes, const std::string& identity) {
   if (bytes.size() < magic.size() || std::memcmp(bytes.data(), magic.data(), magic.size()) != 0)
     throw Error("is that of another version or machine, or cut off");
   std::span<const std::byte> rest = bytes.subspan(magic.size());
-  const auto whose = next_part(rest);
+  Parsed result;
+  const auto whose = next_part(rest, result.written.us);
   if (!whose) throw Error("is cut off");
   const std::string found(reinterpret_cast<const char*>(whose->data()), whose->size());
   if (found != identity) throw Error("is that of another rig or version: " + difference(found, identity));
-  const auto snapshot = next_part(rest);
+  const auto boot = next_part(rest, result.written.us);
+  if (!boot) throw Error("is cut off");
+  result.written.boot.assign(reinterpret_cast<const char*>(boot->data()), boot->size());
+  const auto snapshot = next_part(rest, result.written.us);
   if (!snapshot) throw Error("is cut off");
-  StateFile::Content content{{snapshot->begin(), snapshot->end()}, {}};
-  while (const auto addition = next_part(rest))
-    content.additions.emplace_back(addition->begin(), addition->end());
-  return content;
+  result.content.snapshot.assign(snapshot->begin(), snapshot->end());
+  while (const auto addition = next_part(rest, result.written.us))
+    result.content.additions.emplace_back(addition->begin(), addition->end());
+  return result;
 }
 
 }  // namespace
 
-StateFile::StateFile(std::string file, std::string identity)
-    : file_(std::move(file)), identity_(std::move(identity)) {
-  const std::string lock_file = file_ + ".lock";
-  lock_ = open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) throw error_at(lock_file, 0, "", std::string("cannot be written: ") + std::strerror(errno));
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    close(lock_);
-    throw error_at(file_, 0, "", "is the state of another process that is running; each needs its own");
-  }
+StateFile::StateFile(const std::string& file, std::string identity, Clock clock)
+    : file_(without_links(file)), identity_(std::move(identity)), clock_(std::move(clock)), lock_(file_) {
+  remove_temporaries(file_);
 }
 
 StateFile::~StateFile() {
-  if (out_ >= 0) {
-    fsync(out_);
-    close(out_);
-  }
-  close(lock_);
+  if (out_ < 0) return;
+  fsync(out_);
+  close(out_);
 }
 
 std::optional<StateFile::Content> StateFile::read() {
-  const int fd = open(file_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0 && errno == ENOENT) return std::nullopt;
-  if (fd < 0) throw error_at(file_, 0, "", std::string("cannot be read: ") + std::strerror(errno));
-  std::vector<std::byte> bytes;
-  std::int64_t age = 0;
+  std::int64_t time_s = 0;
+  const std::optional<std::vector<std::byte>> bytes = whole(file_, time_s);
+  if (!bytes) return std::nullopt;
   try {
-    bytes = whole(fd);
-    age = age_s(fd);
-  } catch (const Error& error) {
-    close(fd);
-    throw error_at(file_, 0, "", std::string("cannot be read: ") + error.what());
-  }
-  close(fd);
-  // somebody's own file must not be moved away because of a slip on the command line
-  if (bytes.size() >= magic_of_any_version.size() &&
-      std::memcmp(bytes.data(), magic_of_any_version.data(), magic_of_any_version.size()) != 0)
-    throw error_at(file_, 0, "", "is not a state of egocal-pairing; expected one, or no file");
-  try {
-    Content content = parsed(bytes, identity_);
+    Parsed found = parsed(*bytes, identity_);
+    const std::int64_t age = age_s(found.written, clock_(), time_s, std::time(nullptr));
     if (std::abs(age) > most_age_s)
       throw Error("is stale: written " + std::to_string(age) + " s ago, expected at most " +
                   std::to_string(most_age_s));
-    return content;
+    return std::move(found.content);
   } catch (const Error& error) {
     refuse(error.what());
     return std::nullopt;
@@ -180,52 +197,45 @@ std::optional<StateFile::Content> StateFile::read() {
 }
 
 void StateFile::refuse(const std::string& why) {
-  const std::string aside = file_ + ".refused";
+  // what was kept before stays, too: it may be hours of driving
+  std::string aside = file_ + ".refused";
   std::error_code error;
+  for (int n = 2; n <= most_refused && std::filesystem::exists(aside, error); ++n)
+    aside = file_ + ".refused-" + std::to_string(n);
   std::filesystem::rename(file_, aside, error);
   if (error) throw error_at(file_, 0, "", why + ", and cannot be kept aside: " + error.message());
   refused_ = file_ + ": " + why + "; starting anew, it is kept as " + aside;
 }
 
 void StateFile::snapshot(std::span<const std::byte> bytes) {
-  std::vector<std::byte> content;
-  content.reserve(magic.size() + identity_.size() + bytes.size() + 2 * sizeof(PartHeader));
-  const auto start = as_bytes(magic);
-  content.insert(content.end(), start.begin(), start.end());
-  append_part(content, as_bytes(identity_));
-  append_part(content, bytes);
-
-  const std::string temporary = file_ + ".new";
-  const int fd = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  const auto fail = [&](const std::string& why) {
-    if (fd >= 0) close(fd);
-    unlink(temporary.c_str());
-    throw error_at(file_, 0, "", "cannot be written: " + why);
-  };
-  if (fd < 0) fail(std::strerror(errno));
-  try {
-    write_all(fd, content);
-  } catch (const Error& error) {
-    fail(error.what());
-  }
-  if (fsync(fd) != 0 || std::rename(temporary.c_str(), file_.c_str()) != 0) fail(std::strerror(errno));
-  // the name itself must reach the disk too
-  const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
-  const int directory = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory >= 0) {
-    fsync(directory);
-    close(directory);
-  }
+  // the folder was there when this began: whoever removed it did not mean what is known here
+  std::error_code none;
+  std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
+  lock_.confirm();
+  std::vector<std::byte> parts;
+  const BootTime now = clock_();
+  append_part(parts, as_bytes(identity_), now.us);
+  append_part(parts, as_bytes(now.boot), now.us);
+  append_part(parts, bytes, now.us);
+  WholeFile whole(file_);
+  whole.write(magic);
+  whole.write(parts);
+  whole.commit();
   if (out_ >= 0) close(out_);
-  out_ = fd;
+  out_ = whole.release_descriptor();
   added_ = 0;
+}
+
+bool StateFile::in_place() const {
+  struct stat status {};
+  return out_ >= 0 && fstat(out_, &status) == 0 && status.st_nlink > 0;
 }
 
 void StateFile::add(std::span<const std::byte> bytes) {
   if (out_ < 0) throw error_at(file_, 0, "", "has no snapshot to add to");
   std::vector<std::byte> part;
   part.reserve(sizeof(PartHeader) + bytes.size());
-  append_part(part, bytes);
+  append_part(part, bytes, clock_().us);
   try {
     write_all(out_, part);
   } catch (const Error& error) {

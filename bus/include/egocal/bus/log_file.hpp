@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "egocal/bus/decode.hpp"
+#include "egocal/io/whole_file.hpp"
 
 namespace egocal::bus {
 
@@ -42,6 +43,8 @@ class EventNumbers {
   /// An event has been read, so many damaged bytes after the one before. True: the number is not the next
   /// one.
   bool take(std::int64_t number, std::uint64_t damaged_bytes);
+  /// Begins with the event of this number; what is before it is not missed.
+  void begin_at(std::int64_t number);
   /// The file ends with damaged bytes.
   void cut_off();
   std::uint64_t missing() const;
@@ -54,10 +57,11 @@ class EventNumbers {
   std::uint64_t before_ = 0;  ///< missing from the logs before, in a file of several
 };
 
-/// Reads the event logs of lcm-logger. A damaged region costs what it held: the reader goes on at the next
-/// event that makes sense (liblcm's own reader ends there, without a word). An event whose lengths lie is
-/// left out; what else is damaged inside of one only its decoder can tell. Memory is that of one event, no
-/// length field of a damaged event makes it more than 64 MiB, and the time is proportional to the file.
+/// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs what it held: the
+/// reader goes on at the next event that makes sense (liblcm's own reader ends there, without a word). An
+/// event whose lengths lie is left out; what else is damaged inside of one only its decoder can tell. Memory
+/// is that of one event, no length field of a damaged event makes it more than 64 MiB, and the time is
+/// proportional to the file.
 class LogReader {
  public:
   /// Throws Error where the file cannot be opened or is not a log at all (no event in it).
@@ -67,6 +71,11 @@ class LogReader {
   std::optional<LogEvent> next();
   /// Back to the first event.
   void rewind();
+  /// To a place before every event recorded at time_us or later, found by bisection: next() goes on there,
+  /// with events that may be a little earlier. Times must ascend but for the disorder of several sources (1
+  /// s) and single damaged ones; where they do not, it begins earlier than necessary, at worst at the start.
+  /// Damage is counted from there on.
+  void seek(std::int64_t time_us);
 
   const LogDamage& damage() const { return damage_; }
   std::uint64_t position() const { return position_; }  ///< bytes read
@@ -77,6 +86,8 @@ class LogReader {
   bool read_at(std::uint64_t offset, void* to, std::size_t size) const;
   std::optional<Place> header_at(std::uint64_t offset) const;
   std::optional<Place> find_header(std::uint64_t from, std::uint64_t to) const;
+  std::optional<Place> event_from(std::uint64_t from, std::uint64_t to) const;
+  std::int64_t typical_time(const Place& place) const;
   bool goes_on(const Place& inner, const Place& outer) const;
   bool believable(const Place& place) const;
   std::string channel_of(const Place& place) const;
@@ -91,22 +102,21 @@ class LogReader {
   LogDamage damage_;
 };
 
-/// Writes a log that lcm-logplayer plays. The file takes its name when close() is called; without that
-/// nothing remains. What is there under that name must be a file, or nothing: no device is ever replaced.
+/// Writes a log that lcm-logplayer plays. The file takes its name when close() is called (see WholeFile);
+/// without that nothing remains. What is there under that name must be a file, or nothing: no device is ever
+/// replaced.
 class LogWriter {
  public:
   explicit LogWriter(const std::string& file);  ///< throws Error
-  ~LogWriter();
-  LogWriter(const LogWriter&) = delete;
-  LogWriter& operator=(const LogWriter&) = delete;
 
-  /// Throws Error where the disk is full, or the event is larger than a log can hold (63 characters, 64 MiB).
+  /// Throws Error where the disk is full, the log is closed, or the event is larger than a log can hold (63
+  /// characters, 64 MiB).
   void write(std::int64_t time_us, const std::string& channel, Bytes data);
-  void close();  ///< throws Error
+  void close();  ///< throws Error; a second call does nothing
 
  private:
   std::string file_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_;
+  WholeFile out_;
   std::int64_t number_ = 0;
 };
 

@@ -2,13 +2,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace egocal {
 
-/// Writes the whole file or nothing: to a temporary one beside it that takes its name in the end. Devices and
-/// pipes (/dev/stdout) are written to as they are. Throws Error.
+/// A file that takes its name when it is complete and on the disk: whoever opens the name sees the old file
+/// or the new one, after a power cut, too. Until then the content is in a temporary file beside it
+/// (FILE.PID-N.part, a new one each time), which goes when the object does. Where the name is a symbolic
+/// link, the file that it points to is replaced, and a file that is replaced hands on its permissions.
+class WholeFile {
+ public:
+  /// Throws Error where it cannot be written, or where something else than a file has that name: a device, a
+  /// pipe, a folder.
+  explicit WholeFile(const std::string& file);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  /// Throws Error, e.g. where the disk is full.
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+  /// Gives the file its name. Throws Error; what had the name before is then still there. Nothing can be
+  /// written afterwards but to the file descriptor; a second call does nothing.
+  void commit();
+  /// After commit(): the file, open for writing at its end. The caller closes it.
+  int release_descriptor();
+
+ private:
+  void flush();
+  [[noreturn]] void fail(const std::string& why) const;
+
+  std::string file_;       ///< as given, for messages
+  std::string target_;     ///< without symbolic links
+  std::string temporary_;  ///< empty: committed
+  std::vector<std::byte> buffer_;
+  int fd_ = -1;
+};
+
+/// Writes the whole file or nothing, by a WholeFile. Devices and pipes (/dev/stdout) are written to as they
+/// are. Throws Error.
 void write_whole_file(const std::string& file, std::string_view content);
+
+/// The file that a path names once all symbolic links are followed, whether it exists or not.
+std::string without_links(const std::string& path);
+
+/// Removes what a WholeFile of this name left behind when its process was killed. Only for the one process
+/// that writes this file.
+void remove_temporaries(const std::string& file);
 
 }  // namespace egocal

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Writing files: whole or not at all, and the same text in every locale.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <clocale>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "../support/random_motion.hpp"
+#include "egocal/error.hpp"
+#include "egocal/io/extrinsic_text.hpp"
+#include "egocal/io/pairs_file.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/io/whole_file.hpp"
+
+namespace egocal {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class Writing : public ::testing::Test {
+ protected:
+  Writing() : folder(fs::temp_directory_path() / ("egocal_writing_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
+  }
+  ~Writing() override { fs::remove_all(folder); }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  static std::string content(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  /// Temporary files in the folder.
+  std::ptrdiff_t temporaries() const {
+    return std::count_if(
+        fs::directory_iterator(folder), fs::directory_iterator(),
+        [](const fs::directory_entry& entry) { return entry.path().extension() == ".part"; });
+  }
+
+  fs::path folder;
+};
+
+TEST_F(Writing, AFileIsReplacedOnlyWhenItIsComplete) {
+  write_whole_file(path("whole"), "first");
+  fs::permissions(path("whole"), fs::perms::owner_all);
+  fs::create_symlink("whole", path("link"));
+  {
+    WholeFile one(path("whole")), two(path("link"));
+    one.write("of one, never completed");
+    two.write("second");
+    EXPECT_EQ(content(path("whole")), "first");
+    EXPECT_EQ(temporaries(), 2);
+    two.commit();
+    two.commit();
+    EXPECT_THROW(two.write("more"), Error);
+  }
+  EXPECT_EQ(content(path("whole")), "second");
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(fs::status(path("whole")).permissions(), fs::perms::owner_all);
+  EXPECT_EQ(temporaries(), 0);
+  EXPECT_THROW(WholeFile("/dev/null"), Error);
+
+  write_whole_file(path("whole.4711-0.part"), "of a process that was killed");
+  remove_temporaries(path("whole"));
+  EXPECT_EQ(temporaries(), 0);
+  EXPECT_EQ(content(path("whole")), "second");
+}
+
+TEST_F(Writing, AProgramsLocaleChangesNothing) {
+  // a locale of our own making, where the machine has none with a decimal comma
+  const char* const name = "de_DE.UTF-8";
+  if (!std::setlocale(LC_ALL, name)) {
+    const std::string command = "localedef -i de_DE -f UTF-8 " + path(name) + " 2>/dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0) << "cannot make a locale: install the package 'locales'";
+    setenv("LOCPATH", path("").c_str(), 1);
+    ASSERT_TRUE(std::setlocale(LC_ALL, name));
+  }
+  char number[8];
+  std::snprintf(number, sizeof number, "%.1f", 0.5);
+  ASSERT_STREQ(number, "0,5") << "this locale tests nothing";
+
+  testing::Random random(3);
+  Trajectory trajectory;
+  for (const std::int64_t time_us :
+       {std::int64_t{-1'500'000}, std::int64_t{0}, std::int64_t{1'700'000'000'000'001}})
+    trajectory.push_back({time_us, testing::random_extrinsic(random)});
+  write_tum(path("tum"), trajectory);
+  const auto pairs = testing::random_pairs(testing::random_extrinsic(random), {.pairs = 3}, random);
+  write_pairs(path("pairs"), pairs);
+  const std::string extrinsic = extrinsic_text(
+      {"a", "b", Pose{rotation_exp({0.1, 0.2, 0.3}), {0.5, 1.5, 2.5}}, true, 7, {}}, ExtrinsicFormat::urdf);
+  const Trajectory read = read_trajectory(path("tum"));
+  EXPECT_EQ(read_pairs(path("pairs")).size(), 3u);
+  std::setlocale(LC_ALL, "C");
+  ASSERT_EQ(read.size(), trajectory.size());
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i].time_us, trajectory[i].time_us);
+  EXPECT_THAT(extrinsic, HasSubstr("xyz=\"0.5 1.5 2.5\""));
+}
+
+}  // namespace
+}  // namespace egocal
