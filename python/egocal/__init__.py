@@ -1,0 +1,64 @@
+# SPDX-FileCopyrightText: 2026 the egocal developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where sensors sit relative to each other, from their motions alone, with proof.
+
+    import egocal
+    calibration = egocal.solve("lidar.tum", "camera.tum")
+    calibration.T_a_b, calibration.certified, calibration.stddev
+"""
+import json as _json
+import math as _math
+
+from ._egocal import (  # noqa: F401
+    Calibration,
+    Error,
+    Statistics,
+    __version__,
+    calibrate_hand_eye,
+    solve,
+    solve_dual,
+    verify,
+)
+
+__all__ = ["Calibration", "Error", "Statistics", "calibrate_hand_eye", "solve", "solve_dual", "verify"]
+
+
+def _to_dict(self):
+    """The fields as plain Python values, with the names of `egocal solve --json`."""
+    return {
+        "translation": self.translation.tolist(),
+        "rotation_wxyz": self.rotation_wxyz.tolist(),
+        "pairs": self.pairs,
+        "cost": self.cost,
+        "lower_bound": self.lower_bound,
+        "gap": self.gap,
+        "certified": self.certified,
+        "status": self.status,
+        "observable": list(self.observable),
+        "stddev": self.stddev.tolist(),
+        "hint": self.hint,
+        "stride": self.stride,
+        "weights": dict(zip(("rotation", "translation"), self.weights)),
+        "time_offset_s": self.time_offset,
+        "outliers": self.outliers,
+        "rejected": self.rejected,
+    }
+
+
+def _to_json(self, indent=2):
+    """One JSON object; numbers that are not finite are null, as in `egocal solve --json`."""
+
+    def finite(value):
+        if isinstance(value, float) and not _math.isfinite(value):
+            return None
+        if isinstance(value, dict):
+            return {key: finite(entry) for key, entry in value.items()}
+        if isinstance(value, list):
+            return [finite(entry) for entry in value]
+        return value
+
+    return _json.dumps(finite(self.to_dict()), indent=indent)
+
+
+Calibration.to_dict = _to_dict
+Calibration.to_json = _to_json

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "convert.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/limits.hpp"
+
+namespace egocal::python {
+
+namespace {
+
+[[noreturn]] void refuse(const char* name, const std::string& why) {
+  throw py::value_error(std::string(name) + ": " + why);
+}
+
+std::int64_t to_microseconds(double seconds, const char* name, py::ssize_t row) {
+  // beyond this a double no longer holds microseconds, and times subtract without overflow below it
+  if (!std::isfinite(seconds) || std::abs(seconds) > 9e9)
+    refuse(name, "row " + std::to_string(row) + ": expected a time in seconds");
+  return std::llround(seconds * 1e6);
+}
+
+/// Sorted by time, the first of equal times kept.
+Trajectory in_order(Trajectory trajectory) {
+  const auto earlier = [](const StampedPose& x, const StampedPose& y) { return x.time_us < y.time_us; };
+  std::stable_sort(trajectory.begin(), trajectory.end(), earlier);
+  const auto same = [](const StampedPose& x, const StampedPose& y) { return x.time_us == y.time_us; };
+  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), same), trajectory.end());
+  return trajectory;
+}
+
+Trajectory from_rows(const Array& rows, const char* name) {
+  if (rows.ndim() != 2 || rows.shape(1) != 8) refuse(name, "expected an (N, 8) array of t x y z qx qy qz qw");
+  Trajectory trajectory;
+  const auto at = rows.unchecked<2>();
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+    const Eigen::Quaterniond rotation(at(i, 7), at(i, 4), at(i, 5), at(i, 6));
+    const Eigen::Vector3d translation(at(i, 1), at(i, 2), at(i, 3));
+    if (!translation.allFinite() || !rotation.coeffs().allFinite() || !(rotation.norm() > 1e-3))
+      refuse(name, "row " + std::to_string(i) + ": not a pose");
+    const Pose pose{rotation.normalized(), translation};
+    trajectory.push_back({to_microseconds(at(i, 0), name, i), to_dual_quaternion(pose)});
+  }
+  return in_order(std::move(trajectory));
+}
+
+Trajectory from_matrices(const Array& times, const Array& matrices, const char* name) {
+  if (times.ndim() != 1 || matrices.ndim() != 3 || matrices.shape(1) != 4 || matrices.shape(2) != 4 ||
+      times.shape(0) != matrices.shape(0))
+    refuse(name, "expected a pair of times (N,) and matrices (N, 4, 4)");
+  Trajectory trajectory;
+  const auto at = matrices.unchecked<3>();
+  for (py::ssize_t i = 0; i < times.shape(0); ++i) {
+    Eigen::Matrix4d matrix;
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) matrix(row, column) = at(i, row, column);
+    const std::string label = std::string(name) + " row " + std::to_string(i);
+    trajectory.push_back(
+        {to_microseconds(times.at(i), name, i), to_dual_quaternion(to_pose(matrix, label.c_str()))});
+  }
+  return in_order(std::move(trajectory));
+}
+
+}  // namespace
+
+Eigen::Matrix4d to_matrix(const Pose& T) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = T.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = T.translation;
+  return matrix;
+}
+
+Pose to_pose(const Eigen::Matrix4d& matrix, const char* name) {
+  constexpr double tolerance = 1e-3;  // what three printed decimals of a rotation matrix leave
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const bool rigid = matrix.allFinite() &&
+                     (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
+                     R.determinant() > 0 &&
+                     (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < tolerance;
+  if (!rigid) refuse(name, "not a rigid displacement (rotation, translation, last row 0 0 0 1)");
+  return {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()};
+}
+
+Trajectory to_trajectory(const py::handle& object, const char* name) {
+  if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__"))
+    return read_trajectory(py::str(object).cast<std::string>());
+  if (py::isinstance<py::tuple>(object)) {
+    const auto pair = object.cast<py::tuple>();
+    if (pair.size() != 2) refuse(name, "expected a pair of times (N,) and matrices (N, 4, 4)");
+    return from_matrices(pair[0].cast<Array>(), pair[1].cast<Array>(), name);
+  }
+  return from_rows(object.cast<Array>(), name);
+}
+
+std::optional<GroundPlane> to_plane(const py::object& object, const char* name) {
+  if (object.is_none()) return std::nullopt;
+  const auto numbers = object.cast<std::vector<double>>();
+  if (numbers.size() != 4) refuse(name, "expected four numbers NX NY NZ D");
+  return GroundPlane{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+}
+
+}  // namespace egocal::python

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "egocal/geometry/dual_quaternion.hpp"
+#include "egocal/geometry/pose.hpp"
+#include "egocal/pairing/trajectory.hpp"
+#include "egocal/problem/ground_plane.hpp"
+
+namespace egocal::python {
+
+namespace py = pybind11;
+
+/// Numbers in C order, converted where they are of another type.
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A 4 x 4 homogeneous matrix.
+Eigen::Matrix4d to_matrix(const Pose& T);
+/// Throws ValueError where the matrix is not a rigid displacement: not finite, last row not 0 0 0 1, or a
+/// rotation that is off by more than 1e-3. name: the argument, for the message.
+Pose to_pose(const Eigen::Matrix4d& matrix, const char* name);
+
+/// A trajectory in any of the forms that solve() accepts: a file name (with :topic for a bag), an (N, 8)
+/// array of t x y z qx qy qz qw [s, m], or a pair (times (N,) [s], matrices (N, 4, 4)). Unsorted rows are
+/// sorted, repeated times dropped. Throws ValueError naming the argument and the row.
+Trajectory to_trajectory(const py::handle& object, const char* name);
+
+/// Four numbers NX NY NZ D, n . x = D with the unit normal n up; empty for None.
+std::optional<GroundPlane> to_plane(const py::object& object, const char* name);
+
+void bind_calibration(py::module_& module);
+void bind_statistics(py::module_& module);
+void bind_hand_eye(py::module_& module);
+
+}  // namespace egocal::python

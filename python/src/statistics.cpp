@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include "convert.hpp"
+#include "egocal/certificate/certificate.hpp"
+#include "egocal/problem/cost.hpp"
+#include "egocal/solvers/dual.hpp"
+
+namespace egocal::python {
+
+namespace {
+
+using namespace pybind11::literals;
+
+py::dict verified(const Matrix8d& Q, const Eigen::Matrix4d& T_a_b) {
+  const Certificate certificate = verify(Q, to_dual_quaternion(to_pose(T_a_b, "T_a_b")));
+  return py::dict("certified"_a = certificate.optimality == Optimality::certified,
+                  "cost"_a = certificate.cost, "lower_bound"_a = certificate.lower_bound,
+                  "gap"_a = certificate.gap, "rounding"_a = certificate.rounding,
+                  "reach_translation"_a = certificate.reach_translation,
+                  "reach_rotation"_a = certificate.reach_rotation);
+}
+
+}  // namespace
+
+void bind_statistics(py::module_& module) {
+  py::class_<Statistics>(module, "Statistics",
+                         "36 numbers, the whole memory of any number of motion pairs. They add up.")
+      .def(py::init<>())
+      .def(
+          "add",
+          [](Statistics& statistics, const Eigen::Matrix4d& motion_a, const Eigen::Matrix4d& motion_b,
+             double weight) {
+            statistics.add(to_dual_quaternion(to_pose(motion_a, "motion_a")),
+                           to_dual_quaternion(to_pose(motion_b, "motion_b")), weight);
+          },
+          "Adds one pair of motions over the same time, (4, 4) each: the later pose in the earlier one.",
+          "motion_a"_a, "motion_b"_a, "weight"_a = 1.0)
+      .def("__iadd__", [](Statistics& self, const Statistics& other) -> Statistics& { return self += other; })
+      .def("__add__", [](Statistics self, const Statistics& other) { return self += other; })
+      .def("__len__", [](const Statistics& statistics) { return statistics.count; })
+      .def(
+          "cost_matrix",
+          [](const Statistics& statistics, double rotation,
+             double translation) -> Eigen::Matrix<double, 8, 8> {
+            return cost_matrix(statistics, Balance{rotation, translation});
+          },
+          "(8, 8): Q of (16)", "rotation"_a = 1.0, "translation"_a = 1.0);
+
+  module.def(
+      "solve_dual",
+      [](const Eigen::Matrix<double, 8, 8>& Q) { return to_matrix(egocal::to_pose(solve_dual(Q).q)); },
+      "(4, 4): the global minimum of (18) for the cost matrix Q (8, 8). verify() proves it.", "Q"_a);
+  module.def("verify", &verified,
+             "Whether T_a_b (4, 4), wherever it comes from, is the global minimum for Q (8, 8): a dict of\n"
+             "certified, cost, lower_bound, gap, rounding, reach_translation [m], reach_rotation [rad].",
+             "Q"_a, "T_a_b"_a);
+}
+
+}  // namespace egocal::python

@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: 2026 the egocal developers
+# SPDX-License-Identifier: BSD-3-Clause
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import egocal
+
+PROGRAM = pathlib.Path(os.environ["EGOCAL_BIN_DIR"]) / "egocal"
+
+
+@pytest.fixture(scope="module")
+def drive(tmp_path_factory):
+    """Two TUM files of one simulated drive."""
+    folder = tmp_path_factory.mktemp("drive")
+    subprocess.run([PROGRAM, "simulate", "--out", folder, "--poses", "400", "--noise", "0.01"], check=True,
+                   stdout=subprocess.DEVNULL)
+    return sorted(folder.glob("*.tum"))
+
+
+def command_line(*arguments):
+    """What `egocal solve` prints; exit code 3 says that the answer should not be used."""
+    done = subprocess.run([PROGRAM, "solve", *arguments, "--json"], stdout=subprocess.PIPE)
+    assert done.returncode in (0, 3)
+    return json.loads(done.stdout)
+
+
+def matrices(rows):
+    T = np.tile(np.eye(4), (len(rows), 1, 1))
+    for i, (x, y, z, w) in enumerate(rows[:, 4:8]):
+        T[i, :3, :3] = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+        T[i, :3, 3] = rows[i, 1:4]
+    return T
+
+
+@pytest.mark.parametrize("options, flags", [({}, []), ({"weights": "equal"}, ["--weights", "equal"]),
+                                            ({"stride": 3, "weights": (1, 0.1)}, ["--stride", "3", "--weights", "1:0.1"])])
+def test_files_give_the_bits_of_the_command_line(drive, options, flags):
+    calibration = egocal.solve(str(drive[0]), drive[1], **options)
+    expected = command_line(*drive, *flags)
+    ours = json.loads(calibration.to_json())
+    for key in ours:
+        if key != "weights":
+            assert ours[key] == expected[key], key
+    assert calibration.certified
+    assert np.allclose(calibration.T_a_b @ calibration.T_b_a, np.eye(4), atol=1e-12)
+
+
+def test_arrays_and_matrices_give_the_answer_of_the_files(drive):
+    from_files = egocal.solve(*map(str, drive))
+    a, b = (np.loadtxt(file) for file in drive)
+    from_rows = egocal.solve(a, b)
+    assert np.allclose(from_rows.T_a_b, from_files.T_a_b, atol=1e-6)
+    from_matrices = egocal.solve((a[:, 0], matrices(a)), (b[:, 0], matrices(b)))
+    assert np.allclose(from_matrices.T_a_b, from_files.T_a_b, atol=1e-6)
+    shuffled = egocal.solve(np.random.default_rng(1).permutation(a), b)
+    assert (shuffled.T_a_b == from_rows.T_a_b).all()
+
+
+def test_bad_arguments_are_named(drive):
+    rows = np.loadtxt(drive[0])
+    with pytest.raises(ValueError, match="a: expected an .N, 8. array"):
+        egocal.solve(rows[:, :7], rows)
+    broken = rows.copy()
+    broken[7, 4:] = np.nan
+    with pytest.raises(ValueError, match="b: row 7"):
+        egocal.solve(rows, broken)
+    with pytest.raises(ValueError, match="weights"):
+        egocal.solve(rows, rows, weights="heavy")
+    with pytest.raises(egocal.Error, match="missing.tum"):
+        egocal.solve("/nonexistent/missing.tum", rows)
+    with pytest.raises(egocal.Error, match="no motion pairs"):
+        egocal.solve(rows, rows + np.array([1e6, 0, 0, 0, 0, 0, 0, 0]))
+
+
+def random_pose(rng, turn=0.5):
+    axis = rng.normal(size=3)
+    axis *= turn * rng.uniform(0.3, 1) / np.linalg.norm(axis)
+    angle = np.linalg.norm(axis)
+    K = np.cross(np.eye(3), axis / angle)
+    T = np.eye(4)
+    T[:3, :3] = np.eye(3) - np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+    T[:3, 3] = rng.normal(size=3)
+    return T
+
+
+def test_statistics_solve_and_proof():
+    rng = np.random.default_rng(2)
+    X = random_pose(rng)
+    whole, parts = egocal.Statistics(), [egocal.Statistics(), egocal.Statistics()]
+    for i in range(20):
+        A = random_pose(rng)
+        B = np.linalg.inv(X) @ A @ X
+        whole.add(A, B)
+        parts[i % 2].add(A, B)
+    assert len(whole) == 20 and len(parts[0] + parts[1]) == 20
+    Q = whole.cost_matrix()
+    assert np.allclose(egocal.solve_dual(Q), X, atol=1e-9)
+    assert np.allclose((parts[0] + parts[1]).cost_matrix(), Q)
+    assert egocal.verify(Q, X)["certified"]
+    X[0, 3] += 0.1
+    assert not egocal.verify(Q, X)["certified"]
+
+
+@pytest.mark.parametrize("n", [3, 5, 20])
+def test_hand_eye_has_opencvs_signature(n):
+    rng = np.random.default_rng(n)
+    X, target = random_pose(rng), random_pose(rng)
+    gripper = [random_pose(rng, 1.5) for _ in range(n)]
+    seen = [np.linalg.inv(G @ X) @ target for G in gripper]
+    R, t, details = egocal.calibrate_hand_eye([G[:3, :3] for G in gripper], [G[:3, 3] for G in gripper],
+                                              [S[:3, :3] for S in seen], [S[:3, 3:] for S in seen], details=True)
+    assert details["certified"] and details["all_observable"]
+    assert np.allclose(R, X[:3, :3], atol=1e-9) and np.allclose(t, X[:3, 3], atol=1e-9)
+
+
+def test_hand_eye_never_hides_what_it_cannot_know():
+    """Poses that all turn about one axis leave a direction open; the answer is finite and says so."""
+    rng = np.random.default_rng(5)
+    X, target = random_pose(rng), random_pose(rng)
+    gripper = []
+    for angle in np.linspace(0, 1, 8):
+        G = np.eye(4)
+        G[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        G[:3, 3] = rng.normal(size=3)
+        gripper.append(G)
+    seen = [np.linalg.inv(G @ X) @ target for G in gripper]
+    R, t, details = egocal.calibrate_hand_eye([G[:3, :3] for G in gripper], [G[:3, 3] for G in gripper],
+                                              [S[:3, :3] for S in seen], [S[:3, 3] for S in seen], details=True)
+    assert np.isfinite(R).all() and np.isfinite(t).all()
+    assert not details["all_observable"]
+    # no motion at all
+    same = [np.eye(4)] * 4
+    R, t, details = egocal.calibrate_hand_eye([S[:3, :3] for S in same], [S[:3, 3] for S in same],
+                                              [S[:3, :3] for S in same], [S[:3, 3] for S in same], details=True)
+    assert np.isfinite(R).all() and not any(details["observable"])
+    with pytest.raises(ValueError, match="three poses"):
+        egocal.calibrate_hand_eye([np.eye(3)] * 2, [np.zeros(3)] * 2, [np.eye(3)] * 2, [np.zeros(3)] * 2)
+    with pytest.raises(ValueError, match="gripper2base 1"):
+        egocal.calibrate_hand_eye([np.eye(3), np.full((3, 3), np.nan), np.eye(3)], [np.zeros(3)] * 3,
+                                  [np.eye(3)] * 3, [np.zeros(3)] * 3)
