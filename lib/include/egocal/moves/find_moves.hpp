@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "egocal/problem/problem.hpp"
+
+namespace egocal {
+
+struct MovesOptions {
+  /// Chance of a false alarm in one drive. The test's own statistics are approximate this far out
+  /// (docs/moves.md), hence a value far below what a user would accept.
+  double false_alarms = 1e-5;
+  /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
+  /// systematic errors nearly as large that depend on where and how the vehicle drives (0.11 deg between two
+  /// lidar odometries on KITTI 07, docs/moves.md).
+  double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
+  double least_translation = 0.01;                        ///< [m]
+  /// Blocks that a stretch of the drive is divided into; the test's work grows with their square.
+  std::size_t most_blocks = 64;
+  /// Fewer blocks say too little about the noise between them. Eight more than the parameters of two
+  /// extrinsics.
+  std::size_t least_blocks = 20;
+  std::size_t least_block_pairs = 8;  ///< pairs of one block, and at least three motions that share no time
+  std::size_t least_side_blocks = 2;  ///< blocks before and after a change
+  std::size_t most_moves = 16;        ///< a limit on time
+};
+
+enum class MoveKind {
+  bump,   ///< at one time
+  creep,  ///< evenly, all through the stretch between its neighbours
+};
+
+/// One change of the extrinsic during the drive.
+struct Move {
+  MoveKind kind = MoveKind::bump;
+  double time = 0;       ///< [s] from the begin of the first motion pair; of a creep: its begin
+  double earliest = 0;   ///< the change happened between these two, with about three standard deviations
+  double latest = 0;     ///< [s]; of a creep: its end
+  std::size_t pair = 0;  ///< index of the first motion pair after it
+  DualQuaternion before, after;    ///< T_a_b on both sides of it
+  std::array<double, 6> change{};  ///< x y z roll pitch yaw in sensor a's frame, after minus before [m, rad]
+  std::array<double, 6> stddev{};  ///< of the change [m, rad]; infinite where the motions do not show it
+  double false_alarm = 1;          ///< chance of such evidence in a drive without a change
+};
+
+/// The drive in stretches of one extrinsic each.
+struct MovesResult {
+  bool tested = false;      ///< false: too few motion pairs, nothing is known
+  std::vector<Move> moves;  ///< in the order of time
+};
+
+/// Whether and when the mount between two sensors moved. pairs: consecutive motion pairs of one drive, in the
+/// order of time, with poses that are not screw congruent already rejected (MotionPairing's are; in planar
+/// mode as seen from the planes). problem: mode, planes and balance; its blocks are not looked at. A pose
+/// that jumps (relocalisation) is a wrong motion, not a change: single motions and blocks carry little
+/// weight. Deterministic. Throws nothing; without motion nothing is found.
+MovesResult find_moves(std::span<const MotionPair> pairs, const Problem& problem,
+                       const MovesOptions& options = {});
+
+}  // namespace egocal

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "moves/change_test.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "statistics/distributions.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Blocks = std::span<const LinearBlock>;
+
+/// Residuals longer than this many medians count as if they were this long: one wrong block is not a change.
+constexpr double longest_residual = 3;
+/// Curvature that one side lacks is taken from the whole, this part of it: without any, its own optimum is
+/// not defined.
+constexpr double borrowed = 1e-6;
+
+Parameters zero_vector(Blocks blocks) {
+  return Parameters::Zero(blocks.front().g.size());
+}
+ParameterMatrix zero_matrix(Blocks blocks) {
+  return ParameterMatrix::Zero(blocks.front().g.size(), blocks.front().g.size());
+}
+
+ParameterMatrix curvature(Blocks blocks) {
+  ParameterMatrix sum = zero_matrix(blocks);
+  for (const LinearBlock& block : blocks) sum += block.H;
+  return sum;
+}
+
+/// One division of the blocks: both optima, and the residuals around them.
+struct Division {
+  ParameterMatrix H1, H2, H;          ///< curvature before, after, in all
+  std::vector<Parameters> gradients;  ///< with outlying residuals shortened
+  std::vector<Parameters> residuals;  ///< whitened
+  Parameters x1, x2;                  ///< optima
+};
+
+Division divide(Blocks blocks, std::size_t split) {
+  Division d;
+  d.H1 = curvature(blocks.first(split));
+  d.H2 = curvature(blocks.subspan(split));
+  d.H = d.H1 + d.H2;
+  const Eigen::LDLT<ParameterMatrix> before(ParameterMatrix(d.H1 + borrowed * d.H));
+  const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + borrowed * d.H));
+  for (const LinearBlock& block : blocks) d.gradients.push_back(block.g);
+  d.residuals.resize(blocks.size());
+  for (int pass = 0; pass < 3; ++pass) {
+    Parameters g1 = zero_vector(blocks), g2 = g1;
+    for (std::size_t i = 0; i < blocks.size(); ++i) (i < split ? g1 : g2) += d.gradients[i];
+    d.x1 = -before.solve(g1);
+    d.x2 = -after.solve(g2);
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const Parameters& x = i < split ? d.x1 : d.x2;
+      d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * x);
+      lengths.push_back(d.residuals[i].norm());
+    }
+    std::vector<double> sorted = lengths;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
+    const double limit = longest_residual * sorted[sorted.size() / 2];
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const Parameters& x = i < split ? d.x1 : d.x2;
+      if (lengths[i] > limit) d.residuals[i] *= limit / lengths[i];
+      d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
+    }
+  }
+  return d;
+}
+
+/// Covariance of the whitened residuals; two extrinsics were fitted.
+ParameterMatrix residual_covariance(const Division& d) {
+  ParameterMatrix sum = ParameterMatrix::Zero(d.x1.size(), d.x1.size());
+  for (const Parameters& z : d.residuals) sum += z * z.transpose();
+  return sum / (static_cast<double>(d.residuals.size()) - 2);
+}
+
+/// The evidence S, what one side's gradients lack to the common optimum, its variance and T^2 = S'V^-1 S.
+struct Evidence {
+  Parameters S;
+  ParameterMatrix V;
+  double t2 = 0;
+};
+
+Evidence evidence(Blocks blocks, std::size_t split, const Division& d) {
+  const Eigen::LDLT<ParameterMatrix> whole(d.H);
+  const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
+  const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
+  const ParameterMatrix C = residual_covariance(d);
+  ParameterMatrix C1 = zero_matrix(blocks), C2 = C1;
+  Parameters g1 = zero_vector(blocks), g2 = g1;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    (i < split ? C1 : C2) += blocks[i].root * C * blocks[i].root;
+    (i < split ? g1 : g2) += d.gradients[i];
+  }
+  Evidence result;
+  result.S = from_after * g2 - from_before * g1;
+  result.V = from_before * C1 * from_before.transpose() + from_after * C2 * from_after.transpose();
+  const Eigen::LDLT<ParameterMatrix> factor(result.V);
+  if (factor.info() == Eigen::Success && factor.isPositive())
+    result.t2 = result.S.dot(factor.solve(result.S));
+  if (!std::isfinite(result.t2)) result.t2 = 0;
+  return result;
+}
+
+/// How much more the sums of neighbouring residuals vary than those of independent ones would: noise that
+/// wanders shows here.
+double correlation_of(const Division& d, std::size_t split) {
+  const std::size_t count = d.residuals.size();
+  double single = 0;
+  for (const Parameters& z : d.residuals) single += z.squaredNorm();
+  if (!(single > 0)) return 1;
+  double largest = 1;
+  for (std::size_t length = 2; 5 * length <= count; length *= 2) {
+    double grouped = 0, used = 0;
+    const auto add_side = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i + length <= end; i += length) {
+        Parameters sum = Parameters::Zero(d.x1.size());
+        for (std::size_t k = i; k < i + length; ++k)
+          sum += d.residuals[k], used += d.residuals[k].squaredNorm();
+        grouped += sum.squaredNorm();
+      }
+    };
+    add_side(0, split);
+    add_side(split, count);
+    if (!(used > 0)) continue;
+    // the residuals of either side sum to about zero, which takes this part off the sums
+    const double lost = 2.0 * static_cast<double>(length) / static_cast<double>(count);
+    largest = std::max(largest, grouped / used / (1 - std::min(0.5, lost)));
+  }
+  return largest;
+}
+
+/// Reduction of the cost by an optimum of their own for blocks [from, to).
+class Gains {
+ public:
+  Gains(Blocks blocks, const Division& d) {
+    ParameterMatrix H = zero_matrix(blocks);
+    Parameters g = zero_vector(blocks);
+    H_.push_back(H);
+    g_.push_back(g);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      H_.push_back(H += blocks[i].H);
+      g_.push_back(g += d.gradients[i]);
+    }
+  }
+  double of(std::size_t from, std::size_t to) const {
+    const ParameterMatrix H = H_[to] - H_[from] + borrowed * H_.back();
+    const Parameters g = g_[to] - g_[from];
+    return g.dot(H.ldlt().solve(g));
+  }
+
+ private:
+  std::vector<ParameterMatrix> H_;
+  std::vector<Parameters> g_;
+};
+
+/// Time of a block, from -1 at the begin of the stretch to 1 at its end.
+double time_of(std::size_t block, std::size_t count) {
+  return 2 * (static_cast<double>(block) + 0.5) / static_cast<double>(count) - 1;
+}
+
+/// Least squares of an extrinsic that changes evenly from the first block to the last, x0 + t v, and the same
+/// test of v = 0 as of a step.
+void test_even_change(Blocks blocks, const Division& d, ChangeTest& test) {
+  const std::size_t count = blocks.size();
+  ParameterMatrix Ht = zero_matrix(blocks), Htt = Ht;
+  Parameters g = zero_vector(blocks), gt = g;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = time_of(i, count);
+    Ht += t * blocks[i].H;
+    Htt += t * t * blocks[i].H;
+    g += d.gradients[i];
+    gt += t * d.gradients[i];
+  }
+  const Eigen::LDLT<ParameterMatrix> whole(ParameterMatrix(d.H + borrowed * d.H));
+  const ParameterMatrix mean = whole.solve(Ht);  // inv(H) Ht
+  const ParameterMatrix slope_curvature = Htt - Ht * mean + borrowed * d.H;
+  const Eigen::LDLT<ParameterMatrix> slope(slope_curvature);
+  const Parameters S = gt - mean.transpose() * g;
+  const Parameters v = -slope.solve(S);
+  const Parameters x0 = -whole.solve(g) - mean * v;
+  test.begin = x0 - v;
+  test.end = x0 + v;
+  test.even_change = g.dot(whole.solve(g)) + S.dot(slope.solve(S));
+
+  Division even = d;
+  for (std::size_t i = 0; i < count; ++i)
+    even.residuals[i] =
+        blocks[i].inverse_root * (d.gradients[i] + blocks[i].H * (x0 + time_of(i, count) * v));
+  const ParameterMatrix C = residual_covariance(even);
+  ParameterMatrix V = zero_matrix(blocks);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ParameterMatrix weight =
+        time_of(i, count) * ParameterMatrix::Identity(C.rows(), C.cols()) - mean.transpose();
+    V += weight * (blocks[i].root * C * blocks[i].root) * weight.transpose();
+  }
+  const double correlation = correlation_of(even, count);
+  const Eigen::LDLT<ParameterMatrix> factor(V);
+  if (factor.info() != Eigen::Success || !factor.isPositive()) return;
+  const double t2 = S.dot(factor.solve(S)) / correlation;
+  if (!std::isfinite(t2)) return;
+  test.even_false_alarm =
+      detail::hotelling_exceeded(t2, static_cast<double>(S.size()), static_cast<double>(count) - 2);
+  test.even_covariance = 4 * correlation * slope.solve(slope.solve(V).transpose());
+}
+
+}  // namespace
+
+ChangeTest test_change(Blocks blocks, std::size_t least_side) {
+  ChangeTest test;
+  const std::size_t count = blocks.size();
+  if (count < 2 * least_side + 1 || least_side == 0) return test;
+  double largest = 0;
+  for (std::size_t split = least_side; split + least_side <= count; ++split) {
+    const double t2 = evidence(blocks, split, divide(blocks, split)).t2;
+    if (t2 > largest) largest = t2, test.split = split;
+  }
+  if (test.split == 0) return test;
+
+  const Division d = divide(blocks, test.split);
+  const Evidence found = evidence(blocks, test.split, d);
+  test.correlation = correlation_of(d, test.split);
+  const double p = static_cast<double>(d.x1.size());
+  const double places = static_cast<double>(count + 1 - 2 * least_side);
+  test.false_alarm = std::min(
+      1.0, places * hotelling_exceeded(found.t2 / test.correlation, p, static_cast<double>(count) - 2));
+  test.change = d.x2 - d.x1;
+  // S = M change with M = H1 inv(H) H2
+  const ParameterMatrix M = d.H.ldlt().solve(d.H2);
+  const ParameterMatrix harmonic = d.H1 * M + borrowed * d.H;
+  const Eigen::LDLT<ParameterMatrix> inverse(harmonic);
+  test.covariance = test.correlation * inverse.solve(inverse.solve(found.V).transpose());
+
+  const Gains gains(blocks, d);
+  test.one_step = gains.of(0, test.split) + gains.of(test.split, count);
+  for (std::size_t i = least_side; i + 2 * least_side <= count; ++i)
+    for (std::size_t k = i + least_side; k + least_side <= count; ++k)
+      test.two_steps = std::max(test.two_steps, gains.of(0, i) + gains.of(i, k) + gains.of(k, count));
+  test_even_change(blocks, d, test);
+  return test;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/moves/find_moves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "moves/change_test.hpp"
+#include "moves/linear_blocks.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal {
+
+namespace {
+
+using detail::ChangeTest;
+using detail::Linearised;
+using detail::Parameters;
+using Pairs = std::span<const MotionPair>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The change is looked for where the cost of both answers together is within this of its least, in units of
+/// the noise of one parameter: three standard deviations.
+constexpr double time_interval = 9;
+
+/// From tangent coordinates to (dt, dtheta) in sensor a's frame [m, rad], with unit lengths of the block.
+detail::Vector6d in_frame_a(const Parameters& x, double length, const Problem& problem) {
+  detail::Vector6d result = detail::Vector6d::Zero();
+  if (problem.mode == Mode::spatial) {
+    result = x;
+  } else {
+    result << x[0], x[1], 0, 0, 0, x[2];
+  }
+  result.head<3>() *= length;
+  return result;
+}
+
+class Finder {
+ public:
+  Finder(Pairs pairs, const Problem& problem, const MovesOptions& options)
+      : pairs_(pairs), problem_(problem), options_(options), overlap_(detail::overlap_of(pairs)) {}
+
+  MovesResult run() {
+    MovesResult result;
+    if (blocks_in(0, pairs_.size()) < options_.least_blocks) return result;
+    result.tested = true;
+    search(0, pairs_.size());
+    settle();
+    for (const Found& found : found_) result.moves.push_back(described(found));
+    return result;
+  }
+
+ private:
+  struct Found {
+    std::size_t from = 0, to = 0;  ///< the stretch that was tested, pairs
+    std::size_t at = 0;            ///< first pair after
+    ChangeTest test;
+    Linearised stretch;
+    bool creep = false;
+  };
+
+  std::size_t blocks_in(std::size_t from, std::size_t to) const {
+    const std::size_t least = std::max(options_.least_block_pairs, 3 * overlap_);
+    return std::min(options_.most_blocks, (to - from) / std::max<std::size_t>(1, least));
+  }
+
+  /// The best change within the stretch, if it is significant and large enough to report.
+  std::optional<Found> best(std::size_t from, std::size_t to) const {
+    const std::size_t count = blocks_in(from, to);
+    if (count < options_.least_blocks) return std::nullopt;
+    Found found;
+    found.from = from;
+    found.to = to;
+    found.stretch = detail::linearise(pairs_.subspan(from, to - from), problem_, count);
+    if (found.stretch.blocks.empty()) return std::nullopt;
+    found.test = detail::test_change(found.stretch.blocks, options_.least_side_blocks);
+    if (found.test.split == 0) return std::nullopt;
+    found.creep = found.test.even_change > found.test.two_steps &&
+                  found.test.even_false_alarm <= 0.5 * options_.false_alarms;
+    if (found.creep) {
+      found.test.false_alarm = 2 * found.test.even_false_alarm;
+      found.test.change = found.test.end - found.test.begin;
+      found.test.covariance = found.test.even_covariance;
+    }
+    if (!(found.test.false_alarm <= options_.false_alarms) || !large_enough(found)) return std::nullopt;
+    found.at = from + found.stretch.begin[found.test.split];
+    return found;
+  }
+
+  bool large_enough(const Found& found) const {
+    const Eigen::Index shifts = problem_.mode == Mode::planar ? 2 : 3;
+    const Parameters& x = found.test.change;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const double shown = std::abs(x[i]) - 2 * std::sqrt(std::max(0.0, found.test.covariance(i, i)));
+      const double least =
+          i < shifts ? options_.least_translation / found.stretch.length : options_.least_rotation;
+      if (shown >= least) return true;
+    }
+    return false;
+  }
+
+  /// Divides the stretch until no part shows a change.
+  void search(std::size_t from, std::size_t to) {
+    if (found_.size() >= options_.most_moves) return;
+    const std::optional<Found> found = best(from, to);
+    if (!found) return;
+    found_.push_back(*found);
+    if (found->creep) return;
+    search(from, found->at);
+    search(found->at, to);
+  }
+
+  /// Every change once more between its neighbours; what is no longer significant there was an echo of them.
+  void settle() {
+    std::sort(found_.begin(), found_.end(), [](const Found& x, const Found& y) { return x.at < y.at; });
+    for (std::size_t i = 0; i < found_.size();) {
+      if (found_[i].creep || found_.size() == 1) {
+        ++i;
+        continue;
+      }
+      const std::size_t from = i > 0 ? found_[i - 1].at : 0;
+      const std::size_t to = i + 1 < found_.size() ? found_[i + 1].at : pairs_.size();
+      const std::optional<Found> again = best(from, to);
+      if (blocks_in(from, to) >= options_.least_blocks && !again) {
+        found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
+        continue;
+      }
+      if (again && !again->creep) found_[i] = *again;
+      ++i;
+    }
+  }
+
+  /// Minimiser over pairs [from, to) (planar mode: T_p).
+  DualQuaternion minimiser(std::size_t from, std::size_t to) const {
+    const std::size_t count = std::clamp<std::size_t>((to - from) / 16, 1, options_.most_blocks);
+    return detail::gated_blocks(pairs_.subspan(from, to - from), problem_, count).q;
+  }
+  DualQuaternion extrinsic(const DualQuaternion& q) const {
+    if (problem_.mode == Mode::spatial) return canonical_sign(q);
+    return extrinsic_from_planar(q, plane_frame(problem_.plane_a), plane_frame(problem_.plane_b));
+  }
+
+  double seconds(std::int64_t time_us) const {
+    return 1e-6 * static_cast<double>(time_us - pairs_.front().begin_us);
+  }
+
+  /// First pair after the change and the least and most that fit about as well, by the cost of both answers.
+  struct Place {
+    std::size_t at = 0, earliest = 0, latest = 0;
+  };
+  Place place(const Found& found, const DualQuaternion& before, const DualQuaternion& after) const {
+    std::vector<double> first, second;
+    for (std::size_t i = found.from; i < found.to; ++i) {
+      first.push_back(detail::pair_residual(pairs_[i], before, problem_.balance));
+      second.push_back(detail::pair_residual(pairs_[i], after, problem_.balance));
+    }
+    // of the answer that fits better; longer ones do not decide
+    std::vector<double> fits;
+    for (std::size_t i = 0; i < first.size(); ++i) fits.push_back(std::min(first[i], second[i]));
+    std::vector<double> sorted = fits;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
+    const double median = sorted[sorted.size() / 2];
+    constexpr double longest = 25;
+    double noise = 0;
+    for (const double fit : fits) noise += std::min(fit, longest * median);
+    const double parameters = problem_.mode == Mode::planar ? 3 : 6;
+    noise /= parameters * static_cast<double>(fits.size());
+
+    double sum = 0;
+    for (const double value : second) sum += std::min(value, longest * median);
+    std::vector<double> total = {sum};
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      sum += std::min(first[i], longest * median) - std::min(second[i], longest * median);
+      total.push_back(sum);
+    }
+    const std::size_t margin = std::min(options_.least_block_pairs, total.size() / 2 - 1);
+    const auto least = std::min_element(total.begin() + static_cast<std::ptrdiff_t>(margin),
+                                        total.end() - static_cast<std::ptrdiff_t>(margin));
+    const double limit =
+        *least + time_interval * noise * found.test.correlation * static_cast<double>(overlap_);
+    Place result;
+    result.at = found.from + static_cast<std::size_t>(least - total.begin());
+    result.earliest = result.latest = result.at;
+    for (std::size_t i = 0; i < total.size(); ++i) {
+      if (total[i] > limit) continue;
+      result.earliest = std::min(result.earliest, found.from + i);
+      result.latest = std::max(result.latest, found.from + i);
+    }
+    return result;
+  }
+
+  Move described(const Found& found) const {
+    Move move;
+    move.false_alarm = found.test.false_alarm;
+    if (found.creep) {
+      move.kind = MoveKind::creep;
+      const DualQuaternion q = detail::in_units_of(1 / found.stretch.length, found.stretch.q);
+      const auto moved = [&](const Parameters& x) {
+        return extrinsic(detail::frame_a_moved(q, in_frame_a(x, found.stretch.length, problem_)));
+      };
+      move.before = moved(found.test.begin);
+      move.after = moved(found.test.end);
+      move.pair = found.from;
+      move.time = move.earliest = seconds(pairs_[found.from].begin_us);
+      move.latest = seconds(pairs_[found.to - 1].end_us);
+    } else {
+      DualQuaternion before = minimiser(found.from, found.at), after = minimiser(found.at, found.to);
+      Place at = place(found, before, after);
+      // once more, with the answers of the better division
+      if (at.at != found.at && at.at > found.from && at.at < found.to) {
+        before = minimiser(found.from, at.at);
+        after = minimiser(at.at, found.to);
+        at = place(found, before, after);
+      }
+      move.before = extrinsic(before);
+      move.after = extrinsic(after);
+      move.pair = at.at;
+      const auto middle = [&](std::size_t i) {
+        return 0.5 * (seconds(pairs_[i].begin_us) + seconds(pairs_[i].end_us));
+      };
+      move.time = 0.5 * (middle(at.at - 1) + middle(at.at));
+      move.earliest = seconds(pairs_[at.earliest > 0 ? at.earliest - 1 : 0].begin_us);
+      move.latest = seconds(pairs_[std::min(at.latest, pairs_.size() - 1)].end_us);
+    }
+    describe_change(found, move);
+    return move;
+  }
+
+  void describe_change(const Found& found, Move& move) const {
+    const detail::Vector6d change = detail::frame_a_difference(move.before, move.after);
+    move.stddev.fill(infinity);
+    const auto& C = found.test.covariance;
+    detail::Vector6d variance = detail::Vector6d::Constant(infinity);
+    if (problem_.mode == Mode::spatial) {
+      variance = C.diagonal();
+    } else {
+      // plane a's axes in sensor a; the directions that the planes fix have no variance of their own
+      const Eigen::Matrix3d R = to_pose(plane_frame(problem_.plane_a)).rotation.toRotationMatrix();
+      Eigen::Matrix3d shift = Eigen::Matrix3d::Zero();
+      shift.topLeftCorner<2, 2>() = C.topLeftCorner(2, 2);
+      variance.head<3>() = (R * shift * R.transpose()).diagonal();
+      variance.tail<3>() = C(2, 2) * R.col(2).cwiseAbs2();
+    }
+    variance.head<3>() *= found.stretch.length * found.stretch.length;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      move.change[i] = change[k];
+      move.stddev[i] = std::sqrt(std::max(0.0, variance[k]));
+    }
+  }
+
+  Pairs pairs_;
+  const Problem& problem_;
+  const MovesOptions& options_;
+  std::size_t overlap_;
+  std::vector<Found> found_;
+};
+
+}  // namespace
+
+MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& options) {
+  if (pairs.size() < 2) return {};
+  return Finder(pairs, problem, options).run();
+}
+
+}  // namespace egocal

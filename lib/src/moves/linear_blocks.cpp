@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "moves/linear_blocks.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "egocal/problem/constraints.hpp"
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// A pair that fits this many times worse than the median of its block is left out: ten standard deviations,
+/// beyond the tails of odometry and below the jumps that matter.
+constexpr double most_residual = 100;
+
+/// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.
+constexpr double raised = 0.01;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+DualQuaternion minimiser(const std::vector<Statistics>& blocks, const Problem& problem) {
+  const Matrix8d Q = cost_matrix(total(blocks), problem.balance);
+  return (problem.mode == Mode::planar ? solve_planar(Q) : solve_dual(Q)).q;
+}
+
+/// The directions in which an extrinsic can move, columns.
+Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6> directions(const DualQuaternion& q, Mode mode) {
+  const Matrix86d all = frame_a_basis(q);
+  if (mode == Mode::spatial) return all;
+  Eigen::Matrix<double, 8, 3> in_plane;
+  in_plane << all.col(0), all.col(1), all.col(5);
+  return in_plane;
+}
+
+}  // namespace
+
+double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Balance& balance) {
+  const DualQuaternion a = canonical_sign(pair.a) * q, b = q * canonical_sign(pair.b);
+  return balance.rotation * (a.real - b.real).squaredNorm() +
+         balance.translation * (a.dual - b.dual).squaredNorm();
+}
+
+std::size_t overlap_of(std::span<const MotionPair> pairs) {
+  std::vector<double> counts;
+  for (std::size_t i = 0; i < std::min<std::size_t>(pairs.size(), 200); ++i) {
+    std::size_t next = i + 1;
+    while (next < pairs.size() && pairs[next].begin_us >= pairs[i].begin_us &&
+           pairs[next].begin_us < pairs[i].end_us)
+      ++next;
+    counts.push_back(static_cast<double>(next - i));
+  }
+  return counts.empty() ? 1 : static_cast<std::size_t>(median(counts));
+}
+
+Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count) {
+  Gated result;
+  result.blocks.resize(count);
+  const auto begin = [&](std::size_t block) { return block * pairs.size() / count; };
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t i = begin(k); i < begin(k + 1); ++i) result.blocks[k].add(pairs[i]);
+  result.q = minimiser(result.blocks, problem);
+  bool changed = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> residuals;
+    for (std::size_t i = begin(k); i < begin(k + 1); ++i)
+      residuals.push_back(pair_residual(pairs[i], result.q, problem.balance));
+    if (residuals.size() < 5) continue;
+    const double limit = most_residual * median(residuals);
+    if (*std::max_element(residuals.begin(), residuals.end()) <= limit) continue;
+    changed = true;
+    result.blocks[k] = {};
+    for (std::size_t i = begin(k); i < begin(k + 1); ++i)
+      if (residuals[i - begin(k)] <= limit) result.blocks[k].add(pairs[i]);
+  }
+  if (changed) result.q = minimiser(result.blocks, problem);
+  return result;
+}
+
+Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count) {
+  Linearised result;
+  const Gated gated = gated_blocks(pairs, problem, count);
+  const Statistics all = total(gated.blocks);
+  const Matrix8d Q_metres = cost_matrix(all, problem.balance);
+  if (!Q_metres.allFinite() || !(Q_metres.diagonal().maxCoeff() > 0)) return result;
+  result.length = length_scale(Q_metres);
+  result.q = in_units_of(result.length, gated.q);
+  const Matrix8d Q = in_units_of(result.length, Q_metres);
+  const Multipliers lambda = least_squares_multipliers(Q, result.q);
+  const auto T = directions(result.q, problem.mode);
+  const Vector8d v = result.q.vec();
+  const ParameterMatrix H_mean = T.transpose() * lagrangian_matrix(Q, lambda) * T;
+  const double whole = static_cast<double>(gated.blocks.size());
+  for (std::size_t k = 0; k < gated.blocks.size(); ++k) {
+    const Statistics& statistics = gated.blocks[k];
+    const double share = statistics.weight / all.weight * whole;  // 1 for blocks of equal weight
+    const Matrix8d Q_block = in_units_of(result.length, cost_matrix(statistics, problem.balance));
+    LinearBlock block;
+    block.g = share * (T.transpose() * (Q_block * v));
+    block.H = share * (T.transpose() * lagrangian_matrix(Q_block, lambda) * T);
+    const ParameterMatrix shape = block.H + raised * H_mean;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(shape);
+    const double floor = std::max(1e-12 * H_mean.trace(), 1e-300);
+    const Parameters roots = eigen.eigenvalues().cwiseMax(floor).cwiseSqrt();
+    block.root = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();
+    block.inverse_root =
+        eigen.eigenvectors() * roots.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    result.blocks.push_back(std::move(block));
+    result.begin.push_back(k * pairs.size() / count);
+  }
+  return result;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "egocal/moves/find_moves.hpp"
+#include "egocal/problem/problem.hpp"
+
+namespace egocal::detail {
+
+// Six parameters, or three in planar mode; never on the heap.
+using Parameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+using ParameterMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+/// One block of a drive, around the optimum q of the whole: J(q moved by x) = J + 2 g'x + x'Hx. x: dt, then
+/// dtheta in sensor a's frame (planar mode: x, y, yaw in plane a's); lengths in `Linearised::length`.
+struct LinearBlock {
+  Parameters g;
+  ParameterMatrix H;
+  ParameterMatrix root, inverse_root;  ///< of H raised a little: noise in g has about this shape
+};
+
+struct Linearised {
+  std::vector<LinearBlock> blocks;
+  std::vector<std::size_t> begin;  ///< index of each block's first pair
+  DualQuaternion q;                ///< minimiser of (18) over all blocks (planar mode: T_p), in `length`
+  double length = 1;               ///< [m]
+};
+
+/// Motions of two sensors fit an extrinsic: |a q - q b|^2, weighted.
+double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Balance& balance);
+
+/// Pairs that share time with the next ones: how many motions one step overlaps with.
+std::size_t overlap_of(std::span<const MotionPair> pairs);
+
+/// Statistics of the pairs, without those that fit far worse than their neighbours do.
+struct Gated {
+  std::vector<Statistics> blocks;
+  DualQuaternion q;  ///< minimiser (planar mode: T_p)
+};
+Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks);
+
+/// Empty blocks where there is no motion.
+Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks);
+
+}  // namespace egocal::detail

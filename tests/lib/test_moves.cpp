@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Mounts that move are found, with their time; what is not a moved mount is not called one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "../support/real_drives.hpp"
+#include "../support/simulated_drive.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/moves/find_moves.hpp"
+#include "statistics/distributions.hpp"
+
+namespace egocal {
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+SimulationOptions drive(Terrain terrain, std::uint64_t seed, double seconds = 120) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.seed = seed;
+  options.poses = static_cast<int>(10 * seconds) + 1;
+  options.relative_noise = 0.01;
+  options.T_vehicle_sensor = {testing::T_vehicle_a, testing::T_vehicle_b};
+  options.faults.resize(2);
+  return options;
+}
+
+/// Half a degree and 3 cm about an axis that depends on the seed.
+MountChange bump(double time, std::uint64_t seed, double size = 1) {
+  const double s = static_cast<double>(seed);
+  const Eigen::Vector3d axis =
+      Eigen::Vector3d(std::sin(s), std::cos(2 * s), std::sin(3 * s + 1)).normalized();
+  return {time, time, {rotation_exp(size * 0.5 / degrees * axis), size * 0.03 * axis}};
+}
+
+MovesResult moves_of(const Trajectory& a, const Trajectory& b, PairingOptions pairing = {},
+                     const MovesOptions& options = {}) {
+  const Choice choice = pair_motions(pairing, a, b).drive.choice();
+  pairing.stride = choice.stride;
+  pairing.balance = choice.balance;
+  Problem problem;
+  problem.mode = pairing.mode;
+  problem.plane_a = pairing.plane_a;
+  problem.plane_b = pairing.plane_b;
+  problem.balance = choice.balance;
+  return find_moves(pair_motions(pairing, a, b).pairs, problem, options);
+}
+
+MovesResult moves_of(const SimulationOptions& options) {
+  const auto trajectories = simulate(options);
+  return moves_of(trajectories[0], trajectories[1]);
+}
+
+TEST(Distributions, TailsOfFAreRight) {
+  for (const double f : {0.1, 1.0, 4.0, 50.0}) {
+    EXPECT_NEAR(detail::f_exceeded(f, 1, 1), 1 - 2 / std::numbers::pi * std::atan(std::sqrt(f)), 1e-11) << f;
+    // P(F(d, 2) > f) = 1 - (d f / (2 + d f))^(d / 2)
+    EXPECT_NEAR(detail::f_exceeded(f, 6, 2), 1 - std::pow(6 * f / (2 + 6 * f), 3), 1e-11) << f;
+  }
+  EXPECT_EQ(detail::f_exceeded(-1, 6, 40), 1);
+  EXPECT_EQ(detail::f_exceeded(1, 6, 0), 1);
+  // P(F(2, d) > f) = (1 + 2 f / d)^(-d / 2)
+  for (const double f : {0.1, 1.0, 5.0, 20.0})
+    EXPECT_NEAR(detail::f_exceeded(f, 2, 30) / std::pow(1 + 2 * f / 30, -15), 1, 1e-10) << f;
+}
+
+TEST(Moves, ABumpIsFoundWithItsTimeAndSize) {
+  int found = 0, in_interval = 0, drives = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+      for (const double part : {0.2, 0.5, 0.8}) {
+        ++drives;
+        SimulationOptions options = drive(terrain, 100 + seed, 240);
+        const double time = part * 240 + 0.05;
+        options.faults[1].mount_changes = {bump(time, seed)};
+        const MovesResult result = moves_of(options);
+        EXPECT_TRUE(result.tested);
+        EXPECT_LE(result.moves.size(), 1u);
+        if (result.moves.size() != 1) continue;
+        ++found;
+        const Move& move = result.moves.front();
+        EXPECT_EQ(move.kind, MoveKind::bump);
+        EXPECT_LT(std::abs(move.time - time), 15);
+        EXPECT_LE(move.earliest, move.time);
+        EXPECT_GE(move.latest, move.time);
+        in_interval += move.earliest - 0.5 <= time && time <= move.latest + 0.5;
+        const auto error =
+            extrinsic_error(to_dual_quaternion(true_extrinsic(options, 0, 1, 239)), move.after);
+        EXPECT_LT(error.rotation * degrees, 0.3);
+      }
+    }
+  }
+  EXPECT_GE(found, drives - 2);
+  EXPECT_GE(in_interval, found - 1);
+}
+
+TEST(Moves, AStillMountRaisesNoAlarmWhateverTheNoise) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    for (const Terrain terrain : {Terrain::rough, Terrain::free, Terrain::flat})
+      for (int noise = 0; noise < 3; ++noise) {
+        SimulationOptions options = drive(terrain, 200 + seed);
+        options.random_walk = noise == 1;
+        options.heavy_tails = noise == 2;
+        EXPECT_TRUE(moves_of(options).moves.empty()) << seed << " noise " << noise;
+      }
+}
+
+TEST(Moves, AJumpOfOneOdometryIsNotAMovedMount) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SimulationOptions options = drive(Terrain::rough, 300 + seed);
+    options.faults[1].jumps = {{40.05, {rotation_exp({0, 0, 0.1}), {0.5, 0.2, 0}}},
+                               {80.05, {rotation_exp({0.01, 0, 0}), {0, 0.1, 0}}}};
+    EXPECT_TRUE(moves_of(options).moves.empty()) << seed;
+  }
+}
+
+TEST(Moves, SeveralBumpsAreToldApart) {
+  SimulationOptions options = drive(Terrain::free, 400, 400);
+  for (int i = 0; i < 3; ++i)
+    options.faults[1].mount_changes.push_back(bump(100 * (i + 1) + 0.05, static_cast<std::uint64_t>(i), 3));
+  const MovesResult result = moves_of(options);
+  ASSERT_EQ(result.moves.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(result.moves[i].kind, MoveKind::bump);
+    EXPECT_NEAR(result.moves[i].time, 100.0 * static_cast<double>(i + 1), 3);
+  }
+}
+
+TEST(Moves, SlowCreepIsCalledThat) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    SimulationOptions options = drive(terrain, 500, 300);
+    options.faults[1].mount_changes = {{0, 300, {rotation_exp({0, 2 / degrees, 0}), {0, 0, 0}}}};
+    const MovesResult result = moves_of(options);
+    ASSERT_EQ(result.moves.size(), 1u);
+    const Move& move = result.moves.front();
+    EXPECT_EQ(move.kind, MoveKind::creep);
+    const Eigen::Vector3d turned(move.change[3], move.change[4], move.change[5]);
+    EXPECT_NEAR(turned.norm() * degrees, 2, 0.4);
+  }
+}
+
+TEST(Moves, ALargeBumpHalfWayDoesNotHideBehindTheOutlierTest) {
+  SimulationOptions options = drive(Terrain::rough, 600);
+  options.faults[1].mount_changes = {{60.05, 60.05, {rotation_exp({0, 0, 10 / degrees}), {0.3, 0, 0}}}};
+  const MovesResult result = moves_of(options);
+  ASSERT_EQ(result.moves.size(), 1u);
+  EXPECT_NEAR(result.moves.front().time, 60, 1.5);
+  const Move& move = result.moves.front();
+  EXPECT_LT(
+      extrinsic_error(to_dual_quaternion(true_extrinsic(options, 0, 1, 0)), move.before).rotation * degrees,
+      0.5);
+  EXPECT_LT(
+      extrinsic_error(to_dual_quaternion(true_extrinsic(options, 0, 1, 119)), move.after).rotation * degrees,
+      0.5);
+}
+
+TEST(Moves, PlanarModeFindsAYaw) {
+  SimulationOptions options = drive(Terrain::flat, 700, 200);
+  options.T_vehicle_sensor = {Pose{Eigen::Quaterniond::Identity(), {1, 0, 1.8}},
+                              Pose{rotation_exp({0, 0, 0.4}), {1.5, -0.4, 1.5}}};
+  options.faults[1].mount_changes = {{100.05, 100.05, {rotation_exp({0, 0, 1 / degrees}), {0, 0, 0}}}};
+  const auto trajectories = simulate(options);
+  PairingOptions planar;
+  planar.mode = Mode::planar;
+  planar.plane_a = {{0, 0, 1}, -1.8};
+  planar.plane_b = {{0, 0, 1}, -1.5};
+  const MovesResult result = moves_of(trajectories[0], trajectories[1], planar);
+  ASSERT_EQ(result.moves.size(), 1u);
+  EXPECT_NEAR(result.moves.front().time, 100, 5);
+  EXPECT_NEAR(result.moves.front().change[5] * degrees, 1, 0.15);
+}
+
+TEST(Moves, TooShortADriveIsNotJudged) {
+  SimulationOptions options = drive(Terrain::rough, 800, 5);
+  EXPECT_FALSE(moves_of(options).tested);
+  EXPECT_FALSE(find_moves({}, {}).tested);
+  // nothing moves at all
+  const std::vector<MotionPair> still(1000);
+  EXPECT_TRUE(find_moves(still, {}).moves.empty());
+}
+
+TEST(Moves, TheSameDriveGivesTheSameBits) {
+  SimulationOptions options = drive(Terrain::rough, 900);
+  options.faults[1].mount_changes = {bump(60, 1, 2)};
+  const MovesResult x = moves_of(options), y = moves_of(options);
+  ASSERT_EQ(x.moves.size(), 1u);
+  ASSERT_EQ(y.moves.size(), 1u);
+  EXPECT_EQ(x.moves[0].false_alarm, y.moves[0].false_alarm);
+  EXPECT_EQ(x.moves[0].change, y.moves[0].change);
+}
+
+TEST(Moves, NoRealDriveRaisesAnAlarm) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " EGOCAL_DATA_DIR;
+  std::vector<testing::Streams> drives = {testing::euroc(), testing::robot_arm(),
+                                          testing::kitti_asynchronous()};
+  for (const char* name : {"05", "07"}) {
+    drives.push_back(testing::kitti(name));
+    drives.push_back(testing::planar(testing::kitti(name)));
+    drives.push_back(testing::kitti(name, "velodyne_aloam"));
+    testing::Streams lidars = testing::kitti(name);
+    lidars.b = testing::real_trajectory(std::string("kitti_") + name + "/velodyne_aloam.tum");
+    drives.push_back(lidars);
+  }
+  for (const auto& [a, b] : {std::pair{"mars", "nero"}, std::pair{"caligula", "nero"}}) {
+    testing::Streams tango;
+    tango.a = testing::real_trajectory(std::string("eth_tango_easy/") + a + ".tum");
+    tango.b = testing::real_trajectory(std::string("eth_tango_easy/") + b + ".tum");
+    drives.push_back(tango);
+  }
+  for (std::size_t i = 0; i < drives.size(); ++i)
+    EXPECT_TRUE(moves_of(drives[i].a, drives[i].b, drives[i].options).moves.empty()) << i;
+}
+
+TEST(Moves, ABumpOfARealCameraIsFound) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " EGOCAL_DATA_DIR;
+  testing::Streams streams = testing::kitti("07");
+  const std::size_t half = streams.b.size() / 2;
+  const DualQuaternion change = to_dual_quaternion({rotation_exp({0, 1.5 / degrees, 0}), {0.05, 0, 0}});
+  for (std::size_t i = half; i < streams.b.size(); ++i)
+    streams.b[i].pose = normalized(streams.b[i].pose * change);
+  const double time = 1e-6 * static_cast<double>(streams.b[half].time_us - streams.b.front().time_us);
+  const MovesResult result = moves_of(streams.a, streams.b, streams.options);
+  ASSERT_EQ(result.moves.size(), 1u);
+  EXPECT_NEAR(result.moves.front().time, time, 5);
+}
+
+}  // namespace
+}  // namespace egocal
