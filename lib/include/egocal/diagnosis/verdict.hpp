@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "egocal/geometry/pose.hpp"
+
+namespace egocal {
+
+/// Whether an answer can be used. A certificate says that no other extrinsic has a lower cost; it does not say
+/// that the motions are those of rigidly mounted sensors. This does.
+enum class Verdict {
+  good,           ///< the motions agree, and every direction is known well enough
+  incomplete,     ///< the motions agree; some direction is not known well enough yet
+  doubtful,       ///< the motions agree badly, or another reading of them would give another answer
+  contradictory,  ///< the motions contradict each other, or another explanation fits clearly better
+};
+std::string_view name(Verdict verdict);
+
+/// Agreement in one consecutive tenth of the drive.
+struct FitTenth {
+  double begin = 0, end = 0;       ///< since the first pose of a [s]
+  double rotation_median = 0;      ///< residual [rad]
+  double translation_median = 0;   ///< residual [m]
+  double translation_relative = 0; ///< residual as a part of the distance travelled
+};
+
+/// How well the answer explains the motions: residuals of R_a T = T R_b and of the translations, of motions
+/// over `motion_seconds`. Gross outliers among them count; the medians do not feel them.
+struct Fit {
+  double rotation_median = 0, rotation_95 = 0;        ///< [rad]
+  double translation_median = 0, translation_95 = 0;  ///< [m]
+  double translation_relative_median = 0;             ///< residual / mean length of the two motions
+  double length_ratio = 1;   ///< distance of b / of a; far from 1: units, or a camera without scale
+  double turning_ratio = 1;  ///< angle of b / of a; 1 for every rigid mounting
+  double motion_seconds = 0; ///< typical duration of the motions [s]
+  std::vector<FitTenth> tenths;
+};
+
+/// An explanation that fits better than the streams as given, or as well and with another answer.
+struct Finding {
+  std::string code;    ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
+                       ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
+                       ///< too_little_motion
+  bool certain = false;      ///< it fits clearly better; otherwise it cannot be told apart
+  std::string message;       ///< what was found, one sentence
+  std::string remedy;        ///< option or action that cures it
+  double improvement = 1;    ///< squared residuals as given / under this explanation
+  std::optional<Pose> T_a_b; ///< the answer under this explanation, where it has one
+  std::optional<double> time;  ///< mount_moved: since the first pose of a [s]
+  std::optional<double> value; ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
+                               ///< clock_drift: rate of b's clock against a's [s/s]
+};
+
+/// How well each direction is to be known.
+struct GoalOptions {
+  double rotation = 0;     ///< one standard deviation of roll, pitch and yaw [rad]
+  double translation = 0;  ///< of x, y and z [m]
+};
+
+/// Where the drive is on its way to the goal.
+struct Goal {
+  bool reached = false;
+  std::vector<std::string> missing;    ///< of x y z roll pitch yaw, worst first
+  std::optional<double> seconds_left;  ///< at this kind of driving; empty where more of it would not help
+  std::string next;                    ///< the manoeuvre that helps most, for a driver; empty when reached
+};
+
+/// All of it.
+struct Diagnosis {
+  Verdict verdict = Verdict::incomplete;
+  std::string reason;  ///< of the verdict, one line
+  Fit fit;
+  std::vector<Finding> findings;  ///< most important first
+  std::optional<Goal> goal;       ///< where one was given
+};
+
+/// When an answer counts as known or as wrong.
+struct DiagnosisOptions {
+  bool enabled = true;  ///< of calibrate(): without it the verdict knows of no other explanation
+  /// An answer is not called good where a direction may be off by more than this (1.96 standard deviations),
+  /// and is called contradictory where a better explanation has an answer further away [rad, m]. What users
+  /// of vehicles call wrong; an arm wants less.
+  double tolerance_rotation = 0.017453292519943295;
+  double tolerance_translation = 0.6;
+  /// Signed-rank test of an explanation against the streams as given, over up to 64 blocks of the drive. 3.5
+  /// standard deviations are one false alarm in 2000 comparisons of streams that fit equally well.
+  double sigmas = 3.5;
+  /// Least mean log ratio of the squared residuals of an explanation that is called certain. Clean drives
+  /// stay below 0.1 for all explanations but "both inverted" (tests/bench/mistake_study.cpp).
+  double gain = 0.3;
+  std::optional<GoalOptions> goal;
+};
+
+}  // namespace egocal

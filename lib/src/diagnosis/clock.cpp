@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace egocal::detail {
+
+namespace {
+
+/// Grid of the turning rates, at most so many points; offsets are looked for up to a quarter of the drive and
+/// a minute.
+constexpr std::size_t most_points = 1200;
+constexpr double widest = 60;
+/// Pieces of the drive whose own offsets show the rate.
+constexpr std::size_t pieces = 6;
+/// A clock's rate beyond this is not believed [s/s].
+constexpr double most_rate = 0.02;
+
+/// Turning rate of one stream in each cell of a grid [rad/s]; negative where unknown.
+std::vector<double> turning_rates(const Trajectory& trajectory, std::int64_t origin_us, double shift,
+                                  double step, std::size_t count) {
+  std::vector<double> turned(count, 0.0), covered(count, 0.0);
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const double t0 = 1e-6 * static_cast<double>(trajectory[i - 1].time_us - origin_us) + shift;
+    const double t1 = 1e-6 * static_cast<double>(trajectory[i].time_us - origin_us) + shift;
+    if (!(t1 > t0) || t1 - t0 > 10 * step) continue;
+    const double angle =
+        screw_of(canonical_sign(conjugate(trajectory[i - 1].pose) * trajectory[i].pose)).angle;
+    // share out over the cells that the interval touches
+    const auto first = static_cast<std::ptrdiff_t>(std::floor(t0 / step));
+    const auto last = static_cast<std::ptrdiff_t>(std::floor(t1 / step));
+    for (std::ptrdiff_t cell = std::max<std::ptrdiff_t>(0, first);
+         cell <= std::min(last, static_cast<std::ptrdiff_t>(count) - 1); ++cell) {
+      const double from = std::max(t0, static_cast<double>(cell) * step);
+      const double to = std::min(t1, static_cast<double>(cell + 1) * step);
+      if (!(to > from)) continue;
+      turned[static_cast<std::size_t>(cell)] += angle * (to - from) / (t1 - t0);
+      covered[static_cast<std::size_t>(cell)] += to - from;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) turned[i] = covered[i] > 0.5 * step ? turned[i] / covered[i] : -1;
+  return turned;
+}
+
+/// Pearson's correlation of x and y shifted to the right by lag, over cells first .. last of x.
+double correlation(const std::vector<double>& x, const std::vector<double>& y, std::ptrdiff_t lag,
+                   std::size_t first, std::size_t last) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(i) - lag;
+    if (k < 0 || k >= static_cast<std::ptrdiff_t>(y.size())) continue;
+    const double u = x[i], v = y[static_cast<std::size_t>(k)];
+    if (u < 0 || v < 0) continue;
+    n += 1;
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    syy += v * v;
+    sxy += u * v;
+  }
+  if (n < 20) return 0;
+  const double variance = (sxx - sx * sx / n) * (syy - sy * sy / n);
+  // few common cells correlate by chance
+  return variance > 0 ? std::sqrt(n) * (sxy - sx * sy / n) / std::sqrt(variance) : 0;
+}
+
+/// Lag in cells with the largest correlation within most_lag of zero, refined by a parabola.
+std::optional<double> best_lag(const std::vector<double>& x, const std::vector<double>& y,
+                               std::ptrdiff_t most_lag, std::size_t first, std::size_t last) {
+  std::vector<double> values;
+  for (std::ptrdiff_t lag = -most_lag; lag <= most_lag; ++lag)
+    values.push_back(correlation(x, y, lag, first, last));
+  const auto best = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
+  if (!(values[best] > 0)) return std::nullopt;
+  double lag = static_cast<double>(best) - static_cast<double>(most_lag);
+  if (best > 0 && best + 1 < values.size()) {
+    const double curvature = values[best - 1] - 2 * values[best] + values[best + 1];
+    if (curvature < 0) lag += 0.5 * (values[best - 1] - values[best + 1]) / curvature;
+  }
+  return lag;
+}
+
+/// What is minimised: the log of the squares, which outliers do not dominate.
+double misfit(const Explained& explained) {
+  if (explained.motions.all.size() < 8) return INFINITY;
+  double sum = 0;
+  const double floor = 0.25 * explained.fit.typical;
+  for (const double square : explained.fit.squares) sum += std::log(square + floor);
+  return sum / static_cast<double>(explained.fit.squares.size());
+}
+
+/// Offset, and rate if asked for, from the turning rates alone.
+std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel& start, bool with_rate) {
+  const std::int64_t origin_us = streams.a.front().time_us;
+  const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - origin_us);
+  const double step = std::max(0.1, span / static_cast<double>(most_points));
+  const auto count = static_cast<std::size_t>(span / step);
+  if (count < 40) return std::nullopt;
+  const std::vector<double> x = turning_rates(streams.a, origin_us, 0, step, count);
+  const std::vector<double> y = turning_rates(streams.b, origin_us, start.offset, step, count);
+  const auto most_lag = static_cast<std::ptrdiff_t>(std::min(widest / step, 0.25 * static_cast<double>(count)));
+  const std::optional<double> lag = best_lag(x, y, most_lag, 0, count);
+  if (!lag) return std::nullopt;
+  ClockModel clock{start.offset + *lag * step, 0, 0.5 * span};
+  if (!with_rate) return clock;
+  const std::vector<double> aligned = turning_rates(streams.b, origin_us, clock.offset, step, count);
+  const auto near = static_cast<std::ptrdiff_t>(std::ceil(0.5 * most_rate * span / step)) + 2;
+  double n = 0, st = 0, so = 0, stt = 0, sto = 0;
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    const std::size_t first = piece * count / pieces, last = (piece + 1) * count / pieces;
+    const std::optional<double> own = best_lag(x, aligned, std::min(near, most_lag), first, last);
+    if (!own) continue;
+    const double t = 0.5 * static_cast<double>(first + last) * step - clock.middle;
+    n += 1;
+    st += t;
+    so += *own * step;
+    stt += t * t;
+    sto += t * *own * step;
+  }
+  const double determinant = n * stt - st * st;
+  if (n < 3 || !(determinant > 0)) return clock;
+  clock.rate = std::clamp((n * sto - st * so) / determinant, -most_rate, most_rate);
+  clock.offset += (so - clock.rate * st) / n;
+  return clock;
+}
+
+/// Moves one number of the clock to the least misfit, from steps of `width` downwards.
+void refine(const Streams& streams, double ClockModel::*number, double width, int steps, ClockFit& best,
+            double& least) {
+  for (int i = 0; i < steps; ++i, width /= 2.5) {
+    double values[3] = {0, least, 0};
+    ClockFit found = best;
+    double found_least = least;
+    for (const int side : {-1, 1}) {
+      ClockModel trial = best.clock;
+      trial.*number += side * width;
+      Explained explained = explained_by(streams, trial);
+      values[side + 1] = misfit(explained);
+      if (values[side + 1] < found_least) {
+        found_least = values[side + 1];
+        found = {trial, std::move(explained)};
+      }
+    }
+    const double curvature = values[0] - 2 * values[1] + values[2];
+    if (std::isfinite(curvature) && curvature > 0) {
+      const double vertex = std::clamp(0.5 * (values[0] - values[2]) / curvature, -1.0, 1.0);
+      ClockModel trial = best.clock;
+      trial.*number += vertex * width;
+      Explained explained = explained_by(streams, trial);
+      const double value = misfit(explained);
+      if (value < found_least) {
+        found_least = value;
+        found = {trial, std::move(explained)};
+      }
+    }
+    if (found_least < least) {
+      best = std::move(found);
+      least = found_least;
+    }
+  }
+}
+
+}  // namespace
+
+Explained explained_by(const Streams& streams, const ClockModel& clock) {
+  const Instants instants = synchronised(streams.a, streams.b, clock, streams.max_gap);
+  Explained result;
+  if (instants.time.size() < 2 || !(instants.period > 0)) return result;
+  const int stride = std::max(1, static_cast<int>(std::lround(streams.motion_length / instants.period)));
+  result.motions = motions_of(instants, streams.read_a, streams.read_b, stride, streams.most);
+  if (!result.motions.all.empty()) result.fit = robust_fit(result.motions);
+  return result;
+}
+
+std::optional<ClockFit> fit_clock(const Streams& streams, const ClockModel& start, bool with_rate) {
+  const std::optional<ClockModel> coarse = coarse_clock(streams, start, with_rate);
+  if (!coarse) return std::nullopt;
+  ClockFit best;
+  double least = INFINITY;
+  for (ClockModel clock : {ClockModel{start.offset, start.rate, coarse->middle}, *coarse}) {
+    Explained explained = explained_by(streams, clock);
+    const double here = misfit(explained);
+    if (here < least) {
+      least = here;
+      best = {clock, std::move(explained)};
+    }
+  }
+  if (!std::isfinite(least)) return std::nullopt;
+  refine(streams, &ClockModel::offset, 0.05, 3, best, least);
+  if (with_rate) {
+    const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - streams.a.front().time_us);
+    refine(streams, &ClockModel::rate, 0.05 / std::max(1.0, span), 2, best, least);
+    refine(streams, &ClockModel::offset, 0.01, 1, best, least);
+  }
+  return best;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "diagnosis/robust_fit.hpp"
+
+namespace egocal::detail {
+
+/// What the streams are, apart from their clocks.
+struct Streams {
+  const Trajectory& a;
+  const Trajectory& b;
+  PoseReading read_a, read_b;
+  double max_gap = 0.5;       ///< [s]
+  double motion_length = 1;   ///< of the motions that are compared [s]
+  std::size_t most = 1000;    ///< motions
+};
+
+/// The motions under a clock, of about the given length, and their best extrinsic.
+Explained explained_by(const Streams& streams, const ClockModel& clock);
+
+struct ClockFit {
+  ClockModel clock;
+  Explained explained;
+};
+
+/// Offset (and rate, if asked for) of b's clock that fit best near `start`: the turning of the two bodies
+/// finds it coarsely, the fit finely. Empty where the streams never turn.
+std::optional<ClockFit> fit_clock(const Streams& streams, const ClockModel& start, bool with_rate);
+
+}  // namespace egocal::detail

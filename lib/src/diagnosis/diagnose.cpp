@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/diagnosis/diagnose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/explanations.hpp"
+#include "diagnosis/fit.hpp"
+#include "diagnosis/judge.hpp"
+#include "diagnosis/mount.hpp"
+#include "diagnosis/planes.hpp"
+#include "diagnosis/wording.hpp"
+
+namespace egocal {
+
+namespace {
+
+using namespace detail;
+
+/// Turning of two unrelated streams correlates by chance only; that of one body is the same.
+double turning_correlation(const Motions& motions) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
+  for (const Motion& motion : motions.all) {
+    const double x = motion.angle_a, y = motion.angle_b;
+    n += 1;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    syy += y * y;
+    sxy += x * y;
+  }
+  const double variance = (sxx - sx * sx / n) * (syy - sy * sy / n);
+  return variance > 0 ? (sxy - sx * sy / n) / std::sqrt(variance) : 0;
+}
+
+Finding unrelated(double correlation) {
+  Finding finding;
+  finding.code = "unrelated";
+  finding.certain = true;
+  finding.message = format("The two streams do not turn together (correlation %.2f): they are not of one rigid "
+                           "body, or not of one drive.",
+                           correlation);
+  finding.remedy = "Check that both files are of the same drive and that both sensors are rigidly mounted.";
+  return finding;
+}
+
+Finding too_little_motion(std::size_t motions) {
+  Finding finding;
+  finding.code = "too_little_motion";
+  finding.certain = true;
+  finding.message = motions < least_motions
+                        ? format("Only %zu motions: too few to judge the fit.", motions)
+                        : "The sensors hardly turn: an extrinsic cannot be found from this drive.";
+  finding.remedy = "Record a longer drive with turns in different directions.";
+  return finding;
+}
+
+/// In all, robustly: turned by less than this, odometry noise decides [rad].
+constexpr double least_turning = 0.1;
+
+}  // namespace
+
+Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                   const Answered& answered, const DiagnosisOptions& options) {
+  const Evidence evidence = gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap);
+  const Motions& motions = evidence.given.explained.motions;
+  if (motions.all.size() < least_motions) {
+    Diagnosis result = diagnose(answered, options);
+    result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
+    result.findings.push_back(too_little_motion(motions.all.size()));
+    judge(result, answered, {}, options);
+    return result;
+  }
+  Diagnosis result;
+  const RobustFit at_answer = evaluated(motions, answered.T_a_b);
+  result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
+  result.findings = explain(evidence, options);
+  if (answered.problem.mode == Mode::planar)
+    for (Finding& finding :
+         check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
+      result.findings.push_back(std::move(finding));
+  const Misfit misfit{std::sqrt(at_answer.typical), std::sqrt(evidence.given.explained.fit.typical)};
+  const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
+                                     [](const Finding& finding) { return finding.certain; });
+  if (!explained) {
+    const double correlation = turning_correlation(motions);
+    double turned = 0;
+    for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
+    turned *= static_cast<double>(evidence.instants.time.size()) /
+              static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
+    if (turned < least_turning)
+      result.findings.push_back(too_little_motion(motions.all.size()));
+    else if (misfit.best > contradictory_misfit && correlation < 0.5)
+      result.findings.push_back(unrelated(correlation));
+    else if (std::optional<Finding> moved = moved_mount(evidence.given.explained, options))
+      result.findings.push_back(std::move(*moved));
+  }
+  judge(result, answered, misfit, options);
+  return result;
+}
+
+Diagnosis diagnose(const Answered& answered, const DiagnosisOptions& options) {
+  Diagnosis result;
+  judge(result, answered, {}, options);
+  return result;
+}
+
+}  // namespace egocal

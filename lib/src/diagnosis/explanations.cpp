@@ -1,0 +1,322 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/explanations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "diagnosis/forward.hpp"
+#include "diagnosis/scale.hpp"
+#include "diagnosis/wording.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Motions that an explanation is judged by, and those that a first look takes.
+constexpr std::size_t most_motions = 700, first_look = 200;
+/// A scale this near to a thousand is a unit.
+constexpr double unit_tolerance = 0.1;
+/// A continuous parameter (scale, clock) is named where it explains at least this [mean log ratio]: ten times
+/// what one fitted number gains by chance in a hundred motions.
+constexpr double least_gain = 0.05;
+
+struct Candidate {
+  const char* code;
+  PoseReading a, b;
+};
+
+/// The mistakes that have an option as their cure, simplest first.
+std::vector<Candidate> common_mistakes() {
+  PoseReading as_read, inverted, wxyz, xyzw;
+  inverted.invert = true;
+  wxyz.quaternion_order = QuaternionOrder::wxyz;
+  xyzw.quaternion_order = QuaternionOrder::xyzw;
+  return {{"inverted_a", inverted, as_read},        {"inverted_b", as_read, inverted},
+          {"inverted_both", inverted, inverted},    {"quaternion_order_a", wxyz, as_read},
+          {"quaternion_order_a", xyzw, as_read},    {"quaternion_order_b", as_read, wxyz},
+          {"quaternion_order_b", as_read, xyzw},    {"quaternion_order_both", wxyz, wxyz},
+          {"quaternion_order_both", xyzw, xyzw}};
+}
+
+/// Positions with exchanged or mirrored columns (48), with the rotation as it is or of the inverse pose: the
+/// rest are proper changes of the sensor's own axes, which the extrinsic absorbs.
+std::vector<PoseReading> wrong_axes() {
+  std::vector<PoseReading> readings;
+  std::array<int, 3> order{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      PoseReading reading;
+      reading.axes.setZero();
+      for (int i = 0; i < 3; ++i) reading.axes(i, order[static_cast<std::size_t>(i)]) = signs >> i & 1 ? -1 : 1;
+      reading.conjugate = false;
+      if (!reading.axes.isIdentity()) readings.push_back(reading);
+      reading.conjugate = true;
+      readings.push_back(reading);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return readings;
+}
+
+Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
+                      std::size_t most) {
+  Explanation result{code, a, b, evidence.clock, 1, {}};
+  result.explained.motions = motions_of(evidence.instants, a, b, evidence.stride, most);
+  if (!result.explained.motions.all.empty()) result.explained.fit = robust_fit(result.explained.motions);
+  return result;
+}
+
+Explanation with_scale(const Explanation& explanation) {
+  Explanation result = explanation;
+  ScaledFit scaled = fit_with_scale(explanation.explained.motions);
+  result.scale = scaled.scale;
+  result.explained = std::move(scaled.explained);
+  return result;
+}
+
+/// Clearly better by the stated test, as far as so few blocks can show it.
+bool better(const Comparison& comparison, double least_log_ratio, const DiagnosisOptions& options) {
+  const double needed = std::min(options.sigmas, 0.95 * comparison.most);
+  return comparison.sigmas >= needed && comparison.gain >= least_log_ratio;
+}
+
+Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain) {
+  Finding finding;
+  finding.code = explanation.code;
+  finding.certain = certain;
+  finding.improvement = std::exp(comparison.gain);
+  finding.T_a_b = to_pose(explanation.explained.fit.T);
+  return finding;
+}
+
+/// Explanations by reading, the best first; all with a free scale, so that a camera without scale is not
+/// taken for an inverted file.
+struct Ranked {
+  Explanation as_is, scaled;
+};
+
+std::vector<Ranked> best_readings(const Evidence& evidence) {
+  constexpr std::size_t followed = 3;
+  std::vector<std::pair<double, std::size_t>> looks;
+  const std::vector<Candidate> candidates = common_mistakes();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (std::string_view(candidates[i].code) == "inverted_both") continue;  // decided by itself
+    const Motions motions =
+        motions_of(evidence.instants, candidates[i].a, candidates[i].b, evidence.stride, first_look);
+    if (!motions.all.empty()) looks.emplace_back(fit_with_scale(motions, Effort::look).explained.fit.typical, i);
+  }
+  std::sort(looks.begin(), looks.end());
+  std::vector<Ranked> ranked;
+  for (std::size_t i = 0; i < std::min(followed, looks.size()); ++i) {
+    const Candidate& candidate = candidates[looks[i].second];
+    Explanation here = explained(evidence, candidate.code, candidate.a, candidate.b, most_motions);
+    if (here.explained.motions.all.empty()) continue;
+    Explanation scaled = with_scale(here);
+    ranked.push_back({std::move(here), std::move(scaled)});
+  }
+  return ranked;
+}
+
+/// Of twins, which are each other with both streams inverted, the one under which a vehicle travels forward.
+bool preferred(const Explanation& x, const Explanation& y) {
+  const Heading of_x = heading(x.explained.motions), of_y = heading(y.explained.motions);
+  if (forward(of_x) != forward(of_y)) return forward(of_x);
+  return compare(y.explained, x.explained).ratio > 1;
+}
+
+struct BestReading {
+  Explanation best;
+  std::optional<Explanation> twin;  ///< fits as well
+};
+
+/// The best single reading; as given unless another one is clearly better.
+BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options) {
+  const Explanation given_scaled = with_scale(evidence.given);
+  Ranked best{evidence.given, given_scaled};
+  std::optional<Explanation> twin;
+  for (Ranked& here : best_readings(evidence)) {
+    if (!better(compare(given_scaled.explained, here.scaled.explained), 0.01, options)) continue;
+    const Comparison against = compare(best.scaled.explained, here.scaled.explained);
+    const bool first = best.as_is.code.empty();
+    const bool alike = !first && std::abs(against.gain) < 0.7;
+    if (first || (alike ? preferred(here.scaled, best.scaled) : against.gain > 0)) std::swap(best, here);
+    if (alike)
+      twin = here.as_is;
+    else if (!first && against.gain > 0)
+      twin.reset();
+  }
+  if (twin && forward(heading(best.scaled.explained.motions)) && !forward(heading(twin->explained.motions)))
+    twin.reset();
+  if (better(compare(best.as_is.explained, best.scaled.explained), least_gain, options))
+    return {best.scaled, twin};
+  return {best.as_is, twin};
+}
+
+/// Exchanged and mirrored columns of one file.
+Explanation best_axes(const Evidence& evidence, const Explanation& best, const DiagnosisOptions& options) {
+  const std::vector<PoseReading> readings = wrong_axes();
+  struct Look {
+    double typical;
+    bool in_b;
+    std::size_t index;
+  };
+  std::vector<Look> looks;
+  for (const bool in_b : {false, true})
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const PoseReading as_read;
+      const Motions motions = motions_of(evidence.instants, in_b ? as_read : readings[i],
+                                         in_b ? readings[i] : as_read, evidence.stride, first_look);
+      if (motions.all.empty()) continue;
+      looks.push_back({quick_fit(motions).typical, in_b, i});
+    }
+  const std::size_t followed = std::min<std::size_t>(4, looks.size());
+  std::partial_sort(looks.begin(), looks.begin() + static_cast<std::ptrdiff_t>(followed), looks.end(),
+                    [](const Look& x, const Look& y) {
+                      return std::tie(x.typical, x.in_b, x.index) < std::tie(y.typical, y.in_b, y.index);
+                    });
+  Explanation result = best;
+  for (std::size_t i = 0; i < followed; ++i) {
+    const Look& look = looks[i];
+    const PoseReading as_read;
+    Explanation here = explained(evidence, look.in_b ? "axes_b" : "axes_a",
+                                 look.in_b ? as_read : readings[look.index],
+                                 look.in_b ? readings[look.index] : as_read, most_motions);
+    if (better(compare(result.explained, here.explained), 0.05, options)) result = std::move(here);
+  }
+  return result;
+}
+
+/// Clock offset, and drift if that explains more, on top of an explanation.
+std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation& best,
+                                    const DiagnosisOptions& options) {
+  Streams streams = evidence.streams;
+  streams.read_a = best.read_a;
+  streams.read_b = best.read_b;
+  streams.read_b.scale *= best.scale;
+  streams.motion_length = evidence.stride * evidence.instants.period;
+  std::vector<Explanation> result;
+  const auto take = [&](const char* code, const std::optional<ClockFit>& fit, const Explained& against) {
+    if (!fit || !better(compare(against, fit->explained), least_gain, options)) return;
+    Explanation here = best;
+    here.code = code;
+    here.clock = fit->clock;
+    here.explained = fit->explained;
+    result.push_back(std::move(here));
+  };
+  const std::optional<ClockFit> offset = fit_clock(streams, evidence.clock, false);
+  take("clock_offset", offset, best.explained);
+  const Explained& so_far = result.empty() ? best.explained : result.back().explained;
+  const std::optional<ClockFit> drift = fit_clock(streams, evidence.clock, true);
+  take("clock_drift", drift, Explained(so_far));
+  return result;
+}
+
+/// Both files inverted is no contradiction by itself: the answer is then that of the two odometry frames. It
+/// is certain where a vehicle's way points forward under it alone, or where noise that grows with the
+/// distance from the start gives it away; otherwise both answers stand.
+std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
+  PoseReading inverted;
+  inverted.invert = true;
+  const Explanation both = explained(evidence, "inverted_both", inverted, inverted, most_motions);
+  if (both.explained.motions.all.empty()) return std::nullopt;
+  const Comparison comparison = compare(evidence.given.explained, both.explained);
+  const Heading as_given = heading(evidence.given.explained.motions);
+  const Heading as_inverted = heading(both.explained.motions);
+  constexpr double decisive = 3;
+  const bool noise_says_given = comparison.ratio < 1 / decisive && comparison.sigmas < 0;
+  const bool noise_says_inverted = comparison.ratio > decisive && better(comparison, 0, options);
+  if (forward(as_given) && !forward(as_inverted)) return std::nullopt;
+  const bool trace = forward(as_inverted) && scattered(as_given);
+  if (!trace && noise_says_given) return std::nullopt;
+  // an explanation that does not fit at all cannot be told apart from nothing
+  if (!trace && comparison.gain < -1) return std::nullopt;
+  Finding finding = finding_of(both, comparison, trace || noise_says_inverted);
+  finding.improvement = comparison.ratio;
+  return finding;
+}
+
+}  // namespace
+
+Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
+  Evidence evidence{{a, b, {}, {}, max_gap, 1, most_motions}, clock, synchronised(a, b, clock, max_gap), 1, {}};
+  evidence.given.clock = clock;
+  const auto n = static_cast<int>(evidence.instants.time.size());
+  double least = INFINITY;
+  std::vector<Candidate> readings = common_mistakes();
+  readings.insert(readings.begin(), Candidate{"", {}, {}});
+  for (int stride = std::max(1, n / 32), looks = 0; looks < 4; stride /= 4, ++looks) {
+    for (const Candidate& candidate : readings) {
+      const Motions motions =
+          motions_of(evidence.instants, candidate.a, candidate.b, stride, first_look);
+      if (motions.all.empty()) continue;
+      const double typical = quick_fit(motions).typical;
+      if (typical < 0.8 * least) {
+        least = typical;
+        evidence.stride = stride;
+      }
+    }
+    if (stride < 4) break;
+  }
+  evidence.given.explained = explained(evidence, "", {}, {}, most_motions).explained;
+  return evidence;
+}
+
+std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& options) {
+  std::vector<Finding> findings;
+  if (evidence.given.explained.motions.all.size() < 4) return findings;
+  const Explained& given = evidence.given.explained;
+
+  BestReading reading = best_reading(evidence, options);
+  Explanation best = best_axes(evidence, reading.best, options);
+  if (best.code != reading.best.code) reading.twin.reset();
+  // a clock that is off can look like anything: it is tried on the streams as given, too
+  std::vector<Explanation> clocks = with_clock(evidence, evidence.given, options);
+  if (!clocks.empty() && !better(compare(clocks.back().explained, best.explained), options.gain, options)) {
+    best = evidence.given;
+    reading.twin.reset();
+  } else if (!best.code.empty() || best.scale != 1)
+    clocks = with_clock(evidence, best, options);
+
+  const Explained& final = clocks.empty() ? best.explained : clocks.back().explained;
+  // an explanation under which the motions still do not agree explains nothing
+  constexpr double explains = 0.5;
+  if (!(final.fit.typical < explains * explains)) return findings;
+  const Comparison overall = compare(given, final);
+  const bool certain = overall.gain >= options.gain;
+  const auto add = [&](Finding finding) {
+    finding.T_a_b = to_pose(final.fit.T);
+    findings.push_back(std::move(finding));
+  };
+  if (!best.code.empty())
+    add(worded_reading(finding_of(best, overall, certain && !reading.twin), best.read_a, best.read_b));
+  if (reading.twin)
+    findings.push_back(worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), false),
+                                      reading.twin->read_a, reading.twin->read_b));
+  if (best.scale != 1) {
+    const double power = std::round(std::log10(best.scale) / 3);
+    const bool units = power != 0 && std::abs(std::log(best.scale / std::pow(1000, power))) < unit_tolerance;
+    Finding finding = finding_of(best, overall, certain);
+    finding.code = units ? "units" : "scale";
+    finding.value = units ? std::pow(1000, power) : best.scale;
+    add(worded_scale(std::move(finding)));
+    // the answer is in the units of a: those of the longer stream are the wrong ones
+    if (units && power > 0) findings.back().T_a_b->translation /= *findings.back().value;
+  }
+  if (!clocks.empty()) {
+    const Explanation& clock = clocks.back();
+    Finding finding = finding_of(clock, overall, certain);
+    const bool drift = clock.code == "clock_drift";
+    finding.value = drift ? clock.clock.rate : clock.clock.offset;
+    add(worded_clock(std::move(finding), clock.clock));
+  }
+  if (findings.empty())
+    if (std::optional<Finding> both = both_inverted(evidence, options))
+      findings.push_back(worded_reading(std::move(*both), {}, {}));
+  return findings;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/clock.hpp"
+#include "diagnosis/robust_fit.hpp"
+#include "egocal/diagnosis/verdict.hpp"
+
+namespace egocal::detail {
+
+/// One way to understand the two streams, with the extrinsic that suits it best.
+struct Explanation {
+  std::string code;  ///< of the finding; empty: as given
+  PoseReading read_a, read_b;
+  ClockModel clock;
+  double scale = 1;  ///< of b, besides the readings
+  Explained explained;
+};
+
+/// The drive as the explanations see it.
+struct Evidence {
+  Streams streams;        ///< as given, with the clock offset applied in `clock`
+  ClockModel clock;       ///< in force
+  Instants instants;
+  int stride = 1;         ///< of the motions that are compared
+  Explanation given;
+};
+
+/// Synchronises, chooses the length of the motions, and fits the streams as given. The stride is the one at
+/// which some reading fits best, among those that leave enough independent motions.
+Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap);
+
+/// Findings about the streams: readings, scale, clock. In the order of importance; answers included.
+std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& options);
+
+}  // namespace egocal::detail

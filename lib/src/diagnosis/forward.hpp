@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "diagnosis/motions.hpp"
+
+namespace egocal::detail {
+
+/// In which direction of their own bodies the sensors travel.
+struct Heading {
+  double concentration_a = 0, concentration_b = 0;  ///< length of the mean direction: 1 always the same
+  double turned = 0;                                ///< angle in all, of all motions [rad]
+};
+
+Heading heading(const Motions& motions);
+
+/// A vehicle: both sensors always travel the same way of their bodies.
+bool forward(const Heading& heading);
+/// Neither does.
+bool scattered(const Heading& heading);
+
+}  // namespace egocal::detail

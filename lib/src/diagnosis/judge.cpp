@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/judge.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/wording.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal {
+
+std::string_view name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::good:
+      return "good";
+    case Verdict::incomplete:
+      return "incomplete";
+    case Verdict::doubtful:
+      return "doubtful";
+    case Verdict::contradictory:
+      return "contradictory";
+  }
+  return "unknown";
+}
+
+namespace detail {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+/// An explanation so much better (squared residuals) makes the streams as given useless, wherever its answer
+/// lies.
+constexpr double overwhelming = 7.4;
+/// 95 % of a normal distribution.
+constexpr double confidence = 1.96;
+
+/// How far another answer is, as a part of the tolerance, in the directions that are known.
+double shift(const Finding& finding, const Answered& answered, const DiagnosisOptions& options) {
+  if (!finding.T_a_b) return finding.certain ? INFINITY : 0;
+  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
+  double rotation = 0, translation = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (!answered.observability.observable[static_cast<std::size_t>(i)]) continue;
+    (i < 3 ? translation : rotation) += difference[i] * difference[i];
+  }
+  return std::max(std::sqrt(rotation) / options.tolerance_rotation,
+                  std::sqrt(translation) / options.tolerance_translation);
+}
+
+/// In planar mode z, roll and pitch come from the ground planes.
+bool expected(const Answered& answered, std::size_t direction) {
+  if (answered.problem.mode != Mode::planar) return true;
+  const double normal = std::abs(answered.problem.plane_a.normal[static_cast<int>(direction % 3)]);
+  return direction < 3 ? normal < 0.5 : normal > 0.5;
+}
+
+std::string unknown_directions(const Answered& answered, const DiagnosisOptions& options) {
+  std::string text;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!expected(answered, i)) continue;
+    const double tolerance = i < 3 ? options.tolerance_translation : options.tolerance_rotation;
+    const double stddev = answered.observability.stddev[i];
+    if (answered.observability.observable[i] && confidence * stddev <= tolerance) continue;
+    text += text.empty() ? "" : ", ";
+    text += directions[i];
+  }
+  return text;
+}
+
+struct Opinion {
+  Verdict verdict = Verdict::good;
+  std::string reason;
+};
+
+Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const DiagnosisOptions& options) {
+  Opinion worst;
+  for (const Finding& finding : diagnosis.findings) {
+    Verdict verdict = Verdict::good;
+    const double far = shift(finding, answered, options);
+    if (finding.code == "too_little_motion")
+      verdict = Verdict::incomplete;
+    else if (finding.certain && (far > 1 || finding.improvement > overwhelming))
+      verdict = Verdict::contradictory;
+    else if (finding.code != "inverted_both" && far > (finding.certain ? 0.5 : 1))
+      verdict = Verdict::doubtful;
+    if (verdict > worst.verdict) worst = {verdict, finding.message};
+  }
+  return worst;
+}
+
+Opinion of_fit(const Misfit& misfit, const Answered& answered) {
+  if (misfit.at_answer > doubtful_misfit) {
+    const bool contradictory = misfit.at_answer > contradictory_misfit;
+    return {contradictory ? Verdict::contradictory : Verdict::doubtful,
+            format("These motions contradict each other: %.0f %% of the typical motion is not explained.",
+                   100 * misfit.at_answer)};
+  }
+  const PairingCounts& counts = answered.counts;
+  const double incongruent =
+      static_cast<double>(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)]);
+  if (2 * incongruent > static_cast<double>(counts.synchronised))
+    return {Verdict::doubtful,
+            format("Most poses were rejected: %.0f of %.0f make motions that no rigid mounting explains.",
+                   incongruent, static_cast<double>(counts.synchronised))};
+  return {};
+}
+
+}  // namespace
+
+void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
+           const DiagnosisOptions& options) {
+  const Opinion of_explanations = of_findings(diagnosis, answered, options), fit = of_fit(misfit, answered);
+  const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
+  diagnosis.verdict = worse.verdict;
+  diagnosis.reason = worse.reason;
+  if (diagnosis.verdict >= Verdict::doubtful) return;
+  const std::string unknown = unknown_directions(answered, options);
+  if (!unknown.empty()) {
+    diagnosis.verdict = Verdict::incomplete;
+    diagnosis.reason = format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,
+                              100 * options.tolerance_translation, unknown.c_str());
+  } else if (diagnosis.reason.empty()) {
+    diagnosis.reason = format("The motions agree to %.2g %%, and all directions are known.",
+                              100 * misfit.at_answer);
+  }
+}
+
+}  // namespace detail
+
+}  // namespace egocal

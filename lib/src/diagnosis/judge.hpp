@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+/// Fewer motions are explained by anything.
+inline constexpr std::size_t least_motions = 5;
+/// Residuals as parts of the typical motion. Clean drives with a noise of a tenth of every single motion stay
+/// below 0.35, streams that do not belong together are at 1 and more.
+inline constexpr double doubtful_misfit = 0.45, contradictory_misfit = 0.7;
+
+struct Misfit {
+  double at_answer = 0;  ///< median residual at the answer, as a part of the typical motion
+  double best = 0;       ///< at the extrinsic that suits the motions best
+};
+
+/// Sets verdict and reason from fit, findings and what is known of each direction.
+void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
+           const DiagnosisOptions& options);
+
+}  // namespace egocal::detail

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace egocal::detail {
+
+namespace {
+
+/// Nearer to half a turn the sign of the quaternion is a guess [rad].
+constexpr double most_rotation = 170 * std::numbers::pi / 180;
+/// Blocks that the comparison of two explanations counts, at most: more would not be independent.
+constexpr std::size_t most_blocks = 64;
+/// A motion that spans more than this many times its usual duration crosses a gap.
+constexpr double most_stretched = 4;
+
+double seconds(std::int64_t us) {
+  return 1e-6 * static_cast<double>(us);
+}
+
+double median_period(const std::vector<double>& times) {
+  if (times.size() < 2) return 0;
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < times.size(); ++i) periods.push_back(times[i] - times[i - 1]);
+  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
+                   periods.end());
+  return periods[periods.size() / 2];
+}
+
+std::vector<double> times_of(const Trajectory& trajectory, std::int64_t origin_us, const ClockModel& clock) {
+  std::vector<double> times;
+  times.reserve(trajectory.size());
+  for (const StampedPose& pose : trajectory) {
+    const double t = seconds(pose.time_us - origin_us);
+    times.push_back(t + clock.offset + clock.rate * (t - clock.middle));
+  }
+  return times;
+}
+
+/// Poses of one stream at given times by screw interpolation, looked up in order.
+class Interpolation {
+ public:
+  Interpolation(const Trajectory& trajectory, const std::vector<double>& times, double max_gap)
+      : trajectory_(trajectory), times_(times), max_gap_(max_gap) {}
+
+  std::optional<DualQuaternion> at(double time) {
+    while (from_ + 1 < times_.size() && times_[from_ + 1] <= time) ++from_;
+    if (times_[from_] > time) return std::nullopt;
+    const double before = time - times_[from_];
+    if (before < 5e-7) return trajectory_[from_].pose;
+    if (from_ + 1 >= times_.size()) return std::nullopt;
+    const double period = times_[from_ + 1] - times_[from_];
+    if (period > max_gap_) return std::nullopt;
+    return interpolate(trajectory_[from_].pose, trajectory_[from_ + 1].pose, before / period);
+  }
+
+ private:
+  const Trajectory& trajectory_;
+  const std::vector<double>& times_;
+  double max_gap_;
+  std::size_t from_ = 0;
+};
+
+Motion motion_between(const DualQuaternion& a0, const DualQuaternion& a1, const DualQuaternion& b0,
+                      const DualQuaternion& b1) {
+  Motion motion;
+  motion.a = canonical_sign(conjugate(a0) * a1);
+  motion.b = canonical_sign(conjugate(b0) * b1);
+  const auto position = [](const DualQuaternion& q) -> Eigen::Vector3d {
+    return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
+  };
+  const auto angle = [](const DualQuaternion& q) {
+    return 2 * std::atan2(q.real.tail<3>().norm(), std::abs(q.real[0]));
+  };
+  motion.R_a = Eigen::Quaterniond(motion.a.real[0], motion.a.real[1], motion.a.real[2], motion.a.real[3])
+                   .toRotationMatrix();
+  motion.t_a = position(motion.a);
+  motion.t_b = position(motion.b);
+  motion.angle_a = angle(motion.a);
+  motion.angle_b = angle(motion.b);
+  return motion;
+}
+
+void measure_sizes(Motions& motions) {
+  double angle_a = 0, angle_b = 0, length_a = 0, length_b = 0;
+  for (const Motion& motion : motions.all) {
+    angle_a += motion.angle_a;
+    angle_b += motion.angle_b;
+    length_a += motion.t_a.norm();
+    length_b += motion.t_b.norm();
+  }
+  const double n = std::max(1.0, static_cast<double>(motions.all.size()));
+  motions.rotation = std::sqrt(angle_a * angle_b) / n;
+  motions.translation = std::sqrt(length_a * length_b) / n;
+}
+
+}  // namespace
+
+Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
+  Instants instants;
+  if (a.empty() || b.empty()) return instants;
+  const std::int64_t origin_us = a.front().time_us;
+  const std::vector<double> times_a = times_of(a, origin_us, {}), times_b = times_of(b, origin_us, clock);
+  const bool b_slower = 10 * median_period(times_b) >= 9 * median_period(times_a);
+  const Trajectory& keys = b_slower ? b : a;
+  const std::vector<double>& key_times = b_slower ? times_b : times_a;
+  Interpolation other(b_slower ? a : b, b_slower ? times_a : times_b, max_gap);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::optional<DualQuaternion> pose = other.at(key_times[i]);
+    if (!pose) continue;
+    instants.time.push_back(key_times[i]);
+    instants.a.push_back(b_slower ? *pose : keys[i].pose);
+    instants.b.push_back(b_slower ? keys[i].pose : *pose);
+  }
+  instants.period = median_period(instants.time);
+  return instants;
+}
+
+Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
+                   std::size_t most) {
+  Motions motions;
+  motions.stride = stride;
+  const auto steps = static_cast<std::size_t>(stride);
+  const std::size_t n = instants.time.size();
+  if (n <= steps) return motions;
+  const std::size_t each = std::max<std::size_t>(1, (n - steps) / most);
+  motions.all.reserve((n - steps) / each + 1);
+  for (std::size_t i = 0; i + steps < n; i += each) {
+    const std::size_t k = i + steps;
+    if (instants.time[k] - instants.time[i] > most_stretched * stride * instants.period) continue;
+    Motion motion = motion_between(reread(instants.a[i], read_a), reread(instants.a[k], read_a),
+                                   reread(instants.b[i], read_b), reread(instants.b[k], read_b));
+    if (std::max(motion.angle_a, motion.angle_b) > most_rotation) continue;
+    motion.time = 0.5 * (instants.time[i] + instants.time[k]);
+    motions.all.push_back(std::move(motion));
+  }
+  const std::size_t independent = n / (2 * steps) >= 16 ? n / (2 * steps) : n / steps;
+  motions.blocks = std::max<std::size_t>(1, std::min({most_blocks, independent, motions.all.size()}));
+  measure_sizes(motions);
+  return motions;
+}
+
+Motions scaled(const Motions& given, double scale_b) {
+  Motions motions = given;
+  for (Motion& motion : motions.all) {
+    motion.t_b *= scale_b;
+    motion.b.dual *= scale_b;
+  }
+  motions.translation = given.translation * std::sqrt(scale_b);
+  return motions;
+}
+
+}  // namespace egocal::detail

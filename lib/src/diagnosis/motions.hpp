@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The motions that explanations are compared on: of all poses, none screened or rejected, for a wrong reading
+// makes right poses look wrong.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/reading.hpp"
+#include "egocal/pairing/trajectory.hpp"
+#include "egocal/problem/cost.hpp"
+
+namespace egocal::detail {
+
+/// The clock of b as seen from that of a: offset + rate * (time - middle of the overlap) is added to b's
+/// stamps.
+struct ClockModel {
+  double offset = 0;  ///< [s]
+  double rate = 0;    ///< [s/s]
+  double middle = 0;  ///< [s], on b's clock
+};
+
+/// Both poses at the stamps of the slower stream.
+struct Instants {
+  std::vector<double> time;  ///< [s], since the first stamp of a
+  std::vector<DualQuaternion> a, b;
+  double period = 0;  ///< median distance [s]
+};
+
+Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap);
+
+/// One motion of both sensors, in the parts that residuals are made of.
+struct Motion {
+  DualQuaternion a, b;
+  Eigen::Matrix3d R_a;
+  Eigen::Vector3d t_a, t_b;
+  double angle_a = 0, angle_b = 0;  ///< [rad]
+  double time = 0;                  ///< of its middle [s]
+};
+
+struct Motions {
+  std::vector<Motion> all;
+  double rotation = 0;     ///< typical angle, mean over both sensors (geometric) [rad]
+  double translation = 0;  ///< typical length [m]
+  int stride = 1;          ///< instants that one motion spans
+  std::size_t blocks = 1;  ///< consecutive runs that are long enough to be independent
+};
+
+/// Motions over `stride` instants, at most `most` of them, evenly spread.
+Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
+                   std::size_t most);
+
+/// The same motions with the lengths of b multiplied.
+Motions scaled(const Motions& motions, double scale_b);
+
+}  // namespace egocal::detail

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/planes.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "diagnosis/wording.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// A vehicle turns about one axis far more than about the others (ratio of the mean squares).
+constexpr double one_axis = 10;
+/// The normal of a level road is within a few degrees of the axis; 0.9 is 26 degrees.
+constexpr double aligned = 0.9;
+
+struct Turning {
+  Eigen::Matrix3d squares_a = Eigen::Matrix3d::Zero(), squares_b = Eigen::Matrix3d::Zero();
+  double common = 0;  ///< sum of the products of the turns about both normals
+};
+
+Eigen::Vector3d turn(const DualQuaternion& motion) {
+  return 2 * motion.real.tail<3>();
+}
+
+/// Direction of the axis, if there is one.
+bool axis_of(const Eigen::Matrix3d& squares, Eigen::Vector3d& axis) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
+  axis = eigen.eigenvectors().col(2);
+  return eigen.eigenvalues()[2] > one_axis * std::max(0.0, eigen.eigenvalues()[1]) &&
+         eigen.eigenvalues()[2] > 0;
+}
+
+Finding plane_finding(char which, std::string message, std::string remedy, bool certain = true) {
+  Finding finding;
+  finding.code = std::string("plane_") + which;
+  finding.certain = certain;
+  finding.message = std::move(message);
+  finding.remedy = std::move(remedy);
+  return finding;
+}
+
+}  // namespace
+
+std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, const GroundPlane& b) {
+  std::vector<Finding> findings;
+  for (const auto& [which, plane] : {std::pair{'a', a}, std::pair{'b', b}})
+    if (plane.distance > 0)
+      findings.push_back(plane_finding(
+          which,
+          format("The ground plane of %c lies %.2f m above the sensor: the normal points down, or the distance "
+                 "has the wrong sign.",
+                 which, plane.distance),
+          format("--plane-%c with the normal up and D = -%.4g (minus the mounting height)", which,
+                 plane.distance)));
+
+  Turning turning;
+  for (const Motion& motion : motions.all) {
+    const Eigen::Vector3d turn_a = turn(motion.a), turn_b = turn(motion.b);
+    turning.squares_a += turn_a * turn_a.transpose();
+    turning.squares_b += turn_b * turn_b.transpose();
+    turning.common += turn_a.dot(a.normal) * turn_b.dot(b.normal);
+  }
+  Eigen::Vector3d axis_a, axis_b;
+  if (!axis_of(turning.squares_a, axis_a) || !axis_of(turning.squares_b, axis_b)) return findings;
+  const bool a_fits = std::abs(axis_a.dot(a.normal)) > aligned, b_fits = std::abs(axis_b.dot(b.normal)) > aligned;
+  if (!a_fits && !b_fits && std::abs(axis_a.dot(b.normal)) > aligned &&
+      std::abs(axis_b.dot(a.normal)) > aligned) {
+    for (const char which : {'a', 'b'})
+      findings.push_back(plane_finding(which, "The ground planes of a and b are exchanged.",
+                                       "Exchange --plane-a and --plane-b."));
+  } else {
+    for (const auto& [which, fits, axis] :
+         {std::tuple{'a', a_fits, axis_a}, std::tuple{'b', b_fits, axis_b}})
+      if (!fits)
+        findings.push_back(plane_finding(
+            which,
+            format("Sensor %c turns about (%.2f, %.2f, %.2f), which is not the normal of its ground plane.",
+                   which, axis.x(), axis.y(), axis.z()),
+            format("Check the normal of --plane-%c.", which)));
+  }
+  // both turn left at the same time: one normal is upside down otherwise
+  if (a_fits && b_fits && turning.common < 0 && findings.empty())
+    for (const char which : {'a', 'b'})
+      findings.push_back(plane_finding(which,
+                                       "The normals of the two ground planes point in opposite directions: "
+                                       "when a turns left about its normal, b turns right.",
+                                       format("Turn the normal of --plane-%c round, if it points down.", which),
+                                       false));
+  return findings;
+}
+
+}  // namespace egocal::detail

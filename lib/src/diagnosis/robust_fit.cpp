@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/robust_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "egocal/solvers/dual.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Reweighting rounds: the weights of gross outliers are negligible after three.
+constexpr int rounds = 4;
+/// Squares beyond this many times the typical one lose weight (three standard deviations of a residual).
+constexpr double inlier = 9;
+/// Squares below this part of the motion are rounding.
+constexpr double rounding = 1e-16;
+
+/// Size of a motion in units of the typical one.
+double size_of(const Motion& motion, const Motions& motions) {
+  double size = 0;
+  if (motions.rotation > 0) size += std::sqrt(motion.angle_a * motion.angle_b) / motions.rotation;
+  if (motions.translation > 0)
+    size += std::sqrt(motion.t_a.norm() * motion.t_b.norm()) / motions.translation;
+  return size;
+}
+
+double square_of(const Residual& residual, const Motions& motions) {
+  const auto part = [](double value, double size) { return size > 0 ? value / size : 0.0; };
+  const double rotation = part(residual.rotation, motions.rotation);
+  const double translation = part(residual.translation, motions.translation);
+  return rotation * rotation + translation * translation;
+}
+
+/// Half a turn is four times the sine of a quarter: rotation rows of (14) are half-angles, dual rows half-lengths.
+Balance balance_of(const Motions& motions) {
+  const auto weight = [](double size) { return size > 0 ? 4 / (size * size) : 0.0; };
+  Balance balance{weight(motions.rotation), weight(motions.translation)};
+  if (!(balance.translation > 0)) balance.translation = 1;
+  return balance;
+}
+
+DualQuaternion weighted_solution(const Motions& motions, const std::vector<double>& weights) {
+  Statistics statistics;
+  for (std::size_t i = 0; i < motions.all.size(); ++i)
+    if (weights[i] > 1e-6) statistics.add(motions.all[i].a, motions.all[i].b, weights[i]);
+  return solve_dual(cost_matrix(statistics, balance_of(motions))).q;
+}
+
+}  // namespace
+
+double weighted_median(std::vector<std::pair<double, double>> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  double total = 0, sum = 0;
+  for (const auto& entry : values) total += entry.second;
+  for (const auto& [value, weight] : values) {
+    sum += weight;
+    if (2 * sum >= total) return value;
+  }
+  return values.back().first;
+}
+
+Residual residual_at(const Motion& motion, const Pose& T) {
+  const Eigen::Quaterniond a(motion.a.real[0], motion.a.real[1], motion.a.real[2], motion.a.real[3]);
+  const Eigen::Quaterniond b(motion.b.real[0], motion.b.real[1], motion.b.real[2], motion.b.real[3]);
+  const Eigen::Quaterniond off = (a * T.rotation).conjugate() * (T.rotation * b);
+  Residual residual;
+  residual.rotation = 2 * std::atan2(off.vec().norm(), std::abs(off.w()));
+  residual.translation =
+      (motion.R_a * T.translation + motion.t_a - T.rotation * motion.t_b - T.translation).norm();
+  return residual;
+}
+
+RobustFit evaluated(const Motions& motions, const DualQuaternion& T) {
+  RobustFit fit{T, {}, std::vector<double>(motions.all.size(), 1.0), 0};
+  const Pose pose = to_pose(T);
+  std::vector<std::pair<double, double>> values;
+  fit.squares.reserve(motions.all.size());
+  values.reserve(motions.all.size());
+  for (const Motion& motion : motions.all) {
+    fit.squares.push_back(square_of(residual_at(motion, pose), motions));
+    values.emplace_back(fit.squares.back(), size_of(motion, motions));
+  }
+  fit.typical = std::max(weighted_median(std::move(values)), rounding);
+  return fit;
+}
+
+static RobustFit reweighted(const Motions& motions, int rounds) {
+  std::vector<double> weights(motions.all.size(), 1.0);
+  RobustFit fit;
+  for (int round = 0; round < rounds; ++round) {
+    fit = evaluated(motions, weighted_solution(motions, weights));
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double w = 1 / (1 + fit.squares[i] / (inlier * fit.typical));
+      weights[i] = w * w;
+    }
+  }
+  fit.weights = std::move(weights);
+  return fit;
+}
+
+RobustFit robust_fit(const Motions& motions) {
+  return reweighted(motions, rounds);
+}
+
+RobustFit quick_fit(const Motions& motions) {
+  return reweighted(motions, 2);
+}
+
+namespace {
+
+struct BlockMeans {
+  std::vector<double> logs;  ///< mean of log(square + floor)
+  std::vector<int> counts;
+};
+
+/// Blocks are intervals of time: explanations with other clocks have other instants.
+BlockMeans block_means(const Explained& x, double floor, double begin, double end, std::size_t blocks) {
+  BlockMeans means{std::vector<double>(blocks, 0.0), std::vector<int>(blocks, 0)};
+  const double width = (end - begin) / static_cast<double>(blocks);
+  for (std::size_t i = 0; i < x.motions.all.size(); ++i) {
+    const double place = width > 0 ? (x.motions.all[i].time - begin) / width : 0;
+    if (place < 0) continue;
+    const std::size_t block = std::min(blocks - 1, static_cast<std::size_t>(place));
+    means.logs[block] += std::log(x.fit.squares[i] + floor);
+    ++means.counts[block];
+  }
+  for (std::size_t block = 0; block < blocks; ++block)
+    if (means.counts[block] > 0) means.logs[block] /= means.counts[block];
+  return means;
+}
+
+/// Mean of the squares without the largest twentieth, which may be outliers.
+double trimmed_mean(std::vector<double> squares) {
+  if (squares.empty()) return 0;
+  const std::size_t kept = squares.size() - squares.size() / 20;
+  std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept - 1), squares.end());
+  // in the order of size, or the sum would depend on the standard library
+  std::sort(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept));
+  return std::accumulate(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept), 0.0) /
+         static_cast<double>(kept);
+}
+
+/// Signed ranks by size, as a multiple of their standard deviation without any difference.
+double signed_rank_sigmas(const std::vector<double>& gains) {
+  std::vector<std::size_t> order(gains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+    return std::pair(std::abs(gains[i]), i) < std::pair(std::abs(gains[k]), k);
+  });
+  double ranks = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const double gain = gains[order[i]];
+    ranks += gain > 0 ? static_cast<double>(i + 1) : gain < 0 ? -static_cast<double>(i + 1) : 0;
+  }
+  const auto k = static_cast<double>(gains.size());
+  return ranks / std::sqrt(k * (k + 1) * (2 * k + 1) / 6);
+}
+
+}  // namespace
+
+Comparison compare(const Explained& x, const Explained& y) {
+  if (x.motions.all.empty() || y.motions.all.empty()) return {};
+  // below the noise of the better one there is nothing to win
+  const double floor = std::min(x.fit.typical, y.fit.typical);
+  const double begin = std::max(x.motions.all.front().time, y.motions.all.front().time);
+  const double end = std::min(x.motions.all.back().time, y.motions.all.back().time);
+  const std::size_t blocks = std::min(x.motions.blocks, y.motions.blocks);
+  const BlockMeans of_x = block_means(x, floor, begin, end, blocks);
+  const BlockMeans of_y = block_means(y, floor, begin, end, blocks);
+  std::vector<double> gains;
+  double sum = 0, count = 0;
+  for (std::size_t block = 0; block < blocks; ++block) {
+    if (of_x.counts[block] == 0 || of_y.counts[block] == 0) continue;
+    gains.push_back(of_x.logs[block] - of_y.logs[block]);
+    sum += gains.back() * of_y.counts[block];
+    count += of_y.counts[block];
+  }
+  if (gains.empty()) return {};
+  const auto k = static_cast<double>(gains.size());
+  return {sum / count, signed_rank_sigmas(gains), std::sqrt(1.5 * k * (k + 1) / (2 * k + 1)),
+          trimmed_mean(x.fit.squares) / std::max(trimmed_mean(y.fit.squares), rounding)};
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "egocal/solvers/dual.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Scales are looked for within this factor of the ratio of the lengths: a rig that turns much and travels
+/// little has unlike lengths.
+constexpr double widest = 64;
+constexpr int grid = 48, refinements = 24;
+
+/// The 8 x 8 cost as a polynomial in the scale of b: rotation + (zero + s one + s^2 two) / s. Dividing by s
+/// makes a and b alike: neither is shrunk to explain noise.
+struct ScaledCost {
+  Matrix8d rotation = Matrix8d::Zero(), zero = Matrix8d::Zero(), one = Matrix8d::Zero(), two = Matrix8d::Zero();
+
+  Matrix8d at(double s) const { return rotation + zero / s + one + s * two; }
+};
+
+ScaledCost accumulate(const Motions& motions, const std::vector<double>& weights) {
+  Statistics at_zero, at_plus, at_minus;
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    if (!(weights[i] > 1e-6)) continue;
+    const Motion& motion = motions.all[i];
+    DualQuaternion b = motion.b;
+    b.dual.setZero();
+    at_zero.add(motion.a, b, weights[i]);
+    at_plus.add(motion.a, motion.b, weights[i]);
+    b.dual = -motion.b.dual;
+    at_minus.add(motion.a, b, weights[i]);
+  }
+  const auto weight = [](double size) { return size > 0 ? 4 / (size * size) : 0.0; };
+  const double w_t = weight(motions.translation);
+  ScaledCost cost;
+  const Matrix8d zero = cost_matrix(at_zero, {0, w_t}), plus = cost_matrix(at_plus, {0, w_t}),
+                 minus = cost_matrix(at_minus, {0, w_t});
+  cost.rotation = cost_matrix(at_zero, {weight(motions.rotation), 0});
+  cost.zero = zero;
+  cost.one = 0.5 * (plus - minus);
+  cost.two = 0.5 * (plus + minus) - zero;
+  return cost;
+}
+
+double best_scale(const ScaledCost& cost, double centre) {
+  const auto value = [&](double log_scale) { return solve_dual(cost.at(std::exp(log_scale))).cost; };
+  const double low = std::log(centre / widest), step = 2 * std::log(widest) / grid;
+  int best = 0;
+  double least = value(low);
+  for (int i = 1; i <= grid; ++i) {
+    const double here = value(low + i * step);
+    if (here < least) {
+      least = here;
+      best = i;
+    }
+  }
+  constexpr double golden = 0.6180339887498949;
+  double left = low + (best - 1) * step, right = low + (best + 1) * step;
+  for (int i = 0; i < refinements; ++i) {
+    const double x = right - golden * (right - left), y = left + golden * (right - left);
+    (value(x) < value(y) ? right : left) = value(x) < value(y) ? y : x;
+  }
+  return std::exp(0.5 * (left + right));
+}
+
+}  // namespace
+
+ScaledFit fit_with_scale(const Motions& motions, Effort effort) {
+  double length_a = 0, length_b = 0;
+  for (const Motion& motion : motions.all) {
+    length_a += motion.t_a.norm();
+    length_b += motion.t_b.norm();
+  }
+  ScaledFit result;
+  if (!(length_a > 0) || !(length_b > 0)) {
+    result.explained = {motions, robust_fit(motions)};
+    return result;
+  }
+  std::vector<double> weights(motions.all.size(), 1.0);
+  const int rounds = effort == Effort::full ? 3 : 1;
+  for (int round = 0; round < rounds; ++round) {
+    result.scale = best_scale(accumulate(motions, weights), length_a / length_b);
+    result.explained.motions = scaled(motions, result.scale);
+    result.explained.fit = round + 1 == rounds && effort == Effort::full
+                               ? robust_fit(result.explained.motions)
+                               : quick_fit(result.explained.motions);
+    weights = result.explained.fit.weights;
+  }
+  return result;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/wording.hpp"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace egocal::detail {
+
+namespace {
+
+std::string fits(const Finding& finding) {
+  if (!finding.certain) return "the motions fit both readings";
+  return format("the squared residuals are %.3g times smaller then", finding.improvement);
+}
+
+/// "x from -y, y from x, z from z": the columns of the position that were meant.
+std::string columns(const Eigen::Matrix3d& axes) {
+  std::string text;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      if (axes(row, column) == 0) continue;
+      text += text.empty() ? "" : ", ";
+      text += "xyz"[row];
+      text += axes(row, column) < 0 ? " from -" : " from ";
+      text += "xyz"[column];
+    }
+  }
+  return text;
+}
+
+void word_axes(Finding& finding, const PoseReading& reading, const char* stream) {
+  std::string change;
+  if (!reading.axes.isIdentity()) change = "position columns read as " + columns(reading.axes);
+  if (reading.conjugate)
+    change += std::string(change.empty() ? "" : ", and ") + "each rotation taken as its inverse";
+  finding.message =
+      format("The position and the rotation of %s do not belong together: with %s, %s.", stream,
+             change.c_str(), fits(finding).c_str());
+  finding.remedy = format("Correct the columns of %s where the file is written.", stream);
+}
+
+}  // namespace
+
+std::string format(const char* pattern, ...) {
+  char text[512];
+  std::va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseReading& read_b) {
+  const std::string& code = finding.code;
+  const char* order_a = read_a.quaternion_order == QuaternionOrder::xyzw ? "xyzw" : "wxyz";
+  const char* order_b = read_b.quaternion_order == QuaternionOrder::xyzw ? "xyzw" : "wxyz";
+  if (code == "inverted_a" || code == "inverted_b") {
+    const char which = code.back();
+    finding.message = format("The poses of %c are world-to-sensor, not sensor-to-world: %s.", which,
+                             fits(finding).c_str());
+    finding.remedy = format("--invert-%c", which);
+  } else if (code == "inverted_both") {
+    finding.message = finding.certain
+                          ? "The poses of both streams are world-to-sensor, not sensor-to-world."
+                          : "If the poses of both streams are world-to-sensor, the answer is another one; the "
+                            "motions cannot tell.";
+    finding.remedy = finding.certain ? "--invert-a --invert-b"
+                                     : "Make sure that the poses are sensor-to-world; otherwise --invert-a "
+                                       "--invert-b.";
+  } else if (code == "quaternion_order_a" || code == "quaternion_order_b") {
+    const char which = code.back();
+    const char* order = which == 'a' ? order_a : order_b;
+    finding.message =
+        format("The quaternions of %c are in the order %s: %s.", which, order, fits(finding).c_str());
+    finding.remedy = format("--quaternion-order-%c %s", which, order);
+  } else if (code == "quaternion_order_both") {
+    finding.message =
+        format("The quaternions of both streams are in the order %s: %s.", order_a, fits(finding).c_str());
+    finding.remedy = format("--quaternion-order-a %s --quaternion-order-b %s", order_a, order_b);
+  } else if (code == "axes_a") {
+    word_axes(finding, read_a, "a");
+  } else if (code == "axes_b") {
+    word_axes(finding, read_b, "b");
+  }
+  return finding;
+}
+
+Finding worded_scale(Finding finding) {
+  const double scale = finding.value.value_or(1);
+  if (finding.code == "units") {
+    finding.message = format("The lengths of %s are not in metres: those of b times %g fit those of a.",
+                             scale < 1 ? "b" : "a", scale);
+    finding.remedy = scale < 1 ? format("--scale %g", scale)
+                               : format("Write the positions of a in metres: divide them by %g.", scale);
+  } else {
+    finding.message = format("The lengths of b times %.4g fit those of a: %s.", scale, fits(finding).c_str());
+    finding.remedy = "--scale auto";
+  }
+  return finding;
+}
+
+Finding worded_clock(Finding finding, const ClockModel& clock) {
+  if (finding.code == "clock_drift") {
+    finding.message = format("The clocks drift apart: b's stamps need %+.4f s in the middle of the drive and "
+                             "%+.0f us more each second; %s.",
+                             clock.offset, 1e6 * clock.rate, fits(finding).c_str());
+    finding.remedy = "Synchronise the clocks; for a short drive --time-offset auto.";
+  } else {
+    finding.message =
+        format("The clocks differ: %+.4f s added to the stamps of b fits; %s.", clock.offset,
+               fits(finding).c_str());
+    finding.remedy = "--time-offset auto";
+  }
+  return finding;
+}
+
+}  // namespace egocal::detail

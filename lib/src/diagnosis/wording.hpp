@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Findings in words: what was found, and what to do about it.
+#pragma once
+
+#include "diagnosis/motions.hpp"
+#include "egocal/diagnosis/verdict.hpp"
+
+namespace egocal::detail {
+
+Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseReading& read_b);
+Finding worded_scale(Finding finding);
+Finding worded_clock(Finding finding, const ClockModel& clock);
+
+/// printf into a string of at most 511 characters.
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
+
+}  // namespace egocal::detail
