@@ -4,6 +4,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "egocal/error.hpp"
 
@@ -59,6 +63,27 @@ Balance balance(const std::string& option, const std::string& text) {
   if (!(v[0] >= 0) || !(v[1] > 0))
     throw UsageError(option + ": expected R:T with R >= 0 and T > 0, got '" + text + "'");
   return {v[0], v[1]};
+}
+
+GoalOptions goal(const std::string& option, const std::string& text) {
+  const UsageError wrong(option + ": expected two accuracies as 0.1deg,2cm, got '" + text + "'");
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) throw wrong;
+  const auto value = [&](const std::string& part,
+                         std::initializer_list<std::pair<const char*, double>> units) {
+    for (const auto& [unit, factor] : units) {
+      const std::string_view suffix = unit;
+      if (part.size() <= suffix.size() || !part.ends_with(suffix)) continue;
+      const std::string digits = part.substr(0, part.size() - suffix.size());
+      if (digits.find_first_not_of("0123456789.eE+- ") != std::string::npos) continue;
+      const double result = factor * number(option, digits);
+      if (!(result > 0)) throw wrong;
+      return result;
+    }
+    throw wrong;
+  };
+  return {value(text.substr(0, comma), {{"deg", std::numbers::pi / 180}, {"rad", 1}}),
+          value(text.substr(comma + 1), {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}}), std::nullopt};
 }
 
 }  // namespace egocal::tools

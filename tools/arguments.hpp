@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egocal/cli/cli.hpp"
+#include "egocal/diagnosis/verdict.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/problem/ground_plane.hpp"
@@ -24,6 +25,8 @@ double number(const std::string& option, const std::string& text);
 Pose pose(const std::string& option, const std::string& text);
 /// NX,NY,NZ,D: normal . x = D, the unit normal up.
 GroundPlane plane(const std::string& option, const std::string& text);
+/// ROTATION,TRANSLATION with units, as 0.1deg,2cm (deg or rad; mm, cm or m).
+GoalOptions goal(const std::string& option, const std::string& text);
 /// R:T.
 Balance balance(const std::string& option, const std::string& text);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/selection.hpp"
@@ -26,6 +27,24 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
   result.status = answer.status;
   result.problem = std::move(problem);
   return result;
+}
+
+Answered answered(const Calibration& calibration) {
+  return {to_dual_quaternion(calibration.T_a_b), calibration.observability, calibration.counts,
+          calibration.problem};
+}
+
+Calibration judged(Calibration calibration, Diagnosis diagnosis) {
+  calibration.verdict = diagnosis.verdict;
+  calibration.reason = std::move(diagnosis.reason);
+  calibration.fit = std::move(diagnosis.fit);
+  calibration.findings = std::move(diagnosis.findings);
+  calibration.goal = std::move(diagnosis.goal);
+  return calibration;
+}
+
+bool as_read(const Reading& reading) {
+  return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && reading.scale == 1;
 }
 
 std::string span_in_words(const char* label, const Trajectory& trajectory) {
@@ -77,6 +96,11 @@ std::string rejections_in_words(const PairingCounts& counts) {
 }
 
 Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+  if (!as_read(options.read_a) || !as_read(options.read_b)) {
+    CalibrationOptions rest = options;
+    rest.read_a = rest.read_b = {};
+    return calibrate(reread(a, options.read_a), reread(b, options.read_b), rest);
+  }
   PairingOptions pairing_options = options.pairing;
   std::optional<TimeOffset> time_offset;
   if (options.estimate_time_offset) {
@@ -93,7 +117,10 @@ Calibration calibrate(const Trajectory& a, const Trajectory& b, const Calibratio
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   result.time_offset = time_offset;
   result.time_offset_applied = pairing_options.time_offset;
-  return result;
+  const Answered what = answered(result);
+  Diagnosis diagnosis = options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
+                                                  : diagnose(what, options.diagnosis);
+  return judged(std::move(result), std::move(diagnosis));
 }
 
 Calibration calibrate(std::span<const MotionPair> given, const CalibrationOptions& options) {
@@ -130,7 +157,8 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   counts.outliers = statistics.outlier_pairs();
   Choice choice = choose_balance(problem, pairing);
   problem.balance = choice.balance;
-  return solved(std::move(problem), std::move(choice), counts, options.method);
+  Calibration result = solved(std::move(problem), std::move(choice), counts, options.method);
+  return judged(result, diagnose(given, answered(result), options.diagnosis));
 }
 
 Calibrator::Calibrator(CalibrationOptions options)
@@ -145,7 +173,7 @@ std::optional<Calibration> Calibrator::answer() const {
   if (problem.blocks.empty()) return std::nullopt;
   Calibration result = solved(std::move(problem), pairing_.choice(), pairing_.counts(), options_.method);
   result.time_offset_applied = pairing_.time_offset().value_or(0);
-  return result;
+  return judged(result, diagnose(answered(result), options_.diagnosis));
 }
 
 }  // namespace egocal

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <memory>
+#include <tuple>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
@@ -23,8 +24,18 @@ struct Options {
   bool planar = false;
   std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal;
   double max_gap = 0.5;
+  std::string order_a, order_b, goal;
+  bool invert_a = false, invert_b = false;
   bool json = false;
 };
+
+Reading reading(bool invert, const std::string& order) {
+  Reading result;
+  result.invert = invert;
+  if (order == "wxyz") result.quaternion_order = QuaternionOrder::wxyz;
+  if (order == "xyzw") result.quaternion_order = QuaternionOrder::xyzw;
+  return result;
+}
 
 SolveRequest understood(const Options& options) {
   SolveRequest result;
@@ -74,6 +85,12 @@ SolveRequest understood(const Options& options) {
     throw UsageError("--time-offset: out of range");
   if (!(options.max_gap > 0) || options.max_gap > 1e6) throw UsageError("--max-gap: expected more than 0 s");
   result.calibration.pairing.max_gap = options.max_gap;
+  result.calibration.read_a = reading(options.invert_a, options.order_a);
+  result.calibration.read_b = reading(options.invert_b, options.order_b);
+  if (!trajectories &&
+      (options.invert_a || options.invert_b || !options.order_a.empty() || !options.order_b.empty()))
+    throw UsageError("--invert, --quaternion-order: apply to poses, not to motion pairs");
+  if (!options.goal.empty()) result.calibration.diagnosis.goal = goal("--goal", options.goal);
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
   if (!options.nominal.empty())
     result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
@@ -86,6 +103,9 @@ void run(const Options& options) {
   for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
   fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
                                   : report_text(result, understood_options.truth));
+  const Calibration& calibration = result.calibration;
+  if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
+    throw cli::Exit{3};
 }
 
 }  // namespace
@@ -119,6 +139,21 @@ void add_solve(cli::App program) {
   command.add_option("--time-offset", options->time_offset, "added to the times of B: seconds or auto [0]");
   command.add_option("--max-gap", options->max_gap, "poses further apart are not interpolated between [s]")
       .show_default();
+  for (const auto& [stream, invert, order] : {std::tuple{"a", &options->invert_a, &options->order_a},
+                                              std::tuple{"b", &options->invert_b, &options->order_b}}) {
+    command.add_flag(fmt::format("--invert-{}", stream), *invert,
+                     fmt::format("the poses of {} are world-to-sensor: invert each", stream));
+    command
+        .add_option(
+            fmt::format("--quaternion-order-{}", stream), *order,
+            fmt::format("columns of the quaternions of {} where they are not those of the file format: "
+                        "wxyz in TUM, xyzw in EuRoC csv",
+                        stream))
+        .check(cli::Check::one_of({"wxyz", "xyzw"}));
+  }
+  command.add_option("--goal", options->goal,
+                     "ROTATION,TRANSLATION as 0.1deg,2cm: standard deviations that are enough; exit code 3 "
+                     "where they are not reached");
   command.add_option("--nominal", options->nominal,
                      "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
   command.add_option("--truth", options->truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");

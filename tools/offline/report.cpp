@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "egocal/evaluation/errors.hpp"
+#include "offline/trust_report.hpp"
 
 namespace egocal::tools {
 
@@ -22,10 +23,10 @@ nlohmann::ordered_json stream_json(const StreamSpan& stream) {
   return {{"poses", stream.poses}, {"first_s", stream.first}, {"last_s", stream.last}};
 }
 
-const char* verdict(Optimality optimality) {
+const char* optimality_text(Optimality optimality) {
   switch (optimality) {
     case Optimality::certified:
-      return "certified: no extrinsic has a lower cost";
+      return "optimal (proven): no extrinsic has a lower cost";
     case Optimality::not_optimal:
       return "NOT OPTIMAL: a better extrinsic is known";
     case Optimality::undecided:
@@ -55,7 +56,7 @@ Pose with_positive_scalar(Pose T) {
 std::string report_json(const SolveResult& result, const std::optional<Pose>& truth) {
   const Pose T = result.calibration.T_a_b;
   const Certificate& certificate = result.calibration.certificate;
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = trust_json(result.calibration);
   json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
   json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
   json["pairs"] = total(result.calibration.problem.blocks).count;
@@ -103,7 +104,10 @@ std::string report_json(const SolveResult& result, const std::optional<Pose>& tr
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth) {
   const Calibration& calibration = result.calibration;
   const Pose T = calibration.T_a_b;
-  std::string text = pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", T);
+  std::string text = trust_text(calibration);
+  text += fmt::format("optimality    {} (method {}, {:.2f} us)\n\n",
+                      optimality_text(calibration.certificate.optimality), result.method, result.solve_us);
+  text += pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", T);
   text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a));
 
   text +=
@@ -133,14 +137,12 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
     text += fmt::format("time offset   {:.4f} s added to b\n", result.calibration.time_offset_applied);
 
   const Certificate& certificate = calibration.certificate;
-  text += fmt::format("\nfit           cost {:.6g}\n", certificate.cost);
-  text += fmt::format("optimality    {} (method {}, {:.2f} us)\n", verdict(certificate.optimality),
-                      result.method, result.solve_us);
   text += fmt::format(
-      "              lower bound {:.6g}, gap {:.3g} ({:.2f} of rounding); anything as good is within {:.2g} "
+      "\ncertificate   cost {:.6g}, lower bound {:.6g}, gap {:.3g} ({:.2f} of rounding); anything as good is "
+      "within {:.2g} "
       "m, {:.2g} deg\n",
-      certificate.lower_bound, certificate.gap, certificate.scaled_gap, certificate.reach_translation,
-      certificate.reach_rotation * degrees);
+      certificate.cost, certificate.lower_bound, certificate.gap, certificate.scaled_gap,
+      certificate.reach_translation, certificate.reach_rotation * degrees);
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   text += "uncertainty   in the frame of a, one standard deviation\n";
   for (std::size_t i = 0; i < 6; ++i) {

@@ -5,7 +5,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "egocal/diagnosis/reading.hpp"
+#include "egocal/diagnosis/verdict.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -18,12 +21,19 @@ struct CalibrationOptions {
   PairingOptions pairing;             ///< mode, ground planes, stride, weights, time offset, outliers, prior
   Method method = Method::dual;       ///< solver of (18); every answer is verified, whichever solver found it
   bool estimate_time_offset = false;  ///< estimate the clock offset of b first; replaces pairing.time_offset
+  Reading read_a, read_b;             ///< for streams that do not mean what their format says
+  DiagnosisOptions diagnosis;         ///< when an answer counts as known, and the goal
 };
 
 /// Everything that is known about one pair of sensors. Lengths in metres, angles in radians.
 struct Calibration {
   Pose T_a_b;                             ///< pose of sensor b in the frame of sensor a: p_a = T_a_b p_b
   Pose T_b_a;                             ///< its inverse: p_b = T_b_a p_a
+  Verdict verdict = Verdict::incomplete;  ///< whether the answer can be used
+  std::string reason;                     ///< of the verdict, one sentence
+  Fit fit;                                ///< how well the answer explains the motions, in units
+  std::vector<Finding> findings;          ///< what else explains the motions; most important first
+  std::optional<Goal> goal;               ///< where one was given
   Certificate certificate;                ///< optimality: whether a better extrinsic for (18) can exist
   Observability observability;            ///< per direction x y z roll pitch yaw, in the frame of a
   SolverStatus status{};                  ///< of the solver

@@ -101,7 +101,8 @@ std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel&
   if (count < 40) return std::nullopt;
   const std::vector<double> x = turning_rates(streams.a, origin_us, 0, step, count);
   const std::vector<double> y = turning_rates(streams.b, origin_us, start.offset, step, count);
-  const auto most_lag = static_cast<std::ptrdiff_t>(std::min(widest / step, 0.25 * static_cast<double>(count)));
+  const auto most_lag =
+      static_cast<std::ptrdiff_t>(std::min(widest / step, 0.25 * static_cast<double>(count)));
   const std::optional<double> lag = best_lag(x, y, most_lag, 0, count);
   if (!lag) return std::nullopt;
   ClockModel clock{start.offset + *lag * step, 0, 0.5 * span};

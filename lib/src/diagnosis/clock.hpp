@@ -13,9 +13,9 @@ struct Streams {
   const Trajectory& a;
   const Trajectory& b;
   PoseReading read_a, read_b;
-  double max_gap = 0.5;       ///< [s]
-  double motion_length = 1;   ///< of the motions that are compared [s]
-  std::size_t most = 1000;    ///< motions
+  double max_gap = 0.5;      ///< [s]
+  double motion_length = 1;  ///< of the motions that are compared [s]
+  std::size_t most = 1000;   ///< motions
 };
 
 /// The motions under a clock, of about the given length, and their best extrinsic.

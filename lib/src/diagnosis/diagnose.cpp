@@ -8,6 +8,7 @@
 
 #include "diagnosis/explanations.hpp"
 #include "diagnosis/fit.hpp"
+#include "diagnosis/forward.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/planes.hpp"
@@ -39,9 +40,10 @@ Finding unrelated(double correlation) {
   Finding finding;
   finding.code = "unrelated";
   finding.certain = true;
-  finding.message = format("The two streams do not turn together (correlation %.2f): they are not of one rigid "
-                           "body, or not of one drive.",
-                           correlation);
+  finding.message = format(
+      "The two streams do not turn together (correlation %.2f): they are not of one rigid "
+      "body, or not of one drive.",
+      correlation);
   finding.remedy = "Check that both files are of the same drive and that both sensors are rigidly mounted.";
   return finding;
 }
@@ -63,9 +65,13 @@ constexpr double least_turning = 0.1;
 }  // namespace
 
 Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
-                   const Answered& answered, const DiagnosisOptions& options) {
+                   const Answered& given, const DiagnosisOptions& options) {
   const Evidence evidence = gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap);
   const Motions& motions = evidence.given.explained.motions;
+  Answered answered = given;
+  if (!evidence.instants.time.empty())
+    answered.seconds = evidence.instants.time.back() - evidence.instants.time.front();
+  answered.platform = forward(heading(motions)) ? Platform::car : Platform::handheld;
   if (motions.all.size() < least_motions) {
     Diagnosis result = diagnose(answered, options);
     result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
@@ -78,8 +84,7 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
   result.findings = explain(evidence, options);
   if (answered.problem.mode == Mode::planar)
-    for (Finding& finding :
-         check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
+    for (Finding& finding : check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
       result.findings.push_back(std::move(finding));
   const Misfit misfit{std::sqrt(at_answer.typical), std::sqrt(evidence.given.explained.fit.typical)};
   const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
@@ -96,6 +101,21 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
       result.findings.push_back(unrelated(correlation));
     else if (std::optional<Finding> moved = moved_mount(evidence.given.explained, options))
       result.findings.push_back(std::move(*moved));
+  }
+  judge(result, answered, misfit, options);
+  return result;
+}
+
+Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
+                   const DiagnosisOptions& options) {
+  const Motions motions = motions_of(pairs);
+  Diagnosis result;
+  result.fit = fit_at(motions, to_pose(answered.T_a_b), 0);
+  Misfit misfit;
+  if (motions.all.size() >= least_motions) {
+    misfit.at_answer = misfit.best = std::sqrt(evaluated(motions, answered.T_a_b).typical);
+  } else {
+    result.findings.push_back(too_little_motion(motions.all.size()));
   }
   judge(result, answered, misfit, options);
   return result;

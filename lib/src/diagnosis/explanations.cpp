@@ -36,10 +36,10 @@ std::vector<Candidate> common_mistakes() {
   inverted.invert = true;
   wxyz.quaternion_order = QuaternionOrder::wxyz;
   xyzw.quaternion_order = QuaternionOrder::xyzw;
-  return {{"inverted_a", inverted, as_read},        {"inverted_b", as_read, inverted},
-          {"inverted_both", inverted, inverted},    {"quaternion_order_a", wxyz, as_read},
-          {"quaternion_order_a", xyzw, as_read},    {"quaternion_order_b", as_read, wxyz},
-          {"quaternion_order_b", as_read, xyzw},    {"quaternion_order_both", wxyz, wxyz},
+  return {{"inverted_a", inverted, as_read},     {"inverted_b", as_read, inverted},
+          {"inverted_both", inverted, inverted}, {"quaternion_order_a", wxyz, as_read},
+          {"quaternion_order_a", xyzw, as_read}, {"quaternion_order_b", as_read, wxyz},
+          {"quaternion_order_b", as_read, xyzw}, {"quaternion_order_both", wxyz, wxyz},
           {"quaternion_order_both", xyzw, xyzw}};
 }
 
@@ -52,7 +52,8 @@ std::vector<PoseReading> wrong_axes() {
     for (int signs = 0; signs < 8; ++signs) {
       PoseReading reading;
       reading.axes.setZero();
-      for (int i = 0; i < 3; ++i) reading.axes(i, order[static_cast<std::size_t>(i)]) = signs >> i & 1 ? -1 : 1;
+      for (int i = 0; i < 3; ++i)
+        reading.axes(i, order[static_cast<std::size_t>(i)]) = signs >> i & 1 ? -1 : 1;
       reading.conjugate = false;
       if (!reading.axes.isIdentity()) readings.push_back(reading);
       reading.conjugate = true;
@@ -84,6 +85,13 @@ bool better(const Comparison& comparison, double least_log_ratio, const Diagnosi
   return comparison.sigmas >= needed && comparison.gain >= least_log_ratio;
 }
 
+/// One number more explains a little of any noise: it must be clear beyond what few blocks can show, or gain
+/// much.
+bool number_explains(const Comparison& comparison, const DiagnosisOptions& options) {
+  if (!better(comparison, least_gain, options)) return false;
+  return comparison.sigmas >= options.sigmas || comparison.gain >= options.gain;
+}
+
 Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain) {
   Finding finding;
   finding.code = explanation.code;
@@ -107,7 +115,8 @@ std::vector<Ranked> best_readings(const Evidence& evidence) {
     if (std::string_view(candidates[i].code) == "inverted_both") continue;  // decided by itself
     const Motions motions =
         motions_of(evidence.instants, candidates[i].a, candidates[i].b, evidence.stride, first_look);
-    if (!motions.all.empty()) looks.emplace_back(fit_with_scale(motions, Effort::look).explained.fit.typical, i);
+    if (!motions.all.empty())
+      looks.emplace_back(fit_with_scale(motions, Effort::look).explained.fit.typical, i);
   }
   std::sort(looks.begin(), looks.end());
   std::vector<Ranked> ranked;
@@ -151,7 +160,7 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   }
   if (twin && forward(heading(best.scaled.explained.motions)) && !forward(heading(twin->explained.motions)))
     twin.reset();
-  if (better(compare(best.as_is.explained, best.scaled.explained), least_gain, options))
+  if (number_explains(compare(best.as_is.explained, best.scaled.explained), options))
     return {best.scaled, twin};
   return {best.as_is, twin};
 }
@@ -182,9 +191,9 @@ Explanation best_axes(const Evidence& evidence, const Explanation& best, const D
   for (std::size_t i = 0; i < followed; ++i) {
     const Look& look = looks[i];
     const PoseReading as_read;
-    Explanation here = explained(evidence, look.in_b ? "axes_b" : "axes_a",
-                                 look.in_b ? as_read : readings[look.index],
-                                 look.in_b ? readings[look.index] : as_read, most_motions);
+    Explanation here =
+        explained(evidence, look.in_b ? "axes_b" : "axes_a", look.in_b ? as_read : readings[look.index],
+                  look.in_b ? readings[look.index] : as_read, most_motions);
     if (better(compare(result.explained, here.explained), 0.05, options)) result = std::move(here);
   }
   return result;
@@ -200,7 +209,7 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   streams.motion_length = evidence.stride * evidence.instants.period;
   std::vector<Explanation> result;
   const auto take = [&](const char* code, const std::optional<ClockFit>& fit, const Explained& against) {
-    if (!fit || !better(compare(against, fit->explained), least_gain, options)) return;
+    if (!fit || !number_explains(compare(against, fit->explained), options)) return;
     Explanation here = best;
     here.code = code;
     here.clock = fit->clock;
@@ -242,7 +251,8 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
 }  // namespace
 
 Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
-  Evidence evidence{{a, b, {}, {}, max_gap, 1, most_motions}, clock, synchronised(a, b, clock, max_gap), 1, {}};
+  Evidence evidence{
+      {a, b, {}, {}, max_gap, 1, most_motions}, clock, synchronised(a, b, clock, max_gap), 1, {}};
   evidence.given.clock = clock;
   const auto n = static_cast<int>(evidence.instants.time.size());
   double least = INFINITY;
@@ -250,8 +260,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
   readings.insert(readings.begin(), Candidate{"", {}, {}});
   for (int stride = std::max(1, n / 32), looks = 0; looks < 4; stride /= 4, ++looks) {
     for (const Candidate& candidate : readings) {
-      const Motions motions =
-          motions_of(evidence.instants, candidate.a, candidate.b, stride, first_look);
+      const Motions motions = motions_of(evidence.instants, candidate.a, candidate.b, stride, first_look);
       if (motions.all.empty()) continue;
       const double typical = quick_fit(motions).typical;
       if (typical < 0.8 * least) {
@@ -294,8 +303,9 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
   if (!best.code.empty())
     add(worded_reading(finding_of(best, overall, certain && !reading.twin), best.read_a, best.read_b));
   if (reading.twin)
-    findings.push_back(worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), false),
-                                      reading.twin->read_a, reading.twin->read_b));
+    findings.push_back(
+        worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), false),
+                       reading.twin->read_a, reading.twin->read_b));
   if (best.scale != 1) {
     const double power = std::round(std::log10(best.scale) / 3);
     const bool units = power != 0 && std::abs(std::log(best.scale / std::pow(1000, power))) < unit_tolerance;

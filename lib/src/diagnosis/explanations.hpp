@@ -22,10 +22,10 @@ struct Explanation {
 
 /// The drive as the explanations see it.
 struct Evidence {
-  Streams streams;        ///< as given, with the clock offset applied in `clock`
-  ClockModel clock;       ///< in force
+  Streams streams;   ///< as given, with the clock offset applied in `clock`
+  ClockModel clock;  ///< in force
   Instants instants;
-  int stride = 1;         ///< of the motions that are compared
+  int stride = 1;  ///< of the motions that are compared
   Explanation given;
 };
 

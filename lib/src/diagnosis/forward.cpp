@@ -39,7 +39,8 @@ Heading heading(const Motions& motions) {
 }
 
 bool forward(const Heading& heading) {
-  return heading.turned > least_turning && std::min(heading.concentration_a, heading.concentration_b) > always;
+  return heading.turned > least_turning &&
+         std::min(heading.concentration_a, heading.concentration_b) > always;
 }
 
 bool scattered(const Heading& heading) {

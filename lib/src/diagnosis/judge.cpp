@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/goal.hpp"
 #include "diagnosis/wording.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -47,13 +48,6 @@ double shift(const Finding& finding, const Answered& answered, const DiagnosisOp
   }
   return std::max(std::sqrt(rotation) / options.tolerance_rotation,
                   std::sqrt(translation) / options.tolerance_translation);
-}
-
-/// In planar mode z, roll and pitch come from the ground planes.
-bool expected(const Answered& answered, std::size_t direction) {
-  if (answered.problem.mode != Mode::planar) return true;
-  const double normal = std::abs(answered.problem.plane_a.normal[static_cast<int>(direction % 3)]);
-  return direction < 3 ? normal < 0.5 : normal > 0.5;
 }
 
 std::string unknown_directions(const Answered& answered, const DiagnosisOptions& options) {
@@ -112,6 +106,7 @@ Opinion of_fit(const Misfit& misfit, const Answered& answered) {
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
   const Opinion of_explanations = of_findings(diagnosis, answered, options), fit = of_fit(misfit, answered);
+  if (options.goal) diagnosis.goal = goal_of(answered, *options.goal);
   const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
   diagnosis.verdict = worse.verdict;
   diagnosis.reason = worse.reason;
@@ -119,11 +114,20 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
   const std::string unknown = unknown_directions(answered, options);
   if (!unknown.empty()) {
     diagnosis.verdict = Verdict::incomplete;
-    diagnosis.reason = format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,
-                              100 * options.tolerance_translation, unknown.c_str());
+    diagnosis.reason =
+        format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,
+               100 * options.tolerance_translation, unknown.c_str());
+    if (!diagnosis.goal) {
+      const GoalOptions usable{options.tolerance_rotation / confidence,
+                               options.tolerance_translation / confidence, std::nullopt};
+      diagnosis.reason += " " + goal_of(answered, usable).next;
+    }
+  } else if (diagnosis.goal && !diagnosis.goal->reached) {
+    diagnosis.verdict = Verdict::incomplete;
+    diagnosis.reason = "The motions agree; the goal is not reached yet.";
   } else if (diagnosis.reason.empty()) {
-    diagnosis.reason = format("The motions agree to %.2g %%, and all directions are known.",
-                              100 * misfit.at_answer);
+    diagnosis.reason =
+        format("The motions agree to %.2g %%, and all directions are known.", 100 * misfit.at_answer);
   }
 }
 

@@ -65,11 +65,10 @@ class Interpolation {
   std::size_t from_ = 0;
 };
 
-Motion motion_between(const DualQuaternion& a0, const DualQuaternion& a1, const DualQuaternion& b0,
-                      const DualQuaternion& b1) {
+Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
   Motion motion;
-  motion.a = canonical_sign(conjugate(a0) * a1);
-  motion.b = canonical_sign(conjugate(b0) * b1);
+  motion.a = canonical_sign(a);
+  motion.b = canonical_sign(b);
   const auto position = [](const DualQuaternion& q) -> Eigen::Vector3d {
     return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
   };
@@ -132,14 +131,25 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time[k] - instants.time[i] > most_stretched * stride * instants.period) continue;
-    Motion motion = motion_between(reread(instants.a[i], read_a), reread(instants.a[k], read_a),
-                                   reread(instants.b[i], read_b), reread(instants.b[k], read_b));
+    Motion motion = motion_from(conjugate(reread(instants.a[i], read_a)) * reread(instants.a[k], read_a),
+                                conjugate(reread(instants.b[i], read_b)) * reread(instants.b[k], read_b));
     if (std::max(motion.angle_a, motion.angle_b) > most_rotation) continue;
     motion.time = 0.5 * (instants.time[i] + instants.time[k]);
     motions.all.push_back(std::move(motion));
   }
   const std::size_t independent = n / (2 * steps) >= 16 ? n / (2 * steps) : n / steps;
   motions.blocks = std::max<std::size_t>(1, std::min({most_blocks, independent, motions.all.size()}));
+  measure_sizes(motions);
+  return motions;
+}
+
+Motions motions_of(std::span<const MotionPair> pairs) {
+  Motions motions;
+  for (const MotionPair& pair : pairs) {
+    motions.all.push_back(motion_from(normalized(pair.a), normalized(pair.b)));
+    motions.all.back().time = static_cast<double>(motions.all.size() - 1);
+  }
+  motions.blocks = std::max<std::size_t>(1, std::min(most_blocks, motions.all.size()));
   measure_sizes(motions);
   return motions;
 }

@@ -4,6 +4,7 @@
 // makes right poses look wrong.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "diagnosis/reading.hpp"
@@ -49,6 +50,9 @@ struct Motions {
 /// Motions over `stride` instants, at most `most` of them, evenly spread.
 Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
                    std::size_t most);
+
+/// Motions that come as such; their order takes the place of time.
+Motions motions_of(std::span<const MotionPair> pairs);
 
 /// The same motions with the lengths of b multiplied.
 Motions scaled(const Motions& motions, double scale_b);

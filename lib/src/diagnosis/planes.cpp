@@ -50,9 +50,10 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
     if (plane.distance > 0)
       findings.push_back(plane_finding(
           which,
-          format("The ground plane of %c lies %.2f m above the sensor: the normal points down, or the distance "
-                 "has the wrong sign.",
-                 which, plane.distance),
+          format(
+              "The ground plane of %c lies %.2f m above the sensor: the normal points down, or the distance "
+              "has the wrong sign.",
+              which, plane.distance),
           format("--plane-%c with the normal up and D = -%.4g (minus the mounting height)", which,
                  plane.distance)));
 
@@ -65,15 +66,15 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
   }
   Eigen::Vector3d axis_a, axis_b;
   if (!axis_of(turning.squares_a, axis_a) || !axis_of(turning.squares_b, axis_b)) return findings;
-  const bool a_fits = std::abs(axis_a.dot(a.normal)) > aligned, b_fits = std::abs(axis_b.dot(b.normal)) > aligned;
+  const bool a_fits = std::abs(axis_a.dot(a.normal)) > aligned,
+             b_fits = std::abs(axis_b.dot(b.normal)) > aligned;
   if (!a_fits && !b_fits && std::abs(axis_a.dot(b.normal)) > aligned &&
       std::abs(axis_b.dot(a.normal)) > aligned) {
     for (const char which : {'a', 'b'})
       findings.push_back(plane_finding(which, "The ground planes of a and b are exchanged.",
                                        "Exchange --plane-a and --plane-b."));
   } else {
-    for (const auto& [which, fits, axis] :
-         {std::tuple{'a', a_fits, axis_a}, std::tuple{'b', b_fits, axis_b}})
+    for (const auto& [which, fits, axis] : {std::tuple{'a', a_fits, axis_a}, std::tuple{'b', b_fits, axis_b}})
       if (!fits)
         findings.push_back(plane_finding(
             which,
@@ -84,11 +85,11 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
   // both turn left at the same time: one normal is upside down otherwise
   if (a_fits && b_fits && turning.common < 0 && findings.empty())
     for (const char which : {'a', 'b'})
-      findings.push_back(plane_finding(which,
-                                       "The normals of the two ground planes point in opposite directions: "
-                                       "when a turns left about its normal, b turns right.",
-                                       format("Turn the normal of --plane-%c round, if it points down.", which),
-                                       false));
+      findings.push_back(
+          plane_finding(which,
+                        "The normals of the two ground planes point in opposite directions: "
+                        "when a turns left about its normal, b turns right.",
+                        format("Turn the normal of --plane-%c round, if it points down.", which), false));
   return findings;
 }
 

@@ -10,8 +10,8 @@
 
 namespace egocal::detail {
 
-/// Whether the ground planes suit the motions: the normals point up (the ground is below the sensor) and along
-/// the axis that each sensor turns about, both in the same sense.
+/// Whether the ground planes suit the motions: the normals point up (the ground is below the sensor) and
+/// along the axis that each sensor turns about, both in the same sense.
 std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, const GroundPlane& b);
 
 }  // namespace egocal::detail

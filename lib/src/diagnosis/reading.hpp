@@ -8,8 +8,9 @@ namespace egocal::detail {
 
 /// A Reading with what has no cure on the command line: exchanged and mirrored columns.
 struct PoseReading : Reading {
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< applied to the position alone, a signed permutation
-  bool conjugate = false;                              ///< the rotation is that of the inverse pose
+  Eigen::Matrix3d axes =
+      Eigen::Matrix3d::Identity();  ///< applied to the position alone, a signed permutation
+  bool conjugate = false;           ///< the rotation is that of the inverse pose
 };
 
 /// The pose that `given` is under this reading; a unit dual quaternion again.

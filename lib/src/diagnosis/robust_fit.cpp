@@ -23,8 +23,7 @@ constexpr double rounding = 1e-16;
 double size_of(const Motion& motion, const Motions& motions) {
   double size = 0;
   if (motions.rotation > 0) size += std::sqrt(motion.angle_a * motion.angle_b) / motions.rotation;
-  if (motions.translation > 0)
-    size += std::sqrt(motion.t_a.norm() * motion.t_b.norm()) / motions.translation;
+  if (motions.translation > 0) size += std::sqrt(motion.t_a.norm() * motion.t_b.norm()) / motions.translation;
   return size;
 }
 
@@ -35,7 +34,8 @@ double square_of(const Residual& residual, const Motions& motions) {
   return rotation * rotation + translation * translation;
 }
 
-/// Half a turn is four times the sine of a quarter: rotation rows of (14) are half-angles, dual rows half-lengths.
+/// Half a turn is four times the sine of a quarter: rotation rows of (14) are half-angles, dual rows
+/// half-lengths.
 Balance balance_of(const Motions& motions) {
   const auto weight = [](double size) { return size > 0 ? 4 / (size * size) : 0.0; };
   Balance balance{weight(motions.rotation), weight(motions.translation)};

@@ -19,7 +19,8 @@ constexpr int grid = 48, refinements = 24;
 /// The 8 x 8 cost as a polynomial in the scale of b: rotation + (zero + s one + s^2 two) / s. Dividing by s
 /// makes a and b alike: neither is shrunk to explain noise.
 struct ScaledCost {
-  Matrix8d rotation = Matrix8d::Zero(), zero = Matrix8d::Zero(), one = Matrix8d::Zero(), two = Matrix8d::Zero();
+  Matrix8d rotation = Matrix8d::Zero(), zero = Matrix8d::Zero(), one = Matrix8d::Zero(),
+           two = Matrix8d::Zero();
 
   Matrix8d at(double s) const { return rotation + zero / s + one + s * two; }
 };

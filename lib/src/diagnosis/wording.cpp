@@ -35,9 +35,8 @@ void word_axes(Finding& finding, const PoseReading& reading, const char* stream)
   if (!reading.axes.isIdentity()) change = "position columns read as " + columns(reading.axes);
   if (reading.conjugate)
     change += std::string(change.empty() ? "" : ", and ") + "each rotation taken as its inverse";
-  finding.message =
-      format("The position and the rotation of %s do not belong together: with %s, %s.", stream,
-             change.c_str(), fits(finding).c_str());
+  finding.message = format("The position and the rotation of %s do not belong together: with %s, %s.", stream,
+                           change.c_str(), fits(finding).c_str());
   finding.remedy = format("Correct the columns of %s where the file is written.", stream);
 }
 
@@ -58,14 +57,14 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
   const char* order_b = read_b.quaternion_order == QuaternionOrder::xyzw ? "xyzw" : "wxyz";
   if (code == "inverted_a" || code == "inverted_b") {
     const char which = code.back();
-    finding.message = format("The poses of %c are world-to-sensor, not sensor-to-world: %s.", which,
-                             fits(finding).c_str());
+    finding.message =
+        format("The poses of %c are world-to-sensor, not sensor-to-world: %s.", which, fits(finding).c_str());
     finding.remedy = format("--invert-%c", which);
   } else if (code == "inverted_both") {
-    finding.message = finding.certain
-                          ? "The poses of both streams are world-to-sensor, not sensor-to-world."
-                          : "If the poses of both streams are world-to-sensor, the answer is another one; the "
-                            "motions cannot tell.";
+    finding.message =
+        finding.certain ? "The poses of both streams are world-to-sensor, not sensor-to-world."
+                        : "If the poses of both streams are world-to-sensor, the answer is another one; the "
+                          "motions cannot tell.";
     finding.remedy = finding.certain ? "--invert-a --invert-b"
                                      : "Make sure that the poses are sensor-to-world; otherwise --invert-a "
                                        "--invert-b.";
@@ -103,14 +102,14 @@ Finding worded_scale(Finding finding) {
 
 Finding worded_clock(Finding finding, const ClockModel& clock) {
   if (finding.code == "clock_drift") {
-    finding.message = format("The clocks drift apart: b's stamps need %+.4f s in the middle of the drive and "
-                             "%+.0f us more each second; %s.",
-                             clock.offset, 1e6 * clock.rate, fits(finding).c_str());
+    finding.message = format(
+        "The clocks drift apart: b's stamps need %+.4f s in the middle of the drive and "
+        "%+.0f us more each second; %s.",
+        clock.offset, 1e6 * clock.rate, fits(finding).c_str());
     finding.remedy = "Synchronise the clocks; for a short drive --time-offset auto.";
   } else {
-    finding.message =
-        format("The clocks differ: %+.4f s added to the stamps of b fits; %s.", clock.offset,
-               fits(finding).c_str());
+    finding.message = format("The clocks differ: %+.4f s added to the stamps of b fits; %s.", clock.offset,
+                             fits(finding).c_str());
     finding.remedy = "--time-offset auto";
   }
   return finding;

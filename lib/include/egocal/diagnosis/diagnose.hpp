@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+
 #include "egocal/diagnosis/verdict.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -14,15 +16,21 @@ struct Answered {
   Observability observability;
   PairingCounts counts;
   Problem problem;
+  double seconds = 0;                 ///< that the motions took; 0: unknown
+  Platform platform = Platform::car;  ///< where the goal names none
 };
 
 /// Whether the answer can be used, and if not, why: tries other readings of the streams, scale, clock, ground
-/// planes and a moved mount on the motions of all poses, none rejected. `pairing`: as for the answer, with the
-/// time offset in force. Deterministic; about a tenth of a second for 2,000 poses. Thread-safe.
+/// planes and a moved mount on the motions of all poses, none rejected. `pairing`: as for the answer, with
+/// the time offset in force. Deterministic; about a tenth of a second for 2,000 poses. Thread-safe.
 Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                    const Answered& answered, const DiagnosisOptions& options = {});
 
-/// The same from what was answered alone: no other explanation is tried, the fit is that of the mean motion.
+/// The same from motion pairs, which have no poses to read otherwise: fit and verdict only.
+Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
+                   const DiagnosisOptions& options = {});
+
+/// The same from what was answered alone: no other explanation is tried, and the fit is not measured.
 Diagnosis diagnose(const Answered& answered, const DiagnosisOptions& options = {});
 
 }  // namespace egocal

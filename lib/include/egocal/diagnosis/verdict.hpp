@@ -12,8 +12,8 @@
 
 namespace egocal {
 
-/// Whether an answer can be used. A certificate says that no other extrinsic has a lower cost; it does not say
-/// that the motions are those of rigidly mounted sensors. This does.
+/// Whether an answer can be used. A certificate says that no other extrinsic has a lower cost; it does not
+/// say that the motions are those of rigidly mounted sensors. This does.
 enum class Verdict {
   good,           ///< the motions agree, and every direction is known well enough
   incomplete,     ///< the motions agree; some direction is not known well enough yet
@@ -24,10 +24,10 @@ std::string_view name(Verdict verdict);
 
 /// Agreement in one consecutive tenth of the drive.
 struct FitTenth {
-  double begin = 0, end = 0;       ///< since the first pose of a [s]
-  double rotation_median = 0;      ///< residual [rad]
-  double translation_median = 0;   ///< residual [m]
-  double translation_relative = 0; ///< residual as a part of the distance travelled
+  double begin = 0, end = 0;        ///< since the first pose of a [s]
+  double rotation_median = 0;       ///< residual [rad]
+  double translation_median = 0;    ///< residual [m]
+  double translation_relative = 0;  ///< residual as a part of the distance travelled
 };
 
 /// How well the answer explains the motions: residuals of R_a T = T R_b and of the translations, of motions
@@ -36,31 +36,38 @@ struct Fit {
   double rotation_median = 0, rotation_95 = 0;        ///< [rad]
   double translation_median = 0, translation_95 = 0;  ///< [m]
   double translation_relative_median = 0;             ///< residual / mean length of the two motions
-  double length_ratio = 1;   ///< distance of b / of a; far from 1: units, or a camera without scale
-  double turning_ratio = 1;  ///< angle of b / of a; 1 for every rigid mounting
-  double motion_seconds = 0; ///< typical duration of the motions [s]
+  double length_ratio = 1;    ///< distance of b / of a; far from 1: units, or a camera without scale
+  double turning_ratio = 1;   ///< angle of b / of a; 1 for every rigid mounting
+  double motion_seconds = 0;  ///< typical duration of the motions [s]
   std::vector<FitTenth> tenths;
 };
 
 /// An explanation that fits better than the streams as given, or as well and with another answer.
 struct Finding {
-  std::string code;    ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
-                       ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
-                       ///< too_little_motion
-  bool certain = false;      ///< it fits clearly better; otherwise it cannot be told apart
-  std::string message;       ///< what was found, one sentence
-  std::string remedy;        ///< option or action that cures it
-  double improvement = 1;    ///< squared residuals as given / under this explanation
-  std::optional<Pose> T_a_b; ///< the answer under this explanation, where it has one
-  std::optional<double> time;  ///< mount_moved: since the first pose of a [s]
-  std::optional<double> value; ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
-                               ///< clock_drift: rate of b's clock against a's [s/s]
+  std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
+                     ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
+                     ///< too_little_motion
+  bool certain = false;         ///< it fits clearly better; otherwise it cannot be told apart
+  std::string message;          ///< what was found, one sentence
+  std::string remedy;           ///< option or action that cures it
+  double improvement = 1;       ///< squared residuals as given / under this explanation
+  std::optional<Pose> T_a_b;    ///< the answer under this explanation, where it has one
+  std::optional<double> time;   ///< mount_moved: since the first pose of a [s]
+  std::optional<double> value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
+                                ///< clock_drift: rate of b's clock against a's [s/s]
 };
+
+/// What carries the sensors: which manoeuvres can be asked for.
+enum class Platform { car, handheld, drone, arm };
+std::string_view name(Platform platform);
+std::optional<Platform> platform_from_name(std::string_view name);
 
 /// How well each direction is to be known.
 struct GoalOptions {
   double rotation = 0;     ///< one standard deviation of roll, pitch and yaw [rad]
   double translation = 0;  ///< of x, y and z [m]
+  std::optional<Platform>
+      platform;  ///< empty: a car where the sensors always travel the same way of their bodies
 };
 
 /// Where the drive is on its way to the goal.

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/goal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/manoeuvres.hpp"
+
+namespace egocal {
+
+std::string_view name(Platform platform) {
+  switch (platform) {
+    case Platform::car:
+      return "car";
+    case Platform::handheld:
+      return "handheld";
+    case Platform::drone:
+      return "drone";
+    case Platform::arm:
+      return "arm";
+  }
+  return "unknown";
+}
+
+std::optional<Platform> platform_from_name(std::string_view text) {
+  for (const Platform platform : {Platform::car, Platform::handheld, Platform::drone, Platform::arm})
+    if (name(platform) == text) return platform;
+  return std::nullopt;
+}
+
+namespace detail {
+
+bool expected(const Answered& answered, std::size_t direction) {
+  if (answered.problem.mode != Mode::planar) return true;
+  const double normal = std::abs(answered.problem.plane_a.normal[static_cast<int>(direction % 3)]);
+  return direction < 3 ? normal < 0.5 : normal > 0.5;
+}
+
+Goal goal_of(const Answered& answered, const GoalOptions& options) {
+  constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+  std::vector<std::pair<double, std::size_t>> missing;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!expected(answered, i)) continue;
+    const double wanted = i < 3 ? options.translation : options.rotation;
+    const double stddev = answered.observability.observable[i] ? answered.observability.stddev[i] : INFINITY;
+    if (!(stddev <= wanted)) missing.emplace_back(stddev / wanted, i);
+  }
+  std::sort(missing.begin(), missing.end(), [](const auto& x, const auto& y) {
+    return x.first > y.first || (x.first == y.first && x.second < y.second);
+  });
+  Goal goal;
+  goal.reached = missing.empty();
+  if (goal.reached) return goal;
+  std::vector<std::size_t> indices;
+  for (const auto& [ratio, i] : missing) {
+    goal.missing.emplace_back(directions[i]);
+    indices.push_back(i);
+  }
+  const double worst = missing.front().first;
+  if (std::isfinite(worst) && answered.seconds > 0)
+    goal.seconds_left = answered.seconds * (worst * worst - 1);
+  goal.next = next_manoeuvre(answered, options, indices);
+  return goal;
+}
+
+}  // namespace detail
+
+}  // namespace egocal

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+/// Whether the motions have to show this direction (x y z roll pitch yaw). In planar mode z, roll and pitch
+/// come from the ground planes.
+bool expected(const Answered& answered, std::size_t direction);
+
+/// Which directions are not known well enough yet, how long that takes at this driving (spreads fall with the
+/// square root of time), and the manoeuvre that helps most.
+Goal goal_of(const Answered& answered, const GoalOptions& options);
+
+}  // namespace egocal::detail

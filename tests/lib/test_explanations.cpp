@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Every mistake of the catalogue is named on drives of several kinds, with the answer it should have been.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "egocal/calibrate.hpp"
+#include "egocal/error.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "support/mistakes.hpp"
+
+namespace egocal {
+namespace {
+
+testing::Streams drive(Terrain terrain, std::uint64_t seed = 1) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = 601;
+  options.relative_noise = 0.01;
+  options.seed = seed;
+  return testing::simulated_drive(options);
+}
+
+const Finding* find(const Calibration& calibration, const std::string& code) {
+  for (const Finding& finding : calibration.findings)
+    if (finding.code == code) return &finding;
+  return nullptr;
+}
+
+class NamedMistake : public ::testing::TestWithParam<std::string> {
+ protected:
+  static testing::Mistake mistake() {
+    for (testing::Mistake& one : testing::mistakes())
+      if (one.name == GetParam()) return one;
+    throw Error("no such mistake: " + GetParam());
+  }
+};
+
+TEST_P(NamedMistake, OnAFreeDriveWithTheRightAnswer) {
+  testing::Streams streams = drive(Terrain::free);
+  mistake().make(streams);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  const Finding* finding = find(calibration, mistake().code);
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_TRUE(finding->certain);
+  EXPECT_FALSE(finding->remedy.empty());
+  ASSERT_TRUE(finding->T_a_b);
+  if (mistake().code == "mount_moved") return;
+  const ExtrinsicError error = extrinsic_error(streams.T, to_dual_quaternion(*finding->T_a_b));
+  EXPECT_LT(error.rotation, 0.01);
+  EXPECT_LT(error.translation, 0.1);
+}
+
+TEST_P(NamedMistake, OnARoad) {
+  testing::Streams streams = drive(Terrain::rough, 2);
+  mistake().make(streams);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_NE(find(calibration, mistake().code), nullptr) << calibration.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, NamedMistake,
+                         ::testing::Values("a inverted", "b inverted", "order of a", "order of b",
+                                           "order of both", "scale 0.37", "scale 1.05", "b in millimetres",
+                                           "a in millimetres", "clock 0.5 s off", "x and y of b exchanged",
+                                           "x and y of a exchanged", "rotations of b inverse",
+                                           "b knocked in the middle"),
+                         [](const auto& instance) {
+                           std::string name = instance.param;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+                           return name;
+                         });
+
+TEST(Explanations, CleanDrivesHaveNoCertainFinding) {
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free}) {
+    const testing::Streams streams = drive(terrain, 3);
+    for (const Finding& finding : calibrate(streams.a, streams.b).findings)
+      EXPECT_FALSE(finding.certain) << finding.code << ": " << finding.message;
+  }
+}
+
+TEST(Explanations, ScaleAndClockComeWithTheirValue) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.b = testing::lengthened(streams.b, 0.5);
+  const Calibration scaled = calibrate(streams.a, streams.b);
+  ASSERT_NE(find(scaled, "scale"), nullptr);
+  EXPECT_NEAR(*find(scaled, "scale")->value, 2, 0.01);
+
+  testing::Streams late = drive(Terrain::free);
+  late.b = testing::late(late.b, 0.3);
+  const Calibration shifted = calibrate(late.a, late.b);
+  ASSERT_NE(find(shifted, "clock_offset"), nullptr);
+  EXPECT_NEAR(*find(shifted, "clock_offset")->value, -0.3, 0.005);
+}
+
+TEST(Explanations, TheRemedyOfAReadingCures) {
+  testing::Streams streams = drive(Terrain::free);
+  const Pose right = calibrate(streams.a, streams.b).T_a_b;
+  streams.a = testing::scalar_first(streams.a);
+  streams.b = testing::inverted(streams.b);
+  CalibrationOptions options;
+  options.read_a.quaternion_order = QuaternionOrder::wxyz;
+  options.read_b.invert = true;
+  const Calibration cured = calibrate(streams.a, streams.b, options);
+  EXPECT_EQ(cured.verdict, Verdict::good) << cured.reason;
+  EXPECT_LT((cured.T_a_b.translation - right.translation).norm(), 1e-6);
+}
+
+TEST(Explanations, UnrelatedStreamsAreCalledThat) {
+  const testing::Streams one = drive(Terrain::free, 1), other = drive(Terrain::free, 9);
+  const Calibration calibration = calibrate(one.a, other.b);
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  EXPECT_NE(find(calibration, "unrelated"), nullptr);
+}
+
+TEST(Explanations, AMovedMountIsFoundAtItsTime) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0.06, 0}), {0, 0.1, 0}});
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  const Finding* moved = find(calibration, "mount_moved");
+  ASSERT_NE(moved, nullptr) << calibration.reason;
+  EXPECT_NEAR(*moved->time, 30, 4);
+  EXPECT_GE(calibration.verdict, Verdict::doubtful);
+}
+
+TEST(Explanations, AGroundPlaneAboveTheSensorIsRefused) {
+  SimulationOptions simulation;
+  simulation.terrain = Terrain::flat;
+  simulation.poses = 401;
+  simulation.relative_noise = 0.01;
+  simulation.T_vehicle_sensor = {{Eigen::Quaterniond::Identity(), {1, 0, 1.8}},
+                                 {rotation_exp({0, 0, 0.5}), {2, 0.3, 1.2}}};
+  const std::vector<Trajectory> streams = simulate(simulation);
+  CalibrationOptions options;
+  options.pairing.mode = Mode::planar;
+  options.pairing.plane_a = {{0, 0, 1}, -1.8};
+  options.pairing.plane_b = {{0, 0, 1}, -1.2};
+  EXPECT_EQ(calibrate(streams[0], streams[1], options).verdict, Verdict::good);
+
+  CalibrationOptions wrong_sign = options;
+  wrong_sign.pairing.plane_b.distance = 1.2;
+  const Calibration above = calibrate(streams[0], streams[1], wrong_sign);
+  EXPECT_NE(find(above, "plane_b"), nullptr);
+  EXPECT_EQ(above.verdict, Verdict::contradictory);
+
+  CalibrationOptions downwards = options;
+  downwards.pairing.plane_b = {{0, 0, -1}, 1.2};
+  EXPECT_NE(find(calibrate(streams[0], streams[1], downwards), "plane_b"), nullptr);
+
+  CalibrationOptions sideways = options;
+  sideways.pairing.plane_a = {{1, 0, 0}, -1.8};
+  EXPECT_NE(find(calibrate(streams[0], streams[1], sideways), "plane_a"), nullptr);
+}
+
+TEST(Explanations, AreDeterministic) {
+  testing::Streams streams = drive(Terrain::rough);
+  streams.b = testing::late(streams.b, 0.2);
+  const Calibration one = calibrate(streams.a, streams.b), two = calibrate(streams.a, streams.b);
+  ASSERT_EQ(one.findings.size(), two.findings.size());
+  for (std::size_t i = 0; i < one.findings.size(); ++i) {
+    EXPECT_EQ(one.findings[i].message, two.findings[i].message);
+    EXPECT_EQ(one.findings[i].improvement, two.findings[i].improvement);
+  }
+}
+
+}  // namespace
+}  // namespace egocal

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// How well an answer explains the motions, in units that a person judges.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/fit.hpp"
+#include "diagnosis/robust_fit.hpp"
+#include "support/mistakes.hpp"
+
+namespace egocal {
+namespace {
+
+using detail::Motions;
+
+Motions motions_of(const testing::Streams& streams, int stride) {
+  return detail::motions_of(detail::synchronised(streams.a, streams.b, {}, 0.5), {}, {}, stride, 10'000);
+}
+
+testing::Streams drive(Terrain terrain, double noise = 0) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = 301;
+  options.relative_noise = noise;
+  return testing::simulated_drive(options);
+}
+
+TEST(Fit, IsZeroAtTheTruthOfPerfectMotions) {
+  const testing::Streams streams = drive(Terrain::free);
+  const Fit fit = detail::fit_at(motions_of(streams, 5), to_pose(streams.T), 0.5);
+  EXPECT_LT(fit.rotation_95, 1e-6);
+  EXPECT_LT(fit.translation_95, 1e-6);
+  EXPECT_LT(fit.translation_relative_median, 1e-6);
+  EXPECT_NEAR(fit.turning_ratio, 1, 1e-9);
+}
+
+TEST(Fit, MeasuresAWrongRotationInRadiansAndMetres) {
+  // motions of one metre along x without turning: an extrinsic turned by phi about z misses by 2 sin(phi / 2)
+  Motions motions;
+  std::vector<MotionPair> pairs(
+      20, {testing::displacement({0, 0, 0}, {1, 0, 0}), testing::displacement({0, 0, 0}, {1, 0, 0})});
+  motions = detail::motions_of(pairs);
+  const double phi = 0.1;
+  const Fit fit = detail::fit_at(motions, {rotation_exp({0, 0, phi}), {0, 0, 0}}, 0);
+  EXPECT_NEAR(fit.translation_median, 2 * std::sin(phi / 2), 1e-12);
+  EXPECT_NEAR(fit.translation_relative_median, 2 * std::sin(phi / 2), 1e-12);
+  EXPECT_NEAR(fit.rotation_median, 0, 1e-12);
+}
+
+TEST(Fit, ShowsTheRatioOfLengthsAndOfTurning) {
+  testing::Streams streams = drive(Terrain::rough);
+  streams.b = testing::lengthened(streams.b, 0.25);
+  const Fit fit = detail::fit_at(motions_of(streams, 5), to_pose(streams.T), 0.5);
+  EXPECT_NEAR(fit.length_ratio, 0.25, 0.01);
+  EXPECT_NEAR(fit.turning_ratio, 1, 1e-6);
+}
+
+TEST(Fit, MediansDoNotFeelASingleJump) {
+  testing::Streams streams = drive(Terrain::rough, 0.01);
+  const Fit before = detail::fit_at(motions_of(streams, 5), to_pose(streams.T), 0.5);
+  streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0, 0}), {100, 0, 0}});
+  for (std::size_t i = streams.b.size() / 2 + 1; i < streams.b.size(); ++i)
+    streams.b[i].pose = normalized(streams.b[i].pose * testing::displacement({0, 0, 0}, {-100, 0, 0}));
+  const Fit after = detail::fit_at(motions_of(streams, 5), to_pose(streams.T), 0.5);
+  EXPECT_LT(after.translation_median, 1.1 * before.translation_median);
+}
+
+TEST(Fit, TenthsShowWhereTheMountMoved) {
+  testing::Streams streams = drive(Terrain::free, 0.001);
+  streams.b = testing::knocked(streams.b, 0.7, {rotation_exp({0, 0, 0.2}), {0.1, 0, 0}});
+  const Fit fit = detail::fit_at(motions_of(streams, 5), to_pose(streams.T), 0.5);
+  ASSERT_EQ(fit.tenths.size(), 10u);
+  EXPECT_LT(fit.tenths[2].translation_relative, 0.01);
+  EXPECT_GT(fit.tenths[9].translation_relative, 0.05);
+}
+
+TEST(Comparison, FavoursTheTruthAndIsAntisymmetric) {
+  const testing::Streams streams = drive(Terrain::free, 0.02);
+  const Motions motions = motions_of(streams, 5);
+  const detail::Explained right{motions, detail::evaluated(motions, streams.T)};
+  const detail::Explained wrong{
+      motions, detail::evaluated(motions, streams.T * testing::displacement({0.1, 0, 0}, {0, 0, 0}))};
+  const detail::Comparison forth = detail::compare(wrong, right), back = detail::compare(right, wrong);
+  EXPECT_GT(forth.gain, 0.3);
+  EXPECT_GT(forth.sigmas, 3.5);
+  EXPECT_NEAR(forth.gain, -back.gain, 1e-12);
+  EXPECT_NEAR(forth.sigmas, -back.sigmas, 1e-12);
+  EXPECT_EQ(detail::compare(right, right).sigmas, 0);
+}
+
+TEST(RobustFit, StandsAFifthOfGrossOutliers) {
+  const testing::Streams streams = drive(Terrain::free, 0.01);
+  Motions motions = motions_of(streams, 5);
+  testing::Random random(3);
+  for (std::size_t i = 0; i < motions.all.size(); i += 5)
+    motions.all[i].b = motions.all[i].b * testing::displacement(random.normal3(0.5), random.normal3(5));
+  const DualQuaternion T = detail::robust_fit(motions).T;
+  EXPECT_LT(screw_of(conjugate(streams.T) * T).angle, 0.02);
+}
+
+}  // namespace
+}  // namespace egocal

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether an answer can be used.
+#include <gtest/gtest.h>
+
+#include "egocal/calibrate.hpp"
+#include "support/mistakes.hpp"
+#include "support/real_drives.hpp"
+
+namespace egocal {
+namespace {
+
+testing::Streams drive(Terrain terrain, double noise, int poses, std::uint64_t seed = 1) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = poses;
+  options.relative_noise = noise;
+  options.seed = seed;
+  return testing::simulated_drive(options);
+}
+
+TEST(Verdict, IsGoodWhereAllIsKnown) {
+  const testing::Streams streams = drive(Terrain::free, 0.01, 601);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::good) << calibration.reason;
+  EXPECT_FALSE(calibration.reason.empty());
+}
+
+TEST(Verdict, IsIncompleteOnFlatGround) {
+  const testing::Streams streams = drive(Terrain::flat, 0.01, 601);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+}
+
+TEST(Verdict, IsIncompleteAfterAFewSeconds) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const testing::Streams streams = drive(Terrain::rough, 0.01, 51, seed);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+  }
+}
+
+TEST(Verdict, OfMotionPairsThatDoNotBelongTogether) {
+  testing::Random random(5);
+  std::vector<MotionPair> pairs;
+  for (int i = 0; i < 50; ++i)
+    pairs.push_back({testing::displacement(random.normal3(0.2), random.normal3()),
+                     testing::displacement(random.normal3(0.2), random.normal3())});
+  CalibrationOptions options;
+  options.pairing.robust = false;
+  EXPECT_EQ(calibrate(pairs, options).verdict, Verdict::contradictory);
+}
+
+TEST(Verdict, OfMotionPairsThatAgree) {
+  testing::Random random(6);
+  testing::RandomDrive motions;
+  motions.noise = 0.01;
+  const auto pairs = testing::random_pairs(testing::random_extrinsic(random), motions, random);
+  const Calibration calibration = calibrate(pairs);
+  EXPECT_EQ(calibration.verdict, Verdict::good) << calibration.reason;
+  EXPECT_LT(calibration.fit.translation_relative_median, 0.1);
+}
+
+TEST(Verdict, OfCleanRealDrives) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " EGOCAL_DATA_DIR;
+  for (const testing::Streams& streams : {testing::kitti("07"), testing::euroc(), testing::robot_arm(),
+                                          testing::planar(testing::kitti("07"))}) {
+    CalibrationOptions options;
+    options.pairing = streams.options;
+    const Calibration calibration = calibrate(streams.a, streams.b, options);
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << calibration.reason;
+    for (const Finding& finding : calibration.findings) EXPECT_FALSE(finding.certain) << finding.message;
+  }
+}
+
+TEST(Verdict, OfBothStreamsInvertedOnARealRoad) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " EGOCAL_DATA_DIR;
+  testing::Streams streams = testing::kitti("07");
+  const Calibration calibration =
+      calibrate(testing::inverted(streams.a), testing::inverted(streams.b), CalibrationOptions{});
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  ASSERT_FALSE(calibration.findings.empty());
+  EXPECT_EQ(calibration.findings.front().code, "inverted_both");
+}
+
+}  // namespace
+}  // namespace egocal

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What users do to right trajectories before they calibrate with them.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "egocal/diagnosis/reading.hpp"
+#include "egocal/geometry/pose.hpp"
+#include "random_motion.hpp"
+#include "simulated_drive.hpp"
+
+namespace egocal::testing {
+
+inline Trajectory changed(Trajectory trajectory, const std::function<Pose(const Pose&)>& change) {
+  for (StampedPose& stamped : trajectory)
+    stamped.pose = canonical_sign(to_dual_quaternion(change(to_pose(stamped.pose))));
+  return trajectory;
+}
+
+inline Trajectory inverted(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) { return inverse(pose); });
+}
+
+/// Columns w x y z in a file whose readers expect x y z w, and the other way round.
+inline Trajectory scalar_first(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) {
+    const Eigen::Quaterniond& q = pose.rotation;
+    return Pose{Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
+  });
+}
+inline Trajectory scalar_last(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) {
+    const Eigen::Quaterniond& q = pose.rotation;
+    return Pose{Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
+  });
+}
+
+inline Trajectory lengthened(const Trajectory& trajectory, double factor) {
+  return changed(trajectory, [=](const Pose& pose) {
+    return Pose{pose.rotation, factor * pose.translation};
+  });
+}
+
+/// The position's columns alone.
+inline Trajectory with_position_columns(const Trajectory& trajectory, const Eigen::Matrix3d& P) {
+  return changed(trajectory, [&](const Pose& pose) { return Pose{pose.rotation, P * pose.translation}; });
+}
+
+inline Trajectory with_inverse_rotations(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) {
+    return Pose{pose.rotation.conjugate(), pose.translation};
+  });
+}
+
+/// Stamps later by offset [s] and growing by rate [s/s].
+inline Trajectory late(Trajectory trajectory, double offset, double rate = 0) {
+  const std::int64_t first = trajectory.front().time_us;
+  for (StampedPose& pose : trajectory)
+    pose.time_us += std::llround(1e6 * offset + rate * static_cast<double>(pose.time_us - first));
+  return trajectory;
+}
+
+/// From a part of the drive on, the sensor looks and sits differently: T_old_new.
+inline Trajectory knocked(Trajectory trajectory, double part, const Pose& T_old_new) {
+  const auto first = static_cast<std::size_t>(part * static_cast<double>(trajectory.size()));
+  const DualQuaternion change = to_dual_quaternion(T_old_new);
+  for (std::size_t i = first; i < trajectory.size(); ++i)
+    trajectory[i].pose = canonical_sign(normalized(trajectory[i].pose * change));
+  return trajectory;
+}
+
+struct Mistake {
+  std::string name;
+  std::string code;  ///< of the finding that names it; empty: none has to
+  std::function<void(Streams&)> make;
+};
+
+inline std::vector<Mistake> mistakes() {
+  Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity(), exchange;
+  mirror(1, 1) = -1;
+  exchange << 0, 1, 0, 1, 0, 0, 0, 0, 1;
+  const Pose bump{rotation_exp({0, 0, 5 * std::numbers::pi / 180}), {0.05, 0, 0}};
+  return {
+      {"none", "", [](Streams&) {}},
+      {"a inverted", "inverted_a", [](Streams& s) { s.a = inverted(s.a); }},
+      {"b inverted", "inverted_b", [](Streams& s) { s.b = inverted(s.b); }},
+      {"both inverted", "inverted_both",
+       [](Streams& s) {
+         s.a = inverted(s.a);
+         s.b = inverted(s.b);
+       }},
+      {"order of a", "quaternion_order_a", [](Streams& s) { s.a = scalar_first(s.a); }},
+      {"order of b", "quaternion_order_b", [](Streams& s) { s.b = scalar_first(s.b); }},
+      {"other order of b", "quaternion_order_b", [](Streams& s) { s.b = scalar_last(s.b); }},
+      {"order of both", "quaternion_order_both",
+       [](Streams& s) {
+         s.a = scalar_first(s.a);
+         s.b = scalar_first(s.b);
+       }},
+      {"scale 0.37", "scale", [](Streams& s) { s.b = lengthened(s.b, 0.37); }},
+      {"scale 1.05", "scale", [](Streams& s) { s.b = lengthened(s.b, 1.05); }},
+      {"b in millimetres", "units", [](Streams& s) { s.b = lengthened(s.b, 1000); }},
+      {"a in millimetres", "units", [](Streams& s) { s.a = lengthened(s.a, 1000); }},
+      {"clock 0.02 s off", "clock_offset", [](Streams& s) { s.b = late(s.b, 0.02); }},
+      {"clock 0.5 s off", "clock_offset", [](Streams& s) { s.b = late(s.b, 0.5); }},
+      {"clock 0.1 % fast", "clock_drift", [](Streams& s) { s.b = late(s.b, 0, 1e-3); }},
+      {"y of b mirrored", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, mirror); }},
+      {"x and y of b exchanged", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, exchange); }},
+      {"x and y of a exchanged", "axes_a", [=](Streams& s) { s.a = with_position_columns(s.a, exchange); }},
+      {"rotations of b inverse", "axes_b", [](Streams& s) { s.b = with_inverse_rotations(s.b); }},
+      {"b knocked in the middle", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.5, bump); }},
+      {"b knocked late", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.75, bump); }},
+      {"b inverted, scale 0.37", "inverted_b", [](Streams& s) { s.b = lengthened(inverted(s.b), 0.37); }},
+      {"first 5 s", "",
+       [](Streams& s) {
+         const std::int64_t end = s.a.front().time_us + 5'000'000;
+         for (Trajectory* t : {&s.a, &s.b}) {
+           while (t->size() > 2 && t->back().time_us > end) t->pop_back();
+         }
+       }},
+  };
+}
+
+}  // namespace egocal::testing

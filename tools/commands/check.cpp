@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands/commands.hpp"
+#include "offline/calibration.hpp"
+#include "offline/trust_report.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+struct Options {
+  MotionSource source;
+  std::string times;
+  bool json = false;
+};
+
+std::string tenths_text(const Fit& fit) {
+  std::string text = "\n    from      to   rotation  translation  of the distance\n";
+  for (const FitTenth& tenth : fit.tenths)
+    text += fmt::format("{:7.1f} {:7.1f} s {:8.3f} deg {:8.2f} cm {:12.2f} %\n", tenth.begin, tenth.end,
+                        tenth.rotation_median * 57.29577951308232, 100 * tenth.translation_median,
+                        100 * tenth.translation_relative);
+  return text;
+}
+
+void run(const Options& options) {
+  SolveRequest request;
+  request.source = options.source;
+  if (!options.times.empty()) request.source.times_a = request.source.times_b = options.times;
+  const Calibration calibration = calibrate_offline(request).calibration;
+  if (options.json)
+    fmt::print("{}\n", trust_json(calibration).dump(2));
+  else
+    fmt::print("{}{}", trust_text(calibration), tenths_text(calibration.fit));
+  if (calibration.verdict == Verdict::contradictory) throw cli::Exit{3};
+}
+
+}  // namespace
+
+void add_check(cli::App program) {
+  const auto options = std::make_shared<Options>();
+  cli::App command = program.add_subcommand(
+      "check", "do two trajectories belong together? Tries other readings, scale, clock and a moved mount");
+  command.add_option("A", options->source.a, "trajectory of sensor a; with --log its channel").required();
+  command.add_option("B", options->source.b, "trajectory of sensor b").required();
+  command.add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
+  command.add_option("--times", options->times, "times of KITTI poses, one a line [s]");
+  command.add_flag("--json", options->json, "one JSON object on standard output");
+  command.callback([options] { run(*options); });
+}
+
+}  // namespace egocal::tools
