@@ -1,10 +1,27 @@
 # What every target of ours shares: warnings, sanitizers, and arithmetic that is the same on every run.
 
+# install(), where egocal is not part of another project
+macro(egocal_install)
+  if(EGOCAL_INSTALL)
+    install(${ARGN})
+  endif()
+endmacro()
+
 function(egocal_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
   # a*b+c must round the same way wherever it is compiled: answers are bit-identical from run to run
   target_compile_options(${target} PRIVATE -ffp-contract=off)
+  # GCC 12 warns of `"x" + std::string()` with -O3, wrongly (GCC bug 105651)
+  target_compile_options(${target} PRIVATE
+    $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
+  if(EGOCAL_HARDENING AND NOT EGOCAL_SANITIZE)
+    # writes past the end of a buffer or of the stack end the process instead of going on
+    target_compile_options(${target} PRIVATE
+      "$<$<CONFIG:Release>:SHELL:-fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2>")
+    # addresses of functions in shared libraries are resolved at the start and cannot be overwritten
+    target_link_options(${target} PRIVATE "$<$<CONFIG:Release>:LINKER:-z,relro,-z,now>")
+  endif()
   if(EGOCAL_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
@@ -19,5 +36,5 @@ function(egocal_add_program name)
   add_executable(${name} ${ARGN})
   egocal_target_defaults(${name})
   target_compile_definitions(${name} PRIVATE EGOCAL_VERSION="${PROJECT_VERSION}")
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  egocal_install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()

@@ -113,8 +113,12 @@ void Heartbeat::hear(const status_t& status) {
   }
   const auto now = std::chrono::steady_clock::now();
   const bool namesake = status.name == identity_.name && status.state != "ended";
-  if (peers_.hear(status, now) && status.version != identity_.version) ++counters_["other versions heard"];
-  if (namesake && now - published_ > least_distance) publish();
+  const bool is_new = peers_.hear(status, now);
+  if (is_new && status.version != identity_.version) ++counters_["other versions heard"];
+  if (namesake && now - published_ > least_distance)
+    publish();
+  else if (namesake && is_new)
+    change();  // it waits for an answer before it sends anything
   if (on_status_) on_status_(status);
 }
 

@@ -28,6 +28,9 @@ constexpr std::int64_t problem_distance_us = 2'000;
 /// A disk that is full is not tried more often.
 constexpr std::int64_t save_retry_us = 1'000'000;
 constexpr std::size_t max_known_runs = 1024;
+/// Nothing is sent before an older process of this name had the time to answer the first status, which it
+/// does within 50 ms. One that takes the place of a process that died is most likely alone, and waited for.
+constexpr auto listen = 300ms, listen_restored = 100ms;
 
 }  // namespace
 
@@ -53,14 +56,15 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   loop_.every(100ms, [this] { watch_gaps(); });
   loop_.every(1s, [this] { every_second(); });
   if (saved_ && !saved_->not_saved().empty()) not_saved(saved_->not_saved());
-  heartbeat_.set_state("running");
-  if (saved_ && saved_->restored()) {
+  const bool restored = saved_ && saved_->restored();
+  if (restored) {
     patient_ = true;
     settle_until_mono_us_ = bus::mono_us() + patience_us;
     heartbeat_.counter("restored") = 1;
-    every_second();
-    heartbeat_.publish();  // from where senders have to go on
   }
+  show_state();
+  heartbeat_.publish();  // an older namesake answers this
+  loop_.after(restored ? listen_restored : listen, [this] { begin_to_send(); });
 }
 
 Pairing::~Pairing() {
@@ -104,6 +108,7 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
 
 void Pairing::after_batch(bool caught_up) {
   save();
+  if (listening_) return;
   if (!leads()) {
     accumulation_.take_motions();
     return;
@@ -187,22 +192,36 @@ void Pairing::watch_gaps() {
   after_batch(true);
 }
 
-void Pairing::every_second() {
+/// What everybody may know about this process, with what has just been learnt.
+void Pairing::show_state() {
   const std::optional<bus::Peer> elder = heartbeat_.elder_namesake();
   waits_for_elder_ = elder.has_value();
-  heartbeat_.set_state(elder ? "waiting" : paused_ ? "paused" : "running");
+  const auto& pairs = accumulation_.pairs();
+  const bool paused =
+      std::all_of(pairs.begin(), pairs.end(), [](const PairSession& pair) { return pair.paused(); });
+  heartbeat_.set_state(!leads() ? "waiting" : paused ? "paused" : "running");
   heartbeat_.set_error(elder ? "an older process has this name and goes on: pid " +
                                    std::to_string(elder->pid) + " on " + elder->host
                        : !save_error_.empty() ? save_error_
                        : saved_               ? saved_->refused()
                                               : "");
-  paused_ = std::all_of(accumulation_.pairs().begin(), accumulation_.pairs().end(),
-                        [](const PairSession& pair) { return pair.paused(); });
+}
+
+void Pairing::every_second() {
+  show_state();
   if (leads()) publish_all_problems();
 }
 
-/// Whoever starts need not wait for the second to be over.
+/// An older process of this name would have answered by now.
+void Pairing::begin_to_send() {
+  listening_ = false;
+  every_second();
+  if (leads()) heartbeat_.publish();  // from where senders have to go on
+}
+
+/// What starts need not wait for the second to be over, and an older namesake silences this one at once.
 void Pairing::hear(const status_t& status) {
+  if (status.name == heartbeat_.identity().name) show_state();
   const bool player = status.role == "player";
   if ((status.role != "fast" && status.role != "global" && !player) || status.state == "ended" ||
       known_runs_.contains(status.run) || known_runs_.size() >= max_known_runs)
@@ -233,9 +252,7 @@ void Pairing::obey(Verb verb, const command_t& command) {
     return;
   }
   ++heartbeat_.counter("commands");
-  paused_ = std::all_of(accumulation_.pairs().begin(), accumulation_.pairs().end(),
-                        [](const PairSession& pair) { return pair.paused(); });
-  heartbeat_.set_state(paused_ ? "paused" : "running");
+  show_state();
 }
 
 void Pairing::acknowledge() {

@@ -54,7 +54,9 @@ class Pairing {
   void obey(Verb verb, const command_t& command);
   void acknowledge();
   void hear(const status_t& status);
-  bool leads() const { return !waits_for_elder_; }
+  void show_state();
+  void begin_to_send();
+  bool leads() const { return !waits_for_elder_ && !listening_; }
 
   bus::Loop& loop_;
   bus::Heartbeat& heartbeat_;
@@ -71,7 +73,7 @@ class Pairing {
   std::int64_t save_again_mono_us_ = 0;
   int unacknowledged_ = 0;
   bool patient_ = false;
-  bool paused_ = false;
+  bool listening_ = true;  ///< see begin_to_send()
   bool waits_for_elder_ = false;
 };
 

@@ -9,6 +9,8 @@ namespace egocal::services {
 
 namespace {
 const std::string held_back_prefix = "held back: ";
+/// A status can be forged: names of channels that are remembered.
+constexpr std::size_t most_channels = 256;
 /// After so many times without success pairing takes it that there is nothing to fill the gap with.
 constexpr int most_tries = 2;
 }  // namespace
@@ -24,6 +26,7 @@ std::optional<std::int64_t> utime_of(const bus::LogEvent& event) {
 void InFlight::sent(const bus::LogEvent& event) {
   const auto channel = channels_.find(event.channel);
   if (channel == channels_.end()) return;
+  channel->second.was_sent = true;
   channel->second.messages.push_back({order_++, utime_of(event).value_or(0), event});
 }
 
@@ -37,6 +40,7 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
     if (counter.value > 0 && counter.name.starts_with(held_back_prefix))
       held_back.insert(counter.name.substr(held_back_prefix.size()));
   for (const acknowledgement_t& acknowledgement : pairing.acknowledgements) {
+    if (!make_room_for(acknowledgement.channel)) continue;
     Channel& channel = channels_[acknowledgement.channel];
     if (new_process) channel.gap.reset();
     const bool news =
@@ -64,6 +68,16 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
   }
   if (new_process && !first && count() > 0) progress.send_again = true;
   return progress;
+}
+
+/// Among many names that nothing was sent on the true ones come again with the next true status.
+bool InFlight::make_room_for(const std::string& channel) {
+  if (channels_.size() < most_channels || channels_.contains(channel)) return true;
+  const auto unused = std::find_if(channels_.begin(), channels_.end(),
+                                   [](const auto& entry) { return !entry.second.was_sent; });
+  if (unused == channels_.end()) return false;
+  channels_.erase(unused);
+  return true;
 }
 
 std::size_t InFlight::count() const {

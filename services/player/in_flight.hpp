@@ -29,8 +29,9 @@ class InFlight {
   /// counter "held back: <channel>" says that something came behind a gap.
   Progress acknowledged(const status_t& pairing);
 
-  bool heard() const { return run_.has_value(); }  ///< any pairing process, ever
-  std::size_t count() const;                       ///< messages on the way
+  bool heard() const { return run_.has_value(); }            ///< any pairing process, ever
+  std::size_t count() const;                                 ///< messages on the way
+  std::size_t channels() const { return channels_.size(); }  ///< that are remembered
   /// All of them, in the order in which they were sent.
   std::vector<bus::LogEvent> all() const;
   void clear();
@@ -46,8 +47,10 @@ class InFlight {
     std::optional<std::int64_t> gap;    ///< utime of an acknowledgement with something held back
     int sent_again = 0;                 ///< because of this gap
     std::int64_t next_try = 0;          ///< count at which all that was sent again has arrived
+    bool was_sent = false;              ///< anything, ever
     std::deque<Message> messages;
   };
+  bool make_room_for(const std::string& channel);
   std::map<std::string, Channel> channels_;
   std::optional<std::int64_t> run_;  ///< of the pairing process
   std::uint64_t order_ = 0;

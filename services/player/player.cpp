@@ -84,6 +84,8 @@ void Player::hear(const status_t& status) {
 
 void Player::hear(const command_t& command) {
   if (command.to != "*" && command.to != heartbeat_.identity().name) return;
+  // what one pair is to do: the others go on, so does the log
+  if (command.to == "*" && !(command.sensor_a.empty() && command.sensor_b.empty())) return;
   if (const std::optional<Control> control = control_from_text(command.verb))
     obey(*control);
   else if (command.to != "*")

@@ -176,6 +176,41 @@ TEST_F(LogFile, TenThousandDamagedCopiesCostNoMoreThanWhatWasDamaged) {
   EXPECT_LE(wrong_counts, counts / 50);
 }
 
+TEST_F(LogFile, SeeksByTimeWithoutReadingWhatIsBefore) {
+  const std::string long_log = ::testing::TempDir() + "egocal_seek_" + std::to_string(getpid()) + ".log";
+  constexpr std::int64_t begin = 1'700'000'000'000'000, step = 10'000;
+  {
+    bus::LogWriter writer(long_log);
+    for (std::int64_t i = 0; i < 60'000; ++i) {
+      std::int64_t time = begin + step * i;
+      if (i % 1000 == 7) time ^= std::int64_t{1} << 40;  // damaged
+      if (i % 2 == 1) time -= 300'000;                   // of another source, a little late
+      writer.write(time, "CHANNEL", std::vector<std::byte>(40));
+    }
+    writer.close();
+  }
+  bus::LogReader reader(long_log);
+  for (const std::int64_t second : {-5, 0, 1, 2, 100, 333, 599, 600, 1000}) {
+    const std::int64_t wanted = begin + 1'000'000 * second;
+    reader.seek(wanted);
+    EXPECT_LE(reader.position(), reader.size());
+    const std::uint64_t from = reader.position();
+    std::int64_t earlier = 0;
+    std::optional<bus::LogEvent> event;
+    while ((event = reader.next()) && (event->time_us < wanted || event->time_us > wanted + 1'000'000))
+      ++earlier;
+    if (second >= 0 && second < 600) {
+      EXPECT_LT(earlier, 1500) << "at " << second << " s";
+    }
+    // nothing of what is wanted is before
+    const std::int64_t first = 100 * std::max<std::int64_t>(second, 0);
+    EXPECT_LE(from, static_cast<std::uint64_t>(std::min<std::int64_t>(first, 60'000) * (28 + 7 + 40)));
+    EXPECT_EQ(reader.damage().regions, 0u);
+    EXPECT_EQ(reader.damage().lost_events, 0u);
+  }
+  std::filesystem::remove(long_log);
+}
+
 TEST_F(LogFile, OneLyingLengthCostsOneEvent) {
   for (std::size_t event = 0; event < log.events(); ++event)
     for (const std::size_t field : {20, 24})

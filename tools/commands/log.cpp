@@ -67,14 +67,21 @@ void create(const CreateOptions& options) {
                1e-6 * static_cast<double>(shift));
 }
 
+constexpr std::size_t most_name = 4096;  // PATH_MAX
+
 struct Channel {
   std::uint64_t count = 0, bytes = 0;
   std::int64_t first_us = 0, last_us = 0;
   std::string type;
 };
 
+/// A damaged or hostile log may hold a million.
+constexpr std::size_t most_channels = 1000;
+
 struct Info {
   std::map<std::string, Channel> channels;
+  Channel others;  ///< events of channels beyond those
+  bool more_channels = false;
   bus::LogDamage damage;
   std::uint64_t size = 0;
 };
@@ -103,7 +110,9 @@ Info inspect(const std::string& file) {
   info.size = log.size();
   Progress progress("reading");
   while (const auto event = log.next()) {
-    Channel& channel = info.channels[event->channel];
+    const bool shown = info.channels.size() < most_channels || info.channels.contains(event->channel);
+    if (!shown) info.more_channels = true;
+    Channel& channel = shown ? info.channels[event->channel] : info.others;
     if (channel.count++ == 0) {
       channel.first_us = event->time_us;
       channel.type = type_of(*event);
@@ -133,7 +142,7 @@ void print_info(const std::string& file, bool json) {
   const Info info = inspect(file);
   if (json) {
     nlohmann::ordered_json object;
-    object["file"] = file;
+    object["file"] = bus::printable(file, most_name);
     object["bytes"] = info.size;
     object["channels"] = nlohmann::ordered_json::array();
     for (const auto& [name, channel] : info.channels)
@@ -142,12 +151,15 @@ void print_info(const std::string& file, bool json) {
                                     {"events", channel.count},
                                     {"first_s", 1e-6 * static_cast<double>(channel.first_us)},
                                     {"last_s", 1e-6 * static_cast<double>(channel.last_us)}});
+    object["events_of_other_channels"] = info.others.count;
     object["damaged_regions"] = info.damage.regions;
     object["lost_bytes"] = info.damage.bytes;
     object["lost_events"] = info.damage.lost_events;
     object["jumps"] = info.damage.jumps;
     object["truncated"] = info.damage.truncated;
-    fmt::print("{}\n", object.dump(2));
+    // names of files and channels may be any bytes, JSON is UTF-8
+    using Json = nlohmann::ordered_json;
+    fmt::print("{}\n", object.dump(2, ' ', false, Json::error_handler_t::replace));
     return;
   }
   fmt::print("{}: {} bytes, {}\n{:<32} {:<22} {:>9} {:>18} {:>10} {:>9}\n", file, info.size,
@@ -158,6 +170,8 @@ void print_info(const std::string& file, bool json) {
                channel.count, 1e-6 * static_cast<double>(channel.first_us), span,
                span > 0 ? static_cast<double>(channel.count - 1) / span : 0.0);
   }
+  if (info.more_channels)
+    fmt::print("and {} events of more channels than the {} above\n", info.others.count, most_channels);
 }
 
 void repair(const std::string& file, const std::string& out) {

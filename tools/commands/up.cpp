@@ -4,17 +4,20 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
-#include <cstdio>
+#include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "commands/commands.hpp"
-#include "egocal/bus/log_file.hpp"
-#include "egocal/bus/loop.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "offline/log_channels.hpp"
+#include "supervision/bus_watch.hpp"
 #include "supervision/output_file.hpp"
+#include "supervision/passing_state.hpp"
 #include "supervision/supervisor.hpp"
 
 namespace egocal::tools {
@@ -23,8 +26,11 @@ namespace {
 
 struct Options {
   std::string rig, log, url, output_dir, state, speed = "1", fast = "sqp", global = "dual";
-  bool monitor = false, follow = false;
+  bool monitor = false, follow = false, join = false;
 };
+
+/// Every process is heard once a second.
+constexpr std::chrono::milliseconds listen_before_start{1200};
 
 /// The folder of our own executable: the other programs lie beside it.
 std::filesystem::path programs_directory() {
@@ -34,42 +40,52 @@ std::filesystem::path programs_directory() {
   return self.parent_path();
 }
 
-/// Of pairing, for the process that takes its place while this command runs.
-std::string passing_state(const std::string& directory, pid_t pid) {
-  return fmt::format("{}/pairing-{}.state", directory, pid);
+/// One clear line here instead of one from each process, again and again.
+void check_state(const std::string& file) {
+  const std::filesystem::path target(without_links(file)), folder = target.parent_path();
+  std::error_code none;
+  if (!std::filesystem::is_directory(folder, none))
+    throw error_at(file, 0, "--state", "the folder " + folder.string() + " is not there");
+  if (std::filesystem::exists(target, none) && !std::filesystem::is_regular_file(target, none))
+    throw error_at(file, 0, "--state", "is there and is not a file");
+  if (access(folder.c_str(), W_OK) != 0)
+    throw error_at(file, 0, "--state", "cannot be written: " + std::string(std::strerror(errno)));
 }
 
-void remove_passing_state(const std::string& directory, pid_t pid) {
-  for (const char* suffix : {"", ".lock", ".part"})
-    std::filesystem::remove(passing_state(directory, pid) + suffix);
+std::string output_directory(const Options& options) {
+  if (options.output_dir == "-") return {};
+  const std::string directory =
+      options.output_dir.empty()
+          ? default_output_directory() + "/" + std::filesystem::path(options.rig).stem().string()
+          : options.output_dir;
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw error_at(directory, 0, "", "cannot be made: " + error.message());
+  fmt::print(stderr, "egocal up: the processes' outputs are in {}\n", directory);
+  return directory;
 }
 
-/// Those of commands that were killed.
-void remove_stale_states(const std::string& directory) {
-  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
-    int pid = 0;
-    if (std::sscanf(entry.path().filename().c_str(), "pairing-%d.state", &pid) == 1 && pid > 0 &&
-        kill(pid, 0) != 0 && errno == ESRCH)
-      remove_passing_state(directory, pid);
-  }
+void report_left_behind(const std::string& directory) {
+  const std::vector<std::string> files = PassingState::left_behind(directory);
+  if (files.empty()) return;
+  fmt::print(stderr,
+             "egocal up: statistics of an earlier run that did not end as it should are kept in {}{}; "
+             "--state FILE goes on with them, delete what is not needed\n",
+             files.back(), files.size() > 1 ? fmt::format(" and {} others", files.size() - 1) : "");
 }
 
 void run(const Options& options) {
-  // one clear line here instead of one from each process
   const bus::Rig rig = bus::read_rig(options.rig);
-  if (!options.log.empty()) bus::LogReader{options.log};
-  bus::Loop{options.url.empty() ? rig.lcm_url : options.url, bus::LoopOptions{.handle_signals = false}};
+  const std::string url = options.url.empty() ? rig.lcm_url : options.url;
+  if (!options.log.empty()) require_a_pair(options.log, rig);
+  if (!options.state.empty()) check_state(options.state);
+  const std::optional<std::string> other = pairing_heard(url, listen_before_start);
+  if (other && !options.join)
+    throw Error("up: " + *other + " is running on " + url +
+                ": the two would disturb each other; end the other one, take another --lcm-url, or --join");
   const std::filesystem::path directory = programs_directory();
   SupervisorOptions supervisor;
-  if (options.output_dir != "-") {
-    const std::string rig_name = std::filesystem::path(options.rig).stem();
-    supervisor.output_dir =
-        options.output_dir.empty() ? default_output_directory() + "/" + rig_name : options.output_dir;
-    std::error_code error;
-    std::filesystem::create_directories(supervisor.output_dir, error);
-    if (error) throw error_at(supervisor.output_dir, 0, "", "cannot be made: " + error.message());
-    fmt::print(stderr, "egocal up: the processes' outputs are in {}\n", supervisor.output_dir);
-  }
+  supervisor.output_dir = output_directory(options);
   supervisor.quiet = options.monitor;
 
   const auto program = [&](const char* name, const std::vector<std::string>& more) {
@@ -83,13 +99,13 @@ void run(const Options& options) {
   // what a killed pairing process had accumulated is for the one that takes its place; for another day only
   // if asked for
   std::vector<std::string> pairing;
-  const bool passing = options.state.empty() && !supervisor.output_dir.empty();
-  if (passing) {
-    remove_stale_states(supervisor.output_dir);
-    remove_passing_state(supervisor.output_dir, getpid());
-    pairing = {"--state", passing_state(supervisor.output_dir, getpid())};
-  } else if (!options.state.empty()) {
+  std::optional<PassingState> passing;
+  if (!options.state.empty()) {
     pairing = {"--state", options.state};
+  } else if (!supervisor.output_dir.empty()) {
+    report_left_behind(supervisor.output_dir);
+    passing.emplace(supervisor.output_dir);
+    pairing = {"--state", passing->file()};
   }
   std::vector<Program> programs = {program("egocal-pairing", pairing),
                                    program("egocal-fast", {"--method", options.fast}),
@@ -103,9 +119,19 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
+  std::optional<AnswerWitness> witness;
+  if (!options.log.empty()) witness.emplace(rig, url);
   const int code = supervise(programs, supervisor);
-  if (passing) remove_passing_state(supervisor.output_dir, getpid());
-  if (code != 0) throw cli::Exit{1};
+  if (code == 0 && passing) passing->discard();
+  if (code != 0) {
+    if (passing && std::filesystem::exists(passing->file()))
+      fmt::print(stderr, "egocal up: the statistics are kept in {}; --state FILE goes on with them\n",
+                 passing->file());
+    throw cli::Exit{1};
+  }
+  if (witness && !witness->heard())
+    throw Error("up: nothing was calibrated: no solver answered; see " +
+                (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
 }
 
 }  // namespace
@@ -129,6 +155,7 @@ void add_up(cli::App program) {
   command.add_option(
       "--output-dir", options->output_dir,
       "each process's output in a file there; -: here; default: ~/.local/state/egocal/NAME OF RIG");
+  command.add_flag("--join", options->join, "also where pairing is running on this bus already");
   command.add_option("--state", options->state, "file in which the statistics outlive this command");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
   command.callback([options] { run(*options); });

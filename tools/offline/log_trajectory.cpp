@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <set>
 
 #include "egocal/bus/glue.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
+#include "offline/channel_list.hpp"
 
 namespace egocal::tools {
 
@@ -17,8 +17,6 @@ namespace {
 
 /// A clock that is set back by less goes on as the same session; the poses that it repeats are not used [us].
 constexpr std::int64_t session_jump_us = 10'000'000;
-/// Names in an error message: a damaged or hostile log may hold any number of channels.
-constexpr std::size_t most_names = 10, most_known = 1000;
 
 struct Decoded {
   bus::Checked<StampedPose> pose;
@@ -89,32 +87,20 @@ class Collector {
   bool other_session_ = false;
 };
 
-std::string listed(const std::set<std::string>& names) {
-  if (names.empty()) return "none";
-  std::string text;
-  std::size_t count = 0;
-  for (const std::string& name : names) {
-    if (count == most_names) break;
-    text += (count++ ? ", " : "") + bus::printable(name, 63);
-  }
-  if (names.size() >= most_known) return text + fmt::format(" and more than {} others", most_known - count);
-  return names.size() > count ? text + fmt::format(" and {} others", names.size() - count) : text;
-}
-
 }  // namespace
 
 LogTrajectory read_log_trajectory(const std::string& file, const std::string& channel) {
   bus::LogReader log(file);
   Collector collector;
-  std::set<std::string> channels;
+  ChannelList channels;
   while (const std::optional<bus::LogEvent> event = log.next()) {
     if (event->channel == channel)
       collector.take(decode_pose(*event));
-    else if (channels.size() < most_known)
-      channels.insert(event->channel);
+    else
+      channels.add(event->channel);
   }
   if (collector.empty())
-    throw error_at(file, 0, channel, "no such channel in the log; there are: " + listed(channels));
+    throw error_at(file, 0, channel, "no such channel in the log; there are: " + channels.text());
   LogTrajectory result = collector.finished(file, channel);
   if (result.poses.empty()) throw error_at(file, 0, channel, "no pose in this channel: " + result.not_used);
   return result;

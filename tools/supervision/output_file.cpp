@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -37,14 +39,13 @@ int open_output(const std::string& file) {
   std::error_code none;
   if (std::filesystem::file_size(file, none) > largest && !none)
     std::filesystem::rename(file, file + ".old", none);
-  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (fd < 0) throw error_at(file, 0, "", "cannot be written");
+  const int fd =
+      open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
+  if (fd < 0) throw error_at(file, 0, "", std::string("cannot be written: ") + std::strerror(errno));
   const std::string line =
       fmt::format("{}{:%Y-%m-%d %H:%M:%S}\n", header, fmt::localtime(std::time(nullptr)));
-  if (write(fd, line.data(), line.size()) < 0) {
-    close(fd);
-    throw error_at(file, 0, "", "cannot be written");
-  }
+  // a disk that is full takes no output, and that is no reason not to start
+  if (write(fd, line.data(), line.size()) < 0) return fd;
   return fd;
 }
 

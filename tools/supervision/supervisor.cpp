@@ -14,7 +14,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <deque>
+#include <filesystem>
 #include <optional>
 
 #include "egocal/error.hpp"
@@ -34,10 +34,12 @@ struct Child {
   Program program;
   pid_t pid = -1;  ///< -1: not running
   Clock::time_point started{}, start_at{};
-  std::deque<Clock::time_point> starts;  ///< of the last minute
   milliseconds back_off{0};
-  int quick_deaths = 0;
-  bool finished = false;  ///< ended as it should
+  bool has_started = false;   ///< at least once
+  bool started_well = false;  ///< at least once
+  bool finished = false;      ///< ended as it should
+  std::string reported;       ///< how it ended when that was reported last,
+  Clock::time_point reported_at{};
 };
 
 /// In the child, between fork and exec: only what is safe there.
@@ -115,19 +117,35 @@ class Supervisor {
   }
 
   void start(Child& child) {
-    int output = -1;
-    if (!options_.output_dir.empty() && !child.program.foreground) output = open_output(output_file(child));
+    const int output = output_of(child);
     std::vector<char*> arguments;
     for (std::string& argument : child.program.command) arguments.push_back(argument.data());
     arguments.push_back(nullptr);
     const pid_t parent = getpid();
+    child.started = Clock::now();
     child.pid = fork();
     if (child.pid == 0) become(child.program, arguments.data(), output, parent, old_mask_);
+    const int reason = errno;
     if (output >= 0) close(output);
-    if (child.pid < 0) throw Error(std::string("fork: ") + std::strerror(errno));
-    child.started = Clock::now();
-    child.starts.push_back(child.started);
-    while (child.started - child.starts.front() > std::chrono::minutes(1)) child.starts.pop_front();
+    child.has_started = true;
+    // too many processes, or no memory, for the moment
+    if (child.pid < 0) start_again(child, std::string("fork: ") + std::strerror(reason));
+  }
+
+  /// -1: where ours goes. A disk that has become full or a folder that is gone must not end what runs.
+  int output_of(const Child& child) {
+    if (options_.output_dir.empty() || child.program.foreground) return -1;
+    try {
+      if (child.has_started) {
+        std::error_code none;
+        std::filesystem::create_directories(options_.output_dir, none);
+      }
+      return open_output(output_file(child));
+    } catch (const Error& error) {
+      if (!child.has_started) throw;
+      say(std::string(error.what()) + "; its output is not kept");
+      return open("/dev/null", O_WRONLY | O_CLOEXEC);
+    }
   }
 
   /// Until a signal comes or something is to be done by the clock.
@@ -171,23 +189,34 @@ class Supervisor {
       end_at_ = Clock::now() + (child.program.foreground ? milliseconds(0) : options_.settle);
       return;
     }
-    const bool quick = Clock::now() - child.started < std::chrono::seconds(1);
+    child.started_well = child.started_well || Clock::now() - child.started >= options_.started_well;
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-    child.quick_deaths = quick ? child.quick_deaths + 1 : 0;
-    if (child.quick_deaths >= options_.most_quick_deaths || code == wrong_usage || code == exec_failed ||
-        static_cast<int>(child.starts.size()) >= options_.most_starts_a_minute) {
-      say(fmt::format("{} cannot be kept alive ({}){}", child.program.name, reason(child, status),
+    // the person in front of a foreground program sees why it failed
+    const bool seen = child.program.foreground && code != 0;
+    if ((code == wrong_usage || code == exec_failed || seen) && !child.started_well) {
+      say(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
                       options_.output_dir.empty() ? "" : ", see " + output_file(child)),
           true);
       failed_ = true;
       end_all(SIGTERM, false);
       return;
     }
-    child.back_off = quick
-                         ? std::clamp(2 * child.back_off, options_.first_back_off, options_.longest_back_off)
+    start_again(child, reason(child, status));
+  }
+
+  void start_again(Child& child, const std::string& reason) {
+    const Clock::time_point now = Clock::now();
+    const bool soon = now - child.started < options_.started_well;
+    child.back_off = soon && child.back_off.count() > 0
+                         ? std::min(2 * child.back_off, options_.longest_back_off)
                          : options_.first_back_off;
-    child.start_at = Clock::now() + child.back_off;
-    say(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason(child, status),
+    child.start_at = now + child.back_off;
+    if (child.reported == reason && child.back_off == options_.longest_back_off &&
+        now - child.reported_at < options_.repeat_report)
+      return;
+    child.reported = reason;
+    child.reported_at = now;
+    say(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason,
                     child.back_off.count()));
   }
 
@@ -198,15 +227,21 @@ class Supervisor {
     return ending(status) + (said.empty() ? "" : ": " + said);
   }
 
-  /// Where the screen is the monitor's, all but the last words wait in a file.
+  /// Where the screen is the monitor's, messages go to a file, the last one also to the screen in the end.
   void say(const std::string& line, bool last_words = false) {
     if (!options_.quiet || options_.output_dir.empty()) {
       fmt::print(stderr, "egocal up: {}\n", line);
       return;
     }
-    if (own_output_ < 0) own_output_ = open_output(options_.output_dir + "/up.out");
+    if (last_words) last_words_ = line;
+    try {
+      if (own_output_ < 0) own_output_ = open_output(options_.output_dir + "/up.out");
+    } catch (const Error&) {
+      last_words_ = line;
+      return;
+    }
     const std::string text = line + "\n";
-    if (write(own_output_, text.data(), text.size()) < 0 || last_words) last_words_ = line;
+    if (write(own_output_, text.data(), text.size()) < 0) last_words_ = line;
   }
 
   void end_all(int signal, bool foreground_knows) {

@@ -18,19 +18,26 @@ struct Program {
 
 struct SupervisorOptions {
   std::string output_dir;  ///< NAME.out in it; empty: output goes where ours goes
-  bool quiet = false;      ///< the terminal is somebody else's: what we have to say goes to up.out there
+  bool quiet = false;      ///< the terminal belongs to a foreground program: messages go to up.out there
+  /// Pause before a restart: doubled with each death soon after its start, up to the longest. A cause that
+  /// lasts for hours (no network, a full disk) costs one start in five seconds.
   std::chrono::milliseconds first_back_off{200}, longest_back_off{5000};
-  int most_quick_deaths = 10;                ///< in a row, each within a second of its start: given up
-  int most_starts_a_minute = 30;             ///< of one process: given up
+  /// A process that has lived this long has started well; its next death counts as a first one.
+  std::chrono::milliseconds started_well{3'000};
+  /// The same death is reported again after this time.
+  std::chrono::milliseconds repeat_report{60'000};
   std::chrono::milliseconds settle{1500};    ///< after the player's end, for the last answers
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
 
-/// Starts all, restarts what dies with growing pauses, passes SIGINT and SIGTERM on (SIGHUP as SIGTERM), ends
-/// all together. A Ctrl-C reaches each process once: only foreground programs share our terminal's process
-/// group. Whatever happens to us, SIGKILL included, the others get SIGTERM. Returns 0 when they ended because
-/// they should, 1 when something could not be kept alive (said on standard error). Throws Error where an
-/// output file cannot be written or nothing can be started; nothing is left running then.
+/// Starts all, restarts what dies with growing pauses for as long as a person lets it, passes SIGINT and
+/// SIGTERM on (SIGHUP as SIGTERM), ends all together. Only wrong usage (exit code 2) and a program that
+/// cannot be executed, and a foreground program that fails, end all, where that comes before it has once
+/// started well: no restart helps there. A Ctrl-C reaches each process once: only foreground programs share
+/// our terminal's process group. Whatever happens to us, SIGKILL included, the others get SIGTERM. Returns 0
+/// when they ended because they should, 1 when something could not be started (reported on standard error).
+/// Throws Error where an output file cannot be written at the first start; nothing is left running then.
+/// Later the output of a process whose file cannot be written goes to /dev/null.
 int supervise(const std::vector<Program>& programs, const SupervisorOptions& options);
 
 }  // namespace egocal::tools

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "egocal/bus/glue.hpp"
+#include "player/in_flight.hpp"
+
+namespace egocal::services {
+namespace {
+
+bus::LogEvent event(const std::string& channel, std::int64_t step) {
+  StampedPose pose;
+  pose.time_us = 1'700'000'000'000'000 + 100'000 * step;
+  return {step, pose.time_us, channel, bus::encode(bus::to_message(pose, step))};
+}
+
+status_t status(std::int64_t run, const std::vector<std::pair<std::string, std::int64_t>>& channels) {
+  status_t message{};
+  message.run = run;
+  for (const auto& [channel, step] : channels) {
+    message.acknowledgements.emplace_back();
+    message.acknowledgements.back().channel = channel;
+    message.acknowledgements.back().utime = 1'700'000'000'000'000 + 100'000 * step;
+    message.acknowledgements.back().count = step + 1;
+  }
+  return message;
+}
+
+TEST(InFlight, ForgedChannelsTakeNoMemoryAndDisplaceNoTrueOnes) {
+  InFlight in_flight;
+  in_flight.acknowledged(status(1, {{"LIDAR", -1}}));
+  in_flight.sent(event("LIDAR", 0));
+  for (int i = 0; i < 5000; ++i) {
+    std::vector<std::pair<std::string, std::int64_t>> forged;
+    for (int k = 0; k < 100; ++k) forged.emplace_back("FORGED_" + std::to_string(100 * i + k), 0);
+    in_flight.acknowledged(status(1, forged));
+  }
+  EXPECT_LE(in_flight.channels(), 256u);
+  // one that nothing was sent on yet comes back with the next true status
+  in_flight.acknowledged(status(1, {{"LIDAR", -1}, {"CAMERA", -1}}));
+  in_flight.sent(event("LIDAR", 1));
+  in_flight.sent(event("CAMERA", 1));
+  EXPECT_EQ(in_flight.count(), 3u);
+  EXPECT_TRUE(in_flight.acknowledged(status(1, {{"LIDAR", 1}, {"CAMERA", 1}})).any);
+  EXPECT_EQ(in_flight.count(), 0u);
+}
+
+}  // namespace
+}  // namespace egocal::services
