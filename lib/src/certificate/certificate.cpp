@@ -18,15 +18,16 @@ namespace egocal {
 
 namespace {
 
+using detail::Column;
 using detail::Extended;
-using detail::Matrix6d;
 using detail::proven_bound;
+using detail::Square;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <int N>
-double extended_cost(const Eigen::Matrix<double, N, N>& Q, const Eigen::Matrix<double, N, 1>& v) {
+double extended_cost(const Square<N>& Q, const Column<N>& v) {
   Extended sum = 0;
   for (int i = 0; i < N; ++i) {
     Extended row = 0;
@@ -47,10 +48,10 @@ constexpr double farthest =
 
 /// M minimised over the variable `out`; its row and column become zero.
 template <int N>
-void eliminate(Eigen::Matrix<double, N, N>& M, int out) {
+void eliminate(Square<N>& M, int out) {
   const double pivot = M(out, out);
   if (pivot > 0) {
-    const Eigen::Matrix<double, N, 1> column = M.col(out);
+    const Column<N> column = M.col(out);
     M.noalias() -= column * (column / pivot).transpose();
   }
   M.row(out).setZero();
@@ -61,12 +62,12 @@ void eliminate(Eigen::Matrix<double, N, N>& M, int out) {
 /// rotation vector (first Rot) and half the translation (the rest). H is known up to
 /// `noise`.
 template <int N, int Rot>
-Reach reach_within(Eigen::Matrix<double, N, N> H, double gap, double noise) {
+Reach reach_within(Square<N> H, double gap, double noise) {
   Reach reach;
   H.diagonal().array() -= noise;
-  const Eigen::LLT<Eigen::Matrix<double, N, N>> factor(H);
+  const Eigen::LLT<Square<N>> factor(H);
   if (factor.info() != Eigen::Success) return reach;
-  const Eigen::Matrix<double, N, N> inverse = factor.solve(Eigen::Matrix<double, N, N>::Identity());
+  const Square<N> inverse = factor.solve(Square<N>::Identity());
   const double rotation = inverse.template topLeftCorner<Rot, Rot>().trace();
   const double translation = inverse.template bottomRightCorner<N - Rot, N - Rot>().trace();
   if (!(rotation > 0) || !(translation >= 0) || !std::isfinite(rotation + translation)) return reach;
@@ -82,8 +83,8 @@ Reach reach_within(Eigen::Matrix<double, N, N> H, double gap, double noise) {
 /// Fills bound, gap, reach and the verdict. lambda is a proposal: whatever it is, the bound is proven.
 template <int N>
 struct Verifier {
-  const Eigen::Matrix<double, N, N>& Q;
-  Eigen::Matrix<double, N, 1> v;
+  const Square<N>& Q;
+  Column<N> v;
 
   double rounding() const { return detail::rounding_of<N>(Q, v); }
   /// Where D is singular up to rounding: the true D is not smaller than the given one by more than this.
@@ -161,7 +162,7 @@ Reach spatial_reach(const Matrix8d& Q, const DualQuaternion& q, const Multiplier
   const Matrix8d size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
   eliminate<8>(M, 4);
   eliminate<8>(M, 0);
-  Matrix6d H;
+  Square<6> H;
   H << M.block<3, 3>(1, 1), M.block<3, 3>(1, 5), M.block<3, 3>(5, 1), M.block<3, 3>(5, 5);
   // at |p_v| <= 0.9 a competitor's |p_d|^2 is at most 5.3 |p_dv|^2; twice that times the lift is not
   // curvature
@@ -172,8 +173,8 @@ Reach spatial_reach(const Matrix8d& Q, const DualQuaternion& q, const Multiplier
 /// The four variables that (26) leaves, q1, q4, q6, q7, of a problem in 3-D.
 constexpr std::array<int, 4> planar_variables = {0, 3, 5, 6};
 
-Eigen::Matrix4d planar_part(const Matrix8d& Q) {
-  Eigen::Matrix4d part;
+Square<4> planar_part(const Matrix8d& Q) {
+  Square<4> part;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
       part(i, j) =
@@ -181,26 +182,25 @@ Eigen::Matrix4d planar_part(const Matrix8d& Q) {
   return part;
 }
 
-Eigen::Vector4d planar_part(const DualQuaternion& q) {
-  const Eigen::Vector4d part(q.real[0], q.real[3], q.dual[1], q.dual[2]);
+Column<4> planar_part(const DualQuaternion& q) {
+  const Column<4> part(q.real[0], q.real[3], q.dual[1], q.dual[2]);
   return part / part.head<2>().norm();
 }
 
 /// Reach of competitors in the plane: seen from v, yaw and two translations.
-Reach planar_reach(const Eigen::Matrix4d& Q, const Eigen::Vector4d& v, double bound, double gap,
-                   double lift) {
-  Eigen::Matrix4d basis;
+Reach planar_reach(const Square<4>& Q, const Column<4>& v, double bound, double gap, double lift) {
+  Square<4> basis;
   basis << v[0], -v[1], 0, 0,   //
       v[1], v[0], 0, 0,         //
       v[2], v[3], v[0], -v[1],  //
       v[3], -v[2], v[1], v[0];
-  Eigen::Matrix4d Z = Q;
+  Square<4> Z = Q;
   Z.diagonal().head<2>().array() -= bound;
   Z.diagonal().tail<2>().array() += lift;
-  Eigen::Matrix4d M = basis.transpose() * Z * basis;
-  const Eigen::Matrix4d size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
+  Square<4> M = basis.transpose() * Z * basis;
+  const Square<4> size = basis.cwiseAbs().transpose() * (Z.cwiseAbs() * basis.cwiseAbs());
   eliminate<4>(M, 0);
-  Eigen::Matrix3d H = M.bottomRightCorner<3, 3>();
+  Square<3> H = M.bottomRightCorner<3, 3>();
   H.diagonal().tail<2>().array() -= 11 * lift;
   return reach_within<3, 1>(H, gap, 16 * epsilon * size.diagonal().maxCoeff());
 }
@@ -221,6 +221,10 @@ Certificate in_metres(Certificate certificate, double length) {
 }
 
 }  // namespace
+
+double cost_rounding(const Matrix8d& Q, const DualQuaternion& q) {
+  return detail::rounding_of<8>(Q, q.vec());
+}
 
 Certificate verify(const Matrix8d& Q_in, const DualQuaternion& q_in, const CertificateOptions& options_in) {
   const DualQuaternion unit = normalized(q_in);
@@ -261,8 +265,8 @@ Certificate verify_planar(const Matrix8d& Q_in, const DualQuaternion& T_p,
                           const CertificateOptions& options_in) {
   if (!Q_in.allFinite() || !T_p.vec().allFinite()) return not_finite();
   const double length = detail::length_scale(Q_in);
-  const Eigen::Matrix4d Q = planar_part(detail::in_units_of(length, Q_in));
-  const Eigen::Vector4d v = planar_part(detail::in_units_of(length, T_p));
+  const Square<4> Q = planar_part(detail::in_units_of(length, Q_in));
+  const Column<4> v = planar_part(detail::in_units_of(length, T_p));
   CertificateOptions options = options_in;
   options.reach_translation /= length;
 

@@ -7,14 +7,25 @@
 #include <cmath>
 #include <limits>
 
+#include "egocal/arithmetic.hpp"
+
 namespace egocal::detail {
 
 using Extended = long double;  ///< 64 bits of mantissa where the machine has them; never less than double
+static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<double>::digits == 53);
+static_assert(std::numeric_limits<Extended>::digits == 53 || std::numeric_limits<Extended>::digits == 64 ||
+                  std::numeric_limits<Extended>::digits == 113,
+              "the margins of the proofs hold for IEEE double, x87 and binary128, not for pairs of doubles");
+
+template <int N>
+using Square = Eigen::Matrix<double, N, N, Eigen::DontAlign>;
+template <int N>
+using Column = Eigen::Matrix<double, N, 1, Eigen::DontAlign>;
 
 /// Costs that differ by less cannot be told apart: the entries of Q are known to a few units in the last
 /// place.
 template <int N>
-double rounding_of(const Eigen::Matrix<double, N, N>& Q, const Eigen::Matrix<double, N, 1>& v) {
+double rounding_of(const Square<N>& Q, const Column<N>& v) {
   return 16 * std::numeric_limits<double>::epsilon() * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
 }
 
@@ -40,9 +51,8 @@ bool proven_semidefinite(std::array<std::array<Extended, N>, N> M) {
 /// A quadratic problem |u| = 1, u the first half of the variables, as both modes have it: how to build the
 /// Lagrangian matrix for a proposed bound, with the second half first, where elimination is best conditioned.
 template <int N>
-std::array<std::array<Extended, N>, N> reordered_lagrangian(const Eigen::Matrix<double, N, N>& Q,
-                                                            Extended bound, Extended orthogonal,
-                                                            Extended lift) {
+std::array<std::array<Extended, N>, N> reordered_lagrangian(const Square<N>& Q, Extended bound,
+                                                            Extended orthogonal, Extended lift) {
   constexpr int half = N / 2;
   std::array<std::array<Extended, N>, N> Z;
   for (int i = 0; i < N; ++i)
@@ -57,7 +67,7 @@ std::array<std::array<Extended, N>, N> reordered_lagrangian(const Eigen::Matrix<
 }
 
 template <int N>
-bool proven_bound(const Eigen::Matrix<double, N, N>& Q, double bound, double orthogonal, double lift) {
+bool proven_bound(const Square<N>& Q, double bound, double orthogonal, double lift) {
   return proven_semidefinite<N>(reordered_lagrangian<N>(Q, bound, orthogonal, lift));
 }
 

@@ -7,19 +7,19 @@
 
 namespace egocal {
 
-Eigen::Vector4d quaternion_product(const Eigen::Vector4d& p, const Eigen::Vector4d& q) {
+QuaternionVector quaternion_product(const QuaternionVector& p, const QuaternionVector& q) {
   return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
           p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
           p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
           p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
 
-Eigen::Vector4d quaternion_conjugate(const Eigen::Vector4d& q) {
+QuaternionVector quaternion_conjugate(const QuaternionVector& q) {
   return {q[0], -q[1], -q[2], -q[3]};
 }
 
-Eigen::Matrix4d left_matrix(const Eigen::Vector4d& p) {
-  Eigen::Matrix4d M;
+QuaternionMatrix left_matrix(const QuaternionVector& p) {
+  QuaternionMatrix M;
   M << p[0], -p[1], -p[2], -p[3],  //
       p[1], p[0], -p[3], p[2],     //
       p[2], p[3], p[0], -p[1],     //
@@ -27,8 +27,8 @@ Eigen::Matrix4d left_matrix(const Eigen::Vector4d& p) {
   return M;
 }
 
-Eigen::Matrix4d right_matrix(const Eigen::Vector4d& q) {
-  Eigen::Matrix4d M;
+QuaternionMatrix right_matrix(const QuaternionVector& q) {
+  QuaternionMatrix M;
   M << q[0], -q[1], -q[2], -q[3],  //
       q[1], q[0], q[3], -q[2],     //
       q[2], -q[3], q[0], q[1],     //
@@ -76,8 +76,8 @@ Matrix8d right_matrix(const DualQuaternion& q) {
 DualQuaternion normalized(const DualQuaternion& q) {
   const double norm = q.real.norm();
   if (!(norm > 0)) return {};
-  const Eigen::Vector4d real = q.real / norm;
-  const Eigen::Vector4d dual = q.dual / norm;
+  const QuaternionVector real = q.real / norm;
+  const QuaternionVector dual = q.dual / norm;
   return {real, dual - real.dot(dual) * real};
 }
 
@@ -90,14 +90,14 @@ DualQuaternion canonical_sign(const DualQuaternion& q) {
 }
 
 DualQuaternion to_dual_quaternion(const Pose& T) {
-  const Eigen::Vector4d real(T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z());
-  const Eigen::Vector4d t(0, T.translation.x(), T.translation.y(), T.translation.z());
+  const QuaternionVector real(T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z());
+  const QuaternionVector t(0, T.translation.x(), T.translation.y(), T.translation.z());
   return canonical_sign(normalized({real, 0.5 * quaternion_product(t, real)}));
 }
 
 Pose to_pose(const DualQuaternion& q) {
   const DualQuaternion unit = canonical_sign(normalized(q));
-  const Eigen::Vector4d t = 2 * quaternion_product(unit.dual, quaternion_conjugate(unit.real));
+  const QuaternionVector t = 2 * quaternion_product(unit.dual, quaternion_conjugate(unit.real));
   return {Eigen::Quaterniond(unit.real[0], unit.real[1], unit.real[2], unit.real[3]), t.tail<3>()};
 }
 
@@ -124,8 +124,8 @@ DualQuaternion interpolate(const DualQuaternion& p, const DualQuaternion& q, dou
     part.real.normalize();
     const Pose whole = to_pose(motion);
     part.dual =
-        0.5 * quaternion_product(Eigen::Vector4d(0, s * whole.translation.x(), s * whole.translation.y(),
-                                                 s * whole.translation.z()),
+        0.5 * quaternion_product(QuaternionVector(0, s * whole.translation.x(), s * whole.translation.y(),
+                                                  s * whole.translation.z()),
                                  part.real);
   } else {
     const double half_angle = std::atan2(sine, motion.real[0]);

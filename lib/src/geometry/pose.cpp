@@ -12,7 +12,7 @@ Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
 }
 
 Pose inverse(const Pose& T_a_b) {
-  const Eigen::Quaterniond rotation = T_a_b.rotation.conjugate();
+  const Rotation rotation = T_a_b.rotation.conjugate();
   return {rotation, -(rotation * T_a_b.translation)};
 }
 
@@ -20,15 +20,15 @@ Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b) {
   return T_a_b.rotation * p_b + T_a_b.translation;
 }
 
-Eigen::Quaterniond rotation_exp(const Eigen::Vector3d& rotation_vector) {
+Rotation rotation_exp(const Eigen::Vector3d& rotation_vector) {
   const double half = 0.5 * rotation_vector.norm();
   // sin(h)/h by its series where the quotient would be 0/0
   const double factor = half < 1e-4 ? 0.5 * (1 - half * half / 6) : 0.5 * std::sin(half) / half;
   const Eigen::Vector3d v = factor * rotation_vector;
-  return Eigen::Quaterniond(std::cos(half), v.x(), v.y(), v.z()).normalized();
+  return Rotation(std::cos(half), v.x(), v.y(), v.z()).normalized();
 }
 
-Eigen::Vector3d rotation_log(const Eigen::Quaterniond& rotation) {
+Eigen::Vector3d rotation_log(const Rotation& rotation) {
   const double sign = rotation.w() < 0 ? -1 : 1;
   const Eigen::Vector3d v = sign * rotation.vec();
   const double w = sign * rotation.w();
@@ -37,7 +37,7 @@ Eigen::Vector3d rotation_log(const Eigen::Quaterniond& rotation) {
   return 2 * std::atan2(sine, w) / sine * v;
 }
 
-Eigen::Vector3d roll_pitch_yaw(const Eigen::Quaterniond& rotation) {
+Eigen::Vector3d roll_pitch_yaw(const Rotation& rotation) {
   const Eigen::Matrix3d R = rotation.toRotationMatrix();
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
   return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};

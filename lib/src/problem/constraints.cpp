@@ -4,7 +4,7 @@
 
 namespace egocal {
 
-Eigen::Vector2d constraints(const DualQuaternion& q) {
+Eigen::Matrix<double, 2, 1, Eigen::DontAlign> constraints(const DualQuaternion& q) {
   return {1 - q.real.squaredNorm(), 2 * q.real.dot(q.dual)};
 }
 

@@ -18,7 +18,7 @@ namespace {
 struct Difference {
   double s, u[3], w[3];
 
-  Difference(const Eigen::Vector4d& a, double sign_a, const Eigen::Vector4d& b, double sign_b) {
+  Difference(const QuaternionVector& a, double sign_a, const QuaternionVector& b, double sign_b) {
     s = sign_b * b[0] - sign_a * a[0];
     for (int i = 0; i < 3; ++i) {
       u[i] = sign_b * b[i + 1] - sign_a * a[i + 1];

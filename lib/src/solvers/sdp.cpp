@@ -73,7 +73,7 @@ struct Best {
 /// combination u = v + s w with r_u . d_u = 0.
 Best recover(const Matrix8d& Q, const Matrix8d& Z, const Matrix8d& X) {
   Best best;
-  const Eigen::SelfAdjointEigenSolver<Matrix8d> null_space(Z);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 8, 8>> null_space(Z);
   const Vector8d v = null_space.eigenvectors().col(0), w = null_space.eigenvectors().col(1);
   best.offer_null_vector(Q, v);
   const auto g2 = [](const Vector8d& x, const Vector8d& y) { return x.head<4>().dot(y.tail<4>()); };

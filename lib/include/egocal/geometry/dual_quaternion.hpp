@@ -8,25 +8,29 @@
 
 namespace egocal {
 
-using Vector8d = Eigen::Matrix<double, 8, 1>;
-using Matrix8d = Eigen::Matrix<double, 8, 8>;
+// Unaligned: their layout does not depend on compile flags (egocal/layout.hpp).
+using Vector8d = Eigen::Matrix<double, 8, 1, Eigen::DontAlign>;
+using Matrix8d = Eigen::Matrix<double, 8, 8, Eigen::DontAlign>;
+/// A quaternion as a vector, always in the order w, x, y, z.
+using QuaternionVector = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
+using QuaternionMatrix = Eigen::Matrix<double, 4, 4, Eigen::DontAlign>;
 
-// Quaternions as vectors, always in the order w, x, y, z.
-Eigen::Vector4d quaternion_product(const Eigen::Vector4d& p, const Eigen::Vector4d& q);
-Eigen::Vector4d quaternion_conjugate(const Eigen::Vector4d& q);
+QuaternionVector quaternion_product(const QuaternionVector& p, const QuaternionVector& q);
+QuaternionVector quaternion_conjugate(const QuaternionVector& q);
 /// vec(p q) = left_matrix(p) q, and vec(p q) = right_matrix(q) p.
-Eigen::Matrix4d left_matrix(const Eigen::Vector4d& p);
-Eigen::Matrix4d right_matrix(const Eigen::Vector4d& q);
+QuaternionMatrix left_matrix(const QuaternionVector& p);
+QuaternionMatrix right_matrix(const QuaternionVector& q);
 
 /// q = real + eps dual (1), each w, x, y, z; a unit one (5) is a rigid displacement (7).
 struct DualQuaternion {
-  Eigen::Vector4d real = Eigen::Vector4d::UnitX();
-  Eigen::Vector4d dual = Eigen::Vector4d::Zero();  ///< 1/2 t real [m]
+  QuaternionVector real = QuaternionVector::UnitX();
+  QuaternionVector dual = QuaternionVector::Zero();  ///< 1/2 t real [m]
 
   /// vec(q) of (11).
   Vector8d vec() const;
   static DualQuaternion from_vec(const Vector8d& q);
 };
+EGOCAL_SAME_LAYOUT(DualQuaternion)
 
 DualQuaternion operator*(const DualQuaternion& p, const DualQuaternion& q);  ///< (9)
 DualQuaternion operator-(const DualQuaternion& q);                           ///< the same displacement
@@ -34,7 +38,9 @@ DualQuaternion conjugate(const DualQuaternion& q);  ///< (2), the inverse of a u
 Matrix8d left_matrix(const DualQuaternion& p);      ///< Q_p^l of (10)
 Matrix8d right_matrix(const DualQuaternion& q);     ///< Q_q^r of (10)
 
-/// The nearest unit dual quaternion: real scaled to length one, dual made orthogonal to it (5).
+/// The nearest unit dual quaternion: real scaled to length one, dual made orthogonal to it (5). All NaN where
+/// there is none (real part zero, not finite, or its length outside of 1e-100 to 1e100), so that no check
+/// behind it is misled.
 DualQuaternion normalized(const DualQuaternion& q);
 /// Of q and -q the one whose real scalar is >= 0 (of a half turn: whose first non-zero real part is > 0).
 DualQuaternion canonical_sign(const DualQuaternion& q);

@@ -15,6 +15,7 @@ struct OnlineOptions {
   double t_no_fail = 5.0;  ///< [s] of measured time that the fast solution must have been verified for
   NanosecondClock clock = nullptr;  ///< for the timings of the answer
 };
+EGOCAL_SAME_LAYOUT(OnlineOptions)
 
 /// What Algorithm 1 carries from step to step. A default-constructed one is the start: the first step is
 /// global.
@@ -22,6 +23,7 @@ struct OnlineState {
   std::optional<DualQuaternion> last;               ///< q_(i-1)
   std::optional<std::int64_t> last_local_error_us;  ///< t_lastLocalError
 };
+EGOCAL_SAME_LAYOUT(OnlineState)
 
 struct OnlineStep {
   Answer answer;
@@ -30,6 +32,7 @@ struct OnlineStep {
   bool global_wanted = false;  ///< the fast solution has not been verified for long enough
   bool global_used = false;    ///< the answer is the global solver's
 };
+EGOCAL_SAME_LAYOUT(OnlineStep)
 
 /// Algorithm 1: fast solution from the last answer, verified; the global one while the fast one has not been
 /// verified for t_no_fail. Pure: the same problem, time and state give the same step. time_us: of the

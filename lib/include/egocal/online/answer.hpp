@@ -25,6 +25,7 @@ struct Observability {
   std::array<double, 6> stddev{};  ///< [m, rad]; infinite where not observable
   std::string hint;                ///< which motion would help most; empty where nothing is missing
 };
+EGOCAL_SAME_LAYOUT(Observability)
 
 /// Fit (cost), optimality (certificate) and uncertainty (observability) are three different things.
 struct Answer {
@@ -36,6 +37,7 @@ struct Answer {
   std::int64_t solve_ns = 0;   ///< the solver alone; 0 without a clock [ns]
   std::int64_t verify_ns = 0;  ///< the certificate alone; 0 without a clock [ns]
 };
+EGOCAL_SAME_LAYOUT(Answer)
 
 /// The caller's clock [ns]: the library has none of its own.
 using NanosecondClock = std::int64_t (*)();

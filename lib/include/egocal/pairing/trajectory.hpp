@@ -14,6 +14,7 @@ struct StampedPose {
   std::int64_t time_us = 0;  ///< [us]
   DualQuaternion pose;       ///< unit; p_odometry = pose p_sensor
 };
+EGOCAL_SAME_LAYOUT(StampedPose)
 
 /// Poses with strictly increasing times.
 using Trajectory = std::vector<StampedPose>;

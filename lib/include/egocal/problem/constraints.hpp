@@ -11,9 +11,10 @@ struct Multipliers {
   double norm = 0;        ///< lambda_1, the dual objective (22a)
   double orthogonal = 0;  ///< lambda_2
 };
+EGOCAL_SAME_LAYOUT(Multipliers)
 
 /// g1, g2 of (17).
-Eigen::Vector2d constraints(const DualQuaternion& q);
+Eigen::Matrix<double, 2, 1, Eigen::DontAlign> constraints(const DualQuaternion& q);
 /// Z(lambda) of (21): Q - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0].
 Matrix8d lagrangian_matrix(const Matrix8d& Q, const Multipliers& lambda);
 /// lambda by least squares from Z(lambda) q = 0 (28).

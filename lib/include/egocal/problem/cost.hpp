@@ -18,6 +18,7 @@ struct MotionPair {
   std::int64_t end_us = 0;
   double eta = 1;  ///< relative weight in (16), before the normalisation to sum 1
 };
+EGOCAL_SAME_LAYOUT(MotionPair)
 
 /// The weights W of (15) that a drive can be re-weighted by after it was accumulated:
 /// w1..w4 = rotation (the real rows), w5..w8 = translation (the dual rows) [1/m^2].
@@ -25,6 +26,7 @@ struct Balance {
   double rotation = 1;
   double translation = 1;
 };
+EGOCAL_SAME_LAYOUT(Balance)
 
 /// Q_w of one pair for any eight row weights w1..w8 (15).
 Matrix8d pair_cost(const DualQuaternion& a, const DualQuaternion& b, const Vector8d& w = Vector8d::Ones());
@@ -41,6 +43,7 @@ struct Statistics {
   void add(const MotionPair& pair) { add(pair.a, pair.b, pair.eta); }
   Statistics& operator+=(const Statistics& other);
 };
+EGOCAL_SAME_LAYOUT(Statistics)
 
 /// Q of (16): normalised so that the eta sum to one. Zero where there are no pairs.
 Matrix8d cost_matrix(const Statistics& statistics, const Balance& balance = {});

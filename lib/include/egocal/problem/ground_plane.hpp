@@ -12,6 +12,7 @@ struct GroundPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double distance = 0;
 };
+EGOCAL_SAME_LAYOUT(GroundPlane)
 
 /// Throws Error where the normal is not of length one (to 1e-3; it is then normalised) or a value is not
 /// finite.

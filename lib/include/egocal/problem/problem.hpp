@@ -24,6 +24,7 @@ struct Problem {
   /// Where the answer is taken from in directions that the motions do not show.
   std::optional<DualQuaternion> prior;
 };
+EGOCAL_SAME_LAYOUT(Problem)
 
 /// Q of (16), all blocks together.
 Matrix8d cost_matrix(const Problem& problem);

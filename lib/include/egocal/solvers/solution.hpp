@@ -22,5 +22,6 @@ struct Solution {
   SolverStatus status = SolverStatus::converged;
   int iterations = 0;
 };
+EGOCAL_SAME_LAYOUT(Solution)
 
 }  // namespace egocal

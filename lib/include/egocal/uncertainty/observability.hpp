@@ -26,7 +26,7 @@ Observability assess_observability(const Problem& problem, const Matrix8d& Q, co
 /// directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is
 /// one.
 struct FlatDirections {
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis;
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, 6> basis;
   double length = 1;  ///< [m]
 };
 FlatDirections flat_directions(const Matrix8d& Q, const DualQuaternion& T_a_b);

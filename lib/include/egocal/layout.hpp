@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "egocal/arithmetic.hpp"
+
+// Public types have one memory layout whatever the flags of their user: their Eigen members are unaligned
+// (Eigen::DontAlign), so -mavx or -march=native changes nothing. Flags that do change a layout
+// (-D_GLIBCXX_DEBUG, -fpack-struct, another version of the headers) end in an undefined reference that names
+// the type, instead of wrong answers.
+namespace egocal::detail {
+
+/// Defined by the library for its own size and alignment of T only.
+template <class T, std::size_t size, std::size_t alignment>
+struct Layout {
+  static const char same_as_in_the_library;
+};
+
+}  // namespace egocal::detail
+
+/// Makes every file that includes the type refer to the library's layout of it. Behind the type's definition,
+/// in namespace egocal.
+#define EGOCAL_SAME_LAYOUT(Type)                                                \
+  namespace detail {                                                            \
+  template <>                                                                   \
+  const char Layout<Type, sizeof(Type), alignof(Type)>::same_as_in_the_library; \
+  [[gnu::used]] static const char* const layout_of_##Type =                     \
+      &Layout<Type, sizeof(Type), alignof(Type)>::same_as_in_the_library;       \
+  }
