@@ -13,8 +13,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr ExtrinsicFormat formats[] = {ExtrinsicFormat::yaml, ExtrinsicFormat::ros, ExtrinsicFormat::urdf,
-                                       ExtrinsicFormat::kalibr};
+std::vector<ExtrinsicFormat> all_formats() {
+  std::vector<ExtrinsicFormat> formats;
+  for (const std::string& name : extrinsic_format_names())
+    formats.push_back(*extrinsic_format_from_name(name));
+  return formats;
+}
+const std::vector<ExtrinsicFormat> formats = all_formats();
 
 NamedExtrinsic example() {
   NamedExtrinsic extrinsic;
