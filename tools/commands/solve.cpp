@@ -113,6 +113,7 @@ void write_extrinsic(const Options& options, const SolveResult& result) {
   for (std::size_t i = 0; i < 6; ++i)
     if (!calibration.observability.observable[i])
       (*extrinsic.stddev)[i] = std::numeric_limits<double>::infinity();
+  extrinsic.usable = calibration.verdict != Verdict::contradictory;
   const std::string text = extrinsic_text(
       extrinsic, *extrinsic_format_from_name(options.format.empty() ? "yaml" : options.format));
   if (options.out.empty())
@@ -125,11 +126,14 @@ void run(const Options& options) {
   const SolveRequest understood_options = understood(options);
   const SolveResult result = calibrate_offline(understood_options);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
-  if (!options.format.empty() || !options.out.empty()) write_extrinsic(options, result);
-  if (!options.format.empty() && options.out.empty()) return;
-  fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
-                                  : report_text(result, understood_options.truth));
   const Calibration& calibration = result.calibration;
+  const bool written = !options.format.empty() || !options.out.empty();
+  if (written) write_extrinsic(options, result);
+  if (written && calibration.verdict == Verdict::contradictory)
+    fmt::print(stderr, "egocal: the motions contradict each other: do not use this extrinsic\n");
+  if (!written || !options.out.empty())
+    fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
+                                    : report_text(result, understood_options.truth));
   if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
     throw cli::Exit{3};
 }

@@ -45,6 +45,7 @@ std::string json_text(const ExtrinsicWords& words) {
             named({"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"}, words.extrinsic.stddev->data()) +
             ",\n";
   text += std::string("  \"certified\": ") + (words.extrinsic.certified ? "true" : "false") + ",\n";
+  text += std::string("  \"usable\": ") + (words.extrinsic.usable ? "true" : "false") + ",\n";
   return text + "  \"pairs\": " + std::to_string(words.extrinsic.pairs) + "\n}\n";
 }
 

@@ -12,7 +12,8 @@ ExtrinsicWords::ExtrinsicWords(const NamedExtrinsic& named)
   if (!T.translation.allFinite() || !T.rotation.coeffs().allFinite())
     throw Error("no extrinsic of " + b + " in " + a + " to write: its values are not finite");
   direction = "pose of " + b + " in " + a + ": p_" + a + " = R * p_" + b + " + t";
-  verdict = std::string(named.certified ? "certified globally optimal" : "not certified") + ", from " +
+  verdict = std::string(named.usable ? "" : "DO NOT USE, the motions contradict each other; ") +
+            (named.certified ? "certified globally optimal" : "not certified") + ", from " +
             std::to_string(named.pairs) + " motion pairs";
 }
 

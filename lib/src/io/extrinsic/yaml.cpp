@@ -20,6 +20,7 @@ std::string yaml_text(const ExtrinsicWords& words) {
       text += "  - " + (std::isfinite(s) ? exact(s) : std::string(std::isnan(s) ? ".nan" : ".inf")) + "\n";
   }
   text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
+  text += std::string("usable: ") + (words.extrinsic.usable ? "true" : "false") + "\n";
   return text + "pairs: " + std::to_string(words.extrinsic.pairs) + "\n";
 }
 
