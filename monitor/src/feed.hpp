@@ -2,47 +2,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <exception>
-#include <lcm/lcm-cpp.hpp>
-#include <memory>
-#include <span>
 #include <string>
+#include <vector>
 
+#include "delivery.hpp"
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/loop.hpp"
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
 
-/// One encoded message into the model, whichever of ours it is. False: a channel of ours that could not be
-/// decoded.
-bool deliver(Model& model, const std::string& channel, std::span<const std::byte> bytes, Now now);
+struct FeedOptions {
+  std::string url;
+  std::string version;
+  double heartbeat_timeout = 3;  ///< [s]
+};
 
-/// The monitor's ear on the bus: all pairs' channels by pattern, taken in batches, as people look ten times a
-/// second.
+/// The monitor on the bus: the loop and the heartbeat of every process, and the channels of all pairs.
 class Feed {
  public:
-  /// Throws Error where the URL is not understood or the machine cannot multicast.
-  explicit Feed(const std::string& url);
+  /// Throws Error where the URL is not understood. A network that is away is shown and waited for.
+  Feed(Model& model, const FeedOptions& options);
   Feed(const Feed&) = delete;
   Feed& operator=(const Feed&) = delete;
 
-  /// Hands on what is waiting, for at most about 30 ms.
-  void drain(Model& model, Now now);
-  void send(const command_t& command);
-  /// Says that this monitor is there, once a second at most.
-  void send_heartbeat(Now now, const std::string& version);
-  std::int64_t undecodable() const { return undecodable_; }
+  /// Also returns when one of these is readable.
+  void watch(const std::vector<int>& fds);
+  /// Waits at most this long for something to happen [ms], and hands on what has arrived.
+  void wait(int milliseconds);
+  Now now() const;
+  /// False: not sent, see error().
+  bool send(const command_t& command) { return loop_.publish(bus::command_channel, command); }
+  const std::string& error() const { return loop_.send_error(); }
 
  private:
-  void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel);
-
-  lcm::LCM lcm_;
-  Model* model_ = nullptr;
-  Now now_;
-  std::int64_t undecodable_ = 0;
-  std::int64_t run_ = 0;
-  std::int64_t heartbeat_us_ = 0;
-  std::exception_ptr failure_;
+  Model& model_;
+  Delivery delivery_;
+  bus::Loop loop_;
+  bus::Heartbeat heartbeat_;
 };
 
 }  // namespace egocal::monitor

@@ -131,9 +131,9 @@ std::string text_lines(const Model& model, Charset charset) {
   for (const ProcessState& process : model.processes()) {
     const status_t& status = process.status;
     text += clean(status.name, 40) + ": " +
-            (process.alive             ? clean(status.state, 20)
-             : status.state == "ended" ? "ended"
-                                       : "GONE") +
+            (process.alive                        ? clean(status.state, 20)
+             : process.state == bus::State::ended ? "ended"
+                                                  : "GONE") +
             ", pid " + std::to_string(status.pid) + " on " + clean(status.host, 40) + ", in " +
             std::to_string(process.in) + " out " + std::to_string(process.out) + " lost " +
             std::to_string(process.lost) + " rejected " + std::to_string(process.rejected);

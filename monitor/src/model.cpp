@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "egocal/bus/answer_check.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/algorithm1.hpp"
 
@@ -45,20 +46,29 @@ bool starts_with(const std::string& text, const char* prefix) {
 }
 
 Optimality optimality_of(const calibration_t& answer) {
-  return answer.status == 0   ? Optimality::certified
-         : answer.status == 1 ? Optimality::not_optimal
-                              : Optimality::undecided;
+  return bus::optimality_from_wire(answer.status).value_or(Optimality::undecided);
 }
 
-AnswerRank claim_of(const calibration_t& answer) {
-  return {answer.session, answer.seq, optimality_of(answer), answer.cost};
+bus::StandingRank rank_of(const SolverTrack& track) {
+  const calibration_t& answer = track.answer;
+  return {track.verified ? bus::Standing::verified : bus::Standing::unverified,
+          {answer.session, answer.seq, optimality_of(answer), answer.cost}};
+}
+
+/// The mean distance of the motions between two problems says whether the stream had a gap: problems that
+/// were skipped are no gap.
+bool is_gap(const problem_t& before, const problem_t& message, double max_gap) {
+  if (message.seq <= before.seq) return false;
+  const double motions = static_cast<double>(message.seq) - static_cast<double>(before.seq);
+  const double stride = std::clamp(message.stride, 1, 1000);
+  return seconds(before.utime, message.utime) > max_gap * (stride + motions - 1);
 }
 
 }  // namespace
 
 bool pair_is_paused(const Model& model, const PairState& pair) {
   return pair.paused || std::any_of(model.processes().begin(), model.processes().end(), [](const auto& p) {
-           return p.alive && p.status.role == "pairing" && p.status.state == "paused";
+           return p.alive && p.status.role == bus::role_name(Role::pairing) && p.state == bus::State::paused;
          });
 }
 
@@ -130,14 +140,13 @@ void Model::on_problem(const problem_t& message, Now now) {
   if (!pair) return;
   const std::string name = pair_name(pair->a, pair->b);
   if (pair->session != message.session) {
-    if (pair->has_problem) note(Severity::warning, name, "session reset: the calibration begins anew", now);
+    if (pair->has_problem) note(Severity::warning, name, "session reset: the calibration starts again", now);
     begin_session(*pair, message.session);
   } else if (pair->has_problem) {
     const double step = seconds(pair->problem.utime, message.utime);
     if (step < 0) {
       note(Severity::warning, name, "time ran backwards in the problems of one session", now);
-    } else if (step > options_.max_gap * std::max(1, std::min(message.stride, 1000)) &&
-               message.seq > pair->problem.seq) {
+    } else if (is_gap(pair->problem, message, options_.max_gap)) {
       ++pair->gap_count;
       note(Severity::warning, name, "gap of " + rounded(step, 1) + " s in the stream", now);
     }
@@ -152,35 +161,13 @@ void Model::on_problem(const problem_t& message, Now now) {
   pair->problem_at = now;
 
   problem_t& kept = pair->problem;
-  const auto copy_head = [&] {
-    kept.utime = message.utime;
-    kept.session = message.session;
-    kept.seq = message.seq;
-    kept.sensor_a = pair->a;
-    kept.sensor_b = pair->b;
-    kept.mode = message.mode;
-    std::copy_n(message.plane_a, 4, kept.plane_a);
-    std::copy_n(message.plane_b, 4, kept.plane_b);
-    kept.weight_rotation = message.weight_rotation;
-    kept.weight_translation = message.weight_translation;
-    kept.stride = message.stride;
-    kept.choice = bounded(message.choice);
-    kept.n_blocks = 0;
-    kept.has_prior = message.has_prior;
-    std::copy_n(message.prior_pos, 3, kept.prior_pos);
-    std::copy_n(message.prior_quat, 4, kept.prior_quat);
-    kept.has_truth = message.has_truth;
-    std::copy_n(message.truth_pos, 3, kept.truth_pos);
-    std::copy_n(message.truth_quat, 4, kept.truth_quat);
-    kept.time_offset = message.time_offset;
-    kept.time_offset_stddev = message.time_offset_stddev;
-    kept.matched = message.matched;
-    kept.left_out = message.left_out;
-    kept.rejected = message.rejected;
-    kept.host = bounded(message.host);
-    kept.received_mono_us = message.received_mono_us;
-  };
-  copy_head();
+  kept = message;
+  kept.sensor_a = pair->a;
+  kept.sensor_b = pair->b;
+  kept.choice = bounded(message.choice);
+  kept.host = bounded(message.host);
+  kept.n_blocks = 0;
+  kept.blocks = {};  // verified by now, and too large to keep with every copy of the model
   if (chosen_anew)
     note(Severity::info, name, "stride is now " + std::to_string(kept.stride) + " (" + kept.choice + ")",
          now);
@@ -189,7 +176,8 @@ void Model::on_problem(const problem_t& message, Now now) {
   if (share > kManyLeftOut && share > 2 * pair->reported_left_out) {
     pair->reported_left_out = share;
     note(Severity::warning, name,
-         rounded(100 * share, 0) + " % of the motions contradict the others and are left out", now);
+         rounded(100 * share, 0) + " % of the motions contradict the others and are rejected as outliers",
+         now);
   } else if (share < 0.5 * kManyLeftOut) {
     pair->reported_left_out = 0;
   }
@@ -212,8 +200,8 @@ void Model::on_problem(const problem_t& message, Now now) {
 Role Model::role_of(const calibration_t& message) const {
   for (const ProcessState& process : processes_)
     if (process.status.name == message.solver) {
-      if (process.status.role == "global") return Role::global;
-      if (process.status.role == "fast") return Role::fast;
+      const auto role = bus::role_from_name(process.status.role);
+      if (role == Role::global || role == Role::fast) return *role;
     }
   if (message.solver.find("global") != std::string::npos) return Role::global;
   if (message.solver.find("fast") != std::string::npos) return Role::fast;
@@ -247,8 +235,7 @@ Shown shown_of(const PairState& pair, const calibration_t& answer) {
 void Model::count_answer(PairState& pair, Now now) {
   int best = -1;
   for (std::size_t i = 0; i < pair.solvers.size(); ++i)
-    if (best < 0 || outranks(claim_of(pair.solvers[i].answer),
-                             claim_of(pair.solvers[static_cast<std::size_t>(best)].answer)))
+    if (best < 0 || outranks(rank_of(pair.solvers[i]), rank_of(pair.solvers[static_cast<std::size_t>(best)])))
       best = static_cast<int>(i);
   pair.counted = best;
   if (best >= 0) pair.shown = shown_of(pair, *pair.answer());
@@ -272,7 +259,7 @@ void Model::watch_verdict(PairState& pair, Now now) {
   }
 }
 
-void Model::on_calibration(const calibration_t& message, Now now) {
+void Model::on_calibration(const calibration_t& message, Now now, bool verified) {
   now_ = now;
   ++messages_;
   PairState* pair = find_pair(bounded(message.sensor_a), bounded(message.sensor_b));
@@ -297,7 +284,7 @@ void Model::on_calibration(const calibration_t& message, Now now) {
     track->name = solver;
     if (pair->solvers.size() > 1 || pair->counted >= 0)
       note(Severity::info, name,
-           "solver swapped: " + solver + " (" + bounded(message.method) + ") answers too", now);
+           "solver added: " + solver + " (" + bounded(message.method) + ") answers, too", now);
   } else if (track->answer.method != bounded(message.method)) {
     note(Severity::info, name,
          "solver swapped: " + solver + " changed from " + track->answer.method + " to " +
@@ -306,7 +293,8 @@ void Model::on_calibration(const calibration_t& message, Now now) {
   } else if (track->silent) {
     note(Severity::good, name, solver + " answers again", now);
   }
-  const bool newer = track->answers == 0 || message.seq >= track->answer.seq;
+  const bool newer = track->answers == 0 || (verified && !track->verified) ||
+                     (verified == track->verified && message.seq >= track->answer.seq);
   track->silent = false;
   track->at = now;
   ++track->answers;
@@ -318,9 +306,7 @@ void Model::on_calibration(const calibration_t& message, Now now) {
   track->answer.solver = solver;
   track->answer.method = bounded(message.method);
   track->answer.hint = bounded(message.hint);
-  // what is no transform, or contradicts itself, is not certified, whatever its sender says
-  if (message.status == 0 && !(pose_from(message.pos, message.quat) && message.scaled_gap <= 1))
-    track->answer.status = 2;
+  track->verified = verified;
   track->role = role_of(track->answer);
 
   const double time = seconds(pair->session, message.utime);
@@ -362,7 +348,8 @@ void Model::on_status(const status_t& message, Now now) {
   ProcessState* process = nullptr;
   for (ProcessState& candidate : processes_)
     if (candidate.status.name == name && candidate.status.host == host) process = &candidate;
-  const std::string state = bounded(message.state), error = bounded(message.last_error);
+  const std::string state_text = bounded(message.state), error = bounded(message.last_error);
+  const std::optional<bus::State> state = bus::state_from_name(message.state);
   if (!process) {
     if (processes_.size() == kMaxProcesses) {
       auto gone = std::find_if(processes_.begin(), processes_.end(), [](const auto& p) { return !p.alive; });
@@ -374,22 +361,23 @@ void Model::on_status(const status_t& message, Now now) {
     }
     process = &processes_.emplace_back();
     process->rate_in = process->rate_out = -1;
-    process->alive = state != "ended";
-    if (process->alive) note(Severity::good, name, "process is there (" + state + ")", now);
+    process->alive = state != bus::State::ended;
+    if (process->alive) note(Severity::good, name, "process is there (" + state_text + ")", now);
     if (!error.empty()) note(Severity::warning, name, error, now);
   } else {
-    const bool ended = state == "ended";
+    const bool ended = state == bus::State::ended;
     const bool restarted = process->status.run != message.run;
     if (restarted && process->alive && process->status.pid != message.pid &&
         message.run < process->status.run) {
       note(Severity::warning, name, "a second process of this name is running", now);
     } else if (restarted) {
-      note(Severity::good, name, process->alive ? "process was started anew" : "process is back", now);
+      note(Severity::good, name, process->alive ? "process was restarted" : "process is back", now);
     } else if (!process->alive && !ended) {
       note(Severity::good, name, "process is back", now);
-    } else if (process->status.state != state) {
-      note(ended || state == "running" ? Severity::info : Severity::warning, name,
-           "is " + state + ", was " + process->status.state, now);
+    } else if (process->status.state != state_text) {
+      const bool healthy = ended || state == bus::State::running || state == bus::State::standby;
+      note(healthy ? Severity::info : Severity::warning, name,
+           "is " + state_text + ", was " + process->status.state, now);
     }
     if (error != process->status.last_error && !error.empty()) note(Severity::warning, name, error, now);
     process->alive = !ended;
@@ -404,7 +392,8 @@ void Model::on_status(const status_t& message, Now now) {
   process->status.pid = message.pid;
   process->status.run = message.run;
   process->status.version = bounded(message.version);
-  process->status.state = state;
+  process->status.state = state_text;
+  process->state = state;
   process->status.last_error = error;
 
   process->in = process->out = process->lost = process->rejected = 0;
@@ -438,7 +427,7 @@ void Model::on_command(const command_t& message, Now now) {
   ++messages_;
   const bool to_pairing =
       message.to == "*" || std::any_of(processes_.begin(), processes_.end(), [&](const auto& p) {
-        return p.status.name == message.to && p.status.role == "pairing";
+        return p.status.name == message.to && p.status.role == bus::role_name(Role::pairing);
       });
   if (to_pairing && (message.verb == "pause" || message.verb == "resume"))
     for (PairState& pair : pairs_) {

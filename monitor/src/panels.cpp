@@ -27,7 +27,7 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     pane.text(2, y, "no heartbeat yet", Style::dim);
     return;
   }
-  // who is gone comes first: that is what must be seen when there is no room for all
+  // processes that are gone come first: they must be seen when there is no room for all
   std::vector<const ProcessState*> order;
   for (const bool alive : {false, true})
     for (const ProcessState& process : processes)
@@ -40,8 +40,9 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
   for (const ProcessState* process : order) {
     if (y >= pane.height()) break;
     const status_t& status = process->status;
-    const bool ended = status.state == "ended";
-    const Style style = process->alive ? (status.state == "running" ? Style::good : Style::warning)
+    const bool ended = process->state == bus::State::ended;
+    const bool healthy = process->state == bus::State::running || process->state == bus::State::standby;
+    const Style style = process->alive ? (healthy ? Style::good : Style::warning)
                         : ended        ? Style::dim
                                        : Style::bad;
     int x = pane.text(2, y, process->alive ? s.alive : s.gone, style) + 1;

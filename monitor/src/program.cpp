@@ -9,9 +9,11 @@
 #include <ctime>
 #include <filesystem>
 #include <optional>
-#include <thread>
+#include <utility>
+#include <vector>
 
 #include <langinfo.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "egocal/bus/loop.hpp"
@@ -30,7 +32,7 @@ namespace {
 constexpr std::int64_t kDrainUs = 50000;    // taking in batches keeps the load low
 constexpr std::int64_t kRedrawUs = 100000;  // ten redraws a second
 constexpr std::int64_t kTickUs = 200000;
-constexpr std::int64_t kNoticeUs = 8000000;  // what a key did is told this long, then the keys are back
+constexpr std::int64_t kNoticeUs = 8000000;  // the outcome of a key is shown this long
 
 volatile std::sig_atomic_t stop_flag = 0;
 extern "C" void on_stop(int) {
@@ -47,12 +49,13 @@ int utc_offset_s() {
 // Messages from the bus or from a log, behind one face.
 class Source {
  public:
-  Source(const ProgramOptions& options, const std::string& url) {
+  Source(Model& model, const ProgramOptions& options, const std::string& url) {
     if (options.log.empty()) {
-      feed_ = std::make_unique<Feed>(url);
+      feed_ =
+          std::make_unique<Feed>(model, FeedOptions{url, options.version, model.options().heartbeat_timeout});
       name_ = url.substr(0, url.find('?'));
     } else {
-      recording_ = std::make_unique<Recording>(options.log, options.speed);
+      recording_ = std::make_unique<Recording>(model, options.log, options.speed);
       name_ = "log " + std::filesystem::path(options.log).filename().string();
     }
   }
@@ -60,22 +63,33 @@ class Source {
   bool at_end() const { return recording_ && recording_->at_end(); }
   const std::string& name() const { return name_; }
 
-  /// Takes in what is there; the time that the model lives in.
-  Now advance(Model& model, const std::string& version) {
-    if (recording_) return recording_->advance(model, bus::mono_us());
-    const Now now{bus::mono_us(), bus::wall_us()};
-    feed_->drain(model, now);
-    feed_->send_heartbeat(now, version);
-    return now;
+  /// wait() also returns when one of these is readable.
+  void watch(std::vector<int> fds) {
+    if (feed_) feed_->watch(fds);
+    fds_ = std::move(fds);
   }
-  void send(const command_t& command) {
-    if (feed_) feed_->send(command);
+  /// Waits at most this long [ms]; what arrives live is handed to the model at once.
+  void wait(int milliseconds) {
+    if (feed_) {
+      feed_->wait(milliseconds);
+      return;
+    }
+    std::vector<pollfd> fds;
+    for (const int fd : fds_) fds.push_back({fd, POLLIN, 0});
+    poll(fds.data(), fds.size(), milliseconds);
+  }
+  /// Takes in what is due of a log; the time that the model lives in.
+  Now advance() { return recording_ ? recording_->advance(bus::mono_us()) : feed_->now(); }
+  /// The reason why it could not be sent; empty: sent.
+  std::string send(const command_t& command) {
+    return !feed_ || feed_->send(command) ? std::string{} : feed_->error();
   }
 
  private:
   std::unique_ptr<Feed> feed_;
   std::unique_ptr<Recording> recording_;
   std::string name_;
+  std::vector<int> fds_;
 };
 
 // A name that no file has yet, so that no earlier export is lost.
@@ -128,8 +142,8 @@ void carry_out(const Action& action, const Model& model, ViewState& view, Source
   command.sensor_a = action.a;
   command.sensor_b = action.b;
   if (action.kind == Action::Kind::reset) command.session = action.session;
-  source.send(command);
-  view.notice = command.verb + " sent";
+  const std::string error = source.send(command);
+  view.notice = error.empty() ? command.verb + " sent" : "not sent: " + error;
 }
 
 std::string no_session(const std::string& log) {
@@ -153,6 +167,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
                  std::unique_ptr<Terminal> terminal) {
   ViewState view = first_view(options, source);
   view.charset = terminal->charset();
+  source.watch(terminal->fds());
   std::optional<Model> still;  // what is shown while the view is paused
   const std::int64_t begin = bus::mono_us();
   std::int64_t drained = 0, drawn = 0, ticked = 0, noticed = 0;
@@ -160,7 +175,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
   for (;;) {
     const std::int64_t next =
         std::min(drained + kDrainUs, changed ? drawn + kRedrawUs / 4 : drawn + kRedrawUs);
-    terminal->wait(static_cast<int>(std::clamp<std::int64_t>((next - bus::mono_us() + 999) / 1000, 0, 100)));
+    source.wait(static_cast<int>(std::clamp<std::int64_t>((next - bus::mono_us() + 999) / 1000, 0, 100)));
     const Interrupts interrupts = terminal->interrupts();
     if (interrupts.quit) return 0;
     if (interrupts.resized) changed = true;
@@ -168,7 +183,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
     std::int64_t mono = bus::mono_us();
     if (mono - drained >= kDrainUs) {
       drained = mono;
-      const Now now = source.advance(model, options.version);
+      const Now now = source.advance();
       for (const std::string& line : terminal->captured()) model.note(Severity::warning, "stderr", line, now);
       if (mono - ticked >= kTickUs) {
         ticked = mono;
@@ -226,7 +241,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
   const std::int64_t begin = bus::mono_us();
   Now now;
   for (;;) {
-    now = source.advance(model, options.version);
+    now = source.advance();
     model.tick(now);
     const double waited = static_cast<double>(bus::mono_us() - begin) * 1e-6;
     if (stop_flag || source.at_end()) break;
@@ -235,7 +250,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
                                               [](const PairState& p) { return p.answer() != nullptr; });
     // heartbeats come once a second: who is there has been heard by then
     if (source.live() && ((answered && waited > 1.2) || waited > options.timeout_s)) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    source.wait(20);
   }
   if (!options.size.empty()) {
     ViewState view = first_view(options, source);
@@ -263,7 +278,7 @@ int run_follow(const ProgramOptions& options, Model& model, Source& source, Char
   std::int64_t printed_messages = -1;
   std::int64_t printed_events = 0;
   for (;;) {
-    const Now now = source.advance(model, options.version);
+    const Now now = source.advance();
     model.tick(now);
     const std::int64_t mono = bus::mono_us();
     const bool over =
@@ -285,7 +300,7 @@ int run_follow(const ProgramOptions& options, Model& model, Source& source, Char
       if (!print(text)) return 0;
     }
     if (over) return 0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    source.wait(50);
   }
 }
 
@@ -311,7 +326,7 @@ int run(const ProgramOptions& options) {
   Model model(model_options);
   if (rig)
     for (const bus::PairConfig& pair : rig->pairs) model.expect_pair(pair.a, pair.b);
-  Source source(options, url);
+  Source source(model, options, url);
 
   const bool utf8 = std::string_view(nl_langinfo(CODESET)) == "UTF-8";
   const Charset charset = utf8 && !options.ascii ? Charset::unicode : Charset::ascii;
@@ -321,8 +336,11 @@ int run(const ProgramOptions& options) {
   if (options.ascii) terminal_options.charset = Charset::ascii;
   terminal_options.monochrome = options.monochrome;
   std::string why_not;
-  if (std::unique_ptr<Terminal> terminal = Terminal::open(terminal_options, why_not))
-    return run_terminal(options, model, source, std::move(terminal));
+  if (std::unique_ptr<Terminal> terminal = Terminal::open(terminal_options, why_not)) {
+    const int code = run_terminal(options, model, source, std::move(terminal));
+    print(pair_lines(model, charset));  // the answer stays on the screen when the monitor has gone
+    return code;
+  }
   std::fprintf(stderr, "egocal-monitor: %s: printing lines instead\n", why_not.c_str());
   return run_follow(options, model, source, charset);
 }

@@ -5,22 +5,25 @@
 #include <chrono>
 #include <optional>
 
+#include "delivery.hpp"
 #include "egocal/bus/log_file.hpp"
-#include "feed.hpp"
 
 namespace egocal::monitor {
 
 struct Recording::State {
-  explicit State(const std::string& file) : log(file) {}
+  State(Model& shown, const std::string& file) : model(shown), delivery(shown), log(file) {}
+  Model& model;
+  Delivery delivery;
   bus::LogReader log;
   std::optional<bus::LogEvent> next;
-  std::uint64_t damaged_regions = 0;  ///< already told
+  std::uint64_t damaged_regions = 0;  ///< already reported
   double speed = 0;
   std::int64_t first_us = 0, time_us = 0, ticked_us = 0;
   std::optional<std::int64_t> started_mono_us;
 };
 
-Recording::Recording(const std::string& file, double speed) : state_(std::make_unique<State>(file)) {
+Recording::Recording(Model& model, const std::string& file, double speed)
+    : state_(std::make_unique<State>(model, file)) {
   State& s = *state_;
   s.next = s.log.next();
   s.speed = speed;
@@ -33,8 +36,9 @@ bool Recording::at_end() const {
   return !state_->next;
 }
 
-Now Recording::advance(Model& model, std::int64_t mono_us) {
+Now Recording::advance(std::int64_t mono_us) {
   State& s = *state_;
+  Model& model = s.model;
   if (!s.started_mono_us) s.started_mono_us = mono_us;
   const double due_us = static_cast<double>(mono_us - *s.started_mono_us) * s.speed;
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
@@ -48,9 +52,7 @@ Now Recording::advance(Model& model, std::int64_t mono_us) {
       s.ticked_us = s.time_us;
       model.tick(now);
     }
-    if (!deliver(model, s.next->channel, s.next->data, now))
-      model.note(Severity::warning, s.next->channel, "a message that could not be decoded: another version?",
-                 now);
+    s.delivery.deliver(s.next->channel, s.next->data, now);
     s.next = s.log.next();
     const bus::LogDamage& damage = s.log.damage();
     if (damage.regions > s.damaged_regions) {

@@ -14,13 +14,13 @@ namespace egocal::monitor {
 class Recording {
  public:
   /// speed: times real time; 0: all at once. Throws Error where the file is no log.
-  Recording(const std::string& file, double speed);
+  Recording(Model& model, const std::string& file, double speed);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
   /// Delivers what is due and returns the log's time. A long log is taken in slices, so that keys work
   /// meanwhile.
-  Now advance(Model& model, std::int64_t mono_us);
+  Now advance(std::int64_t mono_us);
   bool at_end() const;
 
  private:

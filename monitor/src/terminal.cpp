@@ -6,7 +6,6 @@
 #include <curses.h>
 #include <fcntl.h>
 #include <langinfo.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <term.h>
 #include <termios.h>
@@ -348,10 +347,10 @@ std::optional<KeyPress> Terminal::key() {
   }
 }
 
-void Terminal::wait(int milliseconds) {
-  struct pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0}, {state_->capture[0], POLLIN, 0}};
-  poll(fds, state_->capture[0] >= 0 ? 2 : 1, milliseconds);
-  if (fds[0].revents & (POLLHUP | POLLERR)) quit_flag = 1;  // the terminal is gone
+std::vector<int> Terminal::fds() const {
+  std::vector<int> all{STDIN_FILENO};
+  if (state_->capture[0] >= 0) all.push_back(state_->capture[0]);
+  return all;
 }
 
 Interrupts Terminal::interrupts() {

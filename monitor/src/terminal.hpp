@@ -43,8 +43,8 @@ class Terminal {
   void show(const Canvas& canvas);
   void draw_anew();
   std::optional<KeyPress> key();
-  /// Waits until a key, a signal or captured text is there, or the time is over.
-  void wait(int milliseconds);
+  /// Readable when a key or captured text is there. A signal interrupts any wait.
+  std::vector<int> fds() const;
   Interrupts interrupts();
   /// Complete lines that were written to standard error.
   std::vector<std::string> captured();

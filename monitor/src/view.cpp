@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "answer_text.hpp"
+#include "dialog.hpp"
 #include "egocal/monitor/layout.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
 namespace {
 
-constexpr std::array<double, 7> kWindows{0, 10, 30, 60, 300, 1800, 7200};  // [s], 0: all
+constexpr std::array<double, 6> kWindows{10, 30, 60, 300, 1800, 7200};  // [s]
 
 const PairState* selected_pair(const Model& model, const ViewState& view) {
   if (model.pairs().empty()) return nullptr;
@@ -20,17 +22,25 @@ const PairState* selected_pair(const Model& model, const ViewState& view) {
   return &model.pairs()[static_cast<std::size_t>(std::clamp(view.selected, 0, last))];
 }
 
-void zoom(ViewState& view, int step) {
-  // from all of the drive to ever less of it
-  auto at = std::find(kWindows.begin(), kWindows.end(), view.window_s);
-  int index = at == kWindows.end() ? 0 : static_cast<int>(at - kWindows.begin());
-  const int n = static_cast<int>(kWindows.size());
-  // in: all -> 7200 -> ... -> 10; out: the way back
-  if (step > 0) index = index == 0 ? n - 1 : std::max(1, index - 1);
-  if (step < 0) index = index == 0 || index == n - 1 ? 0 : index + 1;
-  view.window_s = kWindows[static_cast<std::size_t>(index)];
-  view.notice =
-      index == 0 ? "the curves show the whole session" : "the curves show the last " + age(view.window_s);
+/// Measured time that the curves of a pair cover [s].
+double session_length(const PairState* pair) {
+  const calibration_t* answer = pair ? pair->answer() : nullptr;
+  return answer ? 1e-6 * (static_cast<double>(answer->utime) - static_cast<double>(pair->session)) : 0;
+}
+
+/// step > 0: less of the session, from all of it through the windows that are shorter than it.
+void zoom(ViewState& view, const Model& model, int step) {
+  const double length = session_length(selected_pair(model, view));
+  std::vector<double> windows;
+  for (const double window : kWindows)
+    if (window < length || window == kWindows.front() || window == view.window_s) windows.push_back(window);
+  windows.push_back(0);  // all
+  auto at = std::find(windows.begin(), windows.end(), view.window_s);
+  if (step > 0 && at != windows.begin()) --at;
+  if (step < 0 && at + 1 != windows.end()) ++at;
+  view.window_s = *at;
+  view.notice = view.window_s == 0 ? "the curves show the whole session"
+                                   : "the curves show the last " + age(view.window_s);
 }
 
 Action about_pair(Action::Kind kind, const PairState& pair) {
@@ -74,7 +84,7 @@ void ask(ViewState& view, const Model& model, Dialog dialog) {
   if (!selected_pair(model, view)) {
     view.notice = "there is no pair yet";
   } else if (!view.live && dialog != Dialog::export_format) {
-    view.notice = "this is a log: there is no process to tell";
+    view.notice = "this is a log: there is no process to command";
   } else {
     view.dialog = dialog;
   }
@@ -96,19 +106,20 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
   };
   if (view.screen == Screen::detail && pair) {
     x = pane.text(x, 0, pair_title(*pair, view.charset, pane.width() >= 60 ? 24 : 12), Style::title) + 2;
+    const bool paused = pair_is_paused(model, *pair);
+    if (paused) item("PAUSED ", Style::warning);
     const Verdict verdict = verdict_of(*pair, view.charset);
     item(verdict.text, verdict.style);
     const std::string between = std::string(" ") + s.dot + " ";
     const calibration_t* answer = pair->answer();
     if (answer && item(" by ", Style::dim))
       item(clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
-    if (pair_is_paused(model, *pair)) item(between + "PAUSED", Style::warning);
     if (answer) {
       item(between + count(answer->pairs) + " frames", Style::dim);
     }
     if (pair->has_problem) {
       const problem_t& problem = pair->problem;
-      if (problem.left_out > 0) item(between + count(problem.left_out) + " left out", Style::warning);
+      if (problem.left_out > 0) item(between + count(problem.left_out) + " outliers", Style::warning);
       if (problem.rejected > 0) item(between + count(problem.rejected) + " rejected", Style::dim);
       item(between + (problem.mode == 1 ? "planar" : "3-D"), Style::dim);
       std::string offset = number(problem.time_offset * 1e3, 1, view.charset);
@@ -119,14 +130,19 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     }
   } else {
     x = pane.text(x, 0, "egocal", Style::title) + 2;
-    std::size_t certified = 0, gone = 0;
+    std::size_t certified = 0, gone = 0, paused = 0;
+    for (const PairState& p : model.pairs()) paused += pair_is_paused(model, p);
     for (const PairState& p : model.pairs()) certified += p.answer() && p.answer()->status == 0;
-    for (const ProcessState& p : model.processes()) gone += !p.alive && p.status.state != "ended";
+    for (const ProcessState& p : model.processes()) gone += !p.alive && p.state != bus::State::ended;
     x = pane.text(x, 0,
                   std::to_string(certified) + " of " + std::to_string(model.pairs().size()) + " certified",
                   certified == model.pairs().size() && certified ? Style::good : Style::normal) +
         2;
     if (gone) x = pane.text(x, 0, std::to_string(gone) + " gone", Style::bad) + 2;
+    if (paused)
+      x = pane.text(x, 0, paused == model.pairs().size() ? "PAUSED" : std::to_string(paused) + " PAUSED",
+                    Style::warning) +
+          2;
     if (pane.width() >= 70) right = clean(view.source, 40) + "  " + right;
   }
   const int at = pane.width() - width_of(right) - 1;
@@ -164,71 +180,6 @@ void draw_keys(const Pane& pane, const ViewState& view) {
     x = pane.text(x, 0, hint.key, Style::key) + 1;
     x = pane.text(x, 0, hint.does, Style::dim) + 3;
   }
-}
-
-void draw_dialog(Canvas& canvas, const Model& model, const ViewState& view) {
-  const PairState* pair = selected_pair(model, view);
-  std::vector<std::string> lines;
-  std::string title;
-  const std::string which = pair ? pair_title(*pair, view.charset, 20) : "";
-  switch (view.dialog) {
-    case Dialog::none:
-      return;
-    case Dialog::help:
-      title = "Keys";
-      lines = {"q        quit                      Enter    detail of the pair",
-               "up down  choose a pair, scroll     Esc      back to the overview",
-               "n N      next, previous pair       e        events",
-               "+ -      zoom the time             l        log or linear axes",
-               "space    pause the view only       x        export the answer",
-               "r        reset the calibration     p        pause or resume it",
-               "Ctrl-L   draw anew                 Ctrl-Z   suspend",
-               "",
-               "certified: no transform fits the motions better, proven.",
-               "gap of 1: distance to that proof, in units of its limit.",
-               std::string(symbols(view.charset).plus_minus) +
-                   " and the bars: how well the motions show it (one sigma).",
-               "cyan: fast solver, magenta: global solver"};
-      break;
-    case Dialog::reset:
-      title = "Reset";
-      lines = {"Forget all motions of " + which + "?", "", "y  yes, begin anew        any other key  no"};
-      break;
-    case Dialog::pause:
-      title = "Pause";
-      lines = {"Pause the calibration of " + which + "?", "Motions in the meantime are not used.", "",
-               "y  yes        any other key  no"};
-      break;
-    case Dialog::resume:
-      title = "Resume";
-      lines = {"Resume the calibration of " + which + "?", "", "y  yes        any other key  no"};
-      break;
-    case Dialog::export_format:
-      title = "Export";
-      lines = {"Write the answer of " + which + " to a file:", "",
-               "y  YAML    r  ROS    u  URDF    k  Kalibr", "", "any other key  nothing"};
-      break;
-  }
-  int wanted = 0;
-  for (const std::string& line : lines) wanted = std::max(wanted, width_of(line));
-  const Rect box =
-      layout_dialog(canvas.width(), canvas.height(), wanted + 4, static_cast<int>(lines.size()) + 2);
-  const Pane pane(canvas, box);
-  pane.clear();
-  const bool unicode = view.charset == Charset::unicode;
-  for (int x = 0; x < box.w; ++x)
-    for (int y : {0, box.h - 1}) pane.text(x, y, unicode ? "─" : "-", Style::dim);
-  for (int y = 0; y < box.h; ++y)
-    for (int x : {0, box.w - 1}) pane.text(x, y, unicode ? "│" : "|", Style::dim);
-  const char* corners[4] = {unicode ? "┌" : "+", unicode ? "┐" : "+", unicode ? "└" : "+",
-                            unicode ? "┘" : "+"};
-  pane.text(0, 0, corners[0], Style::dim);
-  pane.text(box.w - 1, 0, corners[1], Style::dim);
-  pane.text(0, box.h - 1, corners[2], Style::dim);
-  pane.text(box.w - 1, box.h - 1, corners[3], Style::dim);
-  pane.text(2, 0, " " + title + " ", Style::title);
-  const Pane inner = pane.part({2, 1, box.w - 4, box.h - 2});
-  for (std::size_t i = 0; i < lines.size(); ++i) inner.text(0, static_cast<int>(i), lines[i]);
 }
 
 void draw_overview(Canvas& canvas, const Model& model, const ViewState& view) {
@@ -386,10 +337,10 @@ Action press(ViewState& view, const Model& model, KeyPress key) {
       break;
     case '+':
     case '=':
-      zoom(view, 1);
+      zoom(view, model, 1);
       break;
     case '-':
-      zoom(view, -1);
+      zoom(view, model, -1);
       break;
     case 'l':
       view.logarithmic = !view.logarithmic;
@@ -427,7 +378,7 @@ void draw(Canvas& canvas, const Model& model, const ViewState& view) {
       draw_event_screen(canvas, model, view);
       break;
   }
-  draw_dialog(canvas, model, view);
+  draw_dialog(canvas, selected_pair(model, view), view);
 }
 
 std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {

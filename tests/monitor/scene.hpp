@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include "egocal/bus/convert.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
@@ -17,6 +19,35 @@ namespace egocal::monitor::test {
 // the first seconds, the fast one throughout.
 
 inline constexpr std::int64_t kBegin = 1'600'000'000'000'000;  // [us]
+
+/// Of the answers to the problem with this number.
+inline Pose extrinsic_at(double n) {
+  const double off = 1.0 / std::sqrt(n);
+  const double wobble = 1 + 0.3 * std::sin(n * 0.37);
+  const double angle = 0.05 * off * wobble;
+  // the truth turned by a small angle about x of sensor a
+  const double w = std::cos(angle / 2), x = std::sin(angle / 2);
+  return {{0.5 * (w + x), 0.5 * (x - w), 0.5 * (w + x), 0.5 * (x - w)},
+          {-0.08 + 0.3 * off * wobble, -0.05 - 0.2 * off, -0.27 + 0.4 * off}};
+}
+
+/// Motions that this extrinsic fits without error, so that whoever verifies it certifies it.
+inline std::vector<statistics_t> blocks_for(const Pose& extrinsic, int count) {
+  const DualQuaternion T = to_dual_quaternion(extrinsic);
+  Problem problem;
+  for (int block = 0; block < count; ++block) {
+    Statistics statistics;
+    for (int i = 0; i < 10; ++i) {
+      const double k = 10.0 * block + i;
+      const DualQuaternion a = to_dual_quaternion(
+          Pose{rotation_exp({0.3 * std::sin(k), 0.3 * std::cos(1.7 * k), 0.3 * std::sin(2.3 * k)}),
+               {1 + 0.2 * std::cos(k), 0.3 * std::sin(0.9 * k), 0.1 * std::cos(3.1 * k)}});
+      statistics.add(a, conjugate(T) * a * T);
+    }
+    problem.blocks.push_back(statistics);
+  }
+  return bus::to_message(problem).blocks;
+}
 
 inline problem_t problem_at(const std::string& a, const std::string& b, std::int64_t step, double hz,
                             int blocks = 0) {
@@ -30,12 +61,7 @@ inline problem_t problem_at(const std::string& a, const std::string& b, std::int
   p.stride = 1;
   p.choice = "fixed by the rig";
   p.n_blocks = blocks;
-  p.blocks.resize(static_cast<std::size_t>(blocks));
-  for (statistics_t& s : p.blocks) {
-    s.count = 10;
-    s.weight = 10;
-    for (double& q : s.q) q = 1.0 / 3;
-  }
+  p.blocks = blocks_for(extrinsic_at(static_cast<double>(p.seq)), blocks);
   p.has_prior = 1;
   p.prior_quat[0] = 1;
   p.has_truth = 1;
@@ -61,16 +87,7 @@ inline calibration_t calibration_at(const problem_t& p, bool global) {
   const double n = static_cast<double>(p.seq);
   const double off = 1.0 / std::sqrt(n);
   const double wobble = 1 + 0.3 * std::sin(n * 0.37);
-  const double angle = 0.05 * off * wobble;
-  c.pos[0] = -0.08 + 0.3 * off * wobble;
-  c.pos[1] = -0.05 - 0.2 * off;
-  c.pos[2] = -0.27 + 0.4 * off;
-  // the truth turned by a small angle about x of sensor a
-  const double w = std::cos(angle / 2), x = std::sin(angle / 2);
-  c.quat[0] = 0.5 * (w + x);
-  c.quat[1] = 0.5 * (x - w);
-  c.quat[2] = 0.5 * (w + x);
-  c.quat[3] = 0.5 * (x - w);
+  bus::set_pose(to_dual_quaternion(extrinsic_at(n)), c.pos, c.quat);
   c.cost = 1e-4;
   c.gap = 1e-12;
   c.lower_bound = c.cost - c.gap;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "egocal/bus/process.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/command_t.hpp"
 #include "egocal/geometry/pose.hpp"
@@ -43,14 +44,15 @@ struct Event {
   int repeated = 1;  ///< the same again within a short time is counted, not listed
 };
 
-enum class Role { global, fast };
+using bus::Role;
 
-/// What one solver says about one pair.
+/// The answers of one solver for one pair.
 struct SolverTrack {
   std::string name;
-  Role role = Role::fast;
-  calibration_t answer;  ///< the newest
-  Now at;                ///< its arrival
+  Role role = Role::fast;  ///< or Role::global
+  calibration_t answer;    ///< the newest
+  bool verified = false;   ///< against its problem, by this monitor
+  Now at;                  ///< its arrival
   bool silent = false;
   std::int64_t answers = 0;
   History history;  ///< over seconds of measured time since the session began
@@ -86,7 +88,7 @@ struct PairState {
   bool fallback = false;
   double reported_time_offset = 0;
   bool time_offset_known = false;
-  double reported_left_out = 0;  ///< share of the motions that contradict the others, as last told
+  double reported_left_out = 0;  ///< share of the motions that contradict the others, as last reported
   std::int64_t gap_count = 0;
   /// By the commands heard; motions that go on being accepted say otherwise.
   bool paused = false;
@@ -102,7 +104,8 @@ struct PairState {
 };
 
 struct ProcessState {
-  status_t status;  ///< the newest
+  status_t status;                  ///< the newest
+  std::optional<bus::State> state;  ///< its state; empty: unknown to this version
   Now at;
   bool alive = true;
   double rate_in = 0, rate_out = 0;  ///< [1/s]; negative: unknown
@@ -120,7 +123,9 @@ class Model {
   void expect_pair(const std::string& a, const std::string& b);
 
   void on_problem(const problem_t& message, Now now);
-  void on_calibration(const calibration_t& message, Now now);
+  /// A checked answer with the certificate that this listener computed (bus/answer_check.hpp). Not verified:
+  /// its problem has not been received, and it never replaces a verified one.
+  void on_calibration(const calibration_t& message, Now now, bool verified = true);
   void on_status(const status_t& message, Now now);
   void on_command(const command_t& message, Now now);
   /// A line for the list of events from outside, e.g. captured standard error.

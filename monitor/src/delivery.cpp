@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "delivery.hpp"
+
+#include <string_view>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/decode.hpp"
+
+namespace egocal::monitor {
+
+void Delivery::deliver(const std::string& channel, std::span<const std::byte> bytes, Now now) {
+  const auto decoded = [&](auto& message) {
+    if (bus::decode(bytes, message)) return true;
+    model_.note(Severity::warning, channel, "a message that could not be decoded: another version?", now);
+    return false;
+  };
+  if (channel.starts_with(bus::problem_prefix)) {
+    problem_t message{};
+    if (decoded(message)) problem(message, now);
+  } else if (channel.starts_with(bus::calibration_prefix)) {
+    calibration_t message{};
+    if (decoded(message)) calibration(message, now);
+  } else if (channel == bus::status_channel) {
+    status_t message{};
+    if (decoded(message)) model_.on_status(message, now);
+  } else if (channel == bus::command_channel) {
+    command_t message{};
+    if (decoded(message)) model_.on_command(message, now);
+  }
+}
+
+void Delivery::problem(const problem_t& message, Now now) {
+  const std::string refused = answers_.take(message);
+  if (refused.empty())
+    model_.on_problem(message, now);
+  else
+    model_.note(Severity::warning, pair_name(message.sensor_a, message.sensor_b),
+                "a problem is refused: " + refused, now);
+}
+
+void Delivery::calibration(calibration_t& message, Now now) {
+  const bus::CheckedAnswer checked = answers_.check(message);
+  if (checked.standing == bus::Standing::refused) {
+    model_.note(Severity::bad, pair_name(message.sensor_a, message.sensor_b),
+                "an answer of " + message.solver + " is refused: " + checked.reason, now);
+    return;
+  }
+  bus::set_certificate(checked, message);
+  model_.on_calibration(message, now, checked.standing == bus::Standing::verified);
+}
+
+}  // namespace egocal::monitor

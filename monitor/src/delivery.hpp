@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "egocal/bus/answer_check.hpp"
+#include "egocal/monitor/model.hpp"
+
+namespace egocal::monitor {
+
+/// Messages on their way into the model, live or from a log: decoded, checked by the rules that every process
+/// uses, and each answer verified against its problem.
+class Delivery {
+ public:
+  explicit Delivery(Model& model) : model_(model) {}
+
+  /// One encoded message, whichever of egocal's it is.
+  void deliver(const std::string& channel, std::span<const std::byte> bytes, Now now);
+
+ private:
+  void problem(const problem_t& message, Now now);
+  void calibration(calibration_t& message, Now now);
+
+  Model& model_;
+  bus::AnswerCheck answers_;
+};
+
+}  // namespace egocal::monitor
