@@ -4,24 +4,27 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/plausible.hpp"
 
 namespace egocal::bus {
 
 namespace {
 constexpr std::chrono::seconds period{1};
-constexpr std::chrono::milliseconds least_distance{50};  // of statuses caused by changes
+constexpr std::int64_t least_distance_us = 50'000;  // of statuses caused by changes
 constexpr std::size_t max_counters = 60;
 }  // namespace
 
 Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds timeout)
     : loop_(loop),
       identity_(std::move(identity)),
-      timeout_(timeout),
-      host_(host_name()),
-      pid_(static_cast<std::int32_t>(getpid())),
-      run_(wall_us()) {
+      timeout_us_(std::chrono::duration_cast<std::chrono::microseconds>(timeout).count()),
+      started_us_(loop.mono_us()),
+      run_(loop.wall_us()) {
+  if (identity_.pid == 0) identity_.pid = static_cast<std::int32_t>(getpid());
   loop_.subscribe<status_t>(status_channel, [this](const status_t& status, const Arrival&) { hear(status); });
   loop_.every(period, [this] { publish(); });
   // after the owner's constructor: its first status is complete
@@ -29,18 +32,14 @@ Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds tim
 }
 
 Heartbeat::~Heartbeat() {
-  before_publish_ = nullptr;  // who counts may be gone by now
+  before_publish_ = nullptr;  // its owner may be gone by now
   end();
 }
 
 void Heartbeat::end() {
-  if (state_ == "ended") return;
-  state_ = "ended";
-  try {
-    publish();
-  } catch (const std::exception&) {
-    // the others will notice the silence
-  }
+  if (state_ == State::ended) return;
+  state_ = State::ended;
+  publish();
 }
 
 void Heartbeat::reject(const std::string& reason) {
@@ -52,7 +51,7 @@ void Heartbeat::reject(const std::string& reason) {
     ++counters_[counters_.size() < max_counters ? name : "rejected: other"];
 }
 
-void Heartbeat::set_state(const std::string& state) {
+void Heartbeat::set_state(State state) {
   if (state == state_) return;
   state_ = state;
   change();
@@ -68,8 +67,8 @@ void Heartbeat::set_error(const std::string& error) {
 void Heartbeat::change() {
   if (change_pending_) return;
   change_pending_ = true;
-  const auto wait = published_ + least_distance - std::chrono::steady_clock::now();
-  loop_.after(std::max<std::chrono::nanoseconds>(wait, std::chrono::nanoseconds{0}), [this] {
+  const std::int64_t wait = published_us_ + least_distance_us - loop_.mono_us();
+  loop_.after(std::chrono::microseconds(std::max<std::int64_t>(wait, 0)), [this] {
     if (change_pending_) publish();
   });
 }
@@ -77,57 +76,67 @@ void Heartbeat::change() {
 void Heartbeat::publish() {
   if (before_publish_) before_publish_();
   status_t message{};
-  message.utime = wall_us();
+  message.utime = loop_.wall_us();
   message.name = identity_.name;
-  message.role = identity_.role;
-  message.host = host_;
-  message.pid = pid_;
+  message.role = role_name(identity_.role);
+  message.host = loop_.host();
+  message.pid = identity_.pid;
   message.run = run_;
   message.version = identity_.version;
-  message.state = state_;
-  message.last_error = error_;
-  for (const auto& [name, value] : counters_) {
-    message.counters.emplace_back();
-    message.counters.back().name = name;
-    message.counters.back().value = value;
-  }
-  for (const auto& [channel, count] : loop_.undecodable()) {
-    message.counters.emplace_back();
-    message.counters.back().name = "rejected: not decodable on " + channel;
-    message.counters.back().value = count;
-  }
+  message.state = state_name(state_);
+  message.last_error = error_.empty() ? loop_.network_error() : error_;
+  const auto count = [&message](const std::string& name, std::int64_t value) {
+    counter_t& counter = message.counters.emplace_back();
+    counter.name = name;
+    counter.value = value;
+  };
+  for (const auto& [name, value] : counters_) count(name, value);
+  for (const auto& [channel, value] : loop_.undecodable())
+    count("rejected: not decodable on " + channel, value);
+  const LoopCounts counts = loop_.counts();
+  for (const auto& [name, value] :
+       {std::pair{"not sent", counts.not_sent}, std::pair{"dropped: queue full", counts.queue_full},
+        std::pair{"dropped: receive buffer full", counts.transport.buffer_overflow},
+        std::pair{"rejected: malformed datagrams", counts.transport.malformed},
+        std::pair{"rejected: incomplete messages", counts.transport.incomplete}})
+    if (value > 0) count(name, value);
   message.n_counters = static_cast<std::int32_t>(message.counters.size());
   message.acknowledgements = acknowledgements_;
   message.n_acknowledgements = static_cast<std::int32_t>(acknowledgements_.size());
-  published_ = std::chrono::steady_clock::now();
+  published_us_ = loop_.mono_us();
   change_pending_ = false;
   loop_.publish(status_channel, message);
 }
 
 void Heartbeat::hear(const status_t& status) {
-  if (status.run == run_ && status.pid == pid_ && status.host == host_) return;
+  if (status.run == run_ && status.pid == identity_.pid && status.host == loop_.host()) return;
   if (!plausible_name(status.name) || !plausible_name(status.role) || status.host.size() > 255 ||
       status.run < 0) {
     reject("status out of range");
     return;
   }
-  const auto now = std::chrono::steady_clock::now();
-  const bool namesake = status.name == identity_.name && status.state != "ended";
+  const std::int64_t now = loop_.mono_us();
+  const bool namesake = status.name == identity_.name && status.state != state_name(State::ended);
   const bool is_new = peers_.hear(status, now);
   if (is_new && status.version != identity_.version) ++counters_["other versions heard"];
-  if (namesake && now - published_ > least_distance)
+  if (namesake && now - published_us_ > least_distance_us)
     publish();
   else if (namesake && is_new)
     change();  // it waits for an answer before it sends anything
   if (on_status_) on_status_(status);
 }
 
-bool Heartbeat::alive(const std::string& role) const {
-  return peers_.alive(role, std::chrono::steady_clock::now(), timeout_);
+bool Heartbeat::settled() const {
+  return loop_.mono_us() - started_us_ > timeout_us_;
+}
+
+bool Heartbeat::alive(Role role) const {
+  return peers_.alive(role, loop_.mono_us(), timeout_us_);
 }
 
 std::optional<Peer> Heartbeat::elder_namesake() const {
-  return peers_.elder_namesake(identity_.name, run_, host_, pid_, std::chrono::steady_clock::now(), timeout_);
+  return peers_.elder_namesake(identity_.name, run_, loop_.host(), identity_.pid, loop_.mono_us(),
+                               timeout_us_);
 }
 
 }  // namespace egocal::bus

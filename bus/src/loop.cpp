@@ -2,153 +2,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/loop.hpp"
 
-#include <arpa/inet.h>
-#include <fcntl.h>
-#include <netinet/in.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/signalfd.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <deque>
-#include <exception>
-#include <lcm/lcm-cpp.hpp>
-#include <optional>
 #include <utility>
+#include <vector>
 
-#include "egocal/bus/channels.hpp"
 #include "egocal/error.hpp"
+#include "ending_signals.hpp"
+#include "message_queue.hpp"
 
 namespace egocal::bus {
 
-using Clock = std::chrono::steady_clock;
-
 namespace {
 
+using namespace std::chrono_literals;
+
 /// Longest that messages are handled before timers, signals and the work on the newest ones get their turn.
-constexpr std::chrono::milliseconds batch_time{5};
-
-const char* const remedy =
-    "; to allow it on this host: sudo ip link set lo up multicast on; sudo ip route add 224.0.0.0/4 dev lo";
-
-/// liblcm tries for ten seconds before it gives up on a machine without a route: asking the kernel is
-/// quicker.
-void require_route(const std::string& url) {
-  if (url.rfind("udpm://", 0) != 0) return;
-  std::string address = url.substr(7, url.find_first_of(":/?", 7) - 7);
-  if (address.empty()) address = "239.255.76.67";
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(7667);
-  if (inet_pton(AF_INET, address.c_str(), &to.sin_addr) != 1)
-    throw Error("LCM URL '" + url + "': '" + address + "' is not an IPv4 address");
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) throw Error(std::string("cannot open a UDP socket: ") + std::strerror(errno));
-  const int result = connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to);
-  const int reason = errno;
-  close(fd);
-  if (result < 0) throw Error("no multicast to " + address + ": " + std::strerror(reason) + remedy);
-}
-
-/// The kernel's default buffer holds some twenty problems: asked for more it gives up to net.core.rmem_max,
-/// twice the default without any setting.
-std::string with_receive_buffer(const std::string& url) {
-  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
-  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
-}
-
-/// Standard error kept from the terminal while liblcm sets up; what it said goes into our own message.
-class QuietStandardError {
- public:
-  QuietStandardError()
-      : file_(std::tmpfile()), saved_(file_ ? fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3) : -1) {
-    if (saved_ >= 0) dup2(fileno(file_), STDERR_FILENO);
-  }
-  ~QuietStandardError() {
-    restore();
-    if (file_) std::fclose(file_);
-  }
-  QuietStandardError(const QuietStandardError&) = delete;
-  QuietStandardError& operator=(const QuietStandardError&) = delete;
-
-  /// What was written, as one line.
-  std::string said() {
-    restore();
-    if (!file_) return {};
-    std::string text(2000, '\0');
-    std::rewind(file_);
-    text.resize(std::fread(text.data(), 1, text.size(), file_));
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return text;
-  }
-
- private:
-  void restore() {
-    if (saved_ < 0) return;
-    dup2(saved_, STDERR_FILENO);
-    close(saved_);
-    saved_ = -1;
-  }
-  std::FILE* file_;
-  int saved_;
-};
-
-sigset_t ending_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  return set;
-}
-
-/// Blocks the signals before liblcm starts its thread, and receives them as a file descriptor.
-class Signals {
- public:
-  explicit Signals(bool wanted) {
-    if (!wanted) return;
-    const sigset_t set = ending_signals();
-    pthread_sigmask(SIG_BLOCK, &set, &before_);
-    fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
-  }
-  ~Signals() {
-    if (fd_ < 0) return;
-    close(fd_);
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  Signals(const Signals&) = delete;
-  Signals& operator=(const Signals&) = delete;
-
-  int fd() const { return fd_; }
-  int read_one() const {
-    signalfd_siginfo info{};
-    return ::read(fd_, &info, sizeof info) == sizeof info ? static_cast<int>(info.ssi_signo) : 0;
-  }
-
- private:
-  sigset_t before_{};
-  int fd_ = -1;
-};
-
-bool readable(int fd) {
-  pollfd p{fd, POLLIN, 0};
-  return poll(&p, 1, 0) > 0;
-}
+constexpr std::int64_t batch_ns = 5'000'000;
+/// And most messages, where the clock stands still meanwhile.
+constexpr int batch_messages = 10'000;
+/// The transport's own buffer is emptied into the queue this often meanwhile: a slow handler of one channel
+/// does not cost messages of another.
+constexpr std::int64_t drain_ns = 1'000'000;
+constexpr std::chrono::seconds network_period{1};
+constexpr std::size_t max_undecodable = 64;
 
 }  // namespace
 
 struct Loop::Impl {
-  struct Subscriber {
-    Impl* loop;
-    Handler handler;
-  };
   struct Timer {
     TimerId id;
-    Clock::time_point due;
+    std::int64_t due_ns;
     Duration period;  // zero: once
     Callback callback;
   };
@@ -157,89 +46,153 @@ struct Loop::Impl {
     Callback callback;
   };
 
-  Impl(const std::string& url, const LoopOptions& options) : signals(options.handle_signals) {
-    require_route(url);
-    QuietStandardError quiet;
-    lcm.emplace(with_receive_buffer(url));
-    if (!lcm->good()) throw Error("LCM does not understand the URL '" + url + "'; " + quiet.said());
-    fd = lcm->getFileno();  // runs the multicast self-test
-    if (fd < 0)
-      throw Error("LCM's multicast self-test failed on '" + url + "' (routing or firewall)" + remedy);
+  Impl(std::unique_ptr<Transport> bus, const Clock& time, const LoopOptions& options)
+      : signals(options.handle_signals),
+        transport(std::move(bus)),
+        clock(time),
+        host(options.host.empty() ? host_name() : options.host) {
+    network_error = transport->network_error();
+    if (options.require_network && !network_error.empty()) throw Error(network_error);
   }
 
-  static void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel,
-                         Subscriber* subscriber) {
-    try {
-      const Arrival arrival{
-          channel, {static_cast<const std::byte*>(buffer->data), buffer->data_size}, mono_us()};
-      subscriber->handler(arrival);
-    } catch (...) {
-      subscriber->loop->thrown = std::current_exception();
-    }
-  }
-
-  void rethrow() {
-    if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+  void watch_network() {
+    std::string now = transport->network_error();
+    if (now == network_error) return;
+    network_error = std::move(now);
+    if (on_network) on_network(network_error);
   }
 
   void handle_messages() {
-    const Clock::time_point end = Clock::now() + batch_time;
-    bool caught_up = false;
-    do {
-      if (lcm->handle() < 0) throw Error("LCM has lost its connection");
-      rethrow();
-      caught_up = !readable(fd);
-    } while (!caught_up && !stopped && Clock::now() < end);
-    for (const auto& callback : batch_callbacks) callback(caught_up);
+    const std::int64_t end = clock.mono_ns() + batch_ns;
+    std::int64_t next_drain = 0;
+    int handled = 0;
+    for (std::int64_t now = clock.mono_ns(); !stopped; now = clock.mono_ns()) {
+      if (queue.empty() || now >= next_drain) {
+        queue.fill(*transport);
+        next_drain = now + drain_ns;
+      }
+      if (queue.empty() || now >= end || handled++ == batch_messages) break;
+      queue.handle_one();
+    }
+    for (const auto& callback : batch_callbacks) callback(queue.empty());
   }
 
   void run_timers() {
-    const Clock::time_point now = Clock::now();
+    const std::int64_t now = clock.mono_ns();
     std::vector<TimerId> due;
     for (const Timer& timer : timers)
-      if (timer.due <= now) due.push_back(timer.id);
+      if (timer.due_ns <= now) due.push_back(timer.id);
     for (const TimerId id : due) {
       const auto timer =
           std::find_if(timers.begin(), timers.end(), [id](const Timer& t) { return t.id == id; });
       if (timer == timers.end()) continue;  // cancelled by another one's callback
       Callback callback = timer->callback;
       if (timer->period.count() > 0)
-        timer->due = std::max(timer->due + timer->period, now);
+        timer->due_ns = std::max(timer->due_ns + timer->period.count(), now);
       else
         timers.erase(timer);
       callback();
     }
   }
 
-  Signals signals;
-  std::optional<lcm::LCM> lcm;
-  int fd = -1;
-  std::deque<Subscriber> subscribers;  // addresses stay valid
+  void run_watches(std::span<const pollfd> fds) {
+    for (const pollfd& ready : fds) {
+      if (!ready.revents || stopped) continue;
+      const auto watch =
+          std::find_if(watches.begin(), watches.end(), [&](const Watch& w) { return w.fd == ready.fd; });
+      if (watch == watches.end()) continue;  // unwatched by another one's callback
+      const Callback callback = watch->callback;
+      callback();
+    }
+  }
+
+  TimerId add_timer(Duration delay, Duration period, Callback callback) {
+    timers.push_back({next_timer, clock.mono_ns() + delay.count(), period, std::move(callback)});
+    return next_timer++;
+  }
+
+  EndingSignals signals;
+  std::unique_ptr<Transport> transport;
+  const Clock& clock;
+  std::string host;
+  MessageQueue queue;
+  std::string network_error, send_error;
+  std::function<void(const std::string&)> on_network;
+  std::int64_t not_sent = 0;
   std::vector<std::function<void(bool)>> batch_callbacks;
   std::vector<Timer> timers;
   std::vector<Watch> watches;
   TimerId next_timer = 1;
-  std::exception_ptr thrown;
   bool stopped = false;
   int ended_by = 0;
 };
 
 Loop::Loop(const std::string& url, const LoopOptions& options)
-    : impl_(std::make_unique<Impl>(url, options)) {}
-Loop::~Loop() = default;
+    : Loop(open_transport(parse_lcm_url(url), system_clock()), system_clock(), options) {}
 
-void Loop::subscribe_bytes(const std::string& channel, Handler handler, int queue_capacity) {
-  impl_->subscribers.push_back({impl_.get(), std::move(handler)});
-  lcm::Subscription* subscription =
-      impl_->lcm->subscribeFunction(escaped(channel), &Impl::on_message, &impl_->subscribers.back());
-  if (!subscription) throw Error("LCM cannot subscribe to channel '" + channel + "'");
-  subscription->setQueueCapacity(queue_capacity);
+Loop::Loop(std::unique_ptr<Transport> transport, const Clock& clock, const LoopOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(transport), clock, options)) {
+  every(network_period, [this] {
+    impl_->transport->check_network();
+    impl_->watch_network();
+  });
 }
 
-void Loop::publish_bytes(const std::string& channel, Bytes bytes) {
-  if (impl_->lcm->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) < 0)
-    throw Error("LCM cannot send " + std::to_string(bytes.size()) + " bytes on channel '" + channel +
-                "': " + std::strerror(errno));
+Loop::~Loop() = default;
+
+const Clock& Loop::clock() const {
+  return impl_->clock;
+}
+
+const std::string& Loop::host() const {
+  return impl_->host;
+}
+
+void Loop::subscribe_bytes(const std::string& channel, Handler handler, int queue_capacity) {
+  impl_->queue.subscribe(channel, false, std::move(handler), queue_capacity);
+}
+
+void Loop::subscribe_prefix(const std::string& prefix, Handler handler, int queue_capacity) {
+  impl_->queue.subscribe(prefix, true, std::move(handler), queue_capacity);
+}
+
+void Loop::count_undecodable(const std::string& channel) {
+  const bool known = undecodable_.size() < max_undecodable || undecodable_.contains(channel);
+  ++undecodable_[known ? channel : "other"];
+}
+
+bool Loop::publish_bytes(const std::string& channel, Bytes bytes) {
+  const SendStatus status = impl_->transport->send(channel, bytes);
+  if (status == SendStatus::sent) {
+    impl_->send_error.clear();
+    if (!impl_->network_error.empty()) impl_->watch_network();
+    return true;
+  }
+  ++impl_->not_sent;
+  if (status == SendStatus::no_network) {
+    impl_->watch_network();
+    impl_->send_error = impl_->network_error;
+  } else {
+    impl_->send_error = "cannot send " + std::to_string(bytes.size()) + " bytes on channel '" + channel +
+                        "': more than LCM's messages can hold";
+  }
+  return false;
+}
+
+const std::string& Loop::send_error() const {
+  return impl_->send_error;
+}
+
+const std::string& Loop::network_error() const {
+  return impl_->network_error;
+}
+
+void Loop::on_network(std::function<void(const std::string&)> callback) {
+  impl_->on_network = std::move(callback);
+}
+
+LoopCounts Loop::counts() const {
+  return {impl_->not_sent, impl_->queue.dropped(), impl_->transport->counts()};
 }
 
 void Loop::after_batch(std::function<void(bool)> callback) {
@@ -247,17 +200,21 @@ void Loop::after_batch(std::function<void(bool)> callback) {
 }
 
 Loop::TimerId Loop::every(Duration period, Callback callback) {
-  impl_->timers.push_back({impl_->next_timer, Clock::now() + period, period, std::move(callback)});
-  return impl_->next_timer++;
+  return impl_->add_timer(period, period, std::move(callback));
 }
 
 Loop::TimerId Loop::after(Duration delay, Callback callback) {
-  impl_->timers.push_back({impl_->next_timer, Clock::now() + delay, Duration{0}, std::move(callback)});
-  return impl_->next_timer++;
+  return impl_->add_timer(delay, Duration{0}, std::move(callback));
 }
 
 void Loop::cancel(TimerId timer) {
   std::erase_if(impl_->timers, [timer](const Impl::Timer& t) { return t.id == timer; });
+}
+
+std::optional<std::int64_t> Loop::next_timer_ns() const {
+  std::optional<std::int64_t> next;
+  for (const Impl::Timer& timer : impl_->timers) next = std::min(next.value_or(timer.due_ns), timer.due_ns);
+  return next;
 }
 
 void Loop::watch(int fd, Callback callback) {
@@ -269,37 +226,28 @@ void Loop::unwatch(int fd) {
 }
 
 bool Loop::run_once(Duration timeout) {
-  if (impl_->stopped) return false;
-  const Clock::time_point now = Clock::now();
-  for (const Impl::Timer& timer : impl_->timers)
-    timeout = std::min<Duration>(timeout, std::max<Duration>(timer.due - now, Duration{0}));
-  std::vector<pollfd> fds{{impl_->fd, POLLIN, 0}, {impl_->signals.fd(), POLLIN, 0}};
-  for (const Impl::Watch& watch : impl_->watches) fds.push_back({watch.fd, POLLIN, 0});
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
-  const timespec wait{seconds.count(), (timeout - seconds).count()};
-  const int ready = ppoll(fds.data(), fds.size(), &wait, nullptr);
-  if (ready < 0 && errno != EINTR) throw Error(std::string("poll: ") + std::strerror(errno));
-  if (ready > 0) {
-    if (fds[1].revents) {
-      impl_->ended_by = impl_->signals.read_one();
-      impl_->stopped = impl_->stopped || impl_->ended_by != 0;
-    }
-    if (fds[0].revents && !impl_->stopped) impl_->handle_messages();
-    for (std::size_t i = 2; i < fds.size() && !impl_->stopped; ++i) {
-      if (!fds[i].revents) continue;
-      const auto watch = std::find_if(impl_->watches.begin(), impl_->watches.end(),
-                                      [&](const Impl::Watch& w) { return w.fd == fds[i].fd; });
-      if (watch == impl_->watches.end()) continue;  // unwatched by another one's callback
-      const Callback callback = watch->callback;
-      callback();
-    }
+  Impl& impl = *impl_;
+  if (impl.stopped) return false;
+  const auto waiting = [&] { return !impl.queue.empty() || impl.transport->ready(); };
+  if (const std::optional<std::int64_t> due = next_timer_ns())
+    timeout = std::min<Duration>(timeout, Duration(*due - impl.clock.mono_ns()));
+  if (waiting()) timeout = Duration{0};
+  std::vector<pollfd> fds{{impl.transport->fd(), POLLIN, 0}, {impl.signals.fd(), POLLIN, 0}};
+  for (const Impl::Watch& watch : impl.watches) fds.push_back({watch.fd, POLLIN, 0});
+  if (impl.clock.wait(fds, std::max(timeout, Duration{0})) < 0 && errno != EINTR)
+    throw Error(std::string("poll: ") + std::strerror(errno));
+  if (fds[1].revents) {
+    impl.ended_by = impl.signals.read_one();
+    impl.stopped = impl.stopped || impl.ended_by != 0;
   }
-  if (!impl_->stopped) impl_->run_timers();
-  return !impl_->stopped;
+  if ((fds[0].revents || waiting()) && !impl.stopped) impl.handle_messages();
+  impl.run_watches(std::span(fds).subspan(2));
+  if (!impl.stopped) impl.run_timers();
+  return !impl.stopped;
 }
 
 void Loop::run() {
-  while (run_once(std::chrono::hours(1))) {
+  while (run_once(1h)) {
   }
 }
 
@@ -309,16 +257,6 @@ void Loop::stop() {
 
 int Loop::signal() const {
   return impl_->ended_by;
-}
-
-std::int64_t mono_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
-}
-
-std::int64_t wall_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 std::string host_name() {

@@ -10,41 +10,43 @@ namespace egocal::bus {
 namespace {
 constexpr std::size_t max_peers = 256;
 
-bool is_alive(const Peer& peer, Peers::Time now, std::chrono::nanoseconds timeout) {
-  return peer.state != "ended" && now - peer.heard <= timeout;
+bool is_alive(const Peer& peer, std::int64_t now_us, std::int64_t timeout_us) {
+  return peer.state != State::ended && now_us - peer.heard_us <= timeout_us;
 }
 }  // namespace
 
-bool Peers::hear(const status_t& status, Time now) {
+bool Peers::hear(const status_t& status, std::int64_t now_us) {
   const Key key{status.name, status.host, status.run, status.pid};
   const bool is_new = !peers_.contains(key);
-  peers_[key] = {status.name, status.role, status.host, status.state, status.pid, status.run, now};
+  peers_[key] = {
+      status.name, status.host, role_from_name(status.role), state_from_name(status.state), status.pid,
+      status.run,  now_us};
   if (peers_.size() > max_peers)
     peers_.erase(std::min_element(peers_.begin(), peers_.end(), [](const auto& x, const auto& y) {
-      return x.second.heard < y.second.heard;
+      return x.second.heard_us < y.second.heard_us;
     }));
   return is_new;
 }
 
-bool Peers::alive(const std::string& role, Time now, std::chrono::nanoseconds timeout) const {
+bool Peers::alive(Role role, std::int64_t now_us, std::int64_t timeout_us) const {
   return std::any_of(peers_.begin(), peers_.end(), [&](const auto& entry) {
     const Peer& peer = entry.second;
-    return peer.role == role && peer.state != "paused" && is_alive(peer, now, timeout);
+    return peer.role == role && peer.state != State::paused && is_alive(peer, now_us, timeout_us);
   });
 }
 
-std::string Peers::role_of(const std::string& name) const {
+std::optional<Role> Peers::role_of(const std::string& name) const {
   const Peer* found = nullptr;
   for (const auto& [key, peer] : peers_)
-    if (peer.name == name && (!found || peer.heard > found->heard)) found = &peer;
-  return found ? found->role : std::string{};
+    if (peer.name == name && (!found || peer.heard_us > found->heard_us)) found = &peer;
+  return found ? found->role : std::nullopt;
 }
 
 std::optional<Peer> Peers::elder_namesake(const std::string& name, std::int64_t run, const std::string& host,
-                                          std::int32_t pid, Time now,
-                                          std::chrono::nanoseconds timeout) const {
+                                          std::int32_t pid, std::int64_t now_us,
+                                          std::int64_t timeout_us) const {
   for (const auto& [key, peer] : peers_)
-    if (peer.name == name && is_alive(peer, now, timeout) &&
+    if (peer.name == name && is_alive(peer, now_us, timeout_us) &&
         std::tie(peer.run, peer.host, peer.pid) < std::tie(run, host, pid))
       return peer;
   return std::nullopt;

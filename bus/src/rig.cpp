@@ -5,24 +5,34 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <set>
 #include <sstream>
 #include <string_view>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/datagrams.hpp"
+#include "egocal/bus/lcm_url.hpp"
+#include "egocal/bus/plausible.hpp"
 #include "egocal/error.hpp"
+#include "egocal/limits.hpp"
 
 namespace egocal::bus {
 
 namespace {
 
-constexpr std::size_t max_channel_length = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+/// A rig file is a few kilobytes; whoever names a log by mistake learns it at once [bytes].
+constexpr std::size_t max_file_size = std::size_t{1} << 20;
+/// toml++ reads dotted keys by recursion and ends with a crash at some 50,000 parts.
+constexpr std::size_t max_dots_per_line = 1000;
 
-/// One table of the file, with its name for error messages. Everything asked of it throws Error at its line.
+constexpr Range reorder_window{0, 3600};       // [s]
+constexpr Range heartbeat_timeout{1.5, 3600};  // [s]; heartbeats come once a second
+
+/// One table of the file, with its name for error messages. All its methods throw Error at the line of what
+/// they refuse.
 class Table {
  public:
   Table(const toml::table& table, std::string name, const std::string& file)
@@ -74,8 +84,8 @@ class Table {
     return value;
   }
 
-  double number(const std::string& key, double least, double most, const std::string& unit) const {
-    return number(require(key), key, least, most, unit);
+  double number(const std::string& key, const Range& range, const std::string& unit) const {
+    return number(require(key), key, range.least, range.most, unit);
   }
 
   double number(const toml::node& node, const std::string& key, double least, double most,
@@ -95,14 +105,15 @@ class Table {
     if (!array || array->size() != count)
       fail(key, "expected " + std::to_string(count) + " numbers " + meaning);
     std::vector<double> values;
-    for (const toml::node& element : *array) values.push_back(number(element, key, -1e9, 1e9, ""));
+    for (const toml::node& element : *array)
+      values.push_back(number(element, key, -limits::largest_distance, limits::largest_distance, ""));
     return values;
   }
 
   Pose pose(const std::string& key) const {
     const std::vector<double> v = numbers(key, 7, "[x, y, z, qw, qx, qy, qz]");
     Pose pose{{v[3], v[4], v[5], v[6]}, {v[0], v[1], v[2]}};
-    if (std::abs(pose.rotation.norm() - 1) > 0.01)
+    if (!plausible_norm(pose.rotation.norm()))
       fail(key, "the quaternion (qw, qx, qy, qz) is not of unit length");
     pose.rotation.normalize();
     return pose;
@@ -147,6 +158,10 @@ Sensor read_sensor(const Table& in) {
   sensor.channel = in.text("channel");
   if (sensor.channel.empty() || printable(sensor.channel, max_channel_length) != sensor.channel)
     in.fail("channel", "expected 1 to 63 characters that can be printed");
+  if (sensor.channel.starts_with("EGOCAL_"))
+    in.fail("channel", "names that begin with EGOCAL_ are egocal's own channels");
+  if (sensor.channel.find_first_of("*?+|^$\\()[]{}") != std::string::npos)
+    in.fail("channel", "expected the name of one channel, not a pattern");
   if (in.has("type") && in.choice("type", {"egocal.odometry_t", "bot_core.pose_t"}) == "bot_core.pose_t")
     sensor.type = OdometryType::pose;
   if (in.has("plane")) {
@@ -182,13 +197,13 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
   if (in.has("nominal")) pair.nominal = in.pose("nominal");
   if (in.has("stride") && !(in.require("stride").is_string() && in.text("stride") == "auto")) {
     const toml::node& node = in.require("stride");
-    if (!node.is_integer() || node.as_integer()->get() < 1 || node.as_integer()->get() > 10000)
+    if (!node.is_integer() || !limits::stride.contains(static_cast<double>(node.as_integer()->get())))
       in.fail("stride", "expected \"auto\" or a whole number from 1 to 10000");
     pair.stride = static_cast<int>(node.as_integer()->get());
   }
   if (in.has("weights")) {
     if (in.require("weights").is_string()) {
-      // equal weights are the paper's plain method, as in `egocal solve`: steps of one, none left out
+      // equal weights are the paper's plain method, as in `egocal solve`: steps of one, no outlier rejection
       if (in.choice("weights", {"auto", "equal"}) == "equal") {
         pair.balance = Balance{};
         pair.robust = false;
@@ -206,10 +221,22 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
       if (in.text("time_offset") != "auto") in.fail("time_offset", "expected seconds or \"auto\"");
       pair.time_offset.reset();
     } else {
-      pair.time_offset = in.number("time_offset", -1e9, 1e9, "s");
+      pair.time_offset = in.number("time_offset", limits::time_offset, "s");
     }
   }
   return pair;
+}
+
+std::string read_url(const Table& bus) {
+  std::string url = bus.text("url");
+  bool memory = false;
+  try {
+    memory = parse_lcm_url(url).memory;
+  } catch (const Error& error) {
+    bus.fail("url", error.what());
+  }
+  if (memory) bus.fail("url", "expected udpm://GROUP:PORT?ttl=N");
+  return url;
 }
 
 Rig understood(const toml::table& root, const std::string& file) {
@@ -235,25 +262,42 @@ Rig understood(const toml::table& root, const std::string& file) {
   }
   if (const std::optional<Table> bus = in.table("bus")) {
     bus->only({"url"});
-    if (bus->has("url")) rig.lcm_url = bus->text("url");
+    if (bus->has("url")) rig.lcm_url = read_url(*bus);
   }
   if (const std::optional<Table> pairing = in.table("pairing")) {
     pairing->only({"max_gap", "reorder_window"});
-    if (pairing->has("max_gap")) rig.max_gap = pairing->number("max_gap", 1e-3, 3600, "s");
-    if (pairing->has("reorder_window")) rig.reorder_window = pairing->number("reorder_window", 0, 3600, "s");
+    if (pairing->has("max_gap")) rig.max_gap = pairing->number("max_gap", limits::max_gap, "s");
+    if (pairing->has("reorder_window"))
+      rig.reorder_window = pairing->number("reorder_window", reorder_window, "s");
   }
   if (const std::optional<Table> solver = in.table("solver")) {
     solver->only({"t_no_fail", "heartbeat_timeout"});
-    if (solver->has("t_no_fail")) rig.t_no_fail = solver->number("t_no_fail", 0, 1e6, "s");
+    if (solver->has("t_no_fail")) rig.t_no_fail = solver->number("t_no_fail", limits::t_no_fail, "s");
     if (solver->has("heartbeat_timeout"))
-      rig.heartbeat_timeout = solver->number("heartbeat_timeout", 1.5, 3600, "s");
+      rig.heartbeat_timeout = solver->number("heartbeat_timeout", heartbeat_timeout, "s");
   }
   return rig;
+}
+
+/// Before toml++ sees the text.
+void check_size(const std::string& text, const std::string& file) {
+  if (text.size() > max_file_size) throw error_at(file, 0, "", "is larger than a rig file can be (1 MiB)");
+  long line = 1;
+  std::size_t dots = 0;
+  for (const char c : text) {
+    dots += c == '.';
+    if (dots > max_dots_per_line)
+      throw error_at(file, line, "", "not a rig file: a line with more than 1000 dots");
+    if (c != '\n') continue;
+    ++line;
+    dots = 0;
+  }
 }
 
 }  // namespace
 
 Rig parse_rig(const std::string& text, const std::string& file) {
+  check_size(text, file);
   try {
     return understood(toml::parse(text, file), file);
   } catch (const toml::parse_error& error) {
@@ -263,9 +307,12 @@ Rig parse_rig(const std::string& text, const std::string& file) {
 }
 
 Rig read_rig(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw error_at(file, 0, "", "is a folder, expected a rig file");
   std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text(max_file_size + 1, '\0');
+  if (in.is_open()) in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.is_open() || in.bad()) throw error_at(file, 0, "", "cannot be read as a rig file");
+  text.resize(static_cast<std::size_t>(in.gcount()));
   return parse_rig(text, file);
 }
 

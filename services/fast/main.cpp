@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   std::string method = "sqp";
   services::ProgramDescription description{
       "egocal-fast",
-      "fast",
+      bus::Role::fast,
       EGOCAL_VERSION,
       "Solves each sensor pair from its last answer and verifies it at every step.",
       {},

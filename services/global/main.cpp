@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   bool always = false;
   services::ProgramDescription description{
       "egocal-global",
-      "global",
+      bus::Role::global,
       EGOCAL_VERSION,
       "Solves sensor pairs to global optimality: when the fast process asks for it, or while none is heard.",
       {},

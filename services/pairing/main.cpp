@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   std::string state_file;
   services::ProgramDescription description{
       "egocal-pairing",
-      "pairing",
+      bus::Role::pairing,
       EGOCAL_VERSION,
       "Takes in the sensors' odometry, forms synchronised motion pairs and sends what the solvers minimise.",
       {},

@@ -59,7 +59,7 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   const bool restored = saved_ && saved_->restored();
   if (restored) {
     patient_ = true;
-    settle_until_mono_us_ = bus::mono_us() + patience_us;
+    settle_until_mono_us_ = loop_.mono_us() + patience_us;
     heartbeat_.counter("restored") = 1;
   }
   show_state();
@@ -82,7 +82,7 @@ void Pairing::feed(const Input& input) {
 }
 
 void Pairing::save() {
-  if (!saved_ || (!save_error_.empty() && bus::mono_us() < save_again_mono_us_)) return;
+  if (!saved_ || (!save_error_.empty() && loop_.mono_us() < save_again_mono_us_)) return;
   try {
     saved_->save(accumulation_);
     save_error_.clear();
@@ -95,12 +95,12 @@ void Pairing::save() {
 void Pairing::not_saved(const std::string& why) {
   if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", why.c_str());
   save_error_ = why;
-  save_again_mono_us_ = bus::mono_us() + save_retry_us;
+  save_again_mono_us_ = loop_.mono_us() + save_retry_us;
 }
 
 void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   ++arrivals_[channel].count;
-  arrivals_[channel].heard_mono_us = arrival.mono_us;
+  arrivals_[channel].heard_mono_us = loop_.mono_us();
   ++unacknowledged_;
   feed({Input::Kind::message, channel, arrival.bytes, arrival.mono_us});
   if (unacknowledged_ >= acknowledge_every && leads()) heartbeat_.publish();
@@ -116,7 +116,7 @@ void Pairing::after_batch(bool caught_up) {
   publish_new_problems();
   publish_motions();
   // somebody may be waiting for it: a player that keeps in step
-  if (caught_up && unacknowledged_ > 0 && !acknowledge_timer_ && heartbeat_.alive("player"))
+  if (caught_up && unacknowledged_ > 0 && !acknowledge_timer_ && heartbeat_.alive(bus::Role::player))
     acknowledge_timer_ = loop_.after(acknowledge_delay, [this] {
       acknowledge_timer_.reset();
       if (unacknowledged_ > 0 && leads()) heartbeat_.publish();
@@ -124,7 +124,7 @@ void Pairing::after_batch(bool caught_up) {
 }
 
 void Pairing::publish_new_problems() {
-  const std::int64_t now = bus::mono_us();
+  const std::int64_t now = loop_.mono_us();
   std::int64_t wait = problem_distance_us;
   bool later = false;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -149,7 +149,7 @@ void Pairing::publish_problem(std::size_t pair) {
   const std::optional<problem_t> message = accumulation_.pairs()[pair].message();
   if (!message) return;
   loop_.publish(channels_[pair].problem, *message);
-  published_mono_us_[pair] = bus::mono_us();
+  published_mono_us_[pair] = loop_.mono_us();
   ++sent_;
 }
 
@@ -165,7 +165,7 @@ void Pairing::publish_motions() {
 
 /// A player sends again what is missing.
 void Pairing::be_patient_if_it_helps() {
-  const bool patient = bus::mono_us() < settle_until_mono_us_ || heartbeat_.alive("player");
+  const bool patient = loop_.mono_us() < settle_until_mono_us_ || heartbeat_.alive(bus::Role::player);
   if (patient != patient_) feed({patient ? Input::Kind::patient : Input::Kind::impatient});
   patient_ = patient;
 }
@@ -173,7 +173,7 @@ void Pairing::be_patient_if_it_helps() {
 /// Ten times a second: what is missing and does not come.
 void Pairing::watch_gaps() {
   be_patient_if_it_helps();
-  const std::int64_t now = bus::mono_us();
+  const std::int64_t now = loop_.mono_us();
   for (std::size_t channel = 0; channel < arrivals_.size(); ++channel) {
     const auto i = static_cast<std::uint16_t>(channel);
     Arrivals& arrivals = arrivals_[i];
@@ -199,7 +199,7 @@ void Pairing::show_state() {
   const auto& pairs = accumulation_.pairs();
   const bool paused =
       std::all_of(pairs.begin(), pairs.end(), [](const PairSession& pair) { return pair.paused(); });
-  heartbeat_.set_state(!leads() ? "waiting" : paused ? "paused" : "running");
+  heartbeat_.set_state(!leads() ? bus::State::waiting : paused ? bus::State::paused : bus::State::running);
   heartbeat_.set_error(elder ? "an older process has this name and goes on: pid " +
                                    std::to_string(elder->pid) + " on " + elder->host
                        : !save_error_.empty() ? save_error_

@@ -7,6 +7,7 @@
 #include "egocal/bus/rig.hpp"
 #include "egocal/cli/cli.hpp"
 #include "player/player.hpp"
+#include "program/program.hpp"
 
 using namespace egocal;
 
@@ -41,9 +42,10 @@ int main(int argc, char** argv) {
   try {
     if (end >= 0) options.range.end = end;
     const bus::Rig rig = rig_file.empty() ? bus::Rig{} : bus::read_rig(rig_file);
-    bus::Loop loop(url.empty() ? rig.lcm_url : url);
+    bus::Loop loop(url.empty() ? rig.lcm_url : url, {.require_network = false});
+    services::report_network(loop, name);
     const std::chrono::duration<double> timeout(rig.heartbeat_timeout);
-    bus::Heartbeat heartbeat(loop, {name, "player", EGOCAL_VERSION},
+    bus::Heartbeat heartbeat(loop, {name, bus::Role::player, EGOCAL_VERSION},
                              std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));
     services::Player player(loop, heartbeat, options);
     loop.run();

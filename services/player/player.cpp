@@ -45,7 +45,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
       paused_(options.paused) {
   terminal_ = isatty(STDERR_FILENO) != 0;
   load();
-  started_mono_us_ = progress_mono_us_ = bus::mono_us();
+  started_mono_us_ = progress_mono_us_ = loop_.mono_us();
   anchor(next_->time_us);
   heartbeat_.on_status([this](const status_t& status) { hear(status); });
   heartbeat_.before_publish([this] {
@@ -58,7 +58,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
   // first the ears: whoever sees that it is there may send a command at once
   loop_.subscribe<command_t>(bus::command_channel,
                              [this](const command_t& command, const bus::Arrival&) { hear(command); });
-  heartbeat_.set_state(paused_ ? "paused" : "running");
+  heartbeat_.set_state(paused_ ? bus::State::paused : bus::State::running);
   heartbeat_.publish();
   loop_.every(100ms, [this] { watch_over(); });
   if (terminal_keys_.there()) {
@@ -70,7 +70,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
 
 void Player::hear(const status_t& status) {
   if (status.role != "pairing" || status.state == "waiting" || status.state == "ended") return;
-  const std::int64_t now = bus::mono_us();
+  const std::int64_t now = loop_.mono_us();
   const bool first = !in_flight_.heard();
   const InFlight::Progress progress = in_flight_.acknowledged(status);
   if (progress.any) {
@@ -134,7 +134,7 @@ void Player::obey(const Control& control) {
       loop_.stop();
       return;
   }
-  heartbeat_.set_state(paused_ ? "paused" : "running");
+  heartbeat_.set_state(paused_ ? bus::State::paused : bus::State::running);
   anchor(now);
   play();
 }
@@ -176,7 +176,7 @@ bool Player::begin_again() {
 std::int64_t Player::recorded_now() const {
   if (!next_) return played_us_;
   if (paused_ || options_.speed == 0) return anchor_us_;
-  const double passed = static_cast<double>(bus::mono_us() - anchor_mono_us_) * options_.speed;
+  const double passed = static_cast<double>(loop_.mono_us() - anchor_mono_us_) * options_.speed;
   const double now = static_cast<double>(anchor_us_) + passed;
   return now < static_cast<double>(next_->time_us) ? std::llround(now) : next_->time_us;
 }
@@ -184,7 +184,7 @@ std::int64_t Player::recorded_now() const {
 /// Recorded and real time run together from here.
 void Player::anchor(std::int64_t recorded_us) {
   anchor_us_ = recorded_us;
-  anchor_mono_us_ = bus::mono_us();
+  anchor_mono_us_ = loop_.mono_us();
 }
 
 double Player::into_log(std::int64_t recorded_us) const {
@@ -192,13 +192,10 @@ double Player::into_log(std::int64_t recorded_us) const {
 }
 
 void Player::send(const bus::LogEvent& event) {
-  try {
-    loop_.publish_bytes(event.channel, event.data);
+  if (loop_.publish_bytes(event.channel, event.data))
     ++out_;
-  } catch (const Error& error) {
-    // larger than LCM can send, or no network just now: the next one may go
-    if (heartbeat_.counter("lost: could not be sent")++ == 0) say(error.what());
-  }
+  else if (heartbeat_.counter("lost: could not be sent")++ == 0)
+    say(loop_.send_error());
 }
 
 void Player::send_again() {
@@ -210,7 +207,7 @@ void Player::send_again() {
 
 void Player::wait_until(std::int64_t mono_us) {
   timer_ =
-      loop_.after(std::chrono::microseconds(std::max<std::int64_t>(0, mono_us - bus::mono_us())), [this] {
+      loop_.after(std::chrono::microseconds(std::max<std::int64_t>(0, mono_us - loop_.mono_us())), [this] {
         timer_.reset();
         play();
       });
@@ -227,7 +224,7 @@ void Player::play() {
     if (speed > 0 && !step_) {
       const double ahead_us = (static_cast<double>(next_->time_us) - static_cast<double>(anchor_us_)) / speed;
       const std::int64_t due = anchor_mono_us_ + std::llround(std::min(ahead_us, longest_wait_us));
-      const std::int64_t wait = due - bus::mono_us();
+      const std::int64_t wait = due - loop_.mono_us();
       if (wait > 0) {
         if (wait > announced_wait_us && announced_gap_us_ != next_->time_us) {
           announced_gap_us_ = next_->time_us;
@@ -247,7 +244,7 @@ void Player::play() {
       announced_gap_us_.reset();
       heartbeat_.set_error("");
     }
-    if (in_flight_.count() == 0) progress_mono_us_ = bus::mono_us();
+    if (in_flight_.count() == 0) progress_mono_us_ = loop_.mono_us();
     send(*next_);
     in_flight_.sent(*next_);
     played_us_ = next_->time_us;
@@ -258,7 +255,7 @@ void Player::play() {
   }
   if (!next_ && !ended_) {
     ended_ = true;
-    progress_mono_us_ = bus::mono_us();
+    progress_mono_us_ = loop_.mono_us();
   }
   // paused at the end, by a step: whoever steps may want to look and to go back
   if (ended_ && in_flight_.count() == 0 && !paused_) finish();
@@ -266,7 +263,7 @@ void Player::play() {
 
 /// Ten times a second: nobody there, something lost, the end.
 void Player::watch_over() {
-  const std::int64_t now = bus::mono_us();
+  const std::int64_t now = loop_.mono_us();
   show_progress(false);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > wait_for_pairing_us) {
     alone_ = true;
@@ -277,7 +274,7 @@ void Player::watch_over() {
     }
     play();
   }
-  if (in_flight_.count() > 0 && now - progress_mono_us_ > stall_us && heartbeat_.alive("pairing")) {
+  if (in_flight_.count() > 0 && now - progress_mono_us_ > stall_us && heartbeat_.alive(bus::Role::pairing)) {
     send_again();
     progress_mono_us_ = now;
   }
@@ -332,7 +329,7 @@ void Player::report() {
 
 void Player::show_progress(bool last) {
   if (!terminal_ || (last && out_ == 0)) return;
-  const std::int64_t now = bus::mono_us();
+  const std::int64_t now = loop_.mono_us();
   if (!last && now - shown_mono_us_ < 200'000) return;
   shown_mono_us_ = now;
   const std::string state = paused_               ? "paused"

@@ -6,11 +6,25 @@
 #include <iostream>
 #include <memory>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/plausible.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/error.hpp"
 
 namespace egocal::services {
+
+void report_network(bus::Loop& loop, const std::string& name) {
+  const auto away = [name](const std::string& error) {
+    std::cerr << name << ": " << error << "; waiting for the network\n";
+  };
+  if (!loop.network_error().empty()) away(loop.network_error());
+  loop.on_network([&loop, name, away](const std::string& error) {
+    if (!error.empty())
+      away(error);
+    else
+      std::cerr << name << ": the network is back; " << loop.counts().not_sent
+                << " messages could not be sent so far\n";
+  });
+}
 
 int run_program(
     int argc, char** argv, const ProgramDescription& description,
@@ -33,7 +47,8 @@ int run_program(
   }
   try {
     const bus::Rig rig = bus::read_rig(rig_file);
-    bus::Loop loop(url.empty() ? rig.lcm_url : url);
+    bus::Loop loop(url.empty() ? rig.lcm_url : url, {.require_network = false});
+    report_network(loop, name);
     const std::chrono::duration<double> timeout(rig.heartbeat_timeout);
     bus::Heartbeat heartbeat(loop, {name, description.role, description.version},
                              std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));

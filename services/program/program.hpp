@@ -28,17 +28,20 @@ struct FlagOption {
 
 struct ProgramDescription {
   std::string name;  ///< also the default of --name
-  std::string role;
+  bus::Role role = bus::Role::monitor;
   std::string version;
   std::string help;
   std::vector<TextOption> options;
   std::vector<FlagOption> flags;
 };
 
+/// A network that is away, and one that is back, are reported on standard error, one line each.
+void report_network(bus::Loop& loop, const std::string& name);
+
 /// The main() of a process that needs a rig and LCM: reads --rig, --lcm-url, --name and the program's own
 /// options, connects, calls start with everything wired and runs the loop until SIGINT or SIGTERM. start
-/// returns what must live meanwhile. Exit codes: 0 ended as told, 1 failure (one line on standard error), 2
-/// wrong usage.
+/// returns what must live meanwhile. Exit codes: 0 ended by a signal, 1 failure (one line on standard error),
+/// 2 wrong usage.
 int run_program(
     int argc, char** argv, const ProgramDescription& description,
     const std::function<std::shared_ptr<void>(bus::Loop&, bus::Heartbeat&, const bus::Rig&)>& start);

@@ -2,42 +2,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "program/commands.hpp"
-#include "solving/problems.hpp"
+#include "solving/solver.hpp"
 
 namespace egocal::services {
 
 /// egocal-global: answers while the fast process asks for it (calibration_t.fallback), while none is heard,
 /// or always.
-class GlobalSolver {
+class GlobalSolver final : public Solver {
  public:
   GlobalSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, Method method, bool always);
 
  private:
-  struct Pair {
-    Pair(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& config)
-        : inbox(loop, heartbeat, config), outbox(loop, heartbeat) {}
-    ProblemInbox inbox;
-    AnswerOutbox outbox;
+  struct Task {
     std::optional<ReceivedProblem> unanswered;
-    std::int64_t session = -1;  // of the newest problem
-    bool paused = false;
-    bool asked = false;  // by the newest answer of a fast process
+    bool asked = false;  ///< by the newest answer of a fast process
   };
 
-  void answer_newest();
-  void hear(Pair& pair, const calibration_t& message);
-  void obey(Verb verb, const command_t& command);
-  void report();
+  void answer_newest() override;
+  void hear(std::size_t pair, const calibration_t& message) override;
+  /// Nothing is remembered from problem to problem.
+  void reset(std::size_t) override {}
+  bus::State state() const override { return steps_in() ? bus::State::running : bus::State::standby; }
+  std::string advice() const override;
+  bool steps_in() const { return always_ || !heartbeat_.alive(bus::Role::fast); }
 
-  bus::Loop& loop_;
-  bus::Heartbeat& heartbeat_;
   Method method_;
   bool always_;
-  std::vector<std::unique_ptr<Pair>> pairs_;
+  std::vector<Task> tasks_;  ///< of the pairs
 };
 
 }  // namespace egocal::services

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solving/problems.hpp"
 
-#include <chrono>
+#include <algorithm>
+#include <utility>
 
 namespace egocal::services {
 
@@ -41,19 +42,16 @@ void AnswerOutbox::send(const Answer& answer, const problem_t& problem, bool fal
   message.fallback = fallback;
   message.solve_ns = answer.solve_ns;
   message.verify_ns = answer.verify_ns;
-  static const std::string host = bus::host_name();
-  if (problem.host == host && problem.received_mono_us > 0)
-    message.latency_us = std::max<std::int64_t>(0, bus::mono_us() - problem.received_mono_us);
+  if (problem.host == loop_.host() && problem.received_mono_us > 0)
+    message.latency_us = std::max<std::int64_t>(0, loop_.mono_us() - problem.received_mono_us);
   loop_.publish(bus::calibration_channel(problem.sensor_a, problem.sensor_b), message);
   ++heartbeat_.counter("out");
-  message.latency_us = -1;  // what is sent once more later was not waited for that long
+  message.latency_us = -1;  // of the first time only
   last_ = std::move(message);
 }
 
 std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return bus::system_clock().mono_ns();
 }
 
 }  // namespace egocal::services

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/newest.hpp"
 #include "egocal/bus/rig.hpp"
@@ -26,7 +26,7 @@ class ProblemInbox {
  public:
   ProblemInbox(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& pair);
 
-  /// The newest problem since the last call, if one came that stands the checks. Counts the others.
+  /// The newest problem since the last call, if one came that passes the checks. Counts the others.
   std::optional<ReceivedProblem> take();
   const std::string& sensor_a() const { return sensor_a_; }
   const std::string& sensor_b() const { return sensor_b_; }
@@ -39,17 +39,14 @@ class ProblemInbox {
   bus::Newest<problem_t> newest_;
 };
 
-/// Sends an answer and remembers it: where the problem is sent again so is the answer, and late listeners
-/// heal.
+/// Sends an answer and remembers it: when the problem is sent again so is the answer, for late listeners.
 class AnswerOutbox {
  public:
   AnswerOutbox(bus::Loop& loop, bus::Heartbeat& heartbeat) : loop_(loop), heartbeat_(heartbeat) {}
 
-  /// The answer to just this problem has been sent: sends it once more.
+  /// Sends the answer once more where this very problem was answered last. False: it was not.
   bool repeat(const problem_t& problem);
   void send(const Answer& answer, const problem_t& problem, bool fallback);
-  /// The next problem is answered anew whatever it is.
-  void forget() { last_.reset(); }
 
  private:
   bus::Loop& loop_;

@@ -6,11 +6,13 @@
 
 #include <stdexcept>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
+#include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/newest.hpp"
 #include "egocal/bus/peers.hpp"
 #include "egocal/error.hpp"
+#include "support/virtual_time.hpp"
 
 namespace egocal::bus {
 namespace {
@@ -53,17 +55,107 @@ TEST(Loop, SignalsEndIt) {
 }
 
 TEST(Loop, TimersRunInTheirTime) {
-  Loop loop("memq://");
-  int ticks = 0;
-  loop.every(5ms, [&] { ++ticks; });
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false});
+  std::vector<std::int64_t> ticks;
+  loop.every(5ms, [&] { ticks.push_back(loop.mono_us()); });
   const auto never = loop.after(10ms, [] { FAIL(); });
   loop.cancel(never);
-  const auto begin = std::chrono::steady_clock::now();
-  loop.after(50ms, [&] { loop.stop(); });
-  loop.run();
-  EXPECT_GE(std::chrono::steady_clock::now() - begin, 50ms);
-  EXPECT_GE(ticks, 3);
-  EXPECT_LE(ticks, 11);
+  std::int64_t once = 0;
+  loop.after(7ms, [&] { once = loop.mono_us(); });
+  const std::int64_t begin = loop.mono_us();
+  test::run_for(clock, {&loop}, 22ms);
+  EXPECT_THAT(ticks, testing::ElementsAre(begin + 5000, begin + 10000, begin + 15000, begin + 20000));
+  EXPECT_EQ(once, begin + 7000);
+}
+
+// What could not be sent is a state, not an end: hours of it, and the first message after it goes.
+TEST(Loop, ANetworkThatIsAwayIsWaitedFor) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false});
+  Loop other(network.transport(), clock, {.handle_signals = false});
+  std::vector<std::string> reports;
+  loop.on_network([&](const std::string& error) { reports.push_back(error); });
+  int heard = 0;
+  other.subscribe<command_t>("C", [&](const command_t&, const Arrival&) { ++heard; });
+  loop.every(1s, [&] { loop.publish("C", command_t{}); });
+
+  test::run_for(clock, {&loop, &other}, 2500ms);
+  EXPECT_EQ(heard, 2);
+  network.set_away(true);
+  test::run_for(clock, {&loop, &other}, 5h);
+  EXPECT_EQ(heard, 2);
+  EXPECT_EQ(loop.counts().not_sent, 5 * 3600);
+  EXPECT_NE(loop.send_error(), "");
+  EXPECT_EQ(reports.size(), 1U);
+  network.set_away(false);
+  test::run_for(clock, {&loop, &other}, 2s);
+  EXPECT_EQ(heard, 4);
+  EXPECT_THAT(reports, testing::ElementsAre(testing::HasSubstr("away"), ""));
+  EXPECT_EQ(loop.send_error(), "");
+}
+
+TEST(Loop, CommandsThatDoOneThingNeedTheNetwork) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  network.set_away(true);
+  EXPECT_THROW(Loop(network.transport(), clock, {.handle_signals = false}), Error);
+  EXPECT_NO_THROW(Loop(network.transport(), clock, {.handle_signals = false, .require_network = false}));
+}
+
+TEST(Loop, AFloodOnOneChannelDisplacesNothingOnAnother) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false});
+  int flood = 0, calm = 0;
+  loop.subscribe_prefix(
+      "FLOOD_", [&](const Arrival&) { ++flood; }, 10);
+  loop.subscribe<command_t>(
+      "CALM", [&](const command_t&, const Arrival&) { ++calm; }, 10);
+  for (int i = 0; i < 100; ++i) loop.publish("FLOOD_" + std::to_string(i), command_t{});
+  loop.publish("CALM", command_t{});
+  loop.run_once(0ns);
+  EXPECT_EQ(flood, 10);
+  EXPECT_EQ(calm, 1);
+  EXPECT_EQ(loop.counts().queue_full, 90);
+}
+
+TEST(Loop, UndecodableChannelsAreBounded) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false});
+  for (int i = 0; i < 1000; ++i) loop.count_undecodable("C" + std::to_string(i));
+  EXPECT_LE(loop.undecodable().size(), 65U);
+  EXPECT_EQ(loop.undecodable().at("other"), 936);
+}
+
+// Two heartbeats on one virtual network: no socket, no waiting.
+TEST(Heartbeat, SurvivesANetworkThatIsAwayAndSaysSoAfterwards) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false, .host = "h1"});
+  Loop other(network.transport(), clock, {.handle_signals = false, .host = "h2"});
+  Heartbeat heartbeat(loop, {"egocal-fast", Role::fast, "1", 100}, 3s);
+  Heartbeat listener(other, {"egocal-global", Role::global, "1", 200}, 3s);
+  std::int64_t not_sent = 0;
+  std::string host;
+  listener.on_status([&](const status_t& status) {
+    host = status.host;
+    for (const counter_t& counter : status.counters)
+      if (counter.name == "not sent") not_sent = counter.value;
+  });
+  test::run_for(clock, {&loop, &other}, 2s);
+  EXPECT_TRUE(listener.alive(Role::fast));
+  EXPECT_EQ(host, "h1");
+  network.set_away(true);
+  test::run_for(clock, {&loop, &other}, 1h);
+  EXPECT_FALSE(listener.alive(Role::fast));
+  network.set_away(false);
+  test::run_for(clock, {&loop, &other}, 2s);
+  EXPECT_TRUE(listener.alive(Role::fast));
+  EXPECT_EQ(not_sent, 3600);
 }
 
 TEST(Loop, BadUrlIsOneClearError) {
@@ -91,27 +183,27 @@ TEST(Newest, OnlyTheNewestIsKept) {
 
 TEST(Peers, AreForgottenWhenSilentEndedOrTooMany) {
   Peers peers;
-  const Peers::Time now{};
+  constexpr std::int64_t now = 0, timeout = 3'000'000;
   status_t status{};
   status.name = "egocal-fast";
   status.role = "fast";
   status.run = 10;
   status.state = "running";
   peers.hear(status, now);
-  EXPECT_TRUE(peers.alive("fast", now + 1s, 3s));
-  EXPECT_FALSE(peers.alive("fast", now + 4s, 3s));
-  EXPECT_FALSE(peers.alive("global", now, 3s));
-  EXPECT_TRUE(peers.elder_namesake("egocal-fast", 11, "h", 1, now, 3s));
-  EXPECT_FALSE(peers.elder_namesake("egocal-fast", 9, "h", 1, now, 3s));
+  EXPECT_TRUE(peers.alive(Role::fast, now + 1'000'000, timeout));
+  EXPECT_FALSE(peers.alive(Role::fast, now + 4'000'000, timeout));
+  EXPECT_FALSE(peers.alive(Role::global, now, timeout));
+  EXPECT_TRUE(peers.elder_namesake("egocal-fast", 11, "h", 1, now, timeout));
+  EXPECT_FALSE(peers.elder_namesake("egocal-fast", 9, "h", 1, now, timeout));
   status.state = "ended";
   peers.hear(status, now);
-  EXPECT_FALSE(peers.alive("fast", now, 3s));
+  EXPECT_FALSE(peers.alive(Role::fast, now, timeout));
   for (int i = 0; i < 1000; ++i) {
     status.run = 100 + i;
     status.name = "flood";
-    peers.hear(status, now + std::chrono::milliseconds(i));
+    peers.hear(status, now + 1000 * i);
   }
-  EXPECT_EQ(peers.role_of("egocal-fast"), "");
+  EXPECT_EQ(peers.role_of("egocal-fast"), std::nullopt);
 }
 
 }  // namespace

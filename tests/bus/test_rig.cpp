@@ -41,7 +41,7 @@ stride = 3
 weights = [1, 0.1]
 time_offset = -0.25
 [bus]
-url = "memq://"
+url = "udpm://239.1.2.3:7700?ttl=1"
 [pairing]
 max_gap = 0.3
 reorder_window = 0.1
@@ -61,7 +61,7 @@ heartbeat_timeout = 4
   EXPECT_EQ(rig.pairs[0].stride, 3);
   EXPECT_EQ(rig.pairs[0].balance->translation, 0.1);
   EXPECT_EQ(rig.pairs[0].time_offset, -0.25);
-  EXPECT_EQ(rig.lcm_url, "memq://");
+  EXPECT_EQ(rig.lcm_url, "udpm://239.1.2.3:7700?ttl=1");
   EXPECT_EQ(rig.max_gap, 0.3);
   EXPECT_EQ(rig.reorder_window, 0.1);
   EXPECT_EQ(rig.t_no_fail, 2);
@@ -101,7 +101,11 @@ TEST(Rig, ErrorsNameFileLineAndKey) {
       {sensors + pair + "[solver]\nt_no_fail = -1\n", "my.toml:14", "t_no_fail"},
       {sensors + pair + "[sovler]\n", "my.toml:13", "sovler"},
       {sensors + pair + "[bus]\nurl = 3\n", "my.toml:14", "url"},
+      {sensors + pair + "[bus]\nurl = \"file:///tmp/x?mode=w\"\n", "my.toml:14", "url"},
+      {sensors + pair + "[bus]\nurl = \"memq://\"\n", "my.toml:14", "url"},
       {"[[sensor]]\nname = \"a b\"\n", "my.toml:2", "name"},
+      {"[[sensor]]\nname = \"a\"\nchannel = \"EGOCAL_STATUS\"\n", "my.toml:3", "channel"},
+      {"[[sensor]]\nname = \"a\"\nchannel = \".*\"\n", "my.toml:3", "channel"},
       {"[[sensor]]\nname = \"a\"\nchannel = \"c\"\nplane = [0, 0, 2, 0]\n", "my.toml:4", "plane"},
       {"[[sensor]\n", "my.toml:1", ""},
       {"", "my.toml", "sensor"},
@@ -116,6 +120,29 @@ TEST(Rig, ErrorsNameFileLineAndKey) {
 
 TEST(Rig, MissingFile) {
   EXPECT_THROW(read_rig("/nonexistent/rig.toml"), Error);
+}
+
+TEST(Rig, FoldersAreNamedAsSuch) {
+  try {
+    read_rig("/tmp");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("/tmp: is a folder"));
+  }
+}
+
+// toml++ ends with a crash at a dotted key of some 50,000 parts.
+TEST(Rig, HostileSizesAreRefusedInOneLine) {
+  std::string dotted = "a";
+  for (int i = 0; i < 200'000; ++i) dotted += ".a";
+  const std::string nested(100'000, '[');
+  const std::string large = sensors + pair + "# " + std::string(2 << 20, 'x') + "\n";
+  for (const std::string& text : {dotted + " = 1\n", sensors + dotted + " = 1\n", "[" + dotted + "]\n",
+                                  "a = " + nested, "a = " + std::string(100'000, '{'), large}) {
+    const std::string message = error_of(text);
+    EXPECT_THAT(message, testing::StartsWith("my.toml")) << text.substr(0, 100);
+    EXPECT_LT(message.size(), 1000U);
+  }
 }
 
 }  // namespace

@@ -211,7 +211,7 @@ TEST_F(Processes, TheGlobalSolverStepsInWhenTheFastOneFallsSilent) {
   const auto trajectories = drive(600);
   const auto all = events(trajectories);
   play({all.begin(), all.begin() + 600});
-  EXPECT_TRUE(until([&] { return statuses["egocal-global"].state == "waiting"; }, 3s));
+  EXPECT_TRUE(until([&] { return statuses["egocal-global"].state == "standby"; }, 3s));
   processes.at("egocal-fast").signal(SIGKILL);
   answers.clear();
   play({all.begin() + 600, all.end()});
@@ -229,7 +229,8 @@ TEST_F(Processes, TheFastSolverGoesOnWithoutTheGlobalOneAndSaysSo) {
   ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }, 5s));
   ASSERT_TRUE(answered("egocal-fast"));
   expect_answer("egocal-fast", offline(trajectories));
-  EXPECT_THAT(statuses["egocal-fast"].last_error, testing::HasSubstr("no global solver"));
+  EXPECT_TRUE(until(
+      [&] { return statuses["egocal-fast"].last_error.find("no global solver") != std::string::npos; }, 5s));
 }
 
 TEST_F(Processes, DamagedMessagesAreCountedAndHarmNothing) {
@@ -350,7 +351,7 @@ TEST_F(Processes, TheyEndCleanlyAndSayWhatIsWrong) {
   }
 }
 
-TEST_F(Processes, AnswersComeWithinAMillisecond) {
+TEST_F(Processes, TheMedianAnswerComesWithinAMillisecond) {
   start("egocal-pairing");
   start("egocal-fast");
   start("egocal-global");

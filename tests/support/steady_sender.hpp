@@ -19,8 +19,8 @@ namespace egocal::test {
 class SteadySender {
  public:
   explicit SteadySender(bus::Loop& loop)
-      : loop_(loop), heartbeat_(loop, {"test-sender", "player", "0"}, std::chrono::seconds(3)) {
-    heartbeat_.set_state("running");
+      : loop_(loop), heartbeat_(loop, {"test-sender", bus::Role::player, "0"}, std::chrono::seconds(3)) {
+    heartbeat_.set_state(bus::State::running);
     heartbeat_.on_status([this](const status_t& status) { hear(status); });
     heartbeat_.publish();
   }

@@ -51,7 +51,7 @@ void run(const Options& options) {
   command.utime = bus::wall_us();
   command.to = options.to;
   command.verb = verb;
-  loop.publish(bus::command_channel, command);
+  if (!loop.publish(bus::command_channel, command)) throw Error("tell: " + loop.send_error());
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include "egocal/certificate/certificate.hpp"
 #include "experiments/data_set.hpp"
-#include "experiments/figure.hpp"
 
 namespace egocal::tools {
 
@@ -34,7 +33,7 @@ struct GlobalityPoint {
 std::vector<GlobalityPoint> globality_experiment(const DataSet& data, const GlobalityOptions& options);
 
 std::string csv(const std::vector<GlobalityPoint>& points);
-/// Gap against falsification of the rotation and of the translation, for each number of frames.
-std::vector<Panel> panels(const std::vector<GlobalityPoint>& points);
+std::string plot(const std::vector<GlobalityPoint>& points, const std::string& csv_file,
+                 const std::string& png_file);
 
 }  // namespace egocal::tools

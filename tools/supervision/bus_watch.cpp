@@ -21,7 +21,7 @@
 namespace egocal::tools {
 
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time) {
-  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  bus::Loop loop(url, {.handle_signals = false, .require_network = false});
   std::optional<std::string> found;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
     if (status.role == "pairing" && status.state != "ended")
@@ -39,7 +39,7 @@ namespace {
 
 [[noreturn]] void listen(const bus::Rig& rig, const std::string& url, int out) {
   try {
-    bus::Loop loop(url);
+    bus::Loop loop(url, {.require_network = false});
     for (const bus::PairConfig& pair : rig.pairs)
       loop.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b),
                                     [&](const calibration_t& message, const bus::Arrival&) {

@@ -9,12 +9,12 @@ namespace egocal::bus {
 inline const std::string status_channel = "EGOCAL_STATUS";
 inline const std::string command_channel = "EGOCAL_COMMAND";
 
+inline const std::string problem_prefix = "EGOCAL_PROBLEM_";
+inline const std::string calibration_prefix = "EGOCAL_CALIBRATION_";
+
 // Per pair: T is the pose of sensor b in sensor a.
 std::string motion_channel(const std::string& a, const std::string& b);
 std::string problem_channel(const std::string& a, const std::string& b);
 std::string calibration_channel(const std::string& a, const std::string& b);
-
-/// A channel name as the regular expression that LCM's subscribe expects.
-std::string escaped(const std::string& channel);
 
 }  // namespace egocal::bus

@@ -4,10 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "bot_core/pose_t.hpp"
+#include "egocal/bus/bytes.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/command_t.hpp"
 #include "egocal/motion_pair_t.hpp"
@@ -16,8 +16,6 @@
 #include "egocal/status_t.hpp"
 
 namespace egocal::bus {
-
-using Bytes = std::span<const std::byte>;
 
 /// Whether the lengths inside an encoded message add up to its size. The generated decoders trust them: a
 /// damaged one would allocate gigabytes or read past the end.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -12,25 +13,28 @@
 #include "egocal/acknowledgement_t.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/peers.hpp"
+#include "egocal/bus/process.hpp"
 
 namespace egocal::bus {
 
 struct Identity {
   std::string name;  ///< of the process, e.g. egocal-fast
-  std::string role;  ///< player, pairing, global, fast, monitor
+  Role role = Role::monitor;
   std::string version;
+  std::int32_t pid = 0;  ///< 0: of this process
 };
 
-/// Sends status_t once a second and on change (at most every 50 ms), and hears those of the others. A
+/// Sends status_t once a second and on change (at most every 50 ms), and receives those of the others. A
 /// namesake is answered at once, so that two processes of one name learn of each other within milliseconds.
+/// Where a status cannot be sent the next one reports it; nothing here ever ends the process.
 class Heartbeat {
  public:
   Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds timeout);
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
-  /// end(), without asking anybody for counters.
+  /// end(), without before_publish().
   ~Heartbeat();
-  /// Says "ended", once.
+  /// Sends the state "ended", once.
   void end();
 
   const Identity& identity() const { return identity_; }
@@ -41,21 +45,23 @@ class Heartbeat {
   /// "rejected: <reason>", bounded in number: beyond 60 reasons they are counted as "rejected: other".
   void reject(const std::string& reason);
 
-  void set_state(const std::string& state);
-  const std::string& state() const { return state_; }
-  /// Empty: no error any more.
+  void set_state(State state);
+  State state() const { return state_; }
+  /// Empty: no error any more. While there is none, a network that is away is reported in its place.
   void set_error(const std::string& error);
 
   std::vector<acknowledgement_t>& acknowledgements() { return acknowledgements_; }
 
-  /// Counters that somebody else keeps are brought up to date here, before a status goes out.
+  /// Called before a status goes out, to bring counters up to date that are kept elsewhere.
   void before_publish(std::function<void()> callback) { before_publish_ = std::move(callback); }
   /// Called for each status of another process.
   void on_status(std::function<void(const status_t&)> callback) { on_status_ = std::move(callback); }
   void publish();
 
-  bool alive(const std::string& role) const;
-  std::string role_of(const std::string& name) const { return peers_.role_of(name); }
+  bool alive(Role role) const;
+  /// Time enough to have heard every other process once has gone by since the start [heartbeat timeout].
+  bool settled() const;
+  std::optional<Role> role_of(const std::string& name) const { return peers_.role_of(name); }
   /// Another living process has this name and started earlier.
   std::optional<Peer> elder_namesake() const;
 
@@ -65,18 +71,17 @@ class Heartbeat {
 
   Loop& loop_;
   Identity identity_;
-  std::chrono::nanoseconds timeout_;
-  std::string host_;
-  std::int32_t pid_;
+  std::int64_t timeout_us_;
+  std::int64_t started_us_;
   std::int64_t run_;
-  std::string state_ = "waiting";
+  State state_ = State::waiting;
   std::string error_;
   std::map<std::string, std::int64_t> counters_;
   std::vector<acknowledgement_t> acknowledgements_;
   Peers peers_;
   std::function<void()> before_publish_;
   std::function<void(const status_t&)> on_status_;
-  std::chrono::steady_clock::time_point published_{};
+  std::int64_t published_us_ = 0;
   bool change_pending_ = false;
 };
 

@@ -7,44 +7,70 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "egocal/bus/clock.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/bus/transport.hpp"
 
 namespace egocal::bus {
 
-/// What a handler learns beside the message.
+/// What a handler receives beside the message.
 struct Arrival {
   const std::string& channel;
   Bytes bytes;
-  std::int64_t mono_us;  ///< CLOCK_MONOTONIC when the handler was called [us]
+  std::int64_t mono_us;  ///< when the host received it, before it waited in any queue [us]
 };
 
 struct LoopOptions {
   /// SIGINT and SIGTERM end run(). They are blocked from construction on, in every thread started after it.
   bool handle_signals = true;
+  /// The constructor throws where the network is away: right for commands that do one thing and end.
+  /// Processes that run for days wait for it instead, see on_network().
+  bool require_network = true;
+  /// Name of this host in messages; empty: the machine's own.
+  std::string host{};
 };
 
-/// The one thread of a process: LCM, timers, signals and other file descriptors in one poll(). Exceptions of
-/// handlers never cross liblcm's C frames: they leave run() instead.
+/// What the loop could not deliver, since it was made.
+struct LoopCounts {
+  std::int64_t not_sent = 0;    ///< messages
+  std::int64_t queue_full = 0;  ///< messages of a channel that came faster than its handler took them
+  TransportCounts transport;
+};
+
+/// The one thread of a process: messages, timers, signals and other file descriptors. Not thread-safe. What a
+/// handler throws leaves run(). Transport and clock can be handed in: then nothing here opens a socket,
+/// waits, or looks at any other clock.
 class Loop {
  public:
   using Handler = std::function<void(const Arrival&)>;
   using Callback = std::function<void()>;
   using Duration = std::chrono::nanoseconds;
 
-  /// Connects and runs LCM's multicast self-test at once. Throws Error, naming the remedy, where the URL is
-  /// not understood or the machine cannot multicast. Also: memq:// (tests of handlers, one process).
+  /// Connects to the URL (parse_lcm_url) on the system's clock. Throws Error with the remedy where the URL is
+  /// not understood or, with require_network, the machine cannot multicast.
   explicit Loop(const std::string& url, const LoopOptions& options = {});
+  /// The clock must outlive the loop.
+  Loop(std::unique_ptr<Transport> transport, const Clock& clock, const LoopOptions& options = {});
   ~Loop();
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
-  /// Calls the handler for every message of exactly this channel. While queue_capacity messages wait, liblcm
-  /// drops newer ones: memory stays bounded.
-  void subscribe_bytes(const std::string& channel, Handler handler, int queue_capacity = 256);
+  const Clock& clock() const;
+  std::int64_t mono_us() const { return clock().mono_us(); }
+  std::int64_t wall_us() const { return clock().wall_us(); }
+  /// Name of this host in messages.
+  const std::string& host() const;
 
-  /// The same, decoded. What cannot be decoded is counted in undecodable() and not handed on.
+  /// Calls the handler for every message of exactly this channel. While queue_capacity of its messages wait,
+  /// newer ones are dropped and counted: memory stays bounded.
+  void subscribe_bytes(const std::string& channel, Handler handler, int queue_capacity = 256);
+  /// The same for every channel whose name begins so. All of them share one queue.
+  void subscribe_prefix(const std::string& prefix, Handler handler, int queue_capacity = 256);
+
+  /// subscribe_bytes, decoded. What cannot be decoded is counted in undecodable() and not handed on.
   template <class Message>
   void subscribe(const std::string& channel, std::function<void(const Message&, const Arrival&)> handler,
                  int queue_capacity = 256) {
@@ -55,30 +81,41 @@ class Loop {
           if (decode(arrival.bytes, message))
             handler(message, arrival);
           else
-            ++undecodable_[arrival.channel];
+            count_undecodable(arrival.channel);
         },
         queue_capacity);
   }
 
-  /// Messages that were not what their channel promises, by channel.
+  /// Messages that were not what their channel promises, by channel; beyond 64 channels under "other".
   const std::map<std::string, std::int64_t>& undecodable() const { return undecodable_; }
-  void count_undecodable(const std::string& channel) { ++undecodable_[channel]; }
+  void count_undecodable(const std::string& channel);
 
-  /// Throws Error where LCM cannot send.
-  void publish_bytes(const std::string& channel, Bytes bytes);
+  /// False: not sent, see send_error(). That is counted, and no reason to end: the next message may go.
+  bool publish_bytes(const std::string& channel, Bytes bytes);
   template <class Message>
-  void publish(const std::string& channel, const Message& message) {
-    publish_bytes(channel, encode(message));
+  bool publish(const std::string& channel, const Message& message) {
+    return publish_bytes(channel, encode(message));
   }
+  /// Why the last message could not be sent, one line; empty: it was sent.
+  const std::string& send_error() const;
+
+  /// What is wrong with the network, with its remedy; empty: nothing. Looked at once a second.
+  const std::string& network_error() const;
+  /// Called with network_error() each time when it changes.
+  void on_network(std::function<void(const std::string& error)> callback);
+
+  LoopCounts counts() const;
 
   /// Called when all messages that were waiting have been handled, and under a flood at least every 5 ms: the
-  /// place for work that only the newest message needs. caught_up: nothing more is waiting.
+  /// place for work that needs only the newest message. caught_up: nothing more is waiting.
   void after_batch(std::function<void(bool caught_up)> callback);
 
   using TimerId = std::uint64_t;
   TimerId every(Duration period, Callback callback);
   TimerId after(Duration delay, Callback callback);
   void cancel(TimerId timer);
+  /// When the next timer is due, of clock().mono_ns(); empty: there is none.
+  std::optional<std::int64_t> next_timer_ns() const;
 
   /// Calls back while the file descriptor is readable (or hung up).
   void watch(int fd, Callback callback);
@@ -86,8 +123,8 @@ class Loop {
 
   /// Until stop() or a signal. Rethrows what a handler threw.
   void run();
-  /// One turn: waits at most this long for anything to happen and handles it. False once the loop has been
-  /// told to stop.
+  /// One turn: waits at most this long for anything to happen and handles it. False once the loop was
+  /// stopped.
   bool run_once(Duration timeout);
   void stop();
   /// The signal that ended run(); 0: none.
@@ -99,10 +136,7 @@ class Loop {
   std::map<std::string, std::int64_t> undecodable_;
 };
 
-/// CLOCK_MONOTONIC, the same for every process of a host [us].
-std::int64_t mono_us();
-/// Wall clock [us].
-std::int64_t wall_us();
+/// The machine's own.
 std::string host_name();
 
 }  // namespace egocal::bus

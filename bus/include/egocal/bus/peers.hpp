@@ -2,39 +2,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "egocal/bus/process.hpp"
 #include "egocal/status_t.hpp"
 
 namespace egocal::bus {
 
-/// Another process, as its heartbeats tell.
+/// Another process, as its heartbeats describe it.
 struct Peer {
-  std::string name, role, host, state;
+  std::string name, host;
+  std::optional<Role> role;    ///< empty: another version's
+  std::optional<State> state;  ///< likewise
   std::int32_t pid = 0;
   std::int64_t run = 0;
-  std::chrono::steady_clock::time_point heard;
+  std::int64_t heard_us = 0;  ///< of the loop's clock
 };
 
-/// Who else is on the bus. Bounded: the longest unheard are forgotten beyond 256.
+/// Who else is on the bus. Bounded: beyond 256 processes the one that was silent longest is forgotten. Times
+/// are those of the loop's clock [us].
 class Peers {
  public:
-  using Time = std::chrono::steady_clock::time_point;
   /// True: not heard before.
-  bool hear(const status_t& status, Time now);
+  bool hear(const status_t& status, std::int64_t now_us);
 
   /// Some process of this role is running and was heard within the timeout.
-  bool alive(const std::string& role, Time now, std::chrono::nanoseconds timeout) const;
+  bool alive(Role role, std::int64_t now_us, std::int64_t timeout_us) const;
   /// Role of the process of this name heard last; empty: never heard.
-  std::string role_of(const std::string& name) const;
+  std::optional<Role> role_of(const std::string& name) const;
   /// Another run of this name that is alive and started earlier.
   std::optional<Peer> elder_namesake(const std::string& name, std::int64_t run, const std::string& host,
-                                     std::int32_t pid, Time now, std::chrono::nanoseconds timeout) const;
+                                     std::int32_t pid, std::int64_t now_us, std::int64_t timeout_us) const;
 
  private:
   struct Key {

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A verdict of the sender is no proof: whoever listens to answers hears their problems, too, and verifies.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "egocal/bus/convert.hpp"
+#include "egocal/calibration_t.hpp"
+#include "egocal/online/algorithm1.hpp"
+#include "egocal/problem_t.hpp"
+
+namespace egocal::bus {
+
+enum class Standing {
+  verified,    ///< its problem is known: the certificate is this listener's own
+  unverified,  ///< its problem has not been received (yet): the certificate is the sender's word
+  refused,     ///< not an answer: out of range, contradicts itself, or its problem denies the certificate
+};
+
+/// An answer as a listener may use it.
+struct CheckedAnswer {
+  Standing standing = Standing::refused;
+  /// Its certificate is this listener's own where it could be computed, whatever the sender claimed. Not
+  /// certified unless verified.
+  Answer answer;
+  std::string reason;  ///< of a refusal, a short constant text that also names its counter
+};
+
+/// Verifies T as an answer to the problem, in its mode. About 2 us.
+Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b);
+
+/// The newest problems of all pairs, and the checks of the answers to them. Memory is bounded whatever
+/// arrives. Not thread-safe.
+class AnswerCheck {
+ public:
+  /// The reason why it was refused; empty: taken.
+  std::string take(const problem_t& message);
+  CheckedAnswer check(const calibration_t& message) const;
+
+  static constexpr std::size_t max_pairs = 256;
+  static constexpr std::size_t problems_per_pair = 16;  ///< answers come within a few problems
+
+ private:
+  using Key = std::pair<std::string, std::string>;
+  struct Known {
+    std::int64_t session = 0, seq = 0, utime = 0;
+    Problem problem;  ///< its blocks summed to one
+  };
+  struct Pair {
+    std::vector<Known> problems;
+    std::size_t next = 0;       ///< where the next one goes
+    std::uint64_t touched = 0;  ///< the longest untouched pair is forgotten
+  };
+  const Known* find(const calibration_t& message) const;
+
+  std::map<Key, Pair> pairs_;
+  std::uint64_t touches_ = 0;
+};
+
+/// Copies the certificate of a checked answer into its message, so that whoever shows the message shows what
+/// was verified.
+void set_certificate(const CheckedAnswer& checked, calibration_t& message);
+
+/// What is needed to choose between answers: an answer that could not be verified never outranks one that
+/// was, whatever problem it claims to belong to.
+struct StandingRank {
+  Standing standing = Standing::refused;
+  AnswerRank rank;
+};
+bool outranks(const StandingRank& x, const StandingRank& y);
+StandingRank rank_of(const CheckedAnswer& checked, const calibration_t& message);
+
+}  // namespace egocal::bus

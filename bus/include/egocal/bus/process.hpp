@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What a process is and what it does, as its heartbeats say it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace egocal::bus {
+
+enum class Role { player, pairing, global, fast, monitor };
+
+enum class State {
+  waiting,  ///< cannot work yet, or lets an older process of its name work
+  standby,  ///< healthy, with nothing to do: steps in when it is needed
+  running,
+  paused,
+  ended,
+};
+
+/// As status_t carries them.
+std::string_view role_name(Role role);
+std::string_view state_name(State state);
+/// Empty: another version's.
+std::optional<Role> role_from_name(std::string_view name);
+std::optional<State> state_from_name(std::string_view name);
+
+}  // namespace egocal::bus

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/bus/answer_check.hpp"
+
+#include <algorithm>
+
+#include "egocal/certificate/certificate.hpp"
+#include "egocal/problem/ground_plane.hpp"
+
+namespace egocal::bus {
+
+namespace {
+
+/// Of two extrinsics that are the same up to the rounding of their conversion [1, m].
+constexpr double same_pose = 1e-9;
+
+const std::string denied = "answer that claims a certificate which its problem denies";
+
+bool same(const DualQuaternion& x, const DualQuaternion& y) {
+  const Vector8d difference = canonical_sign(x).vec() - canonical_sign(y).vec();
+  const double length = 1 + x.vec().tail<4>().norm();
+  return difference.norm() <= same_pose * length;
+}
+
+}  // namespace
+
+Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b) {
+  const Matrix8d Q = cost_matrix(problem);
+  if (problem.mode == Mode::spatial) return verify(Q, T_a_b);
+  const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, G_b);
+  Certificate certificate = verify_planar(Q, T_p);
+  // the projection onto the plane is optimal, the answer itself lies off it
+  if (!same(extrinsic_from_planar(T_p, G_a, G_b), T_a_b)) certificate.optimality = Optimality::undecided;
+  return certificate;
+}
+
+std::string AnswerCheck::take(const problem_t& message) {
+  Checked<Problem> problem = to_problem(message);
+  if (!problem) return problem.reason;
+  Pair& pair = pairs_[{message.sensor_a, message.sensor_b}];
+  pair.touched = ++touches_;
+  Known known{message.session, message.seq, message.utime, std::move(*problem.value)};
+  known.problem.blocks = {total(known.problem.blocks)};
+  const auto again = std::find_if(pair.problems.begin(), pair.problems.end(), [&](const Known& k) {
+    return k.session == known.session && k.seq == known.seq && k.utime == known.utime;
+  });
+  if (again != pair.problems.end()) {
+    *again = std::move(known);
+  } else if (pair.problems.size() < problems_per_pair) {
+    pair.problems.push_back(std::move(known));
+  } else {
+    pair.problems[pair.next] = std::move(known);
+    pair.next = (pair.next + 1) % problems_per_pair;
+  }
+  if (pairs_.size() > max_pairs)
+    pairs_.erase(std::min_element(pairs_.begin(), pairs_.end(), [](const auto& x, const auto& y) {
+      return x.second.touched < y.second.touched;
+    }));
+  return {};
+}
+
+const AnswerCheck::Known* AnswerCheck::find(const calibration_t& message) const {
+  const auto pair = pairs_.find({message.sensor_a, message.sensor_b});
+  if (pair == pairs_.end()) return nullptr;
+  const auto known =
+      std::find_if(pair->second.problems.begin(), pair->second.problems.end(), [&](const Known& k) {
+        return k.session == message.session && k.seq == message.seq && k.utime == message.utime;
+      });
+  return known == pair->second.problems.end() ? nullptr : &*known;
+}
+
+CheckedAnswer AnswerCheck::check(const calibration_t& message) const {
+  CheckedAnswer checked;
+  Checked<Answer> answer = to_answer(message);
+  if (!answer) {
+    checked.reason = answer.reason;
+    return checked;
+  }
+  checked.answer = std::move(*answer.value);
+  const Optimality claimed = checked.answer.certificate.optimality;
+  const Known* known = find(message);
+  if (!known) {
+    checked.standing = Standing::unverified;
+    if (claimed == Optimality::certified) checked.answer.certificate.optimality = Optimality::undecided;
+    return checked;
+  }
+  checked.answer.certificate = verify_answer(known->problem, checked.answer.T_a_b);
+  if (claimed == Optimality::certified && checked.answer.certificate.optimality != Optimality::certified) {
+    checked.reason = denied;
+    return checked;
+  }
+  checked.standing = Standing::verified;
+  return checked;
+}
+
+void set_certificate(const CheckedAnswer& checked, calibration_t& message) {
+  const Certificate& certificate = checked.answer.certificate;
+  message.cost = certificate.cost;
+  message.lower_bound = certificate.lower_bound;
+  message.gap = certificate.gap;
+  message.scaled_gap = certificate.scaled_gap;
+  message.status = wire_status(certificate.optimality);
+  message.reach_translation = certificate.reach_translation;
+  message.reach_rotation = certificate.reach_rotation;
+}
+
+bool outranks(const StandingRank& x, const StandingRank& y) {
+  if (x.standing != y.standing) return x.standing < y.standing;
+  return egocal::outranks(x.rank, y.rank);
+}
+
+StandingRank rank_of(const CheckedAnswer& checked, const calibration_t& message) {
+  const Certificate& certificate = checked.answer.certificate;
+  return {checked.standing, {message.session, message.seq, certificate.optimality, certificate.cost}};
+}
+
+}  // namespace egocal::bus

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "egocal/bus/transport.hpp"
+
+namespace egocal::bus {
+
+/// What is sent comes back to the sender, in order: memq://, for tests of handlers.
+std::unique_ptr<Transport> open_memory_transport(const Clock& clock);
+
+}  // namespace egocal::bus

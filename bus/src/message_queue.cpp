@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "message_queue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace egocal::bus {
+
+namespace {
+
+/// Taken from the transport before handlers get their turn again.
+constexpr int fill_at_once = 256;
+/// Of all messages that wait [bytes]; several times what all queues of a large rig hold.
+constexpr std::size_t max_bytes = std::size_t{64} << 20;
+
+}  // namespace
+
+void MessageQueue::subscribe(const std::string& channel, bool prefix, Loop::Handler handler, int capacity) {
+  Subscriber& subscriber = subscribers_.emplace_back();
+  subscriber.handler = std::move(handler);
+  subscriber.capacity = capacity;
+  if (prefix)
+    by_prefix_.emplace_back(channel, &subscriber);
+  else
+    by_name_[channel].push_back(&subscriber);
+}
+
+bool MessageQueue::wanted(std::string_view channel) const {
+  return by_name_.contains(channel) ||
+         std::any_of(by_prefix_.begin(), by_prefix_.end(),
+                     [&](const auto& entry) { return channel.starts_with(entry.first); });
+}
+
+void MessageQueue::fill(Transport& transport) {
+  const Transport::Wanted is_wanted = [this](std::string_view channel) { return wanted(channel); };
+  Received message;
+  for (int i = 0; i < fill_at_once && transport.receive(is_wanted, message); ++i) {
+    if (const auto named = by_name_.find(message.channel); named != by_name_.end())
+      for (Subscriber* subscriber : named->second) put(*subscriber, message);
+    for (const auto& [prefix, subscriber] : by_prefix_)
+      if (message.channel.starts_with(prefix)) put(*subscriber, message);
+  }
+}
+
+void MessageQueue::put(Subscriber& subscriber, const Received& message) {
+  if (subscriber.waiting >= subscriber.capacity || bytes_ + message.bytes.size() > max_bytes) {
+    ++dropped_;
+    return;
+  }
+  ++subscriber.waiting;
+  bytes_ += message.bytes.size();
+  waiting_.push_back({&subscriber,
+                      std::string(message.channel),
+                      {message.bytes.begin(), message.bytes.end()},
+                      message.mono_us});
+}
+
+void MessageQueue::handle_one() {
+  const Waiting message = std::move(waiting_.front());
+  waiting_.pop_front();
+  --message.subscriber->waiting;
+  bytes_ -= message.bytes.size();
+  message.subscriber->handler({message.channel, message.bytes, message.mono_us});
+}
+
+}  // namespace egocal::bus

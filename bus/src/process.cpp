@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/bus/process.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace egocal::bus {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> roles{"player", "pairing", "global", "fast", "monitor"};
+constexpr std::array<std::string_view, 5> states{"waiting", "standby", "running", "paused", "ended"};
+
+template <class Enum, std::size_t n>
+std::optional<Enum> from_name(const std::array<std::string_view, n>& names, std::string_view name) {
+  for (std::size_t i = 0; i < n; ++i)
+    if (names[i] == name) return static_cast<Enum>(i);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view role_name(Role role) {
+  return roles[static_cast<std::size_t>(role)];
+}
+
+std::string_view state_name(State state) {
+  return states[static_cast<std::size_t>(state)];
+}
+
+std::optional<Role> role_from_name(std::string_view name) {
+  return from_name<Role>(roles, name);
+}
+
+std::optional<State> state_from_name(std::string_view name) {
+  return from_name<State>(states, name);
+}
+
+}  // namespace egocal::bus

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "egocal/bus/rig.hpp"
+#include "program/commands.hpp"
+#include "solving/problems.hpp"
+
+namespace egocal::services {
+
+/// What solver processes share: the newest problem of each pair, the answers of other solvers, commands,
+/// counters and what the heartbeat says. A solver has no state worth keeping: the next problem brings another
+/// one up to date.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  Solver(const Solver&) = delete;
+  Solver& operator=(const Solver&) = delete;
+
+ protected:
+  struct Pair {
+    Pair(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& config)
+        : inbox(loop, heartbeat, config), outbox(loop, heartbeat) {}
+    ProblemInbox inbox;
+    AnswerOutbox outbox;
+    std::int64_t session = -1;  ///< of the newest problem
+    bool paused = false;
+  };
+
+  Solver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig);
+
+  /// A problem that came since the last call; its session is the pair's from now on.
+  std::optional<ReceivedProblem> take(std::size_t pair);
+  /// Once a second and on commands.
+  void report();
+
+  /// Problems may be waiting. Also called once a second: another process may have fallen silent.
+  virtual void answer_newest() = 0;
+  /// An answer of another process to a problem of this pair.
+  virtual void hear(std::size_t pair, const calibration_t& message) = 0;
+  virtual void reset(std::size_t pair) = 0;
+  /// While nothing is paused.
+  virtual bus::State state() const = 0;
+  /// What the user should know about the other solvers, one line; empty: nothing.
+  virtual std::string advice() const = 0;
+
+  bus::Loop& loop_;
+  bus::Heartbeat& heartbeat_;
+  std::vector<std::unique_ptr<Pair>> pairs_;
+
+ private:
+  void obey(Verb verb, const command_t& command);
+};
+
+}  // namespace egocal::services

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Both solvers, in one process, on a virtual network in virtual time: no socket, no waiting.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/simulation/simulation.hpp"
+#include "solving/fast.hpp"
+#include "solving/global.hpp"
+#include "support/virtual_time.hpp"
+
+namespace egocal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// One process: its loop and its heartbeat.
+struct Host {
+  Host(test::VirtualNetwork& network, const bus::Clock& clock, bus::Identity identity)
+      : loop(network.transport(), clock, {.handle_signals = false, .host = "car"}),
+        heartbeat(loop, std::move(identity), 3s) {}
+  bus::Loop loop;
+  bus::Heartbeat heartbeat;
+};
+
+class Solving : public testing::Test {
+ protected:
+  Solving() {
+    rig.pairs.resize(1);
+    rig.pairs[0].a = "left";
+    rig.pairs[0].b = "right";
+    observer.subscribe<calibration_t>(
+        bus::calibration_channel("left", "right"),
+        [this](const calibration_t& message, const bus::Arrival&) { answers[message.solver] = message; });
+    observer.subscribe<status_t>(bus::status_channel, [this](const status_t& message, const bus::Arrival&) {
+      statuses[message.name] = message;
+    });
+    SimulationOptions options;
+    options.terrain = Terrain::free;
+    options.poses = 60;
+    options.relative_noise = 0.01;
+    options.T_vehicle_sensor = {Pose{}, Pose{rotation_exp({0.3, -0.2, 0.9}), {0.4, -0.8, 0.3}}};
+    const std::vector<Trajectory> drive = simulate(options);
+    Statistics statistics;
+    for (std::size_t i = 1; i < drive[0].size(); ++i)
+      statistics.add(conjugate(drive[0][i - 1].pose) * drive[0][i].pose,
+                     conjugate(drive[1][i - 1].pose) * drive[1][i].pose);
+    problem.blocks = {statistics};
+  }
+
+  void send(std::int64_t seq, double time_s) {
+    problem_t message = bus::to_message(problem);
+    message.session = 1'600'000'000'000'000;
+    message.utime = message.session + static_cast<std::int64_t>(1e6 * time_s);
+    message.seq = seq;
+    message.sensor_a = "left";
+    message.sensor_b = "right";
+    message.host = "car";
+    message.received_mono_us = observer.mono_us();
+    observer.publish(bus::problem_channel("left", "right"), message);
+  }
+  void pass(std::chrono::nanoseconds time) {
+    std::vector<bus::Loop*> loops{&observer};
+    if (fast_host) loops.push_back(&fast_host->loop);
+    if (global_host) loops.push_back(&global_host->loop);
+    test::run_for(clock, loops, time);
+  }
+  void start_fast() {
+    fast_host =
+        std::make_unique<Host>(network, clock, bus::Identity{"egocal-fast", bus::Role::fast, "1", 100});
+    fast = std::make_unique<FastSolver>(fast_host->loop, fast_host->heartbeat, rig, Method::sqp);
+  }
+  void start_global() {
+    global_host =
+        std::make_unique<Host>(network, clock, bus::Identity{"egocal-global", bus::Role::global, "1", 200});
+    global =
+        std::make_unique<GlobalSolver>(global_host->loop, global_host->heartbeat, rig, Method::dual, false);
+  }
+
+  test::VirtualClock clock;
+  test::VirtualNetwork network{clock};
+  bus::Loop observer{network.transport(), clock, {.handle_signals = false, .host = "car"}};
+  bus::Rig rig;
+  Problem problem;
+  std::map<std::string, calibration_t> answers;
+  std::map<std::string, status_t> statuses;
+  std::unique_ptr<Host> fast_host, global_host;
+  std::unique_ptr<FastSolver> fast;
+  std::unique_ptr<GlobalSolver> global;
+};
+
+TEST_F(Solving, RightAfterTheStartNoSolverIsMissed) {
+  start_fast();
+  start_global();
+  pass(10s);
+  for (const char* name : {"egocal-fast", "egocal-global"}) EXPECT_EQ(statuses[name].last_error, "") << name;
+  EXPECT_EQ(statuses["egocal-fast"].state, "running");
+  EXPECT_EQ(statuses["egocal-global"].state, "standby");
+}
+
+TEST_F(Solving, AMissingSolverIsReportedAfterTheTimeoutOnly) {
+  start_fast();
+  pass(2900ms);
+  EXPECT_EQ(statuses["egocal-fast"].last_error, "");
+  pass(2s);
+  EXPECT_THAT(statuses["egocal-fast"].last_error, testing::HasSubstr("no global solver is heard"));
+}
+
+TEST_F(Solving, TheGlobalSolverAnswersUntilTheFastOneIsVerifiedAndStepsInWhenItEnds) {
+  start_fast();
+  start_global();
+  pass(1s);
+  std::int64_t seq = 0;
+  for (; seq < 100; ++seq) {  // ten seconds of data: the fast solver asks for the first five
+    send(seq, 0.1 * static_cast<double>(seq));
+    pass(100ms);
+    ASSERT_EQ(answers["egocal-fast"].seq, seq);
+    EXPECT_EQ(answers["egocal-fast"].status, 0);
+  }
+  const std::int64_t last_global = answers["egocal-global"].seq;
+  EXPECT_GT(last_global, 40);
+  EXPECT_LT(last_global, 60);
+  EXPECT_EQ(answers["egocal-fast"].latency_us, 0) << "virtual time stands still while messages travel";
+
+  fast_host->heartbeat.end();
+  fast.reset();
+  fast_host.reset();
+  send(seq, 10);
+  pass(1500ms);
+  EXPECT_EQ(answers["egocal-global"].seq, seq);
+  EXPECT_EQ(statuses["egocal-global"].state, "running");
+}
+
+TEST_F(Solving, AResetMeansTheNewestSessionAlsoWhereNothingWasAnswered) {
+  start_fast();
+  start_global();
+  for (int seq = 0; seq < 100; ++seq) {
+    send(seq, 0.1 * seq);
+    pass(100ms);
+  }
+  command_t command{};
+  command.to = "*";
+  command.verb = "reset";
+  command.session = 1'600'000'000'000'000;
+  observer.publish(bus::command_channel, command);
+  pass(2s);
+  for (const char* name : {"egocal-fast", "egocal-global"})
+    for (const counter_t& counter : statuses[name].counters)
+      EXPECT_NE(counter.name, "rejected: " + not_meant);
+}
+
+}  // namespace
+}  // namespace egocal::services
