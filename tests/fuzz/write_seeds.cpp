@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/glue.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "support/bag_writer.hpp"
 
 using namespace egocal;
 
@@ -76,6 +78,36 @@ status_t status() {
   return message;
 }
 
+/// Bags of a few messages of every type, without their magic bytes, which the fuzzers put before them.
+void write_bag_seeds(const std::filesystem::path& folder) {
+  using egocal::testing::MessageEncoder;
+  const auto messages = [](MessageEncoder::Kind kind) {
+    std::vector<egocal::testing::WrittenMessage> all;
+    for (const char* type : {"nav_msgs/Odometry", "geometry_msgs/PoseStamped", "tf2_msgs/TFMessage"})
+      for (int i = 0; i < 3; ++i)
+        all.push_back({"/topic", type, pose(i).time_us, egocal::testing::encoded(kind, type, pose(i))});
+    return all;
+  };
+  const auto write_seed = [&](const std::string& fuzzer, const std::string& name, const std::string& file,
+                              std::size_t magic) {
+    std::filesystem::create_directories(folder / fuzzer);
+    std::ofstream(folder / fuzzer / name, std::ios::binary) << file.substr(magic);
+  };
+  for (const std::string compression : {"", "lz4", "zstd"})
+    write_seed("mcap", "seed_" + compression,
+               egocal::testing::mcap_file(messages(MessageEncoder::Kind::cdr), {compression, 4}), 8);
+  write_seed("mcap", "seed_unchunked",
+             egocal::testing::mcap_file(messages(MessageEncoder::Kind::cdr), {"", 0}), 8);
+  for (const std::string compression : {"none", "lz4", "bz2"})
+    write_seed("rosbag1", "seed_" + compression,
+               egocal::testing::rosbag1_file(messages(MessageEncoder::Kind::ros1), {compression, 4}), 13);
+  const std::string database = (folder / "seed.db3").string();
+  egocal::testing::write_db3(database, messages(MessageEncoder::Kind::cdr));
+  std::ifstream stream(database, std::ios::binary);
+  write_seed("database", "seed", {std::istreambuf_iterator<char>(stream), {}}, 16);
+  std::filesystem::remove(database);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -113,4 +145,5 @@ int main(int argc, char** argv) {
                 bus::encode(bus::to_message(pose(i), i / 2)));
     log.close();
   }
+  write_bag_seeds(folder);
 }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <limits>
 
 #include "egocal/error.hpp"
@@ -13,8 +15,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr ExtrinsicFormat formats[] = {ExtrinsicFormat::yaml, ExtrinsicFormat::ros, ExtrinsicFormat::urdf,
-                                       ExtrinsicFormat::kalibr};
+std::vector<ExtrinsicFormat> all_formats() {
+  std::vector<ExtrinsicFormat> formats;
+  for (const std::string& name : extrinsic_format_names())
+    formats.push_back(*extrinsic_format_from_name(name));
+  return formats;
+}
+const std::vector<ExtrinsicFormat> formats = all_formats();
 
 NamedExtrinsic example() {
   NamedExtrinsic extrinsic;
@@ -36,6 +43,31 @@ TEST(ExtrinsicText, EveryFormatNamesFramesAndQuaternionOrder) {
   EXPECT_FALSE(extrinsic_format_from_name("xml"));
   EXPECT_THAT(extrinsic_text(example(), ExtrinsicFormat::ros), HasSubstr("0.125 -0.25 2"));
   EXPECT_THAT(extrinsic_text(example(), ExtrinsicFormat::urdf), HasSubstr("xyz=\"0.125 -0.25 2\""));
+}
+
+TEST(ExtrinsicText, WhatShouldNotBeUsedIsSaidInEveryFormat) {
+  NamedExtrinsic extrinsic = example();
+  extrinsic.usable = false;
+  for (const ExtrinsicFormat format : formats)
+    EXPECT_THAT(
+        extrinsic_text(extrinsic, format),
+        ::testing::AnyOf(HasSubstr("DO NOT USE"), HasSubstr("usable: false"), HasSubstr("\"usable\": false")))
+        << name(format);
+}
+
+/// Points of the parent taken to the child: as kalibr's and OpenCV's transforms do, and the others do
+/// inverted.
+TEST(ExtrinsicText, DirectionsAreThoseOfEachProgram) {
+  NamedExtrinsic extrinsic = example();
+  extrinsic.T_parent_child = {Eigen::Quaterniond(std::sqrt(0.5), 0, 0, std::sqrt(0.5)),
+                              {1, 2, 3}};  // 90 deg yaw
+  // R' t = (2, -1, 3)
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::opencv),
+              ::testing::ContainsRegex("T: [^T]*data: . -(2|1.9)"));
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::lio_sam), HasSubstr("extrinsicTrans: [1, 2, 3]"));
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::autoware),
+              HasSubstr("    x: 1\n    y: 2\n    z: 3\n"));
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::matrix), HasSubstr(" 3\n0 0 0 1\n"));
 }
 
 TEST(ExtrinsicText, RosTakesTheScalarLast) {

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -130,33 +132,102 @@ TEST(Noise, ErrorsFallWithThePairsAndRiseWithTheNoise) {
   options.repeats = 4;
   const std::vector<NoisePoint> points = noise_experiment(options, {});
   ASSERT_EQ(points.size(), 6u);
-  EXPECT_LT(points[2].rotation, points[0].rotation);
-  EXPECT_LT(points[2].rotation, points[5].rotation);
+  EXPECT_LT(points[2].rotation.median, points[0].rotation.median);
+  EXPECT_LT(points[2].rotation.median, points[5].rotation.median);
+  EXPECT_LE(points[2].rotation.lower_quartile, points[2].rotation.median);
+  EXPECT_LE(points[2].rotation.median, points[2].rotation.upper_quartile);
   for (const NoisePoint& point : points) EXPECT_EQ(point.certified, point.runs);
 }
 
-TEST(Figure, LeavesNumbersAndScript) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "egocal_test_figure" / "deep";
-  std::filesystem::remove_all(folder);
-  const std::vector<GlobalityPoint> points{{.frames = 10, .rotation = true, .amount = 1, .gap_median = 0.5}};
-  const FigureFiles files = figure_files(folder.string(), "gap");
-  write_figure(files, csv(points), plot(points, files.csv, files.png));
-  std::ifstream in(files.csv);
+TEST(Noise, SlopesAreThoseOfThePoints) {
+  std::vector<NoisePoint> points;
+  for (const int n : {50, 200, 400, 800}) {
+    NoisePoint point;
+    point.level = 0.1;
+    point.pairs = n;
+    point.translation.median = n < 100 ? 7 : 3 / std::sqrt(n);  // too few pairs are not looked at
+    point.rotation.median = 0.1 / n;
+    points.push_back(point);
+  }
+  const std::vector<NoiseSlope> found = slopes(points);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].translation, -0.5, 1e-9);
+  EXPECT_NEAR(found[0].rotation, -1, 1e-9);
+}
+
+std::string content_of(const std::string& file) {
+  std::ifstream in(file);
   std::stringstream text;
   text << in.rdbuf();
-  EXPECT_THAT(text.str(), HasSubstr("10,rotation,1,deg,0,0.5,"));
-  EXPECT_TRUE(std::filesystem::exists(files.script));
+  return text.str();
+}
+
+TEST(Figure, LeavesNumbersAndPictures) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "egocal_test_figure" / "it's deep";
+  std::filesystem::remove_all(folder);
+  const std::vector<GlobalityPoint> points{{.frames = 10, .rotation = true, .amount = 1, .gap_median = 0.5}};
+  const std::vector<std::string> files = write_figure(folder.string(), "gap", csv(points), panels(points));
+  ASSERT_GE(files.size(), 3u);
+  EXPECT_THAT(content_of(files[0]), HasSubstr("10,rotation,1,deg,0,0.5,"));
+  EXPECT_THAT(files[1], ::testing::EndsWith("gap-rotation.svg"));
+  EXPECT_THAT(content_of(files[1]), ::testing::StartsWith("<svg"));
+  EXPECT_THAT(content_of(files[1]), HasSubstr("10 frames"));
   std::filesystem::remove_all(folder.parent_path());
 }
 
 TEST(Figure, NamesTheFileThatItCannotWrite) {
-  const FigureFiles files = figure_files("/proc/nowhere", "gap");
   try {
-    write_figure(files, "", "");
+    write_figure("/proc/nowhere", "gap", "", {});
     FAIL() << "wrote to /proc";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("/proc/nowhere"));
   }
+}
+
+TEST(Figure, QuantilesInterpolate) {
+  EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(quantile({1, 2, 3, 4, 5}, 0.25), 2);
+  EXPECT_TRUE(std::isnan(median({})));
+}
+
+TEST(Plot, TicksAreRoundNumbersInsideTheRange) {
+  EXPECT_THAT(linear_ticks(0, 10, 5), ::testing::ElementsAre(0, 2, 4, 6, 8, 10));
+  EXPECT_THAT(linear_ticks(-0.03, 0.021, 5),
+              ::testing::Each(::testing::AllOf(::testing::Ge(-0.03), ::testing::Le(0.021))));
+  EXPECT_TRUE(linear_ticks(1, 1, 5).empty());
+  EXPECT_TRUE(linear_ticks(0, std::numeric_limits<double>::infinity(), 5).empty());
+}
+
+TEST(Plot, DrawsWhatCanBeDrawnAndEscapesText) {
+  Plot plot;
+  plot.title = "a < b & 'c'";
+  plot.y.scale = AxisScale::logarithmic;
+  Series series;
+  series.name = "<script>";
+  series.x = {1, 2, 3, 4, 5};
+  series.y = {1, 10, 0, std::numeric_limits<double>::quiet_NaN(), 100};
+  plot.series = {series};
+  const std::string drawn = svg(plot);
+  EXPECT_THAT(drawn, ::testing::Not(HasSubstr("<script>")));
+  EXPECT_THAT(drawn, ::testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(drawn, HasSubstr("a &lt; b &amp; &#39;c&#39;"));
+  // zero and NaN interrupt the line
+  std::size_t lines = 0;
+  for (std::size_t at = drawn.find("<polyline"); at != std::string::npos;
+       at = drawn.find("<polyline", at + 1))
+    ++lines;
+  EXPECT_EQ(lines, 2u);
+  EXPECT_EQ(drawn, svg(plot));
+}
+
+TEST(Plot, HistogramsCountEveryFiniteValueOnce) {
+  const Series bars = histogram({0, 1, 1, 2, 10, std::numeric_limits<double>::quiet_NaN()}, 5, Colour::blue);
+  double sum = 0;
+  for (const double count : bars.y) sum += count;
+  EXPECT_EQ(sum, 5);
+  EXPECT_EQ(bars.y.front(), 3);
+  EXPECT_TRUE(histogram({}, 5, Colour::blue).x.empty());
 }
 
 TEST(Source, SimulatesWhereThereAreNoFiles) {

@@ -11,6 +11,8 @@ void add_commands(cli::App program) {
   add_solve(program);
   add_check(program);
   add_simulate(program);
+  add_info(program);
+  add_align(program);
   add_log(program);
   add_up(program);
   add_tell(program);

@@ -13,6 +13,8 @@ void add_solve(cli::App program);
 void add_check(cli::App program);
 void add_simulate(cli::App program);
 void add_log(cli::App program);
+void add_info(cli::App program);
+void add_align(cli::App program);
 void add_up(cli::App program);
 void add_tell(cli::App program);
 void add_export(cli::App program);

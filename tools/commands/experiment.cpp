@@ -37,14 +37,8 @@ class Progress {
 
 template <typename Points>
 void finish(const Points& points, const std::string& directory, const std::string& name) {
-  const FigureFiles files = figure_files(directory, name);
-  const FigureFiles written = write_figure(files, csv(points), plot(points, files.csv, files.png));
-  fmt::print("{}\n{}\n", written.csv, written.script);
-  if (written.png.empty()) {
-    fmt::print(stderr, "no plot: gnuplot is not installed or failed; the numbers are in {}\n", written.csv);
-  } else {
-    fmt::print("{}\n", written.png);
-  }
+  for (const std::string& file : write_figure(directory, name, csv(points), panels(points)))
+    fmt::print("{}\n", file);
 }
 
 void add_noise(cli::App experiment) {
@@ -71,10 +65,14 @@ void add_noise(cli::App experiment) {
       .show_default()
       .check(cli::Check::range(1, 1000));
   command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
-  command.add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
-      .show_default();
-  command.callback(
-      [options] { finish(noise_experiment(options->noise, Progress{}), options->out, "noise"); });
+  command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
+  command.callback([options] {
+    const std::vector<NoisePoint> points = noise_experiment(options->noise, Progress{});
+    finish(points, options->out, "noise");
+    for (const NoiseSlope& slope : slopes(points))
+      fmt::print("noise {:g} %: errors fall with n^{:.2f} (translation), n^{:.2f} (rotation)\n",
+                 100 * slope.level, slope.translation, slope.rotation);
+  });
 }
 
 void add_online(cli::App experiment) {
@@ -100,8 +98,7 @@ void add_online(cli::App experiment) {
   command.add_option("--global", options->global, "dual or sdp")
       .show_default()
       .check(cli::Check::one_of({"dual", "sdp"}));
-  command.add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
-      .show_default();
+  command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
     const DataSet data = load(options->source);
     OnlineOptions online;
@@ -126,8 +123,7 @@ void add_globality(cli::App experiment) {
   command.add_option("--directions", options->globality.directions, "of each amount")
       .show_default()
       .check(cli::Check::range(1, 100000));
-  command.add_option("--out", options->out, "folder for the CSV, the gnuplot script and the PNG")
-      .show_default();
+  command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
     finish(globality_experiment(load(options->source), options->globality), options->out, "globality");
   });
@@ -136,7 +132,8 @@ void add_globality(cli::App experiment) {
 }  // namespace
 
 void add_experiment(cli::App program) {
-  cli::App experiment = program.add_subcommand("experiment", "the paper's experiments as CSV and plot");
+  cli::App experiment =
+      program.add_subcommand("experiment", "the paper's experiments, as numbers and pictures");
   experiment.require_subcommand();
   add_noise(experiment);
   add_online(experiment);

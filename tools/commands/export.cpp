@@ -114,13 +114,13 @@ void run(const Options& options) {
 
 void add_export(cli::App program) {
   const auto options = std::make_shared<Options>();
-  cli::App command = program.add_subcommand("export", "the current answer in the words of other programs");
+  cli::App command = program.add_subcommand("export", "export the current answer (YAML, ROS, URDF, ...)");
   command.add_option("--rig", options->rig, "rig file: takes the answer from the running processes");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
   command.add_option("--log", options->log, "LCM log of a session: takes its last answer");
   command.add_option("--pair", options->pair, "A,B where there are several");
   command.add_option("--format", options->format)
-      .check(cli::Check::one_of({"yaml", "ros", "urdf", "kalibr"}))
+      .check(cli::Check::one_of(extrinsic_format_names()))
       .show_default();
   command.add_option("--out", options->out, "file, written whole or not at all; standard output without it");
   command.add_option("--timeout", options->timeout, "waits so long for an answer [s]")

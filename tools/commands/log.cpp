@@ -13,7 +13,9 @@
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
-#include "egocal/io/trajectory_file.hpp"
+#include "egocal/io/mcap_writer.hpp"
+#include "offline/lcm_pose.hpp"
+#include "offline/trajectory_source.hpp"
 #include "progress.hpp"
 
 namespace egocal::tools {
@@ -40,7 +42,12 @@ void create(const CreateOptions& options) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) throw UsageError("--from: expected SENSOR=FILE, got '" + text + "'");
     const bus::Sensor& sensor = bus::sensor(rig, text.substr(0, equals));
-    trajectories[k] = read_trajectory(text.substr(equals + 1), options.times);
+    ReadOptions reading;
+    reading.times_file = options.times;
+    TrajectoryReading read = read_any_trajectory(text.substr(equals + 1), reading);
+    for (const std::string& note : read.notes)
+      fmt::print(stderr, "egocal: {}: {}\n", text.substr(equals + 1), note);
+    trajectories[k] = std::move(read.trajectory);
     for (std::size_t i = 0; i < trajectories[k].size(); ++i)
       entries.push_back(
           {trajectories[k][i].time_us, &sensor, static_cast<std::int64_t>(i), &trajectories[k][i]});
@@ -188,11 +195,47 @@ void repair(const std::string& file, const std::string& out) {
   fmt::print("{}: {} events; {}\n", out, events, damage_text(log.damage()));
 }
 
+/// Poses of every channel as topics and transforms, calibrations as transforms: for ROS 2 and Foxglove.
+void export_mcap(const std::string& file, const std::string& out) {
+  bus::LogReader log(file);
+  McapWriter mcap(out);
+  Progress progress("writing");
+  std::uint64_t poses = 0, transforms = 0, refused = 0;
+  while (const auto event = log.next()) {
+    const std::string name = bus::printable(event->channel, 63);
+    calibration_t calibration{};
+    if (const LcmPose message = decode_lcm_pose(event->data); !message.type.empty()) {
+      if (!message.pose) {
+        ++refused;
+        continue;
+      }
+      mcap.write_pose("/" + name, name + "_start", *message.pose.value);
+      mcap.write_transform(name + "_start", name, *message.pose.value);
+      ++poses;
+    } else if (bus::decode(event->data, calibration)) {
+      const bus::Checked<Answer> answer = bus::to_answer(calibration);
+      if (!answer) {
+        ++refused;
+        continue;
+      }
+      mcap.write_transform(bus::printable(calibration.sensor_a, 63), bus::printable(calibration.sensor_b, 63),
+                           {event->time_us, answer.value->T_a_b});
+      ++transforms;
+    }
+    progress(static_cast<double>(log.position()) / static_cast<double>(log.size()));
+  }
+  if (poses + transforms == 0) throw error_at(file, 0, "", "holds neither poses nor calibrations");
+  mcap.close();
+  fmt::print("{}: {} poses, {} calibrations{}; {}\n", out, poses, transforms,
+             refused > 0 ? fmt::format(", {} refused", refused) : "", damage_text(log.damage()));
+}
+
 void add_create(cli::App log) {
   const auto options = std::make_shared<CreateOptions>();
-  cli::App command = log.add_subcommand("create", "trajectory files to a log that can be played");
+  cli::App command = log.add_subcommand("create", "trajectories of any format to a log that can be played");
   command.add_option("RIG", options->rig, "rig file: sensors, channels, types").required();
-  command.add_option("--from", options->from, "SENSOR=FILE, once for each sensor").required();
+  command.add_option("--from", options->from, "SENSOR=FILE or SENSOR=FILE:TOPIC, once for each sensor")
+      .required();
   command.add_option("--times", options->times, "times of KITTI poses [s]");
   command.add_option("--out", options->out, "the log").required();
   command.callback([options] { create(*options); });
@@ -225,6 +268,11 @@ void add_log(cli::App program) {
   mend.add_option("LOG", *file).required();
   mend.add_option("--out", *out, "the new log").required();
   mend.callback([file, out] { repair(*file, *out); });
+
+  cli::App exported = log.add_subcommand("export", "poses and calibrations of a log for ROS 2 and Foxglove");
+  exported.add_option("LOG", *file).required();
+  exported.add_option("--mcap", *out, "the MCAP file").required();
+  exported.callback([file, out] { export_mcap(*file, *out); });
 }
 
 }  // namespace egocal::tools

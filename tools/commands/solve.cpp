@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-
+#include <limits>
 #include <memory>
 #include <tuple>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
+#include "egocal/io/extrinsic_text.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "offline/calibration.hpp"
 #include "offline/report.hpp"
 
@@ -27,6 +29,7 @@ struct Options {
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
   bool json = false;
+  std::string format, out, frame_a = "a", frame_b = "b";
 };
 
 Reading reading(bool invert, const std::string& order) {
@@ -97,13 +100,40 @@ SolveRequest understood(const Options& options) {
   return result;
 }
 
+/// The answer as a file for another program.
+void write_extrinsic(const Options& options, const SolveResult& result) {
+  const Calibration& calibration = result.calibration;
+  NamedExtrinsic extrinsic;
+  extrinsic.parent = options.frame_a;
+  extrinsic.child = options.frame_b;
+  extrinsic.T_parent_child = calibration.T_a_b;
+  extrinsic.certified = calibration.certificate.optimality == Optimality::certified;
+  extrinsic.pairs = static_cast<long long>(total(calibration.problem.blocks).count);
+  extrinsic.stddev = calibration.observability.stddev;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!calibration.observability.observable[i])
+      (*extrinsic.stddev)[i] = std::numeric_limits<double>::infinity();
+  extrinsic.usable = calibration.verdict != Verdict::contradictory;
+  const std::string text = extrinsic_text(
+      extrinsic, *extrinsic_format_from_name(options.format.empty() ? "yaml" : options.format));
+  if (options.out.empty())
+    fmt::print("{}", text);
+  else
+    write_whole_file(options.out, text);
+}
+
 void run(const Options& options) {
   const SolveRequest understood_options = understood(options);
   const SolveResult result = calibrate_offline(understood_options);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
-  fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
-                                  : report_text(result, understood_options.truth));
   const Calibration& calibration = result.calibration;
+  const bool written = !options.format.empty() || !options.out.empty();
+  if (written) write_extrinsic(options, result);
+  if (written && calibration.verdict == Verdict::contradictory)
+    fmt::print(stderr, "egocal: the motions contradict each other: do not use this extrinsic\n");
+  if (!written || !options.out.empty())
+    fmt::print("{}\n", options.json ? report_json(result, understood_options.truth)
+                                    : report_text(result, understood_options.truth));
   if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
     throw cli::Exit{3};
 }
@@ -114,8 +144,10 @@ void add_solve(cli::App program) {
   const auto options = std::make_shared<Options>();
   cli::App command =
       program.add_subcommand("solve", "two trajectories in, the extrinsic of b in a out, with proof");
-  command.add_option("A", options->source.a,
-                     "trajectory of sensor a: TUM, EuRoC csv, or KITTI with --times; with --log its channel");
+  command.add_option(
+      "A", options->source.a,
+      "trajectory of sensor a: FILE or FILE:TOPIC of a ROS bag, MCAP, LCM log, TUM, KITTI, EuRoC or "
+      "other csv; with --log its channel");
   command.add_option("B", options->source.b, "trajectory of sensor b");
   command.add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
   command.add_option("--pairs", options->source.pairs,
@@ -123,6 +155,9 @@ void add_solve(cli::App program) {
   command.add_option("--times", options->times, "times of KITTI poses, one a line [s]");
   command.add_option("--times-a", options->source.times_a, "times of A alone");
   command.add_option("--times-b", options->source.times_b, "times of B alone");
+  command.add_option("--columns", options->source.reading.columns,
+                     "names of a table's columns: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
+  command.add_option("--rate", options->source.reading.rate, "of KITTI poses without times [Hz; 10]");
   command.add_option("--method", options->method, "solver, or a baseline of the paper")
       .check(cli::Check::one_of(
           {"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))
@@ -157,6 +192,12 @@ void add_solve(cli::App program) {
   command.add_option("--nominal", options->nominal,
                      "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
   command.add_option("--truth", options->truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
+  command.add_option("--format", options->format, "writes the extrinsic for another program [yaml]")
+      .check(cli::Check::one_of(extrinsic_format_names()));
+  command.add_option("--out", options->out,
+                     "file for --format; without it, on standard output and nothing else");
+  command.add_option("--frame-a", options->frame_a, "name of sensor a's frame in it").show_default();
+  command.add_option("--frame-b", options->frame_b, "name of sensor b's frame in it").show_default();
   command.add_flag("--json", options->json, "one JSON object on standard output");
   command.callback([options] { run(*options); });
 }

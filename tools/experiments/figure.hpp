@@ -3,20 +3,27 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "figures/plot.hpp"
 
 namespace egocal::tools {
 
-/// What write_figure left behind.
-struct FigureFiles {
-  std::string csv, script;
-  std::string png;  ///< empty where gnuplot is not installed or failed
+/// One picture of an experiment.
+struct Panel {
+  std::string name;  ///< part of the file's name: "rotation"
+  Plot plot;
 };
 
-/// Names of the files of one figure.
-FigureFiles figure_files(const std::string& directory, const std::string& name);
+/// Writes DIRECTORY/NAME.csv and DIRECTORY/NAME-PANEL.svg for each panel, and a PDF beside each SVG where
+/// rsvg-convert is installed; makes the directory. Returns the files written. Throws Error naming the file
+/// that could not be written.
+std::vector<std::string> write_figure(const std::string& directory, const std::string& name,
+                                      const std::string& csv, const std::vector<Panel>& panels);
 
-/// Writes CSV and gnuplot script, and draws the PNG where gnuplot is installed; makes the directory. Throws
-/// Error naming the file that could not be written.
-FigureFiles write_figure(const FigureFiles& files, const std::string& csv, const std::string& script);
+/// Median of the values; NaN where there are none.
+double median(std::vector<double> values);
+/// The value below which this part of the values lies, 0 to 1; NaN where there are none.
+double quantile(std::vector<double> values, double part);
 
 }  // namespace egocal::tools

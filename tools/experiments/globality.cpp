@@ -78,26 +78,34 @@ std::string csv(const std::vector<GlobalityPoint>& points) {
   return text;
 }
 
-std::string plot(const std::vector<GlobalityPoint>& points, const std::string& csv_file,
-                 const std::string& png_file) {
-  std::vector<std::size_t> sizes;
-  for (const GlobalityPoint& p : points)
-    if (sizes.empty() || sizes.back() != p.frames) sizes.push_back(p.frames);
-  std::string script = fmt::format(
-      "set terminal pngcairo size 900,800\nset output '{}'\nset datafile separator ','\nset logscale xy\nset "
-      "grid\n"
-      "set ylabel 'duality gap'\nset key left top title 'frames'\nset multiplot layout 2,1\n",
-      png_file);
+std::vector<Panel> panels(const std::vector<GlobalityPoint>& points) {
+  constexpr Colour colours[] = {Colour::blue, Colour::vermilion, Colour::green, Colour::orange,
+                                Colour::purple};
+  std::vector<Panel> result;
   for (const bool rotation : {true, false}) {
-    script += fmt::format("set xlabel '{}'\nplot ",
-                          rotation ? "rotation falsified by [deg]" : "translation falsified by [m]");
-    for (std::size_t i = 0; i < sizes.size(); ++i)
-      script +=
-          fmt::format("{}'{}' using ($1=={} && strcol(2) eq '{}' ? $3 : NaN):6 with linespoints title '{}'",
-                      i ? ", " : "", csv_file, sizes[i], rotation ? "rotation" : "translation", sizes[i]);
-    script += "\n";
+    Plot plot;
+    plot.title = "Duality gap of a falsified optimum";
+    plot.x = {rotation ? "rotation falsified by [deg]" : "translation falsified by [m]",
+              AxisScale::logarithmic,
+              {},
+              {}};
+    plot.y = {"duality gap", AxisScale::logarithmic, {}, {}};
+    for (const GlobalityPoint& point : points) {
+      if (point.rotation != rotation) continue;
+      const std::string name = fmt::format("{} frames", point.frames);
+      if (plot.series.empty() || plot.series.back().name != name) {
+        Series series;
+        series.name = name;
+        series.colour = colours[plot.series.size() % std::size(colours)];
+        if (plot.series.size() % 2 == 1) series.style = Series::Style::dashes;
+        plot.series.push_back(series);
+      }
+      plot.series.back().x.push_back(point.amount);
+      plot.series.back().y.push_back(point.gap_median);
+    }
+    result.push_back({rotation ? "rotation" : "translation", plot});
   }
-  return script + "unset multiplot\n";
+  return result;
 }
 
 }  // namespace egocal::tools

@@ -8,6 +8,7 @@
 
 #include "egocal/certificate/certificate.hpp"
 #include "experiments/data_set.hpp"
+#include "experiments/figure.hpp"
 
 namespace egocal::tools {
 
@@ -33,7 +34,7 @@ struct GlobalityPoint {
 std::vector<GlobalityPoint> globality_experiment(const DataSet& data, const GlobalityOptions& options);
 
 std::string csv(const std::vector<GlobalityPoint>& points);
-std::string plot(const std::vector<GlobalityPoint>& points, const std::string& csv_file,
-                 const std::string& png_file);
+/// Gap against falsification of the rotation and of the translation, for each number of frames.
+std::vector<Panel> panels(const std::vector<GlobalityPoint>& points);
 
 }  // namespace egocal::tools

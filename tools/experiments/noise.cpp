@@ -49,10 +49,50 @@ struct Sample {
   bool certified;
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+NoisePoint::Errors errors_of(const std::vector<double>& errors) {
+  return {median(errors), quantile(errors, 0.25), quantile(errors, 0.75),
+          *std::max_element(errors.begin(), errors.end())};
+}
+
+/// Slope of the least-squares line through (log n, log error).
+double slope(const std::vector<double>& sizes, const std::vector<double>& errors) {
+  const auto n = static_cast<double>(sizes.size());
+  double sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const double x = std::log(sizes[i]), y = std::log(errors[i]);
+    sum_x += x;
+    sum_y += y;
+    sum_xx += x * x;
+    sum_xy += x * y;
+  }
+  return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+}
+
+/// One curve a noise level, with the band between the quartiles.
+Plot error_plot(const std::vector<NoisePoint>& points, const std::string& title, const std::string& unit,
+                NoisePoint::Errors NoisePoint::*errors, double factor) {
+  constexpr Colour colours[] = {Colour::blue,   Colour::vermilion, Colour::green,
+                                Colour::orange, Colour::purple,    Colour::black};
+  Plot plot;
+  plot.title = title;
+  plot.x = {"motion pairs", AxisScale::logarithmic, {}, {}};
+  plot.y = {unit, AxisScale::logarithmic, {}, {}};
+  for (const NoisePoint& point : points) {
+    const std::string name = fmt::format("{:g} %", 100 * point.level);
+    if (plot.series.empty() || plot.series.back().name != name) {
+      Series series;
+      series.name = name;
+      series.colour = colours[plot.series.size() % std::size(colours)];
+      if (plot.series.size() % 2 == 1) series.style = Series::Style::dashes;
+      plot.series.push_back(series);
+    }
+    Series& series = plot.series.back();
+    series.x.push_back(point.pairs);
+    series.y.push_back(factor * (point.*errors).median);
+    series.low.push_back(factor * (point.*errors).lower_quartile);
+    series.high.push_back(factor * (point.*errors).upper_quartile);
+  }
+  return plot;
 }
 
 }  // namespace
@@ -103,42 +143,60 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
         point.certified += run.certified;
         ++point.runs;
       }
-      point.translation = median(translations);
-      point.rotation = median(rotations);
-      point.translation_worst = *std::max_element(translations.begin(), translations.end());
-      point.rotation_worst = *std::max_element(rotations.begin(), rotations.end());
+      point.translation = errors_of(translations);
+      point.rotation = errors_of(rotations);
       points.push_back(point);
     }
   }
   return points;
 }
 
+std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points) {
+  constexpr int least_pairs = 100;  // below, the motions of one short road decide
+  std::vector<NoiseSlope> result;
+  std::vector<double> levels;
+  for (const NoisePoint& point : points)
+    if (levels.empty() || levels.back() != point.level) levels.push_back(point.level);
+  for (const double level : levels) {
+    std::vector<double> sizes, translations, rotations;
+    for (const int least : {least_pairs, 0}) {
+      if (sizes.size() >= 3) break;
+      sizes.clear();
+      translations.clear();
+      rotations.clear();
+      for (const NoisePoint& point : points) {
+        if (point.level != level || point.pairs <= least) continue;
+        sizes.push_back(point.pairs);
+        translations.push_back(point.translation.median);
+        rotations.push_back(point.rotation.median);
+      }
+    }
+    result.push_back({level, slope(sizes, translations), slope(sizes, rotations)});
+  }
+  return result;
+}
+
 std::string csv(const std::vector<NoisePoint>& points) {
   std::string text =
-      "noise,pairs,translation_median_m,rotation_median_deg,translation_worst_m,rotation_worst_deg,certified,"
+      "noise,pairs,translation_median_m,translation_quartile_1_m,translation_quartile_3_m,translation_worst_"
+      "m,"
+      "rotation_median_deg,rotation_quartile_1_deg,rotation_quartile_3_deg,rotation_worst_deg,certified,"
       "runs\n";
+  const auto numbers = [](const NoisePoint::Errors& errors, double factor) {
+    return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", factor * errors.median, factor * errors.lower_quartile,
+                       factor * errors.upper_quartile, factor * errors.worst);
+  };
   for (const NoisePoint& p : points)
-    text += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n", p.level, p.pairs, p.translation,
-                        degrees * p.rotation, p.translation_worst, degrees * p.rotation_worst, p.certified,
-                        p.runs);
+    text += fmt::format("{},{},{},{},{},{}\n", p.level, p.pairs, numbers(p.translation, 1),
+                        numbers(p.rotation, degrees), p.certified, p.runs);
   return text;
 }
 
-std::string plot(const std::vector<NoisePoint>& points, const std::string& csv_file,
-                 const std::string& png_file) {
-  std::vector<double> levels;
-  for (const NoisePoint& p : points)
-    if (levels.empty() || levels.back() != p.level) levels.push_back(p.level);
-  std::string script = fmt::format(
-      "set terminal pngcairo size 900,600\nset output '{}'\nset datafile separator ','\nset logscale xy\nset "
-      "grid\n"
-      "set xlabel 'motion pairs'\nset ylabel 'translation error, median [m]'\nset key outside title "
-      "'noise'\nplot ",
-      png_file);
-  for (std::size_t i = 0; i < levels.size(); ++i)
-    script += fmt::format("{}'{}' using ($1=={} ? $2 : NaN):3 with linespoints title '{:g} %'", i ? ", " : "",
-                          csv_file, levels[i], 100 * levels[i]);
-  return script + "\n";
+std::vector<Panel> panels(const std::vector<NoisePoint>& points) {
+  return {{"translation", error_plot(points, "Translation error by noise level", "median error [m]",
+                                     &NoisePoint::translation, 1)},
+          {"rotation", error_plot(points, "Rotation error by noise level", "median error [deg]",
+                                  &NoisePoint::rotation, degrees)}};
 }
 
 }  // namespace egocal::tools

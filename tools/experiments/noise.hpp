@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/figure.hpp"
+
 namespace egocal::tools {
 
 /// Section V-B, Fig. 4: simulated drives on a rough surface, noise levels, sizes, sensor poses 2 to 8 m
@@ -23,8 +25,11 @@ struct NoiseOptions {
 struct NoisePoint {
   double level = 0;
   int pairs = 0;
-  double translation = 0, rotation = 0;              ///< medians of the errors (32) [m, rad]
-  double translation_worst = 0, rotation_worst = 0;  ///< largest
+  /// Of the errors (32) over all runs [m, rad].
+  struct Errors {
+    double median = 0, lower_quartile = 0, upper_quartile = 0, worst = 0;
+  };
+  Errors translation, rotation;
   int certified = 0, runs = 0;
 };
 
@@ -33,8 +38,15 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
                                          const std::function<void(double)>& progress);
 
 std::string csv(const std::vector<NoisePoint>& points);
-/// A gnuplot script that draws Fig. 4 from the CSV file into the PNG file.
-std::string plot(const std::vector<NoisePoint>& points, const std::string& csv_file,
-                 const std::string& png_file);
+/// How the errors of one noise level fall with the number of pairs: exponents of n, fitted to the medians
+/// where n > 100 (all of them where fewer than three are). -1/2 is what independent noise gives.
+struct NoiseSlope {
+  double level = 0;
+  double translation = 0, rotation = 0;
+};
+std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points);
+
+/// Fig. 4, translation and rotation.
+std::vector<Panel> panels(const std::vector<NoisePoint>& points);
 
 }  // namespace egocal::tools

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/online.hpp"
-#include "egocal/problem/blocks.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +8,35 @@
 #include <chrono>
 #include <numbers>
 
+#include "egocal/problem/blocks.hpp"
+
 namespace egocal::tools {
+
+namespace {
+
+/// The solvers' times on one frame's problem: the fast one from the last answer, as in Algorithm 1.
+void measure(const Problem& problem, const std::optional<DualQuaternion>& last, const OnlineOptions& options,
+             OnlinePoint& point) {
+  const auto now = [] {
+    return static_cast<std::int64_t>(std::chrono::steady_clock::now().time_since_epoch() /
+                                     std::chrono::nanoseconds(1));
+  };
+  std::vector<double> fast, global, verified;
+  constexpr int repeats = 5;
+  for (int i = 0; i < repeats; ++i) {
+    const Answer by_fast = solve(problem, options.fast, last, now);
+    fast.push_back(1e-3 * static_cast<double>(by_fast.solve_ns));
+    verified.push_back(1e-3 * static_cast<double>(by_fast.verify_ns));
+    if (options.global)
+      global.push_back(1e-3 *
+                       static_cast<double>(solve(problem, *options.global, std::nullopt, now).solve_ns));
+  }
+  point.fast_us = median(fast);
+  point.verify_us = median(verified);
+  point.global_us = global.empty() ? 0 : median(global);
+}
+
+}  // namespace
 
 std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::size_t frames,
                                            const OnlineOptions& options,
@@ -22,22 +49,19 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
   OnlineState state;
   std::vector<OnlinePoint> points;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
     blocks.add(pairs[i]);
     problem.blocks = blocks.inliers();
     const OnlineStep step = algorithm1_step(problem, pairs[i].end_us, state, options);
-    const auto end = std::chrono::steady_clock::now();
-    state = step.state;
-
     OnlinePoint point;
+    measure(problem, state.last, options, point);
+    state = step.state;
     point.frame = static_cast<int>(i) + 1;
     point.time = static_cast<double>(pairs[i].end_us - pairs.front().begin_us) * 1e-6;
     if (data.truth) point.error = extrinsic_error(*data.truth, step.answer.T_a_b);
-    point.scaled_gap = step.answer.certificate.scaled_gap;
+    point.scaled_gap = step.fast_certificate.value_or(step.answer.certificate).scaled_gap;
     point.certified = step.answer.certificate.optimality == Optimality::certified;
     point.fast_verified = step.fast_verified;
     point.global_used = step.global_used;
-    point.microseconds = std::chrono::duration<double, std::micro>(end - begin).count();
     points.push_back(point);
     if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(count));
   }
@@ -47,37 +71,74 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
 std::string csv(const std::vector<OnlinePoint>& points) {
   constexpr double degrees = 180 / std::numbers::pi;
   std::string text =
-      "frame,time_s,translation_m,rotation_deg,scaled_gap,certified,fast_verified,global_used,step_us\n";
+      "frame,time_s,translation_m,rotation_deg,scaled_gap,certified,fast_verified,global_used,fast_us,global_"
+      "us,verify_us\n";
   for (const OnlinePoint& p : points) {
     const std::string error =
         p.error ? fmt::format("{:.9g},{:.9g}", p.error->translation, degrees * p.error->rotation) : ",";
-    text += fmt::format("{},{:.6f},{},{:.6g},{:d},{:d},{:d},{:.2f}\n", p.frame, p.time, error, p.scaled_gap,
-                        p.certified, p.fast_verified, p.global_used, p.microseconds);
+    text += fmt::format("{},{:.6f},{},{:.6g},{:d},{:d},{:d},{:.2f},{:.2f},{:.2f}\n", p.frame, p.time, error,
+                        p.scaled_gap, p.certified, p.fast_verified, p.global_used, p.fast_us, p.global_us,
+                        p.verify_us);
   }
   return text;
 }
 
-std::string plot(const std::vector<OnlinePoint>& points, const std::string& csv_file,
-                 const std::string& png_file) {
-  std::string script = fmt::format(
-      "set terminal pngcairo size 900,1000\nset output '{}'\nset datafile separator ','\nset grid\nset "
-      "logscale y\n"
-      "set multiplot layout 4,1\nunset key\nset xlabel 'frame'\n",
-      png_file);
-  const bool errors = !points.empty() && points.front().error;
-  const auto panel = [&](const char* label, const char* column) {
-    script += fmt::format("set ylabel '{}'\nplot '{}' using 1:{} with lines\n", label, csv_file, column);
+int last_global_frame(const std::vector<OnlinePoint>& points) {
+  int last = 0;
+  for (const OnlinePoint& point : points)
+    if (point.global_used) last = point.frame;
+  return last;
+}
+
+std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  const int last_global = last_global_frame(points);
+  const auto plot_of = [&](const std::string& title, const std::string& unit) {
+    Plot plot;
+    plot.title = title;
+    plot.x.label = "frame";
+    plot.y = {unit, AxisScale::logarithmic, {}, {}};
+    if (last_global > 0) plot.markers.push_back({true, last_global + 0.5, "fast alone from here"});
+    return plot;
   };
-  if (errors) {
-    panel("rotation error [deg]", "4");
-    panel("translation error [m]", "3");
+  const auto series_of = [&](const std::string& name, Colour colour, Series::Style style, auto value) {
+    Series series;
+    series.name = name;
+    series.colour = colour;
+    series.style = style;
+    for (const OnlinePoint& point : points) {
+      series.x.push_back(point.frame);
+      series.y.push_back(value(point));
+    }
+    return series;
+  };
+  std::vector<Panel> result;
+  if (!points.empty() && points.front().error) {
+    Plot rotation = plot_of("Rotation error", "[deg]"), translation = plot_of("Translation error", "[m]");
+    rotation.series.push_back(series_of("", Colour::blue, Series::Style::line,
+                                        [&](const OnlinePoint& p) { return degrees * p.error->rotation; }));
+    translation.series.push_back(series_of("", Colour::blue, Series::Style::line,
+                                           [](const OnlinePoint& p) { return p.error->translation; }));
+    result.push_back({"rotation", rotation});
+    result.push_back({"translation", translation});
   }
-  // the threshold of the certificate is one rounding
-  script += fmt::format(
-      "set ylabel 'gap / rounding'\nplot '{}' using 1:($5 > 1e-3 ? $5 : 1e-3) with lines, 1 dashtype 2\n",
-      csv_file);
-  panel("step [us]", "9");
-  return script + "unset multiplot\n";
+  Plot gap = plot_of("Duality gap of the fast solution", "gap / threshold");
+  gap.markers.push_back({false, 1, "verified below"});
+  // a gap of zero has no place on a logarithmic axis
+  const double least_gap = 1e-3;
+  gap.series.push_back(series_of("", Colour::blue, Series::Style::line, [least_gap](const OnlinePoint& p) {
+    return std::max(p.scaled_gap, least_gap);
+  }));
+  result.push_back({"gap", gap});
+  Plot time = plot_of("Execution time", "[us]");
+  time.series.push_back(series_of("global", Colour::vermilion, Series::Style::dashes,
+                                  [](const OnlinePoint& p) { return p.global_us; }));
+  time.series.push_back(
+      series_of("fast", Colour::blue, Series::Style::line, [](const OnlinePoint& p) { return p.fast_us; }));
+  time.series.push_back(series_of("verification", Colour::green, Series::Style::line,
+                                  [](const OnlinePoint& p) { return p.verify_us; }));
+  result.push_back({"time", time});
+  return result;
 }
 
 }  // namespace egocal::tools

@@ -11,13 +11,13 @@
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/pairs_file.hpp"
-#include "egocal/io/trajectory_file.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "offline/log_trajectory.hpp"
+#include "offline/trajectory_source.hpp"
 
 namespace egocal::tools {
 
@@ -37,8 +37,19 @@ StreamSpan span_of(const Trajectory& trajectory) {
 
 Motions read_motions(const MotionSource& source) {
   if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
-  if (source.log.empty())
-    return {read_trajectory(source.a, source.times_a), read_trajectory(source.b, source.times_b), {}, {}};
+  if (source.log.empty()) {
+    Motions motions;
+    const auto read = [&](const std::string& name, const std::string& times) {
+      ReadOptions options = source.reading;
+      options.times_file = times;
+      TrajectoryReading reading = read_any_trajectory(name, options);
+      for (const std::string& note : reading.notes) motions.warnings.push_back(name + ": " + note);
+      return std::move(reading.trajectory);
+    };
+    motions.a = read(source.a, source.times_a);
+    motions.b = read(source.b, source.times_b);
+    return motions;
+  }
   LogTrajectory a = read_log_trajectory(source.log, source.a);
   LogTrajectory b = read_log_trajectory(source.log, source.b);
   Motions motions{std::move(a.poses), std::move(b.poses), {}, {}};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "egocal/calibrate.hpp"
+#include "egocal/io/recording.hpp"
 
 namespace egocal::tools {
 
@@ -16,6 +17,7 @@ struct MotionSource {
   std::string times_a, times_b;  ///< for KITTI files
   std::string log;
   std::string pairs;
+  ReadOptions reading;  ///< of both files; its times_file is not used
 };
 
 /// What `egocal solve` was asked for.

@@ -10,6 +10,7 @@
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
 #include "offline/channel_list.hpp"
+#include "offline/lcm_pose.hpp"
 
 namespace egocal::tools {
 
@@ -18,23 +19,9 @@ namespace {
 /// A clock that is set back by less goes on as the same session; the poses that it repeats are not used [us].
 constexpr std::int64_t session_jump_us = 10'000'000;
 
-struct Decoded {
-  bus::Checked<StampedPose> pose;
-  std::int64_t seq = -1;
-};
-
-/// Either type of pose message; a message of another type, or with values that are no pose, is refused.
-Decoded decode_pose(const bus::LogEvent& event) {
-  odometry_t odometry{};
-  if (bus::decode(event.data, odometry)) return {bus::to_stamped_pose(odometry), odometry.seq};
-  bot_core::pose_t pose{};
-  if (bus::decode(event.data, pose)) return {bus::to_stamped_pose(pose), -1};
-  return {{std::nullopt, "not a pose message"}, -1};
-}
-
 class Collector {
  public:
-  void take(const Decoded& message) {
+  void take(const LcmPose& message) {
     ++messages_;
     if (!message.pose)
       ++refused_[message.pose.reason];
@@ -95,7 +82,7 @@ LogTrajectory read_log_trajectory(const std::string& file, const std::string& ch
   ChannelList channels;
   while (const std::optional<bus::LogEvent> event = log.next()) {
     if (event->channel == channel)
-      collector.take(decode_pose(*event));
+      collector.take(decode_lcm_pose(event->data));
     else
       channels.add(event->channel);
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "egocal/geometry/pose.hpp"
 
@@ -18,20 +19,29 @@ struct NamedExtrinsic {
   bool certified = false;                       ///< globally optimal, proven
   long long pairs = 0;                          ///< motion pairs behind it
   std::optional<std::array<double, 6>> stddev;  ///< x y z [m] roll pitch yaw [rad] in the parent's frame
+  bool usable = true;  ///< false: optimal, but the motions contradict each other; every format says so
 };
 
 enum class ExtrinsicFormat {
-  yaml,    ///< plain: translation, quaternion, matrix, standard deviations
-  ros,     ///< a static_transform_publisher command line
-  urdf,    ///< a fixed joint
-  kalibr,  ///< a camera chain's T_cam_imu with the parent as imu and the child as camera
+  yaml,        ///< plain: translation, quaternion, matrix, standard deviations
+  json,        ///< the same with a name for every number, and the inverse
+  ros,         ///< a static_transform_publisher command line
+  ros_launch,  ///< a ROS 2 launch file (XML) with a static_transform_publisher
+  urdf,        ///< a fixed joint
+  kalibr,      ///< a camera chain's T_cam_imu with the parent as imu and the child as camera
+  autoware,  ///< a sensor kit's sensors_calibration.yaml: x y z roll pitch yaw of the child below its parent
+  lio_sam,   ///< extrinsicTrans, extrinsicRot, extrinsicRPY with the parent as lidar and the child as imu
+  opencv,    ///< FileStorage with R and T as stereoRectify takes them: points of the parent to the child
+  matrix,    ///< 4 x 4 numbers, for numpy.loadtxt and the like
 };
 std::string_view name(ExtrinsicFormat format);
 std::optional<ExtrinsicFormat> extrinsic_format_from_name(std::string_view name);
+/// All of them, in the order above.
+std::vector<std::string> extrinsic_format_names();
 
 /// The whole text of a file; every format names parent, child, direction and quaternion order. Numbers read
-/// back as exactly the same doubles. Throws Error where a value is not finite: nobody shall mount a sensor at
-/// NaN.
+/// back as exactly the same doubles. Throws Error where a value is not finite: a sensor mounted at NaN would
+/// be worse than none.
 std::string extrinsic_text(const NamedExtrinsic& extrinsic, ExtrinsicFormat format);
 
 }  // namespace egocal

@@ -163,7 +163,7 @@ bool unpack_all(Unpacker& unpacker, std::span<const unsigned char> packed, std::
                 std::vector<unsigned char>& out) {
   unpacker.restart();
   std::size_t made = 0, used = 0;
-  if (out.size() < std::min<std::size_t>(most, 64 << 10)) out.resize(std::min<std::size_t>(most, 64 << 10));
+  out.resize(std::min(most, std::max<std::size_t>(out.size(), 64 << 10)));
   while (true) {
     const auto step = unpacker.unpack(packed.subspan(used), std::span(out).subspan(made));
     used += step.consumed;

@@ -34,6 +34,8 @@ Sniffed sniff(ByteSource& source) {
         source.file(), 0, "",
         "is neither text nor a known recording; expected TUM, KITTI, EuRoC csv, a table with named "
         "columns, MCAP, a ROS 1 bag or a rosbag2 database");
+  if (text.rfind("version https://git-lfs", 0) == 0)
+    throw error_at(source.file(), 0, "", "is a pointer of git-lfs, not the file itself: run `git lfs pull`");
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   Sniffed sniffed;
   long number = 0;

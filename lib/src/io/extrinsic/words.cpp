@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/extrinsic/words.hpp"
+
+#include "egocal/error.hpp"
+#include "io/number_text.hpp"
+
+namespace egocal::detail {
+
+ExtrinsicWords::ExtrinsicWords(const NamedExtrinsic& named)
+    : extrinsic(named), T(named.T_parent_child), a(frame_name(named.parent)), b(frame_name(named.child)) {
+  if (!T.translation.allFinite() || !T.rotation.coeffs().allFinite())
+    throw Error("no extrinsic of " + b + " in " + a + " to write: its values are not finite");
+  direction = "pose of " + b + " in " + a + ": p_" + a + " = R * p_" + b + " + t";
+  verdict = std::string(named.usable ? "" : "DO NOT USE, the motions contradict each other; ") +
+            (named.certified ? "certified globally optimal" : "not certified") + ", from " +
+            std::to_string(named.pairs) + " motion pairs";
+}
+
+std::string exact(double value) {
+  std::string text;
+  append_number(text, value == 0 ? 0.0 : value);
+  // YAML 1.1 takes 1e-05 for a word, 1.0e-05 for a number
+  if (const auto e = text.find('e'); e != std::string::npos && text.find('.') == std::string::npos)
+    text.insert(e, ".0");
+  return text;
+}
+
+Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+Eigen::Vector4d xyzw(const Eigen::Quaterniond& q) {
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+Eigen::Matrix<double, 9, 1> rotation_rows(const Eigen::Quaterniond& q) {
+  const Eigen::Matrix3d R = q.toRotationMatrix();
+  Eigen::Matrix<double, 9, 1> rows;
+  for (int i = 0; i < 9; ++i) rows[i] = R(i / 3, i % 3);
+  return rows;
+}
+
+std::string matrix_rows(const Pose& T, const std::string& indent) {
+  const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
+  std::string text;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector4d row(R(i, 0), R(i, 1), R(i, 2), T.translation(i));
+    text += indent + "- [" + joined(row, ", ") + "]\n";
+  }
+  return text + indent + "- [0, 0, 0, 1]\n";
+}
+
+std::string frame_name(const std::string& name) {
+  std::string safe;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '_' || c == '-' || c == '.' || c == '/';
+    safe += plain ? c : '_';
+    if (safe.size() == 100) break;
+  }
+  return safe.empty() ? "unnamed" : safe;
+}
+
+}  // namespace egocal::detail

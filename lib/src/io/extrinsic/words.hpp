@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+
+#include "egocal/io/extrinsic_text.hpp"
+
+namespace egocal::detail {
+
+/// What every format says about an extrinsic, with names that are safe in all of them.
+struct ExtrinsicWords {
+  explicit ExtrinsicWords(const NamedExtrinsic& named);
+
+  const NamedExtrinsic& extrinsic;
+  const Pose& T;          ///< T_parent_child
+  std::string a, b;       ///< parent, child
+  std::string direction;  ///< "pose of b in a: p_a = R * p_b + t"
+  std::string verdict;    ///< "certified globally optimal, from 1234 motion pairs"
+};
+
+/// The shortest text that reads back as exactly this double, in YAML 1.1 too.
+std::string exact(double value);
+
+template <class Vector>
+std::string joined(const Vector& values, const char* separator) {
+  std::string text;
+  for (Eigen::Index i = 0; i < values.size(); ++i) text += (i ? separator : "") + exact(values(i));
+  return text;
+}
+
+Eigen::Vector4d wxyz(const Eigen::Quaterniond& q);
+Eigen::Vector4d xyzw(const Eigen::Quaterniond& q);
+/// Row by row.
+Eigen::Matrix<double, 9, 1> rotation_rows(const Eigen::Quaterniond& q);
+/// Four lines "- [r, r, r, t]".
+std::string matrix_rows(const Pose& T, const std::string& indent);
+/// Letters, digits and _ - . / of a frame's name; nothing in it may end a quote, a comment or a line.
+std::string frame_name(const std::string& name);
+
+// One format each: the whole text of a file.
+std::string yaml_text(const ExtrinsicWords& words);
+std::string json_text(const ExtrinsicWords& words);
+std::string ros_text(const ExtrinsicWords& words);
+std::string ros_launch_text(const ExtrinsicWords& words);
+std::string urdf_text(const ExtrinsicWords& words);
+std::string kalibr_text(const ExtrinsicWords& words);
+std::string autoware_text(const ExtrinsicWords& words);
+std::string lio_sam_text(const ExtrinsicWords& words);
+std::string opencv_text(const ExtrinsicWords& words);
+std::string matrix_text(const ExtrinsicWords& words);
+
+}  // namespace egocal::detail

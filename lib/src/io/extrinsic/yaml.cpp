@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "io/extrinsic/words.hpp"
+
+namespace egocal::detail {
+
+std::string yaml_text(const ExtrinsicWords& words) {
+  const Pose& T = words.T;
+  std::string text = "# " + words.direction + "\n# metres, radians, quaternion order w x y z\n";
+  text += "parent: " + words.a + "\nchild: " + words.b + "\n";
+  text += "translation: [" + joined(T.translation, ", ") + "]\n";
+  text += "rotation_wxyz: [" + joined(wxyz(T.rotation), ", ") + "]\n";
+  text += "roll_pitch_yaw: [" + joined(roll_pitch_yaw(T.rotation), ", ") + "]\n";
+  text += "matrix:\n" + matrix_rows(T, "  ");
+  if (words.extrinsic.stddev) {
+    text += "stddev:  # x y z roll pitch yaw in " + words.a + "; .inf: not observable from the motions\n";
+    for (const double s : *words.extrinsic.stddev)
+      text += "  - " + (std::isfinite(s) ? exact(s) : std::string(std::isnan(s) ? ".nan" : ".inf")) + "\n";
+  }
+  text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
+  text += std::string("usable: ") + (words.extrinsic.usable ? "true" : "false") + "\n";
+  return text + "pairs: " + std::to_string(words.extrinsic.pairs) + "\n";
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Text files as people have them: whatever the header, separator, unit and order, the same poses come out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "../support/scratch_folder.hpp"
+#include "egocal/error.hpp"
+#include "egocal/io/trajectory_file.hpp"
+
+namespace egocal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Tables : public ::testing::Test {
+ protected:
+  TrajectoryReading read(const std::string& content, const ReadOptions& options = {}) const {
+    return read_trajectory_file(folder_.file("table", content), options);
+  }
+  /// Two poses: at 1e9 s and 0.1 s later, x y z = 1 2 3 and 4 5 6, turned by 90 degrees about z.
+  void expect_two_poses(const std::string& content, const ReadOptions& options = {}) const {
+    const TrajectoryReading reading = read(content, options);
+    ASSERT_EQ(reading.trajectory.size(), 2u) << content;
+    EXPECT_EQ(reading.trajectory[0].time_us, 1'000'000'000'000'000) << content;
+    EXPECT_EQ(reading.trajectory[1].time_us, 1'000'000'000'100'000) << content;
+    const Pose first = to_pose(reading.trajectory[0].pose), second = to_pose(reading.trajectory[1].pose);
+    EXPECT_LT((first.translation - Eigen::Vector3d(1, 2, 3)).norm(), 1e-9) << content;
+    EXPECT_LT((second.translation - Eigen::Vector3d(4, 5, 6)).norm(), 1e-9) << content;
+    EXPECT_LT((rotation_log(first.rotation) - Eigen::Vector3d(0, 0, std::numbers::pi / 2)).norm(), 1e-5)
+        << content;
+  }
+  void expect_error(const std::string& content, const std::string& part,
+                    const ReadOptions& options = {}) const {
+    try {
+      read(content, options);
+      ADD_FAILURE() << "accepted: " << content;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(part)) << content;
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+  }
+  testing::ScratchFolder folder_;
+};
+
+TEST_F(Tables, HeadersInManyStylesMeanTheSame) {
+  const std::string rows =
+      "1000000000.0,1,2,3,0,0,0.7071068,0.7071068\n1000000000.1,4,5,6,0,0,0.7071068,0.7071068\n";
+  for (const char* header :
+       {"t,x,y,z,qx,qy,qz,qw", "timestamp,tx,ty,tz,q_x,q_y,q_z,q_w",
+        "Time [s], X [m], Y [m], Z [m], Qx, Qy, Qz, Qw",
+        "time,position.x,position.y,position.z,orientation.x,orientation.y,orientation.z,orientation.w",
+        "%time,field.pose.pose.position.x,field.pose.pose.position.y,field.pose.pose.position.z,"
+        "field.pose.pose.orientation.x,field.pose.pose.orientation.y,field.pose.pose.orientation.z,"
+        "field.pose.pose.orientation.w",
+        "# time,p_x,p_y,p_z,quat_x,quat_y,quat_z,quat_w",
+        "\xef\xbb\xbftime,pos_x,pos_y,pos_z,quaternion_x,quaternion_y,quaternion_z,quaternion_w"})
+    expect_two_poses(std::string(header) + "\n" + rows);
+  expect_two_poses(rows);  // without a header: seconds, w last, as hand-eye tools write it
+}
+
+TEST_F(Tables, OtherOrdersSeparatorsAndUnits) {
+  expect_two_poses(
+      "qw;qx;qy;qz;x[mm];y[mm];z[mm];t[ns]\n"
+      "0.7071068;0;0;0.7071068;1000;2000;3000;1000000000000000000\n"
+      "0.7071068;0;0;0.7071068;4000;5000;6000;1000000000100000000\n");
+  expect_two_poses("t;x;y;z;yaw\n1000000000;1,0;2,0;3,0;1,5707963\n1000000000,1;4,0;5,0;6,0;1,5707963\n");
+  expect_two_poses(
+      "secs,nsecs,x,y,z,roll_deg,pitch_deg,yaw_deg,vx\n1000000000,0,1,2,3,0,0,90,7\n"
+      "1000000000,100000000,4,5,6,0,0,90,7\n");
+  expect_two_poses(
+      "time\tx\ty\tz\troll\tpitch\tyaw\n1000000000\t1\t2\t3\t0\t0\t90\n1000000000.1\t4\t5\t6\t0\t0\t90\n");
+  expect_two_poses(
+      "time,velocity_x,x,y,z,angular.x,theta,covariance_x\n1000000000,9,1,2,3,9,1.5707963,9\n"
+      "1000000000.1,9,4,5,6,9,1.5707963,9\n");
+  for (const char* time : {"1000000000000 1000000000100", "1000000000000000 1000000000100000",
+                           "1000000000000000000 1000000000100000000",
+                           "1000000000000000000.000000 1000000000100000000.000000"}) {  // ORB-SLAM3
+    const std::string both = time;
+    const std::string first = both.substr(0, both.find(' ')), second = both.substr(both.find(' ') + 1);
+    expect_two_poses(first + " 1 2 3 0 0 0.7071068 0.7071068\n" + second +
+                     " 4 5 6 0 0 0.7071068 0.7071068\n");
+  }
+}
+
+TEST_F(Tables, ColumnsCanBeNamedByHand) {
+  ReadOptions options;
+  options.columns = "-,x,y,z,yaw[deg],t";
+  expect_two_poses("7 1 2 3 90 1000000000\n8 4 5 6 90 1000000000.1\n", options);
+  expect_two_poses("a b c d e f\n7 1 2 3 90 1000000000\n8 4 5 6 90 1000000000.1\n", options);
+  options.columns = "t,x,y";
+  expect_error("1 2 3\n", "no orientation", options);
+  options.columns = "t,x,y,z,yaw";
+  expect_error("1 2 3\n", ":1: expected at least 5 fields", options);
+}
+
+TEST_F(Tables, YawAloneIsAPoseInThePlane) {
+  const TrajectoryReading reading = read("t,x,y,yaw\n0,1,2,0\n0.1,3,4,0.5\n");
+  const Pose pose = to_pose(reading.trajectory[1].pose);
+  EXPECT_LT((rotation_log(pose.rotation) - Eigen::Vector3d(0, 0, 0.5)).norm(), 1e-12);
+  EXPECT_EQ(pose.translation.z(), 0);
+  EXPECT_THAT(reading.notes, ElementsAre(HasSubstr("radians")));
+}
+
+/// A degree of latitude is 110.6 km at the equator (WGS 84), one of longitude 111.3 km; east is x, north is
+/// y.
+TEST_F(Tables, GeodeticPositionsBecomeLocalMetres) {
+  const TrajectoryReading reading = read(
+      "time,latitude,longitude,altitude,roll,pitch,heading\n0,0,9,100,0,0,90\n1,0.001,9,100,0,0,90\n"
+      "2,0,9.001,100,0,0,180\n3,0,9,110,0,0,90\n");
+  const auto at = [&](std::size_t i) { return to_pose(reading.trajectory[i].pose); };
+  EXPECT_LT(at(0).translation.norm(), 1e-9);
+  EXPECT_NEAR(at(1).translation.y(), 110.575, 0.01);
+  EXPECT_NEAR(at(1).translation.x(), 0, 1e-6);
+  EXPECT_NEAR(at(2).translation.x(), 111.321, 0.01);
+  EXPECT_NEAR(at(3).translation.z(), 10, 1e-6);
+  EXPECT_LT(rotation_log(at(0).rotation).norm(), 1e-9);  // heading east is along x
+  EXPECT_NEAR(rotation_log(at(2).rotation).z(), -std::numbers::pi / 2, 1e-4);
+}
+
+TEST_F(Tables, KittiWithoutTimesHasARate) {
+  const std::string rows = "1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 2 0 1 0 2 0 0 1 3\n1 0 0 3 0 1 0 2 0 0 1 3\n";
+  const TrajectoryReading assumed = read(rows);
+  EXPECT_EQ(assumed.trajectory[2].time_us, 200'000);
+  EXPECT_THAT(assumed.notes, ElementsAre(HasSubstr("10 Hz assumed")));
+  ReadOptions options;
+  options.rate = 20;
+  EXPECT_EQ(read(rows, options).trajectory[2].time_us, 100'000);
+  options.rate = -1;
+  expect_error(rows, "--rate", options);
+  // numbers of frames before the matrices, with gaps, as in KITTI-360
+  const TrajectoryReading numbered =
+      read("3 1 0 0 1 0 1 0 2 0 0 1 3\n4 1 0 0 2 0 1 0 2 0 0 1 3\n9 1 0 0 3 0 1 0 2 0 0 1 3\n");
+  EXPECT_EQ(numbered.trajectory[2].time_us - numbered.trajectory[0].time_us, 600'000);
+}
+
+TEST_F(Tables, RowsOutOfOrderAreSortedAndCounted) {
+  const TrajectoryReading reading =
+      read("1 0 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n3 9 0 0 0 0 0 1\n");
+  ASSERT_EQ(reading.trajectory.size(), 3u);
+  EXPECT_EQ(reading.out_of_order, 1u);
+  EXPECT_EQ(reading.duplicates, 1u);
+  EXPECT_EQ(to_pose(reading.trajectory[2].pose).translation.x(), 3);
+  EXPECT_THAT(reading.notes,
+              ElementsAre(HasSubstr("1 poses were out of order"), HasSubstr("the first of each")));
+}
+
+TEST_F(Tables, ALastRowThatIsCutOffIsCounted) {
+  const TrajectoryReading reading = read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0");
+  EXPECT_EQ(reading.trajectory.size(), 2u);
+  EXPECT_TRUE(reading.losses.truncated);
+  expect_error("1 0 0 0 0 0 0 1\n2 0 0 0 0\n3 0 0 0 0 0 0 1\n", ":2: expected 8 fields");
+}
+
+TEST_F(Tables, EmptyFieldsOfATableAreCounted) {
+  const TrajectoryReading reading = read("t,x,y,yaw,note\n0,1,2,0,a\n1,,,,b\n2,3,4,0.5,c\n");
+  EXPECT_EQ(reading.trajectory.size(), 2u);
+  EXPECT_EQ(reading.losses.refused, 1u);
+  EXPECT_THAT(reading.losses.first_refused, HasSubstr("line 3"));
+}
+
+TEST_F(Tables, WhatIsNotUnderstoodIsSaid) {
+  expect_error("time,a,b,c\n1,2,3,4\n", "no position");
+  expect_error("time,x,y,z\n1,2,3,4\n", "no orientation");
+  expect_error("time,x,y,z\n1,2,3,4\n", "--columns");
+  expect_error(std::string("\0\1\2\3", 4), "neither text nor a known recording");
+  expect_error("#ROSBAG V1.2\nabc", "rosbag fix");
+  EXPECT_THROW(read_trajectory(folder_.file("a.tum", "1 0 0 0 0 0 0 1\n") + ":/topic"), Error);
+  EXPECT_THROW(read_trajectory(folder_.path("")), Error);
+  EXPECT_THAT(read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n").notes, IsEmpty());
+}
+
+}  // namespace
+}  // namespace egocal

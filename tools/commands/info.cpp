@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "egocal/bus/glue.hpp"
+#include "egocal/error.hpp"
+#include "egocal/io/stream_summary.hpp"
+#include "offline/trajectory_source.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+  std::string name, times;
+  ReadOptions reading;
+  bool json = false;
+};
+
+/// One stream with what its poses show.
+struct Row {
+  RecordedStream stream;
+  StreamSummary summary;
+};
+
+struct Contents {
+  std::vector<Row> rows;
+  std::string format;
+  ReadLosses losses;
+  std::vector<std::string> notes;
+};
+
+/// One pass over the file; of a chain of transforms the resolved poses.
+Contents read_contents(const Options& options) {
+  ReadOptions reading = options.reading;
+  reading.times_file = options.times;
+  const RecordingName name = parse_recording_name(options.name);
+  const std::unique_ptr<Recording> recording = open_any_recording(name.file, reading);
+  Contents contents;
+  if (!name.topic.empty()) {
+    const TrajectoryReading trajectory = read_trajectory_of(*recording, name.topic);
+    StreamSummariser summariser;
+    for (const StampedPose& pose : trajectory.trajectory) summariser.add(pose);
+    Row row;
+    row.stream.name = trajectory.stream;
+    for (const RecordedStream& stream : recording->streams())
+      if (stream.name == trajectory.stream) row.stream = stream;
+    row.stream.poses = true;
+    row.summary = summariser.summary();
+    row.summary.out_of_order = trajectory.out_of_order + trajectory.duplicates;
+    contents.rows.push_back(std::move(row));
+    contents.notes = trajectory.notes;
+  } else {
+    std::vector<StreamSummariser> summarisers;
+    recording->read("", [&](std::size_t stream, const StampedPose& pose) {
+      if (stream >= summarisers.size()) summarisers.resize(stream + 1);
+      summarisers[stream].add(pose);
+    });
+    summarisers.resize(recording->streams().size());
+    for (std::size_t i = 0; i < summarisers.size(); ++i)
+      contents.rows.push_back({recording->streams()[i], summarisers[i].summary()});
+    contents.notes = recording->notes();
+  }
+  contents.format = recording->format();
+  contents.losses = recording->losses();
+  return contents;
+}
+
+double seconds(std::int64_t time_us) {
+  return 1e-6 * static_cast<double>(time_us);
+}
+
+ordered_json row_json(const Row& row) {
+  const auto& [stream, summary] = row;
+  ordered_json object{{"name", bus::printable(stream.name)},
+                      {"type", bus::printable(stream.type)},
+                      {"messages", stream.messages},
+                      {"has_poses", stream.poses}};
+  if (!stream.parent.empty()) object["parent"] = bus::printable(stream.parent);
+  if (!stream.child.empty()) object["child"] = bus::printable(stream.child);
+  if (stream.fixed) object["static"] = true;
+  object["poses"] = summary.poses;
+  if (summary.poses == 0) return object;
+  object["first_s"] = seconds(summary.first_us);
+  object["last_s"] = seconds(summary.last_us);
+  object["span_s"] = seconds(summary.last_us - summary.first_us);
+  object["rate_hz"] = summary.rate;
+  object["path_length_m"] = summary.path_length;
+  object["turning_rad"] = summary.turning;
+  object["gaps"] = summary.gaps;
+  object["longest_gap_s"] = summary.longest_gap;
+  object["jumps"] = summary.jumps;
+  object["times_not_increasing"] = summary.out_of_order;
+  return object;
+}
+
+void print_json(const Options& options, const Contents& contents) {
+  ordered_json object{{"file", bus::printable(options.name)},
+                      {"format", contents.format},
+                      {"streams", ordered_json::array()}};
+  for (const Row& row : contents.rows) object["streams"].push_back(row_json(row));
+  object["damaged_regions"] = contents.losses.regions;
+  object["lost_bytes"] = contents.losses.bytes;
+  object["truncated"] = contents.losses.truncated;
+  object["checksum_differs"] = contents.losses.checksum;
+  object["refused"] = contents.losses.refused;
+  object["notes"] = contents.notes;
+  fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+void print_row(const Row& row) {
+  const auto& [stream, summary] = row;
+  const std::string name = stream.name.empty() ? "(the only stream)" : bus::printable(stream.name, 60);
+  fmt::print("\n{}  {}, {} messages{}\n", name, bus::printable(stream.type, 60), stream.messages,
+             stream.fixed ? ", static" : "");
+  if (!stream.poses || stream.fixed) return;
+  if (summary.poses == 0) {
+    fmt::print("  no usable pose\n");
+    return;
+  }
+  constexpr double degrees = 180 / std::numbers::pi;
+  if (!stream.child.empty())
+    fmt::print("  pose of         {} in {}\n", bus::printable(stream.child, 60),
+               bus::printable(stream.parent, 60));
+  fmt::print("  poses           {} at {:.1f} Hz\n", summary.poses, summary.rate);
+  fmt::print("  time            {:.3f} to {:.3f} s, {:.3f} s\n", seconds(summary.first_us),
+             seconds(summary.last_us), seconds(summary.last_us - summary.first_us));
+  fmt::print("  path length     {:.1f} m\n", summary.path_length);
+  fmt::print("  turning         {:.0f} {:.0f} {:.0f} deg about x y z of the sensor\n",
+             summary.turning[0] * degrees, summary.turning[1] * degrees, summary.turning[2] * degrees);
+  if (summary.gaps > 0)
+    fmt::print("  gaps            {}, the longest {:.3f} s\n", summary.gaps, summary.longest_gap);
+  if (summary.jumps > 0) fmt::print("  jumps           {} (above 70 m/s or 15 rad/s)\n", summary.jumps);
+  if (summary.out_of_order > 0)
+    fmt::print("  order           {} times do not increase\n", summary.out_of_order);
+}
+
+void run(const Options& options) {
+  const Contents contents = read_contents(options);
+  if (options.json) return print_json(options, contents);
+  fmt::print("{}: {}, {} stream{}\n", bus::printable(options.name), contents.format, contents.rows.size(),
+             contents.rows.size() == 1 ? "" : "s");
+  for (const std::string& note : contents.notes) fmt::print("note: {}\n", note);
+  if (contents.losses.any()) fmt::print("lost: {}\n", losses_in_words(contents.losses));
+  for (const Row& row : contents.rows) print_row(row);
+}
+
+}  // namespace
+
+void add_info(cli::App program) {
+  const auto options = std::make_shared<Options>();
+  cli::App command = program.add_subcommand("info", "what a recording holds: streams, poses, gaps, jumps");
+  command.add_option("FILE", options->name, "any recording: FILE, or FILE:TOPIC for one stream").required();
+  command.add_option("--times", options->times, "times of KITTI poses [s]");
+  command.add_option("--columns", options->reading.columns,
+                     "names of a table's columns: t,x,y,z,qx,qy,qz,qw");
+  command.add_option("--rate", options->reading.rate, "of KITTI poses without times [Hz; 10]");
+  command.add_flag("--json", options->json, "one JSON object on standard output");
+  command.callback([options] { run(*options); });
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "offline/lcm_recording.hpp"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "egocal/bus/log_file.hpp"
+#include "offline/lcm_pose.hpp"
+
+namespace egocal::tools {
+
+bool is_lcm_log(const std::string& file) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) return false;  // a pipe can be read only once
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 4> first{};
+  return stream.read(first.data(), first.size()) && std::string(first.data(), 4) == "\xed\xa1\xda\x01";
+}
+
+std::size_t LcmRecording::stream_of(const std::string& channel) {
+  constexpr std::size_t most_streams = 10'000;  // a damaged log may hold any number of names
+  const auto known = channels_.find(channel);
+  if (known != channels_.end()) return known->second;
+  if (streams_.size() >= most_streams) return streams_.size() - 1;
+  channels_[channel] = streams_.size();
+  RecordedStream stream;
+  stream.name = stream.topic = channel;
+  streams_.push_back(stream);
+  return streams_.size() - 1;
+}
+
+void LcmRecording::read(const std::string& topic, const TakePose& take) {
+  streams_.clear();
+  channels_.clear();
+  losses_ = {};
+  bus::LogReader log(file_);
+  while (const auto event = log.next()) {
+    const std::size_t index = stream_of(event->channel);
+    ++streams_[index].messages;
+    if (!topic.empty() && event->channel != topic) continue;
+    const LcmPose message = decode_lcm_pose(event->data);
+    if (message.type.empty()) continue;
+    streams_[index].type = message.type;
+    streams_[index].poses = true;
+    if (message.pose)
+      take(index, *message.pose.value);
+    else if (losses_.refused++ == 0)
+      losses_.first_refused = event->channel + ": " + message.pose.reason;
+  }
+  losses_.regions = log.damage().regions + log.damage().jumps;
+  losses_.bytes = log.damage().bytes;
+  losses_.truncated = log.damage().truncated;
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "egocal/calibrate.hpp"
+
+namespace egocal::tools {
+
+/// What a report is made of.
+struct ReportInput {
+  std::string name_a, name_b;     ///< files, topics or channels
+  Trajectory a, b;                ///< empty for a file of motion pairs
+  std::vector<MotionPair> pairs;  ///< of the stride in force
+  CalibrationOptions options;
+  Calibration calibration;
+  std::string method;
+  std::string verdict;                ///< headline, in words
+  std::vector<std::string> findings;  ///< what is wrong and its cure, one sentence each
+  std::vector<std::string> command;   ///< the command line
+  std::optional<Pose> truth;
+};
+
+/// One self-contained page: no script, no other file, pictures inside. The same input gives the same bytes.
+std::string report_html(const ReportInput& input);
+
+}  // namespace egocal::tools
