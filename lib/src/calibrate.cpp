@@ -31,7 +31,7 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
 
 Answered answered(const Calibration& calibration) {
   return {to_dual_quaternion(calibration.T_a_b), calibration.observability, calibration.counts,
-          calibration.problem};
+          calibration.problem, calibration.choice.stride};
 }
 
 Calibration judged(Calibration calibration, Diagnosis diagnosis) {

@@ -4,9 +4,11 @@
 // Mistakes that users make, on real and on simulated drives: what the verdict is, and whether a finding names
 // the cause. The table of docs/trust.md. Fails where an answer that is off by more than a degree or 60 cm is
 // called good without a finding that names the cause, or a clean drive doubtful.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -54,27 +56,57 @@ std::vector<Drive> real_drives(bool small) {
   drives.push_back({"tango c-m", of_files(tango, "caligula.tum", "mars.tum"), false});
   drives.push_back({"tango c-n", of_files(tango, "caligula.tum", "nero.tum"), false});
   drives.push_back({"tango m-n", of_files(tango, "mars.tum", "nero.tum"), false});
+  add_tampere(drives);
   for (const char* name : {"fsuarez6", "moveit50", "aubo32", "scara", "visp_to-hand"})
     drives.push_back({name, of_files(std::string("hand_eye/") + name + "/", "hand.tum", "eye.tum"), false});
   return drives;
 }
 
+/// Every fourth run of each level, with the truth of the benchmark.
+void add_tampere(std::vector<Drive>& drives) {
+  const std::filesystem::path root = EGOCAL_DATA_DIR "/tampere";
+  std::vector<std::filesystem::path> truths;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
+    if (entry.path().filename() == "truth.txt") truths.push_back(entry.path());
+  std::sort(truths.begin(), truths.end());
+  for (std::size_t i = 0; i < truths.size(); i += 4) {
+    const std::string folder =
+        std::filesystem::relative(truths[i].parent_path(), EGOCAL_DATA_DIR).string() + "/";
+    Streams streams = of_files(folder, "a.tum", "b.tum");
+    std::ifstream file(truths[i]);
+    Pose T;
+    double w = 1, x = 0, y = 0, z = 0;
+    file >> T.translation[0] >> T.translation[1] >> T.translation[2] >> w >> x >> y >> z;
+    T.rotation = Eigen::Quaterniond(w, x, y, z).normalized();
+    streams.T = to_dual_quaternion(T);
+    drives.push_back({folder, std::move(streams), static_cast<bool>(file)});
+  }
+}
+
+enum class Noise { white, wandering, heavy_tailed, outliers };
+
 std::vector<Drive> simulated_drives(int seeds, int poses) {
   std::vector<Drive> drives;
+  constexpr const char* terrains[] = {"flat", "rough", "free"};
+  constexpr const char* noises[] = {"white", "wandering", "heavy-tailed", "outliers"};
   for (int seed = 1; seed <= seeds; ++seed)
     for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free})
-      for (const double noise : {0.001, 0.01, 0.1})
-        for (const bool wander : {false, true}) {
+      for (const double level : {0.001, 0.01, 0.1})
+        for (const Noise noise : {Noise::white, Noise::wandering, Noise::heavy_tailed, Noise::outliers}) {
           SimulationOptions options;
           options.terrain = terrain;
-          options.relative_noise = noise;
-          options.random_walk = wander;
+          options.relative_noise = level;
+          options.random_walk = noise == Noise::wandering;
+          options.heavy_tails = noise == Noise::heavy_tailed;
           options.poses = poses;
           options.seed = static_cast<std::uint64_t>(seed);
-          const char* names[] = {"flat", "rough", "free"};
+          if (noise == Noise::outliers) {
+            options.faults.resize(2);
+            options.faults[1].outliers = 0.05;
+          }
           char name[64];
-          std::snprintf(name, sizeof name, "%s %g %%%s, seed %d", names[static_cast<int>(terrain)],
-                        100 * noise, wander ? " wander" : "", seed);
+          std::snprintf(name, sizeof name, "%s %g %% %s, %d", terrains[static_cast<int>(terrain)],
+                        100 * level, noises[static_cast<int>(noise)], seed);
           drives.push_back({name, testing::simulated_drive(options)});
         }
   return drives;

@@ -8,7 +8,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "support/mistakes.hpp"
+#include "../support/mistakes.hpp"
 
 namespace egocal {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "diagnosis/fit.hpp"
 #include "diagnosis/robust_fit.hpp"
-#include "support/mistakes.hpp"
+#include "../support/mistakes.hpp"
 
 namespace egocal {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "egocal/calibrate.hpp"
-#include "support/simulated_drive.hpp"
+#include "../support/simulated_drive.hpp"
 
 namespace egocal {
 namespace {

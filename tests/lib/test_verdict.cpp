@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "egocal/calibrate.hpp"
-#include "support/mistakes.hpp"
-#include "support/real_drives.hpp"
+#include "../support/mistakes.hpp"
+#include "../support/real_drives.hpp"
 
 namespace egocal {
 namespace {

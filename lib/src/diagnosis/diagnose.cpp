@@ -62,6 +62,28 @@ Finding too_little_motion(std::size_t motions) {
 /// In all, robustly: turned by less than this, odometry noise decides [rad].
 constexpr double least_turning = 0.1;
 
+/// What is left where no reading, scale or clock explains the motions.
+void look_further(const Evidence& evidence, const Answered& answered, const Misfit& misfit,
+                  std::vector<Finding>& findings) {
+  const Motions& motions = evidence.given.explained.motions;
+  double turned = 0;
+  for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
+  turned *= static_cast<double>(evidence.instants.time.size()) /
+            static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
+  if (turned < least_turning) {
+    findings.push_back(too_little_motion(motions.all.size()));
+    return;
+  }
+  const double correlation = turning_correlation(motions);
+  if (misfit.best > contradictory_misfit && correlation < 0.5) {
+    findings.push_back(unrelated(correlation));
+    return;
+  }
+  std::vector<Finding> moves = moved_mount(evidence.instants, answered);
+  // a mount that moved looks like many things
+  if (!moves.empty()) findings = std::move(moves);
+}
+
 }  // namespace
 
 Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
@@ -87,21 +109,10 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
     for (Finding& finding : check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
       result.findings.push_back(std::move(finding));
   const Misfit misfit{std::sqrt(at_answer.typical), std::sqrt(evidence.given.explained.fit.typical)};
-  const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
-                                     [](const Finding& finding) { return finding.certain; });
-  if (!explained) {
-    const double correlation = turning_correlation(motions);
-    double turned = 0;
-    for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
-    turned *= static_cast<double>(evidence.instants.time.size()) /
-              static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
-    if (turned < least_turning)
-      result.findings.push_back(too_little_motion(motions.all.size()));
-    else if (misfit.best > contradictory_misfit && correlation < 0.5)
-      result.findings.push_back(unrelated(correlation));
-    else if (std::optional<Finding> moved = moved_mount(evidence.given.explained, options))
-      result.findings.push_back(std::move(*moved));
-  }
+  const bool explained = std::any_of(result.findings.begin(), result.findings.end(), [](const Finding& one) {
+    return one.certain && one.code != "inverted_both";
+  });
+  if (!explained) look_further(evidence, answered, misfit, result.findings);
   judge(result, answered, misfit, options);
   return result;
 }

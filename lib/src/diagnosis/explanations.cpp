@@ -248,6 +248,25 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
   return finding;
 }
 
+/// The order of the quaternions wrong in both streams alike: where both sensors move in nearly the same way
+/// that is nearly consistent. Short motions, of which there are many, show it.
+std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options) {
+  Evidence brief = evidence;
+  brief.stride = std::max(1, evidence.stride / 16);
+  if (brief.stride == evidence.stride) return std::nullopt;
+  const Explanation given = explained(brief, "", {}, {}, most_motions);
+  std::optional<Finding> best;
+  for (const Candidate& candidate : common_mistakes()) {
+    if (std::string_view(candidate.code) != "quaternion_order_both") continue;
+    const Explanation here = explained(brief, candidate.code, candidate.a, candidate.b, most_motions);
+    if (given.explained.motions.all.empty() || here.explained.motions.all.empty()) continue;
+    const Comparison comparison = compare(given.explained, here.explained);
+    if (!better(comparison, 0, options) || (best && best->improvement > std::exp(comparison.gain))) continue;
+    best = worded_reading(finding_of(here, comparison, false), candidate.a, candidate.b);
+  }
+  return best;
+}
+
 }  // namespace
 
 Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
@@ -323,6 +342,9 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     finding.value = drift ? clock.clock.rate : clock.clock.offset;
     add(worded_clock(std::move(finding), clock.clock));
   }
+  if (findings.empty())
+    if (std::optional<Finding> orders = both_orders(evidence, options))
+      findings.push_back(std::move(*orders));
   if (findings.empty())
     if (std::optional<Finding> both = both_inverted(evidence, options))
       findings.push_back(worded_reading(std::move(*both), {}, {}));

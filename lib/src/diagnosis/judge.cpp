@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/judge.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "diagnosis/goal.hpp"
+#include "diagnosis/stability.hpp"
 #include "diagnosis/wording.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -51,16 +54,23 @@ double shift(const Finding& finding, const Answered& answered, const DiagnosisOp
 }
 
 std::string unknown_directions(const Answered& answered, const DiagnosisOptions& options) {
+  const std::array<double, 6> unstable = spread_without_fifths(answered.problem, answered.T_a_b);
   std::string text;
   for (std::size_t i = 0; i < 6; ++i) {
     if (!expected(answered, i)) continue;
     const double tolerance = i < 3 ? options.tolerance_translation : options.tolerance_rotation;
-    const double stddev = answered.observability.stddev[i];
+    const double stddev = std::max(answered.observability.stddev[i], unstable[i]);
     if (answered.observability.observable[i] && confidence * stddev <= tolerance) continue;
     text += text.empty() ? "" : ", ";
     text += directions[i];
   }
   return text;
+}
+
+/// The streams mean something else than was taken: whatever the answer is, it is not theirs.
+bool misread(const Finding& finding) {
+  return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
+         finding.code != "clock_drift" && finding.code != "mount_moved";
 }
 
 struct Opinion {
@@ -75,9 +85,10 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     const double far = shift(finding, answered, options);
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
-    else if (finding.certain && (far > 1 || finding.improvement > overwhelming))
+    else if (misread(finding) || (finding.certain && (far > 1 || finding.improvement > overwhelming)))
       verdict = Verdict::contradictory;
-    else if (finding.code != "inverted_both" && far > (finding.certain ? 0.5 : 1))
+    else if ((finding.certain && (far > 0.5 || finding.code == "mount_moved")) ||
+             (finding.code != "inverted_both" && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }
@@ -117,7 +128,7 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
     diagnosis.reason =
         format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,
                100 * options.tolerance_translation, unknown.c_str());
-    if (!diagnosis.goal) {
+    if (!diagnosis.goal && answered.seconds > 0) {
       const GoalOptions usable{options.tolerance_rotation / confidence,
                                options.tolerance_translation / confidence, std::nullopt};
       diagnosis.reason += " " + goal_of(answered, usable).next;

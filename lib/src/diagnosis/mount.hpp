@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <vector>
 
-#include "diagnosis/robust_fit.hpp"
-#include "egocal/diagnosis/verdict.hpp"
+#include "diagnosis/motions.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
 
-/// Whether the mounting changed once during the drive: two extrinsics, before and after some time, must fit
-/// clearly better than one, and differ by far more than the parts of the drive on either side scatter.
-std::optional<Finding> moved_mount(const Explained& whole, const DiagnosisOptions& options);
+/// Findings mount_moved, one for each change of the mounting (moves/find_moves.hpp), in the order of time.
+std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered);
 
 }  // namespace egocal::detail

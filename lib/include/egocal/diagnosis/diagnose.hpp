@@ -16,6 +16,7 @@ struct Answered {
   Observability observability;
   PairingCounts counts;
   Problem problem;
+  int stride = 1;                     ///< of its motions, in instants
   double seconds = 0;                 ///< that the motions took; 0: unknown
   Platform platform = Platform::car;  ///< where the goal names none
 };
