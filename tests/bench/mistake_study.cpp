@@ -41,27 +41,6 @@ Streams of_files(const std::string& folder, const char* a, const char* b) {
   return {{}, testing::real_trajectory(folder + a), testing::real_trajectory(folder + b), {}};
 }
 
-std::vector<Drive> real_drives(bool small) {
-  std::vector<Drive> drives;
-  if (!testing::have_real_drives()) return drives;
-  drives.push_back({"KITTI 07", testing::kitti("07")});
-  drives.push_back({"EuRoC", testing::euroc()});
-  if (small) return drives;
-  drives.push_back({"KITTI 05", testing::kitti("05")});
-  drives.push_back({"KITTI 05 a-loam", testing::kitti("05", "velodyne_aloam")});
-  drives.push_back({"KITTI 07 a-loam", testing::kitti("07", "velodyne_aloam")});
-  drives.push_back({"KITTI 0930", testing::kitti_asynchronous()});
-  drives.push_back({"arm", testing::robot_arm()});
-  const std::string tango = "eth_tango_easy/";
-  drives.push_back({"tango c-m", of_files(tango, "caligula.tum", "mars.tum"), false});
-  drives.push_back({"tango c-n", of_files(tango, "caligula.tum", "nero.tum"), false});
-  drives.push_back({"tango m-n", of_files(tango, "mars.tum", "nero.tum"), false});
-  add_tampere(drives);
-  for (const char* name : {"fsuarez6", "moveit50", "aubo32", "scara", "visp_to-hand"})
-    drives.push_back({name, of_files(std::string("hand_eye/") + name + "/", "hand.tum", "eye.tum"), false});
-  return drives;
-}
-
 /// Every fourth run of each level, with the truth of the benchmark.
 void add_tampere(std::vector<Drive>& drives) {
   const std::filesystem::path root = EGOCAL_DATA_DIR "/tampere";
@@ -81,6 +60,27 @@ void add_tampere(std::vector<Drive>& drives) {
     streams.T = to_dual_quaternion(T);
     drives.push_back({folder, std::move(streams), static_cast<bool>(file)});
   }
+}
+
+std::vector<Drive> real_drives(bool small) {
+  std::vector<Drive> drives;
+  if (!testing::have_real_drives()) return drives;
+  drives.push_back({"KITTI 07", testing::kitti("07")});
+  drives.push_back({"EuRoC", testing::euroc()});
+  if (small) return drives;
+  drives.push_back({"KITTI 05", testing::kitti("05")});
+  drives.push_back({"KITTI 05 a-loam", testing::kitti("05", "velodyne_aloam")});
+  drives.push_back({"KITTI 07 a-loam", testing::kitti("07", "velodyne_aloam")});
+  drives.push_back({"KITTI 0930", testing::kitti_asynchronous()});
+  drives.push_back({"arm", testing::robot_arm()});
+  const std::string tango = "eth_tango_easy/";
+  drives.push_back({"tango c-m", of_files(tango, "caligula.tum", "mars.tum"), false});
+  drives.push_back({"tango c-n", of_files(tango, "caligula.tum", "nero.tum"), false});
+  drives.push_back({"tango m-n", of_files(tango, "mars.tum", "nero.tum"), false});
+  add_tampere(drives);
+  for (const char* name : {"fsuarez6", "moveit50", "aubo32", "scara", "visp_to-hand"})
+    drives.push_back({name, of_files(std::string("hand_eye/") + name + "/", "hand.tum", "eye.tum"), false});
+  return drives;
 }
 
 enum class Noise { white, wandering, heavy_tailed, outliers };

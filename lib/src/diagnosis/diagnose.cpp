@@ -109,9 +109,8 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
     for (Finding& finding : check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
       result.findings.push_back(std::move(finding));
   const Misfit misfit{std::sqrt(at_answer.typical), std::sqrt(evidence.given.explained.fit.typical)};
-  const bool explained = std::any_of(result.findings.begin(), result.findings.end(), [](const Finding& one) {
-    return one.certain && one.code != "inverted_both";
-  });
+  const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
+                                     [](const Finding& one) { return one.certain; });
   if (!explained) look_further(evidence, answered, misfit, result.findings);
   judge(result, answered, misfit, options);
   return result;

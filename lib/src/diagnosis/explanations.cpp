@@ -225,9 +225,10 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
 }
 
 /// Both files inverted is no contradiction by itself: the answer is then that of the two odometry frames. It
-/// is certain where a vehicle's way points forward under it alone, or where noise that grows with the
-/// distance from the start gives it away; otherwise both answers stand.
-std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
+/// is certain where a vehicle's way points forward under it alone. Noise that grows with the distance from
+/// the start speaks for the streams as given, but not for the inverted ones: a mount that moved looks the
+/// same. Otherwise both answers stand.
+std::optional<Finding> both_inverted(const Evidence& evidence) {
   PoseReading inverted;
   inverted.invert = true;
   const Explanation both = explained(evidence, "inverted_both", inverted, inverted, most_motions);
@@ -237,13 +238,12 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
   const Heading as_inverted = heading(both.explained.motions);
   constexpr double decisive = 3;
   const bool noise_says_given = comparison.ratio < 1 / decisive && comparison.sigmas < 0;
-  const bool noise_says_inverted = comparison.ratio > decisive && better(comparison, 0, options);
   if (forward(as_given) && !forward(as_inverted)) return std::nullopt;
   const bool trace = forward(as_inverted) && scattered(as_given);
   if (!trace && noise_says_given) return std::nullopt;
   // an explanation that does not fit at all cannot be told apart from nothing
   if (!trace && comparison.gain < -1) return std::nullopt;
-  Finding finding = finding_of(both, comparison, trace || noise_says_inverted);
+  Finding finding = finding_of(both, comparison, trace);
   finding.improvement = comparison.ratio;
   return finding;
 }
@@ -346,7 +346,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     if (std::optional<Finding> orders = both_orders(evidence, options))
       findings.push_back(std::move(*orders));
   if (findings.empty())
-    if (std::optional<Finding> both = both_inverted(evidence, options))
+    if (std::optional<Finding> both = both_inverted(evidence))
       findings.push_back(worded_reading(std::move(*both), {}, {}));
   return findings;
 }

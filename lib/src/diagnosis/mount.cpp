@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/mount.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,10 @@ namespace {
 /// Motion pairs of the stride that was answered with, of all instants; in planar mode as seen from the
 /// planes.
 std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered) {
-  const auto steps = static_cast<std::size_t>(std::max(1, answered.stride));
+  // blocks of three motions that share no time, and enough of them to know their scatter
+  constexpr std::size_t wanted_blocks = 32;
+  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * wanted_blocks));
+  const std::size_t steps = std::min(longest, static_cast<std::size_t>(std::max(1, answered.stride)));
   const bool planar = answered.problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(answered.problem.plane_a) : DualQuaternion{};
   const DualQuaternion G_b = planar ? plane_frame(answered.problem.plane_b) : DualQuaternion{};
