@@ -208,6 +208,30 @@ void App::callback(std::function<void()> work) {
   app_->callback(std::move(work));
 }
 
+std::string App::command_line() const {
+  const auto quoted = [](const std::string& word) {
+    constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+  };
+  std::string line = app_->get_name();
+  for (const CLI::App* parent = app_->get_parent(); parent; parent = parent->get_parent())
+    line = parent->get_name() + " " + line;
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->count() == 0) continue;
+    const bool flag = option->get_items_expected_max() == 0;
+    if (flag) {
+      line += " --" + option->get_single_name();
+      continue;
+    }
+    for (const std::string& value : option->results())
+      line += (option->get_positional() ? " " : " --" + option->get_single_name() + " ") + quoted(value);
+  }
+  return line;
+}
+
 bool App::given() const {
   return app_->parsed();
 }

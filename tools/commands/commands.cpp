@@ -9,6 +9,7 @@ namespace egocal::tools {
 
 void add_commands(cli::App program) {
   add_solve(program);
+  add_report(program);
   add_check(program);
   add_simulate(program);
   add_info(program);

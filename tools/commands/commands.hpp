@@ -10,6 +10,7 @@ namespace egocal::tools {
 void add_commands(cli::App program);
 
 void add_solve(cli::App program);
+void add_report(cli::App program);
 void add_check(cli::App program);
 void add_simulate(cli::App program);
 void add_log(cli::App program);

@@ -146,6 +146,11 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   result.calibration = calibrate_motions(request.source, motions, options);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);
+  if (request.keep_motions) {
+    result.trajectory_a = motions.a;
+    result.trajectory_b = motions.b;
+    result.pairs = pairs_of(motions, options, result.calibration);
+  }
   if (!method) {
     result.method = request.method;
     answer_by_baseline(request.method, pairs_of(motions, options, result.calibration), result);

@@ -26,6 +26,7 @@ struct SolveRequest {
   std::string method = "global";   ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
   CalibrationOptions calibration;  ///< its method is set from the name above
   std::optional<Pose> truth;
+  bool keep_motions = false;  ///< hand back what was read, for a report
 };
 
 /// Times of one stream, for people who wonder why nothing matched.
@@ -42,6 +43,10 @@ struct SolveResult {
   std::string note;                   ///< of a baseline: why its answer is not valid
   std::optional<StreamSpan> a, b;     ///< not for a file of pairs
   double solve_us = 0;                ///< the solve alone, median of repeats [us]
+
+  /// Only with keep_motions.
+  Trajectory trajectory_a, trajectory_b;  ///< empty for a file of pairs
+  std::vector<MotionPair> pairs;          ///< of the stride and the weights in force
 };
 
 /// From the source to the answer. Throws Error where nothing can be read or paired, UsageError where options

@@ -3,7 +3,6 @@
 #include "report/html.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>
@@ -230,9 +229,10 @@ std::string settings(const ReportInput& input) {
   if (calibration.time_offset)
     table += row("", fmt::format("estimated: &plusmn; {:.4f} s, correlation of the turning rates {:.2f}",
                                  calibration.time_offset->stddev, calibration.time_offset->correlation));
+  for (const std::string& warning : input.warnings) table += row("warning", escaped(warning));
   table += row("method", escaped(input.method));
   table += row("version", std::string("egocal ") + version());
-  table += row("command", "<code>" + escaped(fmt::format("{}", fmt::join(input.command, " "))) + "</code>");
+  table += row("command", "<code>" + escaped(input.command) + "</code>");
   return table + "</table>\n";
 }
 

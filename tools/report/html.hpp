@@ -20,7 +20,8 @@ struct ReportInput {
   std::string method;
   std::string verdict;                ///< headline, in words
   std::vector<std::string> findings;  ///< what is wrong and its cure, one sentence each
-  std::vector<std::string> command;   ///< the command line
+  std::vector<std::string> warnings;  ///< about what was read
+  std::string command;                ///< the command line
   std::optional<Pose> truth;
 };
 

@@ -80,6 +80,8 @@ class App {
   /// Runs when the command line is complete and this command was given.
   void callback(std::function<void()> work);
   void footer(const std::string& text);
+  /// The command and its options as they were given, as a shell would read them.
+  std::string command_line() const;
   bool given() const;  ///< this command is on the command line that was parsed
 
  protected:

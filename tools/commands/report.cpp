@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands/commands.hpp"
+#include "commands/request_options.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "report/html.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+struct Options {
+  RequestOptions request;
+  std::string out;
+};
+
+std::string headline(const Calibration& calibration) {
+  return std::string(name(calibration.verdict)) + ": " + calibration.reason;
+}
+
+ReportInput report_input(const SolveRequest& request, SolveResult result, const std::string& command) {
+  ReportInput input;
+  input.command = command;
+  input.name_a = request.source.log.empty() ? request.source.a : request.source.log + ":" + request.source.a;
+  input.name_b = request.source.log.empty() ? request.source.b : request.source.log + ":" + request.source.b;
+  if (!request.source.pairs.empty()) input.name_a = input.name_b = request.source.pairs;
+  input.a = std::move(result.trajectory_a);
+  input.b = std::move(result.trajectory_b);
+  input.pairs = std::move(result.pairs);
+  input.options = request.calibration;
+  input.options.pairing.time_offset = result.calibration.time_offset_applied;
+  input.method = result.method;
+  input.verdict = headline(result.calibration);
+  for (const Finding& finding : result.calibration.findings)
+    input.findings.push_back(finding.message + (finding.remedy.empty() ? "" : " Remedy: " + finding.remedy));
+  input.warnings = result.warnings;
+  input.calibration = std::move(result.calibration);
+  input.truth = request.truth;
+  return input;
+}
+
+void run(const Options& options, const std::string& command) {
+  SolveRequest request = understood(options.request);
+  request.keep_motions = true;
+  const ReportInput input = report_input(request, calibrate_offline(request), command);
+  write_whole_file(options.out, report_html(input));
+  fmt::print("{}\n{}\n", input.verdict, options.out);
+  if (input.calibration.verdict == Verdict::contradictory ||
+      (input.calibration.goal && !input.calibration.goal->reached))
+    throw cli::Exit{3};
+}
+
+}  // namespace
+
+void add_report(cli::App program) {
+  const auto options = std::make_shared<Options>();
+  cli::App command = program.add_subcommand(
+      "report", "the answer of solve as one HTML page with pictures: print it, or hand it on");
+  add_request_options(command, options->request);
+  command.add_option("--out", options->out, "the page, written whole or not at all").required();
+  command.callback([options, command] { run(*options, command.command_line()); });
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/request_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "arguments.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+Reading reading(bool invert, const std::string& order) {
+  Reading result;
+  result.invert = invert;
+  if (order == "wxyz") result.quaternion_order = QuaternionOrder::wxyz;
+  if (order == "xyzw") result.quaternion_order = QuaternionOrder::xyzw;
+  return result;
+}
+
+}  // namespace
+
+SolveRequest understood(const RequestOptions& options) {
+  SolveRequest result;
+  result.source = options.source;
+  if (!options.times.empty()) {
+    if (result.source.times_a.empty()) result.source.times_a = options.times;
+    if (result.source.times_b.empty()) result.source.times_b = options.times;
+  }
+  const bool trajectories = options.source.pairs.empty();
+  if (trajectories && (options.source.a.empty() || options.source.b.empty()))
+    throw UsageError(options.source.log.empty() ? "expected two trajectory files A and B, or --pairs FILE"
+                                                : "expected two channel names A and B of the log");
+  if (!trajectories && (!options.source.a.empty() || !options.source.log.empty()))
+    throw UsageError("--pairs: takes the place of A and B and of --log");
+  result.method = options.method;
+
+  if (options.planar != (!options.plane_a.empty() || !options.plane_b.empty()) ||
+      options.plane_a.empty() != options.plane_b.empty())
+    throw UsageError("--planar: goes with both --plane-a and --plane-b");
+  if (options.planar) {
+    result.calibration.pairing.mode = Mode::planar;
+    result.calibration.pairing.plane_a = plane("--plane-a", options.plane_a);
+    result.calibration.pairing.plane_b = plane("--plane-b", options.plane_b);
+  }
+
+  // equal weights are the paper's plain method: every motion of one step, no outliers
+  if (options.weights == "equal") {
+    result.calibration.pairing.balance = Balance{};
+    result.calibration.pairing.robust = false;
+    if (options.stride.empty()) result.calibration.pairing.stride = 1;
+  } else if (options.weights != "auto") {
+    result.calibration.pairing.balance = balance("--weights", options.weights);
+  }
+  if (!options.stride.empty() && options.stride != "auto") {
+    const double stride = number("--stride", options.stride);
+    if (stride < 1 || stride > 100000 || stride != static_cast<int>(stride))
+      throw UsageError("--stride: expected auto or a whole number from 1 to 100000, got '" + options.stride +
+                       "'");
+    result.calibration.pairing.stride = static_cast<int>(stride);
+  }
+  if (options.time_offset == "auto")
+    result.calibration.estimate_time_offset = true;
+  else if (!options.time_offset.empty())
+    result.calibration.pairing.time_offset = number("--time-offset", options.time_offset);
+  if (std::abs(result.calibration.pairing.time_offset) > 1e10)
+    throw UsageError("--time-offset: out of range");
+  if (!(options.max_gap > 0) || options.max_gap > 1e6) throw UsageError("--max-gap: expected more than 0 s");
+  result.calibration.pairing.max_gap = options.max_gap;
+  result.calibration.read_a = reading(options.invert_a, options.order_a);
+  result.calibration.read_b = reading(options.invert_b, options.order_b);
+  if (!trajectories &&
+      (options.invert_a || options.invert_b || !options.order_a.empty() || !options.order_b.empty()))
+    throw UsageError("--invert, --quaternion-order: apply to poses, not to motion pairs");
+  if (!options.goal.empty()) result.calibration.diagnosis.goal = goal("--goal", options.goal);
+  if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
+  if (!options.nominal.empty())
+    result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
+  return result;
+}
+
+void add_request_options(cli::App command, RequestOptions& options) {
+  command.add_option(
+      "A", options.source.a,
+      "trajectory of sensor a: FILE or FILE:TOPIC of a ROS bag, MCAP, LCM log, TUM, KITTI, EuRoC or "
+      "other csv; with --log its channel");
+  command.add_option("B", options.source.b, "trajectory of sensor b");
+  command.add_option("--log", options.source.log, "LCM log; A and B are names of its channels");
+  command.add_option("--pairs", options.source.pairs,
+                     "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
+  command.add_option("--times", options.times, "times of KITTI poses, one a line [s]");
+  command.add_option("--times-a", options.source.times_a, "times of A alone");
+  command.add_option("--times-b", options.source.times_b, "times of B alone");
+  command.add_option("--columns", options.source.reading.columns,
+                     "names of a table's columns: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
+  command.add_option("--rate", options.source.reading.rate, "of KITTI poses without times [Hz; 10]");
+  command.add_option("--method", options.method, "solver, or a baseline of the paper")
+      .check(cli::Check::one_of(
+          {"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))
+      .show_default();
+  command.add_flag("--planar", options.planar, "x, y and yaw only; the rest from the ground planes");
+  command.add_option("--plane-a", options.plane_a,
+                     "NX,NY,NZ,D: ground seen from a, n . x = D, unit normal n up [m]");
+  command.add_option("--plane-b", options.plane_b, "ground seen from b");
+  command.add_option(
+      "--stride", options.stride,
+      "steps of the slower stream in one motion: a number or auto [auto; 1 with --weights equal]");
+  command.add_option("--weights", options.weights, "of rotation and translation: auto, equal or R:T")
+      .show_default();
+  command.add_option("--time-offset", options.time_offset, "added to the times of B: seconds or auto [0]");
+  command.add_option("--max-gap", options.max_gap, "poses further apart are not interpolated between [s]")
+      .show_default();
+  for (const auto& [stream, invert, order] : {std::tuple{"a", &options.invert_a, &options.order_a},
+                                              std::tuple{"b", &options.invert_b, &options.order_b}}) {
+    command.add_flag(fmt::format("--invert-{}", stream), *invert,
+                     fmt::format("the poses of {} are world-to-sensor: invert each", stream));
+    command
+        .add_option(
+            fmt::format("--quaternion-order-{}", stream), *order,
+            fmt::format("columns of the quaternions of {} where they are not those of the file format: "
+                        "wxyz in TUM, xyzw in EuRoC csv",
+                        stream))
+        .check(cli::Check::one_of({"wxyz", "xyzw"}));
+  }
+  command.add_option("--goal", options.goal,
+                     "ROTATION,TRANSLATION as 0.1deg,2cm: standard deviations that are enough; exit code 3 "
+                     "where they are not reached");
+  command.add_option("--nominal", options.nominal, "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
+  command.add_option("--truth", options.truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "egocal/cli/cli.hpp"
+#include "offline/calibration.hpp"
+
+namespace egocal::tools {
+
+/// Which motions to solve and how, as typed; empty means not given. What `egocal solve` and `egocal report`
+/// share.
+struct RequestOptions {
+  MotionSource source;
+  std::string times;
+  std::string method = "global";
+  bool planar = false;
+  std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal;
+  double max_gap = 0.5;
+  std::string order_a, order_b, goal;
+  bool invert_a = false, invert_b = false;
+};
+
+/// Adds A, B and all options of the struct. It must live until the command has run.
+void add_request_options(cli::App command, RequestOptions& options);
+
+/// Throws UsageError naming the option that cannot be understood.
+SolveRequest understood(const RequestOptions& options);
+
+}  // namespace egocal::tools
