@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <string>
@@ -40,6 +41,36 @@ struct Case {
   Matrix8d Q;
 };
 
+/// Sensors with parallel axes on a vehicle that turns about z and hardly tilts: entries of Q cancel.
+std::vector<MotionPair> aligned_vehicle(Random& random) {
+  const double tilt = random.log_uniform(1e-11, 1e-5);
+  const double yaw = random.normal();
+  const DualQuaternion T = testing::displacement({0, 0, yaw}, random.normal3());
+  std::vector<MotionPair> pairs(2 + random.below(300));
+  for (MotionPair& pair : pairs) {
+    Eigen::Vector3d turn = random.normal3(tilt), shift = random.normal3(tilt);
+    turn.z() = 0.1 * random.normal();
+    shift.x() = 1 + 0.1 * random.normal();
+    pair.a = testing::displacement(turn, shift);
+    const Eigen::Vector3d turn_error = random.normal3(1e-3 * tilt), shift_error = random.normal3(tilt);
+    pair.b = normalized(conjugate(T) * pair.a * T * testing::displacement(turn_error, shift_error));
+  }
+  return pairs;
+}
+
+/// Rotations without noise and translations with it: D is singular, the cost is not small.
+std::vector<MotionPair> exact_rotations(Random& random) {
+  const DualQuaternion T = testing::random_extrinsic(random, random.log_uniform(0.1, 100));
+  const double noise = random.log_uniform(1e-9, 0.3);
+  std::vector<MotionPair> pairs(3 + random.below(300));
+  for (MotionPair& pair : pairs) {
+    const Eigen::Vector3d turn = random.normal3(0.1), shift = random.normal3(), error = random.normal3(noise);
+    pair.b = testing::displacement(turn, shift);
+    pair.a = T * pair.b * conjugate(T) * testing::displacement({0, 0, 0}, error);
+  }
+  return pairs;
+}
+
 /// Noise 1e-6 to 0.5, 1 to 1000 pairs, a third of them near-degenerate, a quarter of the others planar.
 Case make_case(std::uint64_t number) {
   Random random(number);
@@ -52,10 +83,22 @@ Case make_case(std::uint64_t number) {
   drive.flip_signs = true;
   const std::uint64_t kind = random.below(12);
   made.degenerate = kind < 4 || drive.pairs < 3;
+  const std::uint64_t special = kind < 4 ? random.below(9) : 0;
+  if (special >= 6) {
+    const Balance balance{1, random.log_uniform(1e-3, 1)};
+    if (special == 8) drive.noise = 0.01;
+    made.Q = testing::cost_of(special == 6 ? aligned_vehicle(random)
+                              : special == 7
+                                  ? exact_rotations(random)
+                                  : testing::random_pairs(testing::random_extrinsic(random), drive, random),
+                              balance);
+    if (special == 8) made.Q *= random.log_uniform(1e-300, 1e-290) * 1e-20;  // below what doubles can hold
+    return made;
+  }
   made.planar = kind >= 10 || (kind < 4 && random.below(4) == 0);
   drive.motion = made.planar ? Motion::planar : kind % 2 ? Motion::free : Motion::dominant_axis;
   if (kind < 4) {
-    switch (random.below(6)) {
+    switch (special) {
       case 0:
         drive.noise = 0;
         break;
@@ -136,6 +179,10 @@ struct Tally {
   std::uint64_t by_reach =
       0;  ///< certified above rounding because every better one is nearer than the options say
   std::uint64_t not_finite = 0;
+  std::uint64_t bounds_broken = 0;   ///< a cost below a bound by more than its own rounding
+  std::uint64_t reaches_broken = 0;  ///< a better extrinsic outside of the reach, within the domain
+  std::uint64_t negative_costs = 0;  ///< certified below minus rounding
+  std::uint64_t invalid = 0, invalid_certified = 0;  ///< what is no extrinsic or no cost matrix
 
   void operator+=(const Tally& t) {
     problems += t.problems;
@@ -152,6 +199,11 @@ struct Tally {
     missed += t.missed;
     by_reach += t.by_reach;
     not_finite += t.not_finite;
+    bounds_broken += t.bounds_broken;
+    reaches_broken += t.reaches_broken;
+    negative_costs += t.negative_costs;
+    invalid += t.invalid;
+    invalid_certified += t.invalid_certified;
   }
 };
 
@@ -177,6 +229,60 @@ bool is_false(const Case&, const Certificate& c, const DualQuaternion& q, const 
     return false;
   }
   return true;
+}
+
+/// What is stated of every other extrinsic, held against the best one known.
+void check_statements(std::uint64_t number, const Matrix8d& Q, const Certificate& c, const DualQuaternion& q,
+                      const DualQuaternion& best, Tally& tally) {
+  const Extended better = bench::extended_cost(Q, best);
+  const ExtrinsicError distance = extrinsic_error(best, q);
+  const bool within = distance.translation <= c.domain;
+  if (within && better + Extended(cost_rounding(Q, best)) < Extended(c.lower_bound)) {
+    ++tally.bounds_broken;
+    report("BOUND BROKEN", number, c, better - Extended(c.lower_bound));
+  }
+  const bool outside = distance.translation > c.reach_translation * (1 + 1e-9) + 1e-300 ||
+                       distance.rotation > c.reach_rotation * (1 + 1e-9) + 1e-14;
+  if (within && outside && better < Extended(c.cost)) {
+    ++tally.reaches_broken;
+    report("REACH BROKEN", number, c, better - Extended(c.cost));
+  }
+  if (c.optimality == Optimality::certified && c.cost < -c.rounding) {
+    ++tally.negative_costs;
+    report("NEGATIVE COST CERTIFIED", number, c, 0);
+  }
+}
+
+/// What may never be certified.
+void check_invalid(std::uint64_t number, const Matrix8d& Q, const DualQuaternion& best, Random& random,
+                   Tally& tally) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto expect_none = [&](const Matrix8d& given, const DualQuaternion& q) {
+    ++tally.invalid;
+    const Certificate c = verify(given, q);
+    if (c.optimality != Optimality::certified) return;
+    ++tally.invalid_certified;
+    report("INVALID INPUT CERTIFIED", number, c, 0);
+  };
+  expect_none(Q, {nan * best.real, best.dual});
+  expect_none(Q, {0 * best.real, best.dual});
+  expect_none(Q, {best.real, nan * best.dual});
+  expect_none(Q, {random.log_uniform(2, 1e200) * best.real, best.dual});
+  const int i = static_cast<int>(random.below(8)), j = (i + 1 + static_cast<int>(random.below(7))) % 8;
+  Matrix8d bad = Q;
+  bad(i, j) = nan;
+  expect_none(bad, best);
+  bad = Q;
+  bad(i, j) += 0.1 * Q.trace();
+  expect_none(bad, best);
+  bad = Q;
+  bad(i, i) -= 2 * Q.trace();  // indefinite: below any cost there is another one
+  const Certificate c = verify(bad, best);
+  ++tally.invalid;
+  if (c.optimality == Optimality::certified && c.cost < -c.rounding) {
+    ++tally.invalid_certified;
+    report("INDEFINITE MATRIX CERTIFIED", number, c, 0);
+  }
 }
 
 Tally study(std::uint64_t number) {
@@ -211,6 +317,7 @@ Tally study(std::uint64_t number) {
   const auto judge = [&](const char* what, const DualQuaternion& q) {
     const Certificate certificate = check(q);
     const Extended excess = bench::extended_cost(Q, q) - best.cost;
+    check_statements(number, Q, certificate, q, best.q, tally);
     if (is_false(problem, certificate, q, best, excess, tally)) {
       ++tally.false_certificates;
       report(what, number, certificate, excess);
@@ -232,6 +339,8 @@ Tally study(std::uint64_t number) {
     if (!certified) report("no certificate", number, certificate, excess);
   }
 
+  if (!problem.planar && number % 8 == 0 && Q.trace() > 1e-200)
+    check_invalid(number, Q, best.q, random, tally);
   if (!problem.planar) {
     const DualQuaternion q = solve_sqp(Q, testing::random_extrinsic(random)).q;
     const auto [c, above] = judge("FALSE CERTIFICATE of a local minimum", q);
@@ -309,6 +418,12 @@ int main(int argc, char** argv) {
   row("of these with a cost that rose by no more than rounding", all.falsified_indistinct);
   row("certified above rounding, but within 1 um and 1 urad of the optimum", all.by_reach);
   row("answers that are not finite", all.not_finite);
+  row("bounds broken by more than rounding", all.bounds_broken);
+  row("reaches broken", all.reaches_broken);
+  row("certified with a cost below minus its rounding", all.negative_costs);
+  row("invalid inputs", all.invalid);
+  row("certified of these", all.invalid_certified);
+  const bool held = all.bounds_broken + all.reaches_broken + all.negative_costs + all.invalid_certified == 0;
   const bool enough = static_cast<double>(all.certified) >= 0.9999 * static_cast<double>(all.owed);
-  return all.false_certificates == 0 && all.not_finite == 0 && enough ? 0 : 1;
+  return all.false_certificates == 0 && all.not_finite == 0 && held && enough ? 0 : 1;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace egocal {
 
@@ -75,7 +76,11 @@ Matrix8d right_matrix(const DualQuaternion& q) {
 
 DualQuaternion normalized(const DualQuaternion& q) {
   const double norm = q.real.norm();
-  if (!(norm > 0)) return {};
+  // beyond, the squares that the length is made of overflow or vanish
+  if (!(norm > 1e-100 && norm < 1e100)) {
+    const QuaternionVector nothing = QuaternionVector::Constant(std::numeric_limits<double>::quiet_NaN());
+    return {nothing, nothing};
+  }
   const QuaternionVector real = q.real / norm;
   const QuaternionVector dual = q.dual / norm;
   return {real, dual - real.dot(dual) * real};
@@ -125,7 +130,7 @@ DualQuaternion interpolate(const DualQuaternion& p, const DualQuaternion& q, dou
     const Pose whole = to_pose(motion);
     part.dual =
         0.5 * quaternion_product(QuaternionVector(0, s * whole.translation.x(), s * whole.translation.y(),
-                                                  s * whole.translation.z()),
+                                                 s * whole.translation.z()),
                                  part.real);
   } else {
     const double half_angle = std::atan2(sine, motion.real[0]);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "certificate/proof.hpp"
+#include "certificate/verify.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
@@ -11,6 +11,7 @@
 #include "egocal/solvers/sqp.hpp"
 #include "egocal/uncertainty/observability.hpp"
 #include "online/solve_and_verify.hpp"
+#include "solvers/proven_dual.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -22,16 +23,20 @@ struct Stopwatch {
   std::int64_t now() const { return clock ? clock() : 0; }
 };
 
-Solution minimise(const Matrix8d& Q, Method method, const DualQuaternion& start) {
+/// Local methods without a start begin at the global minimum: it costs less than they do, and a poor start
+/// could end in a local one.
+detail::ProvenSolution minimise(const Matrix8d& Q, Method method,
+                                const std::optional<DualQuaternion>& start) {
+  const auto begin = [&] { return start ? *start : solve_dual(Q).q; };
   switch (method) {
     case Method::dual:
-      return solve_dual(Q);
+      return detail::solve_dual_with_proof(Q);
     case Method::sdp:
-      return solve_sdp(Q);
+      return {solve_sdp(Q), {}};
     case Method::sqp:
-      return solve_sqp(Q, start);
+      return {solve_sqp(Q, begin()), {}};
     case Method::slsqp:
-      return solve_slsqp(Q, start);
+      return {solve_slsqp(Q, begin()), {}};
   }
   return {};
 }
@@ -56,19 +61,19 @@ DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimis
     step.head<3>() *= flat.length;
     DualQuaternion next = detail::frame_a_moved(q, step);
     next = solve_sqp(Q, next).q;
-    if (!(cost(Q, next) <= least + detail::rounding_of<8>(Q, next.vec()))) return q;
+    if (!(cost(Q, next) <= least + cost_rounding(Q, next))) return q;
     q = next;
     if (size < 1e-9) return q;
   }
   return q;
 }
 
-Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start,
-                     const Stopwatch& time) {
+Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method,
+                     const std::optional<DualQuaternion>& start, const Stopwatch& time) {
   Answer answer;
   answer.method = method;
   const std::int64_t begin = time.now();
-  const Solution solution = minimise(Q, method, start);
+  const auto [solution, proven] = minimise(Q, method, start);
   answer.solve_ns = time.now() - begin;
   answer.status = solution.status;
   answer.T_a_b = solution.q;
@@ -78,20 +83,23 @@ Answer solve_spatial(const Problem& problem, const Matrix8d& Q, Method method, c
   else if (solution.status != SolverStatus::not_finite)
     answer.T_a_b = nearest_to_prior(Q, solution.q, prior);
   const std::int64_t verified = time.now();
-  answer.certificate = verify(Q, answer.T_a_b);
+  const bool moved = answer.T_a_b.vec() != solution.q.vec();
+  answer.certificate = detail::verify(Q, answer.T_a_b, {}, moved ? std::nullopt : proven);
   answer.verify_ns = time.now() - verified;
   return answer;
 }
 
-Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, const DualQuaternion& start,
-                      const Stopwatch& time) {
+Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method,
+                      const std::optional<DualQuaternion>& start, const Stopwatch& time) {
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
   Answer answer;
   answer.method = method;
   const std::int64_t begin = time.now();
-  const Solution solution = method == Method::slsqp
-                                ? solve_slsqp_planar(Q, planar_from_extrinsic(start, G_a, G_b))
-                                : solve_planar(Q);
+  const auto begin_in_plane = [&] {
+    return start ? planar_from_extrinsic(*start, G_a, G_b) : solve_planar(Q).q;
+  };
+  const Solution solution =
+      method == Method::slsqp ? solve_slsqp_planar(Q, begin_in_plane()) : solve_planar(Q);
   answer.solve_ns = time.now() - begin;
   answer.status = solution.status;
   DualQuaternion T_p = solution.q;
@@ -115,9 +123,8 @@ Answer solve_in_plane(const Problem& problem, const Matrix8d& Q, Method method, 
 Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Method method,
                                 const std::optional<DualQuaternion>& start, NanosecondClock clock) {
   const Stopwatch time{clock};
-  const DualQuaternion from = start.value_or(DualQuaternion{});
-  return problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, from, time)
-                                      : solve_spatial(problem, Q, method, from, time);
+  return problem.mode == Mode::planar ? solve_in_plane(problem, Q, method, start, time)
+                                      : solve_spatial(problem, Q, method, start, time);
 }
 
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start,

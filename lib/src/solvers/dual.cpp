@@ -7,9 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "certificate/proof.hpp"
+#include "certificate/assess.hpp"
 #include "egocal/problem/cost.hpp"
 #include "solvers/newton.hpp"
+#include "solvers/proven_dual.hpp"
 
 namespace egocal {
 
@@ -60,11 +61,25 @@ Vector4d orthogonal_combination(const DualFunction& phi, const Vector4d& r1, con
   return std::cos(angle) * r1 + std::sin(angle) * r2;
 }
 
-/// Is no unit dual quaternion better than q by more than rounding?
-bool proven_optimal(const Matrix8d& Q, const Solution& solution) {
-  const double rounding = detail::rounding_of<8>(Q, solution.q.vec());
-  return solution.cost <= rounding ||
-         detail::proven_bound<8>(Q, solution.cost - 0.5 * rounding, solution.lambda.orthogonal, 0);
+/// The problem in scaled lengths, the best answer so far and the bound that proves it.
+struct Search {
+  Matrix8d Q;
+  detail::Sizes sizes;
+  Solution best;
+  std::optional<detail::ProvenBound> proven;
+};
+
+/// Is no unit dual quaternion better than the best by more than rounding?
+bool proven_optimal(Search& search) {
+  const Vector8d v = search.best.q.vec();
+  const double rounding = detail::rounding_of<8>(search.sizes, v);
+  const double cost = detail::extended_cost<8>(search.Q, v);
+  const double bound = detail::first_proposal(cost, rounding), orthogonal = search.best.lambda.orthogonal;
+  if (detail::proven_bound<8>(search.Q, bound, orthogonal, 0)) {
+    search.proven = {bound, orthogonal};
+    return true;
+  }
+  return std::abs(cost) <= rounding && detail::proven_sum_of_squares<8>(search.Q, search.sizes);
 }
 
 /// phi at one multiplier.
@@ -91,26 +106,27 @@ Sample sample(const DualFunction& phi, double m) {
   return here;
 }
 
-/// Keeps the better of best and what Newton steps on the KKT system of the true Q reach from r; is it proven?
-bool polish(const Matrix8d& Q, const DualFunction& phi, const Vector4d& r, double m, Solution& best) {
-  Solution polished = detail::newton_on_kkt(Q, {r, phi.dual_part(r, m)});
-  if (polished.cost < best.cost) {
-    polished.iterations = best.iterations;
-    best = polished;
+/// Keeps the better of the best and what Newton steps on the KKT system of the true Q reach from r; is it
+/// proven?
+bool polish(Search& search, const DualFunction& phi, const Vector4d& r, double m) {
+  Solution polished = detail::newton_on_kkt(search.Q, {r, phi.dual_part(r, m)});
+  if (polished.cost < search.best.cost) {
+    polished.iterations = search.best.iterations;
+    search.best = polished;
   }
-  return proven_optimal(Q, best);
+  return proven_optimal(search);
 }
 
 /// Ascent of the concave phi: Newton steps where it is smooth, the crossing of the tangents on both sides of
 /// the maximum where it has a kink, halving where neither makes progress. Each time that less than `gain` (in
 /// parts of the scale, ever smaller) is left to climb, Newton steps in the primal start from there; true as
 /// soon as what they reach is proven.
-bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain, Solution& best) {
+bool ascend(Search& search, const DualFunction& phi, double gain) {
   Sample low, high;  // on the rising and on the falling side
   bool rising = false, falling = false;
   double m = 0, step = 0, width = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 60; ++i) {
-    ++best.iterations;
+    ++search.best.iterations;
     const Sample here = sample(phi, m);
     (here.slope > 0 ? rising : falling) = true;
     (here.slope > 0 ? low : high) = here;
@@ -127,8 +143,8 @@ bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain, Solution& b
     }
     const bool finished = pinned || left <= epsilon * phi.scale;
     if (finished || left <= gain * phi.scale) {
-      if (polish(Q, phi, here.r, m, best)) return true;
-      if (finished) return polish(Q, phi, orthogonal_combination(phi, here.r, here.next, m), m, best);
+      if (polish(search, phi, here.r, m)) return true;
+      if (finished) return polish(search, phi, orthogonal_combination(phi, here.r, here.next, m), m);
       gain *= 1e-4;
     }
 
@@ -154,29 +170,47 @@ bool ascend(const Matrix8d& Q, const DualFunction& phi, double gain, Solution& b
 
 }  // namespace
 
-Solution solve_dual(const Matrix8d& Q_in) {
-  Solution solution;
+detail::ProvenSolution detail::solve_dual_with_proof(const Matrix8d& Q_in) {
+  ProvenSolution result;
+  Solution& solution = result.solution;
   if (!Q_in.allFinite()) {
     solution.status = SolverStatus::not_finite;
-    return solution;
+    return result;
   }
   if (!(Q_in.diagonal().maxCoeff() > 0)) {
     solution.status = SolverStatus::degenerate;
-    return solution;
+    return result;
   }
-  const double length = detail::length_scale(Q_in);
-  const Matrix8d Q = detail::in_units_of(length, Q_in);
-  solution.cost = std::numeric_limits<double>::infinity();
+  const double length = length_scale(Q_in);
+  Search search;
+  search.Q = in_units_of(length, Q_in);
+  search.sizes = sizes_of<8>(search.Q);
+  search.best.cost = std::numeric_limits<double>::infinity();
   // The first attempt is nearly always the last. The others are for problems where Newton's basin is small or
   // D is nearly singular in a way that matters.
   constexpr struct {
     double lift, gain;
   } attempts[] = {{1e-9, 1e-4}, {1e-12, 1e-9}, {1e-6, 1e-9}, {64 * epsilon, 1e-12}};
-  for (const auto& attempt : attempts)
-    if (ascend(Q, DualFunction(Q, attempt.lift), attempt.gain, solution)) break;
-  solution.q = detail::in_units_of(1 / length, solution.q);
-  solution.lambda = detail::in_units_of(1 / length, solution.lambda);
-  return solution;
+  bool optimal = false;
+  for (const auto& attempt : attempts) {
+    optimal = ascend(search, DualFunction(search.Q, attempt.lift), attempt.gain);
+    if (optimal) break;
+  }
+  if (!optimal) {
+    // where D is singular the proof is another one
+    const Subject<8> subject{search.Q, search.best.q.vec(), search.sizes, search.best.lambda.orthogonal};
+    optimal = assess<8>(subject, {}).optimality == Optimality::certified;
+  }
+  solution = search.best;
+  solution.status = optimal ? SolverStatus::converged : SolverStatus::iteration_limit;
+  solution.q = in_units_of(1 / length, solution.q);
+  solution.lambda = in_units_of(1 / length, solution.lambda);
+  result.proven = search.proven;
+  return result;
+}
+
+Solution solve_dual(const Matrix8d& Q) {
+  return detail::solve_dual_with_proof(Q).solution;
 }
 
 }  // namespace egocal

@@ -183,7 +183,8 @@ Solution refused(const Matrix8d& Q, const DualQuaternion& start, SolverStatus st
 }
 
 DualQuaternion unit_start(const DualQuaternion& start) {
-  return start.vec().allFinite() ? canonical_sign(normalized(start)) : DualQuaternion{};
+  const DualQuaternion unit = canonical_sign(normalized(start));
+  return unit.vec().allFinite() ? unit : DualQuaternion{};
 }
 
 }  // namespace
@@ -216,7 +217,7 @@ Solution solve_slsqp_planar(const Matrix8d& Q_planar, const DualQuaternion& star
   constexpr int variables[4] = {0, 3, 5, 6};
   DualQuaternion begin = unit_start(start);
   begin.real[1] = begin.real[2] = begin.dual[0] = begin.dual[3] = 0;
-  begin = canonical_sign(normalized(begin));
+  begin = unit_start(begin);
   if (!Q_planar.allFinite()) return refused(Q_planar, begin, SolverStatus::not_finite);
   Eigen::Matrix4d Q;
   Eigen::Vector4d x;

@@ -42,9 +42,9 @@ EGOCAL_SAME_LAYOUT(Answer)
 /// The caller's clock [ns]: the library has none of its own.
 using NanosecondClock = std::int64_t (*)();
 
-/// Solve, verify, and say what is known. start: for the local methods; without it they start at the identity.
-/// In directions that the motions do not show the answer is the closest to the problem's prior (or to the
-/// identity).
+/// Solve, verify, and say what is known. start: for the local methods; without it they start at the global
+/// minimum. In directions that the motions do not show the answer is the closest to the problem's prior (or
+/// to the identity).
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt,
              NanosecondClock clock = nullptr);
 

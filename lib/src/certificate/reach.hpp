@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "certificate/proof.hpp"
+
+// How far an extrinsic that is at least as good can be: docs/method.md, "Reach".
+namespace egocal::detail {
+
+/// Rows P of linear forms of a competitor v'.
+template <int N, std::size_t Rows>
+using Forms = std::array<std::array<Extended, N>, Rows>;
+
+/// The displacement p = q^-1 q' from the verified answer to a competitor: |rotation v'| is |p_v|, the sine of
+/// half its angle, |translation v'| is |p_dv|, half its translation to first order.
+template <int N>
+struct Displacement;
+template <>
+struct Displacement<8> {
+  Forms<8, 3> rotation, translation;
+};
+template <>
+struct Displacement<4> {
+  Forms<4, 1> rotation;
+  Forms<4, 2> translation;
+};
+
+inline Displacement<8> displacement_from(const Column<8>& q) {
+  // vector part of conj(x) y, row by row a linear form of y
+  const auto rows = [](const Extended w, const Extended x, const Extended y, const Extended z) {
+    return Forms<4, 3>{{{-x, w, z, -y}, {-y, -z, w, x}, {-z, y, -x, w}}};
+  };
+  const Forms<4, 3> r = rows(q[0], q[1], q[2], q[3]), d = rows(q[4], q[5], q[6], q[7]);
+  Displacement<8> p;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < 4; ++i) {
+      p.rotation[k][i] = r[k][i];
+      p.rotation[k][i + 4] = 0;
+      p.translation[k][i] = d[k][i];
+      p.translation[k][i + 4] = r[k][i];
+    }
+  return p;
+}
+
+/// Of the planar variables q1, q4, q6, q7.
+inline Displacement<4> displacement_from(const Column<4>& v) {
+  const Extended c = v[0], s = v[1], x = v[2], y = v[3];
+  return {{{{-s, c, 0, 0}}}, {{{-x, -y, c, s}, {-y, x, -s, c}}}};
+}
+
+/// Guesses of the least curvature of the cost over |p_v| and over |p_dv|; zero where it is flat.
+struct Curvatures {
+  double rotation = 0, translation = 0;
+};
+
+struct Reach {
+  double translation = std::numeric_limits<double>::infinity();  ///< [units of length]
+  double rotation = std::numeric_limits<double>::infinity();     ///< [rad]
+  /// The proof holds for competitors within this distance of the answer [units of length].
+  double domain = std::numeric_limits<double>::infinity();
+};
+
+/// A part of the guess that is proven: Z - c P'P >= 0, so J(q') - bound >= c |P v'|^2. Zero where none is.
+/// The entries of the difference are rounded by less than 8 u sqrt(z_ii z_jj), u = epsilon / 2, which is at
+/// most 8 N u of Z's diagonal.
+template <int N, std::size_t Rows>
+double proven_curvature(const ExtendedSquare<N>& Z, const Forms<N, Rows>& P, double guess) {
+  if (!(guess > 0)) return 0;
+  const Extended rounding = 4 * N * extended_epsilon();
+  for (const double part : {0.99, 0.5, 0.05}) {
+    const double c = part * guess;
+    ExtendedSquare<N> M = Z;
+    for (std::size_t i = 0; i < N; ++i) {
+      M[i][i] -= rounding * Z[i][i];
+      for (std::size_t j = 0; j <= i; ++j)
+        for (const auto& row : P)
+          M[i][j] -= c * row[static_cast<std::size_t>(reordered<N>(i))] *
+                     row[static_cast<std::size_t>(reordered<N>(j))];
+    }
+    if (proven_semidefinite<N>(M)) return c;
+  }
+  return 0;
+}
+
+/// Where D is singular up to rounding the domain has to be at least this large for a reach to be stated
+/// [units of length].
+inline constexpr double least_domain = 1e4;
+
+/// The reach of competitors with a cost at most J. `bound` is proven with this multiplier and lift.
+template <int N>
+Reach proven_reach(const Square<N>& Q, const Column<N>& v, double J, double bound, double orthogonal,
+                   double lift, const Curvatures& guess) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const ExtendedSquare<N> Z = reordered_lagrangian<N>(Q, bound, orthogonal, lift);
+  const Displacement<N> p = displacement_from(v);
+  Reach reach;
+  const double c_r = proven_curvature<N>(Z, p.rotation, guess.rotation);
+  if (!(c_r > 0)) return reach;
+  const double c_t = proven_curvature<N>(Z, p.translation, guess.translation);
+  if (!(c_t > 0)) return reach;
+
+  // the rounding of P'P, of J and of the answer, which is a unit dual quaternion to epsilon only
+  const double slack = 64 * static_cast<double>(extended_epsilon());
+  const double d = v.template tail<N / 2>().norm();
+  // c |P v'|^2 <= gap + lift |d'|^2 - lift |d|^2 <= gap + 2 lift |p_d|^2, with |d'| <= |d| + |p_d|
+  const double gap = (J - bound) * (1 + 4 * epsilon) + 4 * epsilon * std::abs(J) + 2 * lift * d * d;
+  double sine_squared = gap / c_r + slack;
+  if (lift > 0) {
+    reach.domain = std::sqrt(0.5 * c_r / lift);  // there 2 lift |p_d|^2 is a quarter of c_r
+    sine_squared += 0.25;
+    if (!(reach.domain >= least_domain)) return {};
+  }
+  if (!(sine_squared < 0.81)) return {};
+  // |p_dv|^2 >= |p_d|^2 (1 - sine^2), |t| = 2 |p_d|
+  const double denominator = c_t * (1 - sine_squared - 8 * slack) - 2 * lift;
+  if (!(denominator > 0)) return {};
+  const double p_d_squared = (gap + 32 * slack * c_t * d * d) / denominator;
+  sine_squared = (gap + 2 * lift * p_d_squared) / c_r + slack;
+  reach.rotation = 2 * std::asin(std::sqrt(sine_squared)) + 8 * epsilon;
+  reach.translation = 2 * std::sqrt(p_d_squared) + 8 * epsilon * (1 + d);
+  if (!(reach.translation <= reach.domain) || !std::isfinite(reach.rotation)) return {};
+  return reach;
+}
+
+}  // namespace egocal::detail
