@@ -153,7 +153,7 @@ std::optional<Reassembly::Message> Reassembly::take_fragment(Bytes datagram, std
     partial = partials_.end();
   }
   if (partial == partials_.end()) {
-    // without its first fragment nobody knows whether a message is wanted; LCM drops it likewise
+    // the first fragment has the channel: without it a message cannot be wanted; LCM drops it likewise
     if (fragment != 0 || !wanted(channel)) return std::nullopt;
     if (size + sizeof(Part) * fragments > options_.max_message) {
       ++incomplete_;

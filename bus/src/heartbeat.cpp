@@ -22,7 +22,7 @@ Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds tim
     : loop_(loop),
       identity_(std::move(identity)),
       timeout_us_(std::chrono::duration_cast<std::chrono::microseconds>(timeout).count()),
-      started_us_(loop.mono_us()),
+      unsettled_us_(loop.mono_us()),
       run_(loop.wall_us()) {
   if (identity_.pid == 0) identity_.pid = static_cast<std::int32_t>(getpid());
   loop_.subscribe<status_t>(status_channel, [this](const status_t& status, const Arrival&) { hear(status); });
@@ -106,6 +106,7 @@ void Heartbeat::publish() {
   published_us_ = loop_.mono_us();
   change_pending_ = false;
   loop_.publish(status_channel, message);
+  if (!loop_.network_error().empty()) unsettled_us_ = published_us_;
 }
 
 void Heartbeat::hear(const status_t& status) {
@@ -127,7 +128,7 @@ void Heartbeat::hear(const status_t& status) {
 }
 
 bool Heartbeat::settled() const {
-  return loop_.mono_us() - started_us_ > timeout_us_;
+  return loop_.mono_us() - unsettled_us_ > timeout_us_;
 }
 
 bool Heartbeat::alive(Role role) const {

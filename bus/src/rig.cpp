@@ -23,7 +23,7 @@ namespace egocal::bus {
 
 namespace {
 
-/// A rig file is a few kilobytes; whoever names a log by mistake learns it at once [bytes].
+/// A rig file has a few kilobytes; a log that is named by mistake is refused at once [bytes].
 constexpr std::size_t max_file_size = std::size_t{1} << 20;
 /// toml++ reads dotted keys by recursion and ends with a crash at some 50,000 parts.
 constexpr std::size_t max_dots_per_line = 1000;

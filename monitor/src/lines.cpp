@@ -93,7 +93,7 @@ std::string pair_lines(const Model& model, Charset charset) {
     }
     text += verdict_of(pair, charset).text + " by " + clean(answer->solver, 40) + " (" +
             clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
-    if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " left out, ";
+    if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " outliers, ";
     if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
     if (pair_is_paused(model, pair)) text += "paused, ";
     if (pair.shown.valid) {

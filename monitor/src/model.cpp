@@ -307,6 +307,9 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   track->answer.method = bounded(message.method);
   track->answer.hint = bounded(message.hint);
   track->verified = verified;
+  // defence in depth: what is no transform is not certified
+  if (message.status == 0 && (!pose_from(message.pos, message.quat) || std::isnan(message.scaled_gap)))
+    track->answer.status = bus::wire_status(Optimality::undecided);
   track->role = role_of(track->answer);
 
   const double time = seconds(pair->session, message.utime);

@@ -34,7 +34,7 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
                            : pair.has_problem ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
                                               : "";
   const std::string left_out =
-      pair.has_problem && pair.problem.left_out > 0 ? "  " + count(pair.problem.left_out) + " left out" : "";
+      pair.has_problem && pair.problem.left_out > 0 ? "  " + count(pair.problem.left_out) + " outliers" : "";
   const std::string rejected =
       pair.has_problem && pair.problem.rejected > 0 ? "  " + count(pair.problem.rejected) + " rejected" : "";
   const std::string old =
@@ -92,7 +92,7 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
   x = pane.text(17, 3, compact(answer->scaled_gap, charset),
                 answer->scaled_gap <= 1 ? Style::normal : Style::warning);
   x = pane.text(x, 3, " of 1", Style::dim);
-  // what does not fit is left out, the most telling first
+  // as many as fit, the most important first
   const auto item = [&](const std::string& what, const std::string& value, Style value_style) {
     const int w = width_of(what) + (value.empty() ? 0 : 1 + width_of(value));
     if (x + 3 + w > right) return;

@@ -60,8 +60,8 @@ void Solver::report() {
     heartbeat_.set_error("a second process has this name: pid " + std::to_string(elder->pid) + " on " +
                          elder->host);
   else
-    // right after the start nobody else has been heard yet
-    heartbeat_.set_error(heartbeat_.settled() ? advice() : "");
+    // right after the start, and after the network was away, no other process has been heard yet
+    heartbeat_.set_error(!paused && heartbeat_.settled() ? advice() : "");
 }
 
 }  // namespace egocal::services

@@ -439,7 +439,7 @@ TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
       << tmux.screen();
   tmux.keys("r");
   tmux.keys("y");
-  ASSERT_TRUE(until([&] { return tmux.shows("session reset: the calibration begins anew"); }))
+  ASSERT_TRUE(until([&] { return tmux.shows("session reset: the calibration starts again"); }))
       << tmux.screen();
   ASSERT_TRUE(until([&] { return tmux.shows("✓ certified by egocal-"); })) << tmux.screen();
 

@@ -104,7 +104,7 @@ TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
       [](calibration_t&) {});
   const std::string text = shown(Screen::detail, 140, 42);
   EXPECT_THAT(text, HasSubstr("17 rejected"));
-  EXPECT_THAT(text, HasSubstr("4 left out"));
+  EXPECT_THAT(text, HasSubstr("4 outliers"));
   EXPECT_THAT(text, HasSubstr("offset -12.3 ±0.4 ms"));
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("17 rejected"));
 }
@@ -169,21 +169,54 @@ TEST_F(View, EventsScrollAPageAtATimeAndNoFurtherThanThereAre) {
   EXPECT_THAT(shown(Screen::events, 80, 20), Not(HasSubstr("event 83.")));
 }
 
+// Each key press shows less: windows that are longer than the session are passed over.
 TEST_F(View, ZoomGoesInAndOut) {
   EXPECT_EQ(view.window_s, 0);
-  std::vector<double> in, out;
-  for (int i = 0; i < 8; ++i) {
+  send([](problem_t& p) { p.session -= 100'000'000; }, [](calibration_t&) {});
+  const calibration_t& answer = *model.pairs()[0].answer();
+  const double session = 1e-6 * static_cast<double>(answer.utime - answer.session);
+  std::vector<double> in, out, expected;
+  for (const double window : {7200.0, 1800.0, 300.0, 60.0, 30.0, 10.0})
+    if (window < session) expected.push_back(window);
+  ASSERT_FALSE(expected.empty()) << "a session of " << session << " s";
+  for (std::size_t i = 0; i < expected.size(); ++i) {
     press(view, model, character('+'));
     in.push_back(view.window_s);
   }
-  EXPECT_THAT(in, testing::ElementsAre(7200, 1800, 300, 60, 30, 10, 10, 10));
-  for (int i = 0; i < 7; ++i) {
-    press(view, model, character('-'));
-    out.push_back(view.window_s);
-  }
-  EXPECT_THAT(out, testing::ElementsAre(30, 60, 300, 1800, 7200, 0, 0));
+  EXPECT_EQ(in, expected);
+  press(view, model, character('+'));
+  EXPECT_EQ(view.window_s, 10) << "no further in";
+  for (int i = 0; i < 7; ++i) press(view, model, character('-'));
+  EXPECT_EQ(view.window_s, 0) << "all";
   press(view, model, character('l'));
   EXPECT_FALSE(view.logarithmic);
+}
+
+TEST_F(View, PausedIsSeenOnEveryScreen) {
+  command_t command{};
+  command.to = "*";
+  command.verb = "pause";
+  model.on_command(command, kNow);
+  for (const auto& [width, height] : {std::pair{120, 40}, std::pair{80, 24}, std::pair{40, 8}})
+    for (const Screen screen : {Screen::overview, Screen::detail})
+      EXPECT_THAT(shown(screen, width, height), HasSubstr("PAUSED")) << width << "x" << height;
+}
+
+TEST_F(View, DialogsAreWholeOnSmallScreens) {
+  const struct {
+    Dialog dialog;
+    std::vector<std::string> parts;
+  } dialogs[] = {
+      {Dialog::help, {"q quit", "n N pair", "+ - zoom", "r   reset", "spc pause view", "^L    redraw"}},
+      {Dialog::reset, {"Forget all motions", "camera?", "y  yes", "any other key  no"}},
+      {Dialog::pause, {"Pause the calibration", "camera?", "are not used", "y  yes", "any other key  no"}},
+      {Dialog::resume, {"Resume the calibration", "camera?", "y  yes", "any other key  no"}},
+      {Dialog::export_format, {"Write the answer", "y YAML", "k Kalibr", "any other key  nothing"}}};
+  for (const auto& [dialog, parts] : dialogs) {
+    view.dialog = dialog;
+    const std::string text = shown(Screen::overview, 40, 8);
+    for (const std::string& part : parts) EXPECT_THAT(text, HasSubstr(part));
+  }
 }
 
 TEST_F(View, NothingIsCommandedWithoutAYes) {

@@ -101,6 +101,20 @@ TEST_F(Solving, RightAfterTheStartNoSolverIsMissed) {
   EXPECT_EQ(statuses["egocal-global"].state, "standby");
 }
 
+TEST_F(Solving, AfterTheNetworkWasAwayNoSolverIsMissed) {
+  start_fast();
+  start_global();
+  pass(10s);
+  network.set_away(true);
+  pass(60s);
+  network.set_away(false);
+  for (int i = 0; i < 100; ++i) {
+    pass(100ms);
+    for (const char* name : {"egocal-fast", "egocal-global"})
+      EXPECT_THAT(statuses[name].last_error, testing::Not(testing::HasSubstr("is heard"))) << name;
+  }
+}
+
 TEST_F(Solving, AMissingSolverIsReportedAfterTheTimeoutOnly) {
   start_fast();
   pass(2900ms);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A verdict of the sender is no proof: whoever listens to answers hears their problems, too, and verifies.
+// A verdict of the sender is no proof: a listener receives the problems as well, and verifies each answer.
 #pragma once
 
 #include <array>
@@ -64,8 +64,8 @@ class AnswerCheck {
   std::uint64_t touches_ = 0;
 };
 
-/// Copies the certificate of a checked answer into its message, so that whoever shows the message shows what
-/// was verified.
+/// Copies the certificate of a checked answer into its message, so that what is shown of the message
+/// is what was verified.
 void set_certificate(const CheckedAnswer& checked, calibration_t& message);
 
 /// What is needed to choose between answers: an answer that could not be verified never outranks one that

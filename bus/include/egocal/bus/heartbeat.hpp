@@ -59,7 +59,7 @@ class Heartbeat {
   void publish();
 
   bool alive(Role role) const;
-  /// Time enough to have heard every other process once has gone by since the start [heartbeat timeout].
+  /// The network has been there for a whole heartbeat timeout: every other process has been heard by now.
   bool settled() const;
   std::optional<Role> role_of(const std::string& name) const { return peers_.role_of(name); }
   /// Another living process has this name and started earlier.
@@ -72,7 +72,7 @@ class Heartbeat {
   Loop& loop_;
   Identity identity_;
   std::int64_t timeout_us_;
-  std::int64_t started_us_;
+  std::int64_t unsettled_us_;  ///< when the network was away last, or the start
   std::int64_t run_;
   State state_ = State::waiting;
   std::string error_;

@@ -21,7 +21,7 @@ struct Slice {
 /// what is older in ever coarser slices, each with its extremes so that no spike is lost.
 class History {
  public:
-  /// Times that run backwards or are not finite are left out. [s], [rad], [m], -, [s]
+  /// Times that run backwards or are not finite are ignored. [s], [rad], [m], -, [s]
   void add(double time, const std::array<double, curve_count>& values);
   /// The finest course that reaches back to this time.
   const std::deque<Slice>& since(double time) const;

@@ -26,7 +26,7 @@ struct ViewState {
   int height = 24;      ///< of the screen: how far the events can be scrolled
   std::string notice;   ///< one line for the bottom: the outcome of the last key
   std::string source;   ///< where the messages come from
-  bool live = true;     ///< false: a log, nobody to send commands to
+  bool live = true;     ///< false: a log; there is no process to send commands to
   Charset charset = Charset::ascii;
   int utc_offset_s = 0;
 };
