@@ -95,28 +95,32 @@ std::string rejections_in_words(const PairingCounts& counts) {
   return text.empty() ? "none rejected" : text;
 }
 
-Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const CalibrationOptions& options) {
   if (!as_read(options.read_a) || !as_read(options.read_b)) {
     CalibrationOptions rest = options;
     rest.read_a = rest.read_b = {};
-    return calibrate(reread(a, options.read_a), reread(b, options.read_b), rest);
+    return calibrate(reread(a, options.read_a), reread(given_b, options.read_b), rest);
   }
   PairingOptions pairing_options = options.pairing;
   std::optional<TimeOffset> time_offset;
   if (options.estimate_time_offset) {
-    time_offset = estimate_time_offset(a, b);
+    time_offset = estimate_time_offset(a, given_b, {.max_gap = checked(pairing_options).max_gap});
     if (!time_offset)
       throw Error("time offset: cannot be estimated, the streams are too short or never turn");
-    pairing_options.time_offset = time_offset->seconds;
+    pairing_options.time_offset =
+        0;  // a drift cannot be expressed by it: the stamps themselves are corrected
   }
-  const MotionPairing pairing = pair_motions(pairing_options, a, b).drive;
+  std::optional<Trajectory> corrected;
+  if (time_offset) corrected = on_clock_of_a(*time_offset, given_b);
+  const Trajectory& b = corrected ? *corrected : given_b;
+  const MotionPairing pairing = paired(pairing_options, a, b);
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
     throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
                 rejections_in_words(pairing.counts()));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   result.time_offset = time_offset;
-  result.time_offset_applied = pairing_options.time_offset;
+  result.time_offset_applied = time_offset ? time_offset->seconds : pairing_options.time_offset;
   const Answered what = answered(result);
   Diagnosis diagnosis = options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
                                                   : diagnose(what, options.diagnosis);

@@ -11,12 +11,20 @@ namespace egocal::services {
 
 namespace {
 constexpr std::size_t max_early_poses = 4096;
+
+/// The pairs of a rig estimate their clocks one after the other.
+PairingOptions options_of(const bus::Rig& rig, std::size_t index) {
+  PairingOptions options = bus::drive_options(rig, rig.pairs[index]);
+  options.clock.phase = static_cast<double>(index) / static_cast<double>(rig.pairs.size());
+  return options;
 }
+
+}  // namespace
 
 PairSession::PairSession(const bus::Rig& rig, std::size_t index)
     : index_(index),
       config_(rig.pairs[index]),
-      options_(bus::drive_options(rig, config_)),
+      options_(options_of(rig, index)),
       host_(bus::host_name()),
       drive_(options_) {}
 

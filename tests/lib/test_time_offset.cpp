@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
@@ -56,6 +57,110 @@ TEST(TimeOffset, IsFoundWhateverItIsAndItsDeviationTellsTheError) {
         ++runs;
       }
   EXPECT_LE(outside, runs / 10) << "of " << runs;
+}
+
+/// Poses with a jump of 1 m and 0.1 rad each.
+Trajectory glitched(Trajectory path, double part, std::uint64_t seed) {
+  testing::Random random(seed);
+  for (StampedPose& pose : path)
+    if (random.uniform() < part)
+      pose.pose = normalized(pose.pose * testing::displacement(0.1 * random.direction(), random.direction()));
+  return path;
+}
+
+Trajectory drifting(Trajectory path, double rate) {
+  const std::int64_t begin = path.front().time_us;
+  for (StampedPose& pose : path)
+    pose.time_us -= std::llround(rate * static_cast<double>(pose.time_us - begin));
+  return path;
+}
+
+TEST(TimeOffset, GlitchesDoNotMoveIt) {
+  for (const double part : {0.01, 0.05, 0.1})
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const Streams data = simulated(0.01, seed, 60);
+      const auto offset = estimate_time_offset(glitched(data.a, part, seed),
+                                               shifted(glitched(data.b, part, seed + 10), 12.34));
+      ASSERT_TRUE(offset);
+      EXPECT_NEAR(offset->seconds, -12.34, 0.002) << part << " " << seed;
+      EXPECT_LT(offset->stddev, 0.002) << part << " " << seed;
+      EXPECT_GT(offset->correlation, 0.9) << part << " " << seed;
+      EXPECT_GT(offset->inliers, 0.9 - 2 * part);
+    }
+}
+
+TEST(TimeOffset, ADriftIsReportedWithItsDeviationAndCorrected) {
+  for (const double noise : {0.001, 0.01})
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const Streams data = simulated(noise, seed, 240);
+      for (const double rate : {1e-3, -5e-4, 0.0}) {
+        const Trajectory b = shifted(drifting(data.b, rate), -40);
+        const auto offset = estimate_time_offset(data.a, b);
+        ASSERT_TRUE(offset);
+        EXPECT_EQ(offset->drifts, rate != 0) << noise << " " << seed << " " << rate;
+        EXPECT_NEAR(offset->rate, rate / (1 - rate), 6 * offset->rate_stddev + 1e-6);
+        EXPECT_LT(offset->rate_stddev, 2e-5);
+        const Trajectory corrected = on_clock_of_a(*offset, b);
+        for (const std::size_t i : {std::size_t{0}, b.size() / 2, b.size() - 1})
+          EXPECT_NEAR(1e-6 * static_cast<double>(corrected[i].time_us - data.b[i].time_us), 0, 0.003);
+      }
+    }
+}
+
+/// A second of drift smears the correlation of the whole.
+TEST(TimeOffset, ALongDriftingDriveIsFollowed) {
+  const Streams data = testing::simulated_drive(
+      {.terrain = Terrain::free, .poses = 12'000, .rate = 10, .relative_noise = 0.01, .seed = 4});
+  const Trajectory b = drifting(data.b, 1e-3);
+  const auto offset = estimate_time_offset(data.a, b);
+  ASSERT_TRUE(offset);
+  EXPECT_TRUE(offset->drifts);
+  EXPECT_NEAR(offset->rate, 1e-3, 2e-5);
+  const Trajectory corrected = on_clock_of_a(*offset, b);
+  EXPECT_NEAR(1e-6 * static_cast<double>(corrected.back().time_us - data.b.back().time_us), 0, 0.005);
+}
+
+/// A first stamp of zero before dates would be a grid of thirty thousand million points.
+TEST(TimeOffset, StrayStampsCostNoMemory) {
+  const Streams data = simulated(0.01, 2, 60);
+  for (const std::int64_t stray : {std::int64_t{0}, std::int64_t{4'000'000'000'000'000}}) {
+    Trajectory b = shifted(data.b, 12.34);
+    b.insert(stray == 0 ? b.begin() : b.end(), StampedPose{stray, {}});
+    for (const auto& offset : {estimate_time_offset(data.a, b), estimate_time_offset(b, data.a)}) {
+      ASSERT_TRUE(offset);
+      EXPECT_NEAR(std::abs(offset->seconds), 12.34, 0.002);
+    }
+  }
+  Trajectory invalid = data.b;
+  invalid.insert(invalid.begin() + 5, StampedPose{std::numeric_limits<std::int64_t>::max(), {}});
+  invalid[7].pose.dual[0] = std::numeric_limits<double>::quiet_NaN();
+  std::swap(invalid[20], invalid[30]);
+  const auto offset = estimate_time_offset(data.a, invalid);
+  ASSERT_TRUE(offset);
+  EXPECT_NEAR(offset->seconds, 0, 0.002);
+}
+
+TEST(TimeOffset, DoesNotDependOnHowTheWorkIsDivided) {
+  const Streams data = simulated(0.01, 2, 60);
+  const Trajectory b = shifted(data.b, 3);
+  const auto whole = estimate_time_offset(data.a, b);
+  TimeOffsetSearch search(data.a, b);
+  int steps = 1;
+  while (!search.step(500)) ++steps;
+  const auto divided = search.finish();
+  EXPECT_GT(steps, 10);
+  ASSERT_TRUE(whole && divided);
+  EXPECT_EQ(whole->seconds, divided->seconds);
+  EXPECT_EQ(whole->stddev, divided->stddev);
+  EXPECT_EQ(whole->rate, divided->rate);
+}
+
+TEST(TimeOffset, OfUnrelatedStreamsIsNotTrusted) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto offset = estimate_time_offset(simulated(0.01, seed, 60).a, simulated(0.01, seed + 50, 60).b);
+    EXPECT_FALSE(offset && offset->correlation > 0.7 && offset->stddev < 0.005 && offset->inliers > 0.5)
+        << seed;
+  }
 }
 
 TEST(TimeOffset, OfStreamsThatNeverTurnOrAreTooShortIsNotGuessed) {
@@ -120,10 +225,8 @@ TEST(ClockOffset, DoesNotDependOnHowTheStreamsInterleave) {
 
 TEST(ClockOffset, DriftIsFollowed) {
   const Streams data = simulated(0.005, 5, 240);
-  Trajectory drifting = data.b;  // a clock that is slow by two in ten thousand
-  for (StampedPose& pose : drifting)
-    pose.time_us -= std::llround(2e-4 * static_cast<double>(pose.time_us - data.b[0].time_us));
-  const MotionPairing drive = followed(data.a, drifting, 0, true);
+  // a clock that is slow by two in ten thousand
+  const MotionPairing drive = followed(data.a, drifting(data.b, 2e-4), 0, true);
   const double end = 2e-4 * 1e-6 * static_cast<double>(data.b.back().time_us - data.b[0].time_us);
   // the newest estimate is of the minute before; another comes into force at five milliseconds
   EXPECT_NEAR(*drive.time_offset(), end, 0.018);
@@ -159,11 +262,119 @@ TEST(ClockOffset, StreamsThatNeverMatchAreHeldBoundedAndCounted) {
     still.pose = {};
     drive.push(Side::a, still);
     while (j < other.b.size() && other.b[j].time_us <= pose.time_us) drive.push(Side::b, other.b[j++]);
-    for (const auto& stream : drive.state().clock.streams) ASSERT_LE(stream.window.size(), 181u * 50u);
+    if (j % 50 == 0)
+      for (const auto& stream : drive.state().clock.streams) {
+        ASSERT_LE(stream.window.size(), 195u * 50u);
+        ASSERT_LE(stream.held.size(), 181u * 50u);
+      }
   }
   EXPECT_FALSE(drive.time_offset());
   EXPECT_EQ(drive.counts().synchronised, 0u);
   EXPECT_GT(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)], 200u * 50u);
+}
+
+TEST(ClockOffset, IsFoundInSpiteOfGlitches) {
+  for (const double part : {0.01, 0.05})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const Streams data = simulated(0.01, seed, 60);
+      const MotionPairing drive =
+          followed(glitched(data.a, part, seed), glitched(shifted(data.b, -7), part, seed + 10), 0);
+      ASSERT_TRUE(drive.time_offset()) << part << " " << seed;
+      EXPECT_NEAR(*drive.time_offset(), 7, 0.005) << part << " " << seed;
+      EXPECT_GT(drive.counts().matched, 300u);
+    }
+}
+
+/// b's clock is set forward by a fifth of a second after two minutes.
+Trajectory set_forward(Trajectory path) {
+  for (StampedPose& pose : path)
+    if (pose.time_us - path.front().time_us > 120'000'000) pose.time_us += 200'000;
+  return path;
+}
+
+TEST(ClockOffset, NoMotionSpansAChange) {
+  const Streams data = simulated(0.01, 5, 240);
+  const Trajectory b = set_forward(data.b);
+  PairingOptions options;
+  options.track_time_offset = true;
+  options.stride = 5;
+  options.balance = Balance{};
+  MotionPairing drive(options);
+  std::vector<MotionPair> pairs;
+  const auto keep = [&pairs](const std::vector<MotionPair>& more) {
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  };
+  std::uint64_t before = 0;
+  std::int64_t changed_us = 0;
+  for (std::size_t i = 0, j = 0; i < data.a.size() || j < b.size();) {
+    const bool from_a = j == b.size() || (i < data.a.size() && data.a[i].time_us <= b[j].time_us);
+    keep(from_a ? drive.push(Side::a, data.a[i++]) : drive.push(Side::b, b[j++]));
+    if ((i + j) % 20 != 0) continue;
+    const std::uint64_t changes = drive.state().clock.changes;
+    if (changes > 1 && before != changes) {
+      before = changes;
+      changed_us = drive.state().accumulator.instants.back().time_us;
+    }
+  }
+  EXPECT_GT(before, 1u);
+  EXPECT_NEAR(*drive.time_offset(), -0.2, 0.01);
+  EXPECT_GT(drive.state().accumulator.instants.back().chain, 1u);
+  EXPECT_GT(pairs.back().begin_us, changed_us);
+  // those of the last change, which everything before it was paired by
+  for (const MotionPair& pair : pairs)
+    EXPECT_FALSE(pair.begin_us <= changed_us - 500'000 && pair.end_us >= changed_us + 500'000);
+}
+
+TEST(ClockOffset, AChangeDoesNotDependOnHowTheStreamsInterleave) {
+  const Streams data = simulated(0.01, 6, 200);
+  const Trajectory b = shifted(set_forward(data.b), 33);
+  const MotionPairing expected = followed(data.a, b, 0, true);
+  for (std::uint64_t seed = 1; seed < 4; ++seed) {
+    const MotionPairing drive = followed(data.a, b, seed, true);
+    EXPECT_EQ(drive.time_offset(), expected.time_offset());
+    EXPECT_EQ(drive.counts().synchronised, expected.counts().synchronised);
+    EXPECT_EQ(total(drive.problem().blocks).dual_rows, total(expected.problem().blocks).dual_rows) << seed;
+  }
+}
+
+TEST(ClockOffset, ContinuesFromItsStateInTheMiddleOfASearch) {
+  const Streams data = simulated(0.01, 6, 40);
+  const Trajectory b = shifted(data.b, -5);
+  const Problem expected = followed(data.a, b, 0).problem();
+  PairingOptions options;
+  options.track_time_offset = true;
+  MotionPairing drive(options);
+  for (std::size_t i = 0, j = 0; i < data.a.size() || j < b.size();) {
+    if ((i + j) % 7 == 0) drive = MotionPairing(drive.options(), drive.state());
+    const bool from_a = j == b.size() || (i < data.a.size() && data.a[i].time_us - data.a[0].time_us <=
+                                                                   b[j].time_us - b[0].time_us);
+    from_a ? drive.push(Side::a, data.a[i++]) : drive.push(Side::b, b[j++]);
+  }
+  drive.finish();
+  EXPECT_EQ(total(drive.problem().blocks).dual_rows, total(expected.blocks).dual_rows);
+}
+
+/// Far in the future, or in the past: nothing waits for it, nothing grows.
+TEST(ClockOffset, StrayStampsCostOnlyThemselves) {
+  const Streams data = simulated(0.01, 3, 60);
+  for (const std::int64_t stray_us : {std::int64_t{0}, std::int64_t{4'000'000'000'000'000}})
+    for (const std::size_t at : {std::size_t{0}, std::size_t{1000}}) {
+      Trajectory a = data.a;
+      a.insert(a.begin() + static_cast<std::ptrdiff_t>(at), StampedPose{stray_us, {}});
+      PairingOptions options;
+      options.track_time_offset = true;
+      MotionPairing drive(options);
+      for (std::size_t i = 0, j = 0; i < a.size(); ++i) {
+        drive.push(Side::a, a[i]);
+        if (i % 5 == 4 && j < data.b.size()) drive.push(Side::b, data.b[j++]);
+        for (const auto& stream : drive.state().clock.streams) ASSERT_LE(stream.held.size(), 700u);
+      }
+      ASSERT_TRUE(drive.time_offset()) << stray_us << " " << at;
+      EXPECT_NEAR(*drive.time_offset(), 0, 0.005);
+      EXPECT_GT(drive.counts().synchronised, 500u);
+      EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)] <= 60u, true)
+          << drive.counts().rejected[static_cast<std::size_t>(Rejection::no_partner)];
+    }
 }
 
 }  // namespace

@@ -107,10 +107,11 @@ std::vector<MotionPair> pairs_of(const Motions& motions, const CalibrationOption
                                  const Calibration& calibration) {
   if (!motions.pairs.empty()) return motions.pairs;
   PairingOptions pairing = options.pairing;
-  pairing.time_offset = calibration.time_offset_applied;
+  if (!calibration.time_offset) pairing.time_offset = calibration.time_offset_applied;
   pairing.stride = calibration.choice.stride;
   pairing.balance = calibration.choice.balance;
-  return pair_motions(pairing, motions.a, motions.b).pairs;
+  const std::optional<TimeOffset>& offset = calibration.time_offset;
+  return pair_motions(pairing, motions.a, offset ? on_clock_of_a(*offset, motions.b) : motions.b).pairs;
 }
 
 /// Puts the answer of one of the paper's baselines in the place of ours. They minimise other things: what

@@ -84,7 +84,10 @@ std::string report_json(const SolveResult& result, const std::optional<Pose>& tr
   if (result.calibration.time_offset)
     json["time_offset_estimate"] = {{"seconds", result.calibration.time_offset->seconds},
                                     {"stddev", result.calibration.time_offset->stddev},
-                                    {"correlation", result.calibration.time_offset->correlation}};
+                                    {"correlation", result.calibration.time_offset->correlation},
+                                    {"rate", result.calibration.time_offset->rate},
+                                    {"rate_stddev", result.calibration.time_offset->rate_stddev},
+                                    {"drifts", result.calibration.time_offset->drifts}};
   json["synchronised"] = result.calibration.counts.synchronised;
   json["outliers"] = result.calibration.counts.outliers;
   json["rejected"] = nlohmann::ordered_json::object();
@@ -133,7 +136,11 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
     text += fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
                         result.calibration.time_offset->seconds, result.calibration.time_offset->stddev,
                         result.calibration.time_offset->correlation);
-  else if (result.calibration.time_offset_applied != 0)
+  if (result.calibration.time_offset && result.calibration.time_offset->drifts)
+    text += fmt::format("clock drift   {:.1f} +- {:.1f} us/s of b, corrected\n",
+                        1e6 * result.calibration.time_offset->rate,
+                        1e6 * result.calibration.time_offset->rate_stddev);
+  if (!result.calibration.time_offset && result.calibration.time_offset_applied != 0)
     text += fmt::format("time offset   {:.4f} s added to b\n", result.calibration.time_offset_applied);
 
   const Certificate& certificate = calibration.certificate;

@@ -21,6 +21,7 @@ bool plausible(const StampedPose& pose) {
 
 MotionPairing::MotionPairing(PairingOptions options)
     : options_(checked(std::move(options))),
+      clock_(options_),
       synchroniser_(options_),
       screening_(options_.screening),
       accumulator_(options_) {}
@@ -30,7 +31,8 @@ MotionPairing::MotionPairing(PairingOptions options, PairingState state)
       poses_a_(state.poses_a),
       poses_b_(state.poses_b),
       rejections_(state.rejections),
-      clock_(std::move(state.clock)),
+      segment_(state.segment),
+      clock_(options_, std::move(state.clock)),
       synchroniser_(options_, std::move(state.synchroniser)),
       screening_(options_.screening, std::move(state.screening)),
       accumulator_(options_, std::move(state.accumulator)) {}
@@ -49,12 +51,15 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
     take(synchroniser_.push(side, pose), pairs);
     return pairs;
   }
-  const std::uint64_t changes = clock_.changes, given_up = clock_.given_up;
-  const std::vector<ReleasedPose> released = follow_clock(clock_, side, pose, options_.max_gap);
-  rejections_.add(Rejection::no_partner, clock_.given_up - given_up);
-  for (const ReleasedPose& one : released) take(synchroniser_.push(one.side, one.pose), pairs);
-  // no motion spans a change of the clock
-  if (clock_.changes != changes) screening_.begin_chain();
+  const std::uint64_t given_up = clock_.state().given_up;
+  const std::vector<ReleasedPose> released = clock_.push(side, pose);
+  rejections_.add(Rejection::no_partner, clock_.state().given_up - given_up);
+  for (const ReleasedPose& one : released) {
+    // no motion spans a change of the clock
+    if (one.segment != segment_) take(synchroniser_.begin_chain(), pairs);
+    segment_ = one.segment;
+    take(synchroniser_.push(one.side, one.pose), pairs);
+  }
   return pairs;
 }
 
@@ -98,31 +103,43 @@ PairingCounts MotionPairing::counts() const {
 }
 
 PairingState MotionPairing::state() const {
-  return {poses_a_,
-          poses_b_,
-          rejections_,
-          clock_,
-          synchroniser_.state(),
-          screening_.state(),
-          accumulator_.state()};
+  return {poses_a_,           poses_b_,
+          rejections_,        segment_,
+          clock_.state(),     synchroniser_.state(),
+          screening_.state(), accumulator_.state()};
 }
 
 std::optional<double> MotionPairing::time_offset() const {
-  return options_.track_time_offset ? clock_.in_force : options_.time_offset;
+  return options_.track_time_offset ? clock_.seconds() : options_.time_offset;
 }
 
-PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
-  PairingResult result{MotionPairing(options), {}};
-  const auto take = [&result](const std::vector<MotionPair>& pairs) {
-    result.pairs.insert(result.pairs.end(), pairs.begin(), pairs.end());
-  };
+namespace {
+
+/// take(pairs): what each pose completed.
+template <typename Take>
+MotionPairing pair_all(const PairingOptions& options, const Trajectory& a, const Trajectory& b, Take take) {
+  MotionPairing drive(options);
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
     const bool from_a = j == b.size() || (i < a.size() && a[i].time_us <= b[j].time_us);
-    take(from_a ? result.drive.push(Side::a, a[i++]) : result.drive.push(Side::b, b[j++]));
+    take(from_a ? drive.push(Side::a, a[i++]) : drive.push(Side::b, b[j++]));
   }
-  take(result.drive.finish());
-  return result;
+  take(drive.finish());
+  return drive;
+}
+
+}  // namespace
+
+PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
+  std::vector<MotionPair> pairs;
+  MotionPairing drive = pair_all(options, a, b, [&pairs](const std::vector<MotionPair>& more) {
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  });
+  return {std::move(drive), std::move(pairs)};
+}
+
+MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
+  return pair_all(options, a, b, [](const std::vector<MotionPair>&) {});
 }
 
 }  // namespace egocal

@@ -30,6 +30,21 @@ void check(const SynchroniserOptions& options) {
   require("slower_by", options.slower_by, {1, 100}, "");
 }
 
+void check(const ClockOptions& options) {
+  require("clock.first", options.first, {1, 3600}, " s");
+  require("clock.every", options.every, {1, 1e6}, " s");
+  require("clock.delay", options.delay, {0, 3600}, " s");
+  require("clock.window", options.window, {1, 3600}, " s");
+  require("clock.longest", options.longest, {options.first + options.delay, 36'000}, " s");
+  require("clock.most_held", options.most_held >= 10 && options.most_held <= 10'000'000, "10 to 1e7 poses");
+  require("clock.least_correlation", options.least_correlation, {0, 1}, "");
+  require("clock.least_inliers", options.least_inliers, {0, 1}, "");
+  require("clock.largest_stddev", options.largest_stddev, {0, 10}, " s");
+  require("clock.least_change", options.least_change, {0, 10}, " s");
+  require("clock.change_sigmas", options.change_sigmas, {0, 1000}, " standard deviations");
+  require("clock.phase", options.phase, {0, 1}, "");
+}
+
 void check(const ScreeningOptions& options) {
   require("doubtful", options.doubtful, {1, 1e6}, " standard deviations");
   require("break_chain", options.break_chain, {options.doubtful, 1e6}, " standard deviations");
@@ -59,6 +74,7 @@ PairingOptions checked(PairingOptions options) {
   }
   require("time_offset", options.time_offset, limits::time_offset, " s");
   require("max_gap", options.max_gap, limits::max_gap, " s");
+  check(options.clock);
   check(options.synchroniser);
   check(options.screening);
   check(options.accumulator);

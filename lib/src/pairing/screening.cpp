@@ -43,16 +43,14 @@ Screening::Screening(const ScreeningOptions& options, ScreeningState state)
 
 Screened Screening::push(const Instant& instant, std::int64_t period_us) {
   const std::optional<Instant> before = std::exchange(state_.newest, instant);
-  if (before && one_repeats(*before, instant)) {
+  if (before && before->chain == instant.chain && one_repeats(*before, instant)) {
     state_.rejections.add(Rejection::frozen);
     return {};
   }
+  if (before && before->chain != instant.chain) begin_chain();
   const auto period = static_cast<double>(period_us);
   const bool known = knows_typical(state_.congruence);
-  if (!known) {
-    state_.first.push_back(instant);
-    state_.first.back().chain = state_.chain;
-  }
+  if (!known) state_.first.push_back(instant);
   Screened result;
   screen(instant, period, result.accepted);
   if (!known && knows_typical(state_.congruence)) {
@@ -60,6 +58,13 @@ Screened Screening::push(const Instant& instant, std::int64_t period_us) {
     result.accepted = screen_first_ones_again(period);
   }
   return result;
+}
+
+/// Another clock: what waits for a confirmation gets none, and what comes is not compared with what was.
+void Screening::begin_chain() {
+  finish();
+  ++state_.chain;
+  state_.accepted.reset();
 }
 
 void Screening::finish() {
@@ -74,7 +79,7 @@ std::vector<Instant> Screening::screen_first_ones_again(double period_us) {
   state_.accepted.reset();
   std::vector<Instant> accepted;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (i > 0 && first[i].chain != first[i - 1].chain) ++state_.chain;
+    if (i > 0 && first[i].chain != first[i - 1].chain) begin_chain();
     screen(first[i], period_us, accepted);
   }
   state_.congruence = learnt;

@@ -67,6 +67,13 @@ std::vector<Instant> Synchroniser::finish() {
   return instants;
 }
 
+std::vector<Instant> Synchroniser::begin_chain() {
+  std::vector<Instant> instants = finish();
+  ++state_.chain;
+  for (auto& waiting : state_.waiting) waiting.clear();
+  return instants;
+}
+
 void Synchroniser::decide_keys() {
   // the first poses decide, however many of one stream came before the other one's first
   const std::int64_t period_a = median_period(state_.waiting[0], options_.poses_to_decide);
@@ -102,7 +109,7 @@ std::vector<Instant> Synchroniser::synchronise() {
       other = interpolate(others[0].pose, others[1].pose,
                           static_cast<double>(key.time_us - others[0].time_us) /
                               static_cast<double>(others[1].time_us - others[0].time_us));
-    Instant instant{key.time_us, key.pose, other, 0, ++state_.synchronised};
+    Instant instant{key.time_us, key.pose, other, state_.chain, ++state_.synchronised};
     if (*state_.keys == Side::b) std::swap(instant.a, instant.b);
     keys.pop_front();
     instants.push_back(instant);

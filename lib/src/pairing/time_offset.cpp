@@ -4,202 +4,290 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
-#include "egocal/pairing/motion_pairing.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "pairing/offset/correlation.hpp"
+#include "pairing/offset/refinement.hpp"
+#include "pairing/offset/schedule.hpp"
+#include "pairing/offset/turning.hpp"
 
 namespace egocal {
 
+using namespace detail;
+
 namespace {
 
-double seconds(std::int64_t us) {
-  return 1e-6 * static_cast<double>(us);
-}
+constexpr double second_us = 1e6;
+/// Length of the parts of a long drive in which the offset is looked for separately [s]: a clock that is off
+/// by half a percent gains a third of a second in one.
+constexpr double window = 60, most_drift = 0.005;
+/// Length of the part that is looked for by itself [s].
+constexpr double part_length = 300;
 
-double median_period(const Trajectory& trajectory) {
-  std::vector<std::int64_t> periods;
-  for (std::size_t i = 1; i < trajectory.size(); ++i)
-    periods.push_back(trajectory[i].time_us - trajectory[i - 1].time_us);
-  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
-                   periods.end());
-  return seconds(periods[periods.size() / 2]);
-}
-
-/// Pose at a time by screw interpolation; `from` is where to begin looking and moves on.
-std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t time_us,
-                                      std::int64_t max_gap_us, std::size_t& from) {
-  while (from + 1 < trajectory.size() && trajectory[from + 1].time_us <= time_us) ++from;
-  if (from + 1 >= trajectory.size() || trajectory[from].time_us > time_us) return std::nullopt;
-  const StampedPose &before = trajectory[from], &after = trajectory[from + 1];
-  if (after.time_us - before.time_us > max_gap_us) return std::nullopt;
-  return interpolate(
-      before.pose, after.pose,
-      static_cast<double>(time_us - before.time_us) / static_cast<double>(after.time_us - before.time_us));
-}
-
-/// Angles turned by in the window after each point of a grid [rad]; negative where not known.
-struct Turning {
-  std::int64_t begin_us = 0;
-  std::vector<double> angles;
+/// Offset of one part of the drive.
+struct WindowOffset {
+  double time = 0;    ///< of its middle [s since the begin of b]
+  double offset = 0;  ///< [grid steps]
 };
 
-Turning turning(const Trajectory& trajectory, std::int64_t step_us, std::int64_t max_gap_us) {
-  Turning result;
-  result.begin_us = trajectory.front().time_us;
-  std::size_t from = 0;
-  std::vector<std::optional<DualQuaternion>> poses;
-  for (std::int64_t t = result.begin_us; t <= trajectory.back().time_us; t += step_us)
-    poses.push_back(pose_at(trajectory, t, max_gap_us, from));
-  constexpr std::size_t window = 2;  // grid steps
-  for (std::size_t i = 0; i + window < poses.size(); ++i)
-    result.angles.push_back(
-        poses[i] && poses[i + window] ? screw_of(conjugate(*poses[i]) * *poses[i + window]).angle : -1);
-  return result;
-}
-
-struct Correlation {
-  double value = 0;
-  double significance = 0;  ///< in standard deviations of chance, taking every point as independent
-};
-
-/// Pearson's correlation where both are known, b shifted by `lag` grid points to the right.
-Correlation correlation(const std::vector<double>& a, const std::vector<double>& b, std::ptrdiff_t lag,
-                        std::size_t least_count) {
-  const std::ptrdiff_t begin = std::max<std::ptrdiff_t>(0, lag);
-  const std::ptrdiff_t end =
-      std::min(static_cast<std::ptrdiff_t>(a.size()), static_cast<std::ptrdiff_t>(b.size()) + lag);
-  double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-  for (std::ptrdiff_t i = begin; i < end; ++i) {
-    const double x = a[static_cast<std::size_t>(i)], y = b[static_cast<std::size_t>(i - lag)];
-    if (x < 0 || y < 0) continue;
+/// offset = level + slope * time, by least squares. Needs two different times.
+std::pair<double, double> line_through(const std::vector<WindowOffset>& points) {
+  double n = 0, t = 0, y = 0, tt = 0, ty = 0;
+  for (const WindowOffset& point : points) {
     n += 1;
-    sa += x;
-    sb += y;
-    saa += x * x;
-    sbb += y * y;
-    sab += x * y;
+    t += point.time;
+    y += point.offset;
+    tt += point.time * point.time;
+    ty += point.time * point.offset;
   }
-  if (n < static_cast<double>(least_count)) return {};
-  const double variance = (saa - sa * sa / n) * (sbb - sb * sb / n);
-  if (!(variance > 0)) return {};
-  const double r = std::clamp((sab - sa * sb / n) / std::sqrt(variance), -0.9999999, 0.9999999);
-  return {r, std::atanh(r) * std::sqrt(n - 3)};
-}
-
-/// The cost with b's stamps shifted by an offset.
-struct OffsetCost {
-  double cost = -1;  ///< its minimum; negative where nothing can be paired
-  DualQuaternion q;  ///< minimiser
-  Problem problem;
-};
-
-/// Motions of about half a second.
-OffsetCost cost_at(const Trajectory& a, const Trajectory& b, double offset, int stride, double max_gap) {
-  PairingOptions options;
-  options.stride = stride;
-  // rotations tell time; translations only with the lever arm
-  options.balance = Balance{1, 0.01};
-  options.time_offset = offset;
-  options.max_gap = max_gap;
-  options.robust = false;
-  OffsetCost result;
-  result.problem = pair_motions(options, a, b).drive.problem();
-  if (total(result.problem.blocks).count < 10) return result;
-  const Solution solution = solve_dual(cost_matrix(result.problem));
-  result.cost = solution.cost;
-  result.q = solution.q;
-  return result;
-}
-
-/// Standard deviation of the slope of the cost between two offsets, at one extrinsic, from its spread over
-/// consecutive parts of the drive: neighbouring motions share poses and errors. Not finite where there are
-/// too few.
-double slope_deviation(const OffsetCost& low, const OffsetCost& high, const DualQuaternion& q,
-                       double distance) {
-  const auto &x = low.problem.blocks, &y = high.problem.blocks;
-  const std::size_t n = std::min(x.size(), y.size());
-  if (n < 4) return INFINITY;
-  const double weight = total(low.problem.blocks).weight;
-  std::vector<double> slopes;
-  double mean = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Balance& balance = low.problem.balance;
-    const double share = x[i].weight / weight;
-    slopes.push_back(share * (cost(cost_matrix(y[i], balance), q) - cost(cost_matrix(x[i], balance), q)) /
-                     distance);
-    mean += slopes.back() / static_cast<double>(n);
-  }
-  double squares = 0;
-  for (const double slope : slopes) squares += (slope - mean) * (slope - mean);
-  return std::sqrt(squares * static_cast<double>(n) / static_cast<double>(n - 1));
+  const double slope = (n * ty - t * y) / (n * tt - t * t);
+  return {(y - slope * t) / n, slope};
 }
 
 }  // namespace
 
-std::optional<TimeOffset> estimate_time_offset(const Trajectory& a, const Trajectory& b,
-                                               const TimeOffsetOptions& options) {
-  if (a.size() < 10 || b.size() < 10) return std::nullopt;
-  const double period = std::max(median_period(a), median_period(b));
-  const double step = std::clamp(period, 0.05, 0.25);
-  const auto step_us = static_cast<std::int64_t>(step * 1e6);
-  const double max_gap = std::max(options.max_gap, 3 * period);
-  const auto max_gap_us = static_cast<std::int64_t>(max_gap * 1e6);
-  const Turning turning_a = turning(a, step_us, max_gap_us), turning_b = turning(b, step_us, max_gap_us);
-  const auto least_count = static_cast<std::size_t>(options.least_overlap / step);
+struct TimeOffsetSearch::Impl {
+  struct Stream {
+    Trajectory poses;
+    std::vector<Detour> detours;
+    Series angles;
+  };
 
-  Correlation best;
-  std::ptrdiff_t best_lag = 0;
-  const auto size_a = static_cast<std::ptrdiff_t>(turning_a.angles.size());
-  const auto size_b = static_cast<std::ptrdiff_t>(turning_b.angles.size());
-  for (std::ptrdiff_t lag = -size_b; lag <= size_a; ++lag) {
-    const Correlation here = correlation(turning_a.angles, turning_b.angles, lag, least_count);
-    if (here.significance > best.significance) {
-      best = here;
-      best_lag = lag;
-    }
+  Impl(const Trajectory& given_a, const Trajectory& given_b, const TimeOffsetOptions& given)
+      : options(given) {
+    a.poses = thinned(given_a, static_cast<std::int64_t>(options.least_spacing * second_us));
+    b.poses = thinned(given_b, static_cast<std::int64_t>(options.least_spacing * second_us));
+    schedule.add(1, [this] { prepare(); });
   }
-  if (!(best.significance > 0)) return std::nullopt;
-  const double coarse =
-      seconds(turning_a.begin_us - turning_b.begin_us) + static_cast<double>(best_lag) * step;
 
-  // The cost is a parabola near its minimum: a grid of half steps around the peak, then ever finer around the
-  // best.
-  const int stride = std::max(1, static_cast<int>(std::lround(0.5 / period)));
-  double centre = coarse, width = step;
-  OffsetCost low, middle, high;
-  for (int round = 0; round < 10; ++round) {
-    constexpr int points = 2;  // on each side
-    double best_cost = -1, best_offset = centre;
-    for (int i = -points; i <= points; ++i) {
-      const double offset = centre + width * i / points;
-      const OffsetCost here = cost_at(a, b, offset, stride, max_gap);
-      if (here.cost < 0) continue;
-      if (best_cost < 0 || here.cost < best_cost) {
-        best_cost = here.cost;
-        best_offset = offset;
+  bool long_enough() const { return a.poses.size() >= 10 && b.poses.size() >= 10; }
+
+  void prepare() {
+    if (!long_enough()) return;
+    const std::int64_t period_us = std::max(median_period_us(a.poses), median_period_us(b.poses));
+    const auto period = static_cast<double>(period_us);
+    step_us = static_cast<std::int64_t>(std::max(std::clamp(period, 0.05e6, 0.25e6), period / 4));
+    max_gap_us = static_cast<std::int64_t>(std::clamp(options.max_gap * second_us, 3 * period, 20 * period));
+    for (Stream* stream : {&a, &b}) stream->poses = dense_part(stream->poses, max_gap_us);
+    if (!long_enough()) return;
+    // several times: of neighbouring glitches only the furthest one is found at once
+    for (int round = 0; round < 4; ++round)
+      for (Stream* stream : {&a, &b}) schedule.add(1, [this, stream] { remove_glitches(*stream); });
+    schedule.add(1, [this] { sample_angles(); });
+  }
+
+  void remove_glitches(Stream& stream) {
+    stream.detours.assign(stream.poses.size(), {});
+    schedule.add_range(stream.poses.size(), [&stream](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) stream.detours[i] = detour(stream.poses, i);
+    });
+    schedule.add(stream.poses.size() / 4, [this, &stream] {
+      stream.poses = without_glitches(stream.poses, stream.detours, options.outlier);
+    });
+  }
+
+  void sample_angles() {
+    if (!long_enough()) return;
+    for (Stream* stream : {&a, &b}) {
+      stream->angles.resize(grid_size(stream->poses, step_us));
+      schedule.add_range(stream->angles.size(), [this, stream](std::size_t begin, std::size_t end) {
+        const std::int64_t first_us =
+            stream->poses.front().time_us + static_cast<std::int64_t>(begin) * step_us;
+        const auto after =
+            std::upper_bound(stream->poses.begin(), stream->poses.end(), first_us,
+                             [](std::int64_t time, const StampedPose& pose) { return time < pose.time_us; });
+        auto from = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - stream->poses.begin()) - 1);
+        for (std::size_t k = begin; k < end; ++k)
+          stream->angles[k] = turn_at(stream->poses, k, step_us, max_gap_us, from);
+      });
+      schedule.add(stream->angles.size() / 8, [stream] { limit_largest(stream->angles); });
+    }
+    schedule.add(1, [this] { correlate(); });
+  }
+
+  std::size_t points(double seconds) const {
+    return static_cast<std::size_t>(seconds * second_us / static_cast<double>(step_us));
+  }
+
+  void correlate() {
+    const std::size_t least_count = points(options.least_overlap);
+    if (options.near) {
+      const double between = static_cast<double>(a.poses.front().time_us - b.poses.front().time_us);
+      const auto centre = static_cast<std::ptrdiff_t>(
+          std::llround((*options.near * second_us - between) / static_cast<double>(step_us)));
+      const auto reach = static_cast<std::ptrdiff_t>(points(options.near_by));
+      for (std::ptrdiff_t lag = centre - reach; lag <= centre + reach; ++lag)
+        schedule.add(b.angles.size() / 64 + 1, [this, lag, least_count] {
+          const Correlation here = correlation_at(a.angles, b.angles, 0, b.angles.size(), lag, least_count);
+          if (here.significance > best.significance) best = here;
+        });
+      schedule.add(1, [this] { track(); });
+      return;
+    }
+    lags.emplace(a.angles, b.angles, least_count);
+    schedule.add(1, [this] { search_lags(); });
+  }
+
+  void search_lags() {
+    if (!lags->next()) return schedule.add(lags->size() / 8, [this] { search_lags(); });
+    const Correlation found = lags->best();
+    lags.reset();
+    // a drift smears the correlation of a long drive: its liveliest part shows the offset there
+    const bool smeared = !searched_part && found.value < 0.7 && b.angles.size() > 2 * points(part_length);
+    if (!best.value || found.value > best.value) best = found;
+    if (!smeared) return track();
+    searched_part = true;
+    lags.emplace(a.angles, liveliest_part(b.angles, points(part_length)), points(options.least_overlap));
+    schedule.add(1, [this] { search_lags(); });
+  }
+
+  /// The series, known only in the part of this length that turns most.
+  static Series liveliest_part(const Series& series, std::size_t length) {
+    const auto turn = [&](std::size_t i) { return std::max(0.0, series[i]); };
+    double here = 0, most = -1;
+    std::size_t end = length;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      here += turn(i) - (i >= length ? turn(i - length) : 0);
+      if (i + 1 >= length && here > most) {
+        most = here;
+        end = i + 1;
       }
     }
-    if (best_cost < 0) return std::nullopt;
-    const bool at_the_edge = std::abs(best_offset - centre) > 0.9 * width;
-    centre = best_offset;
-    if (!at_the_edge) width /= 2;
-    if (width < 0.004) break;
+    Series part(series.size(), -1);
+    for (std::size_t i = end - length; i < end; ++i) part[i] = series[i];
+    return part;
   }
-  // vertex of the parabola through three points far enough apart to rise above the noise
-  const double arm = std::max(0.02, 0.5 * period);
-  low = cost_at(a, b, centre - arm, stride, max_gap);
-  middle = cost_at(a, b, centre, stride, max_gap);
-  high = cost_at(a, b, centre + arm, stride, max_gap);
-  TimeOffset result{centre, width, best.value};
-  const double curvature = (low.cost - 2 * middle.cost + high.cost) / (arm * arm);
-  if (low.cost > 0 && high.cost > 0 && curvature > 0) {
-    const double vertex = 0.5 * (low.cost - high.cost) / (curvature * arm);
-    if (std::abs(vertex) < arm) result.seconds = centre + vertex;
-    // the minimum moves by what the slope is wrong by
-    result.stddev = slope_deviation(low, high, middle.q, 2 * arm) / curvature;
+
+  /// The offset in each part of a long drive, outwards from where both streams agree best. A clock that
+  /// drifts smears the correlation of the whole.
+  void track() {
+    if (!(best.significance > 0)) return;
+    const std::size_t size = points(window), count = b.angles.size() / std::max<std::size_t>(1, size);
+    if (count < 3) return refine(static_cast<double>(best.lag), 0);
+    windows.assign(count, {});
+    for (std::size_t i = 0; i < count; ++i)
+      schedule.add(size / 2, [this, i] { windows[i] = best_in_window(i, best.lag, points(1)); });
+    schedule.add(count, [this] { track_outwards(); });
   }
-  return result;
+
+  Correlation best_in_window(std::size_t i, std::ptrdiff_t centre, std::size_t reach) const {
+    const std::size_t size = points(window);
+    Correlation result;
+    const auto far = static_cast<std::ptrdiff_t>(reach);
+    for (std::ptrdiff_t lag = centre - far; lag <= centre + far; ++lag) {
+      const Correlation here = correlation_at(a.angles, b.angles, i * size, (i + 1) * size, lag, size / 4);
+      if (here.significance > result.significance) result = here;
+    }
+    return result;
+  }
+
+  void track_outwards() {
+    std::size_t start = 0;
+    for (std::size_t i = 1; i < windows.size(); ++i)
+      if (windows[i].significance > windows[start].significance) start = i;
+    const std::size_t reach = std::max<std::size_t>(1, points(most_drift * window)) + 1;
+    const auto follow = [this, reach](std::size_t i, std::ptrdiff_t& lag) {
+      windows[i] = best_in_window(i, lag, reach);
+      // a part without turns says nothing
+      if (windows[i].value > 0.5) lag = windows[i].lag;
+    };
+    schedule.add(1, [this, start, follow, forwards = std::make_shared<std::ptrdiff_t>(windows[start].lag),
+                     backwards = std::make_shared<std::ptrdiff_t>(windows[start].lag)] {
+      for (std::size_t i = start + 1; i < windows.size(); ++i)
+        schedule.add(points(window) / 4, [follow, i, forwards] { follow(i, *forwards); });
+      for (std::size_t i = start; i-- > 0;)
+        schedule.add(points(window) / 4, [follow, i, backwards] { follow(i, *backwards); });
+      schedule.add(windows.size(), [this] { fit_line(); });
+    });
+  }
+
+  void fit_line() {
+    std::vector<WindowOffset> points_;
+    for (std::size_t i = 0; i < windows.size(); ++i)
+      if (windows[i].value > 0.5)
+        points_.push_back({(static_cast<double>(i) + 0.5) * window, static_cast<double>(windows[i].lag)});
+    const auto global = static_cast<double>(best.lag);
+    if (points_.size() < 3) return refine(global, 0);
+    auto [level, slope] = line_through(points_);
+    // parts that found another peak
+    std::vector<double> distances;
+    for (const WindowOffset& point : points_)
+      distances.push_back(std::abs(point.offset - level - slope * point.time));
+    std::vector<double> sorted = distances;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
+    const double limit = 1 + 3 * sorted[sorted.size() / 2];
+    std::vector<WindowOffset> near;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (distances[i] <= limit) near.push_back(points_[i]);
+    if (near.size() >= 3) std::tie(level, slope) = line_through(near);
+    const double step = static_cast<double>(step_us) / second_us;
+    const double middle = 0.5 * window * static_cast<double>(windows.size());
+    const double rate = slope * step;
+    // what three grid points at both ends cannot show is left to the refinement
+    if (!(std::abs(rate) < 2 * most_drift) || std::abs(rate) * middle < 3 * step) return refine(global, 0);
+    refine(level + slope * middle, rate);
+  }
+
+  /// lag [grid steps], in the middle of b where the clock drifts.
+  void refine(double lag, double rate) {
+    const std::int64_t begin_a = a.poses.front().time_us, begin_b = b.poses.front().time_us;
+    const auto shift_us = static_cast<std::int64_t>(std::llround(lag * static_cast<double>(step_us)));
+    const std::int64_t offset_us = begin_a - begin_b + shift_us;
+    const std::int64_t from = std::max(begin_b, begin_a - offset_us),
+                       to = std::min(b.poses.back().time_us, a.poses.back().time_us - offset_us);
+    if (to <= from) return;
+    ClockLine model;
+    model.at_b_us = rate != 0 ? begin_b + static_cast<std::int64_t>(0.5 * window * second_us *
+                                                                    static_cast<double>(windows.size()))
+                              : from + (to - from) / 2;
+    model.at_a_us = model.at_b_us + offset_us;
+    model.rate = rate;
+    refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [] {});
+    refinement->begin(model, static_cast<double>(step_us));
+  }
+
+  TimeOffsetOptions options;
+  Schedule schedule;
+  Stream a, b;
+  std::int64_t step_us = 0, max_gap_us = 0;
+  std::optional<LagSearch> lags;
+  Correlation best;
+  bool searched_part = false;
+  std::vector<Correlation> windows;
+  std::optional<Refinement> refinement;
+};
+
+TimeOffsetSearch::TimeOffsetSearch(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options)
+    : impl_(std::make_unique<Impl>(a, b, options)) {}
+TimeOffsetSearch::~TimeOffsetSearch() = default;
+TimeOffsetSearch::TimeOffsetSearch(TimeOffsetSearch&&) noexcept = default;
+TimeOffsetSearch& TimeOffsetSearch::operator=(TimeOffsetSearch&&) noexcept = default;
+
+bool TimeOffsetSearch::step(std::size_t work) {
+  return impl_->schedule.run(work);
+}
+
+std::optional<TimeOffset> TimeOffsetSearch::finish() {
+  while (!step(1'000'000)) {
+  }
+  return impl_->refinement ? impl_->refinement->result() : std::nullopt;
+}
+
+std::optional<TimeOffset> estimate_time_offset(const Trajectory& a, const Trajectory& b,
+                                               const TimeOffsetOptions& options) {
+  return TimeOffsetSearch(a, b, options).finish();
+}
+
+std::int64_t on_clock_of_a(const TimeOffset& offset, std::int64_t time_us) {
+  const double drift = offset.drifts ? offset.rate * static_cast<double>(time_us - offset.at_us) : 0;
+  return time_us + std::llround(offset.seconds * second_us + drift);
+}
+
+Trajectory on_clock_of_a(const TimeOffset& offset, Trajectory b) {
+  for (StampedPose& pose : b) pose.time_us = on_clock_of_a(offset, pose.time_us);
+  return b;
 }
 
 }  // namespace egocal

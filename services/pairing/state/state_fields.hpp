@@ -41,6 +41,13 @@ void fields(auto& archive, services::Is<SynchroniserOptions> auto& value) {
   archive(poses_to_decide, most_waiting, slower_by);
 }
 
+void fields(auto& archive, services::Is<ClockOptions> auto& value) {
+  auto& [first, every, delay, window, longest, most_held, least_correlation, least_inliers, largest_stddev,
+         least_change, change_sigmas, work_per_pose, phase] = value;
+  archive(first, every, delay, window, longest, most_held, least_correlation, least_inliers, largest_stddev,
+          least_change, change_sigmas, work_per_pose, phase);
+}
+
 void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
   auto& [doubtful, break_chain, most_doubtful, longest_lever_arm] = value;
   archive(doubtful, break_chain, most_doubtful, longest_lever_arm);
@@ -53,9 +60,9 @@ void fields(auto& archive, services::Is<AccumulatorOptions> auto& value) {
 
 void fields(auto& archive, services::Is<PairingOptions> auto& value) {
   auto& [mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior,
-         synchroniser, screening, accumulator] = value;
+         clock, synchroniser, screening, accumulator] = value;
   archive(mode, plane_a, plane_b, stride, balance, time_offset, track_time_offset, max_gap, robust, prior,
-          synchroniser, screening, accumulator);
+          clock, synchroniser, screening, accumulator);
 }
 
 void fields(auto& archive, services::Is<MotionPair> auto& value) {
@@ -127,18 +134,18 @@ void fields(auto& archive, services::Is<Choice> auto& value) {
 }
 
 void fields(auto& archive, services::Is<TimeOffset> auto& value) {
-  auto& [seconds, stddev, correlation] = value;
-  archive(seconds, stddev, correlation);
+  auto& [seconds, stddev, correlation, rate, rate_stddev, at_us, drifts, inliers] = value;
+  archive(seconds, stddev, correlation, rate, rate_stddev, at_us, drifts, inliers);
 }
 
 void fields(auto& archive, services::Is<ClockState::Stream> auto& value) {
-  auto& [window, begin_us] = value;
-  archive(window, begin_us);
+  auto& [window, held, begin_us, newest_us, stray] = value;
+  archive(window, held, begin_us, newest_us, stray);
 }
 
 void fields(auto& archive, services::Is<ClockState> auto& value) {
-  auto& [streams, next_us, newest, in_force, given_up, changes] = value;
-  archive(streams, next_us, newest, in_force, given_up, changes);
+  auto& [streams, next_us, newest, in_force, near, given_up, changes] = value;
+  archive(streams, next_us, newest, in_force, near, given_up, changes);
 }
 
 void fields(auto& archive, services::Is<Instant> auto& value) {
@@ -147,8 +154,8 @@ void fields(auto& archive, services::Is<Instant> auto& value) {
 }
 
 void fields(auto& archive, services::Is<SynchroniserState> auto& value) {
-  auto& [newest_us, waiting, keys, period_us, last_key_us, synchronised, rejections] = value;
-  archive(newest_us, waiting, keys, period_us, last_key_us, synchronised, rejections);
+  auto& [newest_us, waiting, keys, period_us, last_key_us, synchronised, chain, rejections] = value;
+  archive(newest_us, waiting, keys, period_us, last_key_us, synchronised, chain, rejections);
 }
 
 void fields(auto& archive, services::Is<ScreeningState> auto& value) {
@@ -167,8 +174,8 @@ void fields(auto& archive, services::Is<AccumulatorState> auto& value) {
 }
 
 void fields(auto& archive, services::Is<PairingState> auto& value) {
-  auto& [poses_a, poses_b, rejections, clock, synchroniser, screening, accumulator] = value;
-  archive(poses_a, poses_b, rejections, clock, synchroniser, screening, accumulator);
+  auto& [poses_a, poses_b, rejections, segment, clock, synchroniser, screening, accumulator] = value;
+  archive(poses_a, poses_b, rejections, segment, clock, synchroniser, screening, accumulator);
 }
 
 void fields(auto& archive, services::Is<NumberedPose> auto& value) {
@@ -191,7 +198,7 @@ void fields(auto& archive, services::Is<StreamState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 7;
+constexpr int state_layout = 8;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

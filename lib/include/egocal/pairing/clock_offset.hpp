@@ -5,38 +5,75 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "egocal/pairing/options.hpp"
 #include "egocal/pairing/time_offset.hpp"
 
 namespace egocal {
 
-/// What following the offset between two clocks remembers: the newest minutes of both streams.
+/// What following the offset between two clocks remembers: the newest minutes of both streams. Bounded;
+/// continuing from a copy gives the same bits.
 struct ClockState {
   struct Stream {
-    std::deque<StampedPose> window;        ///< with the stamps they came with
-    std::optional<std::int64_t> begin_us;  ///< first stamp
+    std::deque<StampedPose> window;  ///< thinned, for the estimates; with the stamps they came with
+    std::deque<StampedPose> held;    ///< not released yet, in the order of arrival
+    std::optional<std::int64_t> begin_us, newest_us;  ///< stamps
+    std::optional<StampedPose> stray;  ///< far from the others: the next pose shows whether time jumped
   };
   std::array<Stream, 2> streams;
-  std::int64_t next_us = 0;          ///< time since the beginning of both streams of the next estimate
-  std::optional<TimeOffset> newest;  ///< estimate, whether it is in force or not
-  std::optional<double> in_force;    ///< [s]; empty while no estimate was good enough
-  std::uint64_t given_up = 0;        ///< poses held so long that they were dropped
-  std::uint64_t changes = 0;         ///< of what is in force, the first included
+  std::int64_t next_us = 0;            ///< end of the next estimate's window, since the begin of both streams
+  std::optional<TimeOffset> newest;    ///< estimate, whether it is in force or not
+  std::optional<TimeOffset> in_force;  ///< empty while no estimate was good enough
+  bool near = false;                   ///< the next estimate searches near the one in force
+  std::uint64_t given_up = 0;          ///< poses dropped: held too long, or stray
+  std::uint64_t changes = 0;           ///< of what is in force, the first included
 };
 
-/// A pose that may be used now, with the offset of its time.
+/// A pose that may be used now.
 struct ReleasedPose {
   Side side;
-  StampedPose pose;
+  StampedPose pose;           ///< b's on the clock of a
+  std::uint64_t segment = 0;  ///< number of changes of the clock before it
 };
 
-/// Follows the offset of clock b from a. Poses are held until an estimate is good enough (it correlates, and
-/// its standard deviation is below five milliseconds); from then on they pass at once, b's with the offset
-/// added. Estimated anew every half minute over the newest minute; another offset comes into force where it
-/// differs by five milliseconds and by four standard deviations. Depends on the stamps of both streams, not
-/// on how they interleave, as long as one does not run two minutes ahead.
-std::vector<ReleasedPose> follow_clock(ClockState& state, Side side, const StampedPose& pose, double max_gap);
+/// Follows the offset of clock b from a, and its drift. Poses are held until an estimate is good enough; from
+/// then on they pass at once, b's on the clock of a. Estimated anew every half minute over the newest minute;
+/// each estimate is worked out over the poses of the next two seconds and comes into force at a fixed time,
+/// so that no pose waits for more than a fraction of a millisecond of work. The result depends on the stamps
+/// of both streams, not on how they interleave nor on how fast the machine is.
+class ClockFollower {
+ public:
+  /// Uses max_gap and the options of its own stage.
+  explicit ClockFollower(const PairingOptions& options, ClockState state = {});
+  ClockFollower(const ClockFollower& other);
+  ClockFollower& operator=(const ClockFollower& other);
+  ClockFollower(ClockFollower&&) noexcept = default;
+  ClockFollower& operator=(ClockFollower&&) noexcept = default;
+
+  /// Takes the next pose of one stream. Returns the poses that may be used now, in the order of time.
+  std::vector<ReleasedPose> push(Side side, const StampedPose& pose);
+  /// What is added to the stamps of b now [s]; empty while it is looked for.
+  std::optional<double> seconds() const;
+  const ClockState& state() const { return state_; }
+
+ private:
+  bool admit(ClockState::Stream& stream, const StampedPose& pose);
+  void restart();
+  void begin_search();
+  bool both_reached(std::int64_t since_begin_us) const;
+  void conclude(std::vector<ReleasedPose>& released);
+  void take_force(const TimeOffset& offset);
+  void release(std::vector<ReleasedPose>& released);
+  void forget();
+  std::int64_t boundary_us() const;
+
+  ClockOptions options_;
+  double max_gap_ = 0;
+  ClockState state_;
+  std::unique_ptr<TimeOffsetSearch> search_;  ///< a copy begins it again, to the same result
+};
 
 }  // namespace egocal

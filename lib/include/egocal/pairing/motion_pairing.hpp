@@ -32,6 +32,7 @@ struct PairingCounts {
 struct PairingState {
   std::uint64_t poses_a = 0, poses_b = 0;  ///< handed in
   Rejections rejections;                   ///< not finite; no partner while the clock was not known
+  std::uint64_t segment = 0;               ///< of the clock, of the newest pose
   ClockState clock;                        ///< only where the time offset is tracked
   SynchroniserState synchroniser;
   ScreeningState screening;  ///< only where robust
@@ -65,7 +66,7 @@ class MotionPairing {
   /// What is added to the stamps of b [s]. Empty while it is looked for.
   std::optional<double> time_offset() const;
   /// The newest estimate, whether it is in force or not. Only where the time offset is tracked.
-  const std::optional<TimeOffset>& estimated_time_offset() const { return clock_.newest; }
+  const std::optional<TimeOffset>& estimated_time_offset() const { return clock_.state().newest; }
 
  private:
   void take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs);
@@ -73,7 +74,8 @@ class MotionPairing {
   PairingOptions options_;
   std::uint64_t poses_a_ = 0, poses_b_ = 0;
   Rejections rejections_;
-  ClockState clock_;
+  std::uint64_t segment_ = 0;
+  ClockFollower clock_;
   Synchroniser synchroniser_;
   Screening screening_;
   Accumulator accumulator_;
@@ -85,5 +87,7 @@ struct PairingResult {
   std::vector<MotionPair> pairs;  ///< of the stride in force when each was completed
 };
 PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b);
+/// The same without keeping the pairs, of which a long drive has many.
+MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b);
 
 }  // namespace egocal

@@ -42,10 +42,8 @@ class Screening {
  public:
   explicit Screening(const ScreeningOptions& options, ScreeningState state = {});
 
-  /// Takes the next instant. period_us: typical time between instants.
+  /// Takes the next instant, with the chain it has for its clocks. period_us: typical time between instants.
   Screened push(const Instant& instant, std::int64_t period_us);
-  /// The next instant is on another clock: no motion may span it and those before.
-  void begin_chain() { ++state_.chain; }
   /// No more instants will come: those that still wait for a confirmation are rejected.
   void finish();
 
@@ -55,6 +53,7 @@ class Screening {
   void screen(const Instant& instant, double period_us, std::vector<Instant>& accepted);
   void confirm(const std::vector<Instant>& confirmed, const Instant& instant, std::vector<Instant>& accepted);
   void accept(Instant instant, std::uint64_t number, std::vector<Instant>& accepted);
+  void begin_chain();
   std::vector<Instant> screen_first_ones_again(double period_us);
 
   ScreeningOptions options_;

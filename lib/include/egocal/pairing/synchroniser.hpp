@@ -23,6 +23,7 @@ struct SynchroniserState {
   std::int64_t period_us = 0;  ///< typical, of the slower stream; 0 until known
   std::optional<std::int64_t> last_key_us;  ///< newest stamp that was paired or given up
   std::uint64_t synchronised = 0;           ///< instants
+  std::uint64_t chain = 0;                  ///< of the instants: clocks so far
   Rejections rejections;                    ///< out of order, no partner, gap
 };
 
@@ -37,6 +38,9 @@ class Synchroniser {
   std::vector<Instant> push(Side side, const StampedPose& pose);
   /// No more poses will come: synchronises what a drive too short to show its slower stream has held back.
   std::vector<Instant> finish();
+
+  /// The next poses are on another clock: what waits is synchronised or rejected, and a new chain begins.
+  std::vector<Instant> begin_chain();
 
   /// Typical time between two instants [us]; 0 until the slower stream is known.
   std::int64_t period_us() const { return state_.period_us; }

@@ -2,28 +2,85 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal {
 
+/// Options of the estimate of a time offset. Their study: tests/lib/test_time_offset.cpp, over noise,
+/// glitches, drift and rates.
 struct TimeOffsetOptions {
-  double max_gap = 0.5;      ///< poses further apart are not interpolated between [s]
+  /// Poses further apart are not interpolated between [s]. The estimate itself never bridges more than 20
+  /// periods of the slower stream: what was interpolated over longer says nothing about time.
+  double max_gap = 0.5;
   double least_overlap = 5;  ///< offsets at which the streams share less than this are not considered [s]
+  /// Poses closer in time are skipped [s]. 100 Hz resolve a millisecond; faster streams only cost time.
+  double least_spacing = 0.009;
+  /// At most this many instants are compared in one pass, spread over the whole drive: half an hour at 10 Hz
+  /// determines an offset to microseconds.
+  std::size_t most_keys = 20'000;
+  double motion = 0.5;  ///< length of the compared motions [s]: turns stand out of the noise of short steps
+  /// Of translation against a rotation weight of 1 [1/m^2]: rotations show time, translations only with the
+  /// lever arm.
+  double translation_weight = 0.01;
+  /// A pose is a glitch, and a motion an outlier, where it differs by this many typical differences.
+  double outlier = 8;
+  /// A drift is corrected where it is this many standard deviations away from zero.
+  double drift_sigmas = 5;
+  double most_drift = 0.01;          ///< larger rates are taken for errors [s/s]; a poor quartz is at 1e-4
+  double least_drift_duration = 30;  ///< shorter drives are taken to have no drift [s]
+  /// An offset to search near, with `near_by` on both sides [s]; empty: all offsets at which streams overlap.
+  std::optional<double> near{};
+  double near_by = 1;
 };
 
 /// What has to be added to the stamps of b so that both streams run on the clock of a.
 struct TimeOffset {
-  double seconds = 0;
-  double stddev = 0;       ///< of the refinement, from the curvature of the cost [s]
-  double correlation = 0;  ///< of the angular rates at the offset, [-1, 1]; below about 0.5 do not trust it
+  double seconds = 0;      ///< at `at_us` [s]
+  double stddev = 0;       ///< of `seconds`, from how much the parts of the drive differ [s]
+  double correlation = 0;  ///< of the angles that both turn by, [-1, 1]; below about 0.5 do not trust it
+  double rate = 0;         ///< by how much `seconds` grows per second of b's clock: the drift [s/s]
+  double rate_stddev = 0;  ///< of `rate`; infinite where the drive is too short
+  std::int64_t at_us = 0;  ///< a time on the clock of b, in the middle of the drive [us]
+  bool drifts = false;     ///< the rate is significant: only then it is applied
+  double inliers = 0;      ///< part of the compared motions that agree, [0, 1]
 };
 
+/// A stamp of b on the clock of a [us].
+std::int64_t on_clock_of_a(const TimeOffset& offset, std::int64_t time_us);
+/// The poses of b with stamps on the clock of a.
+Trajectory on_clock_of_a(const TimeOffset& offset, Trajectory b);
+
+/// The search for a time offset in small pieces, so that it can be spread over the poses of a live stream.
+/// The result depends on the trajectories and options alone, not on how the work is divided.
+///
 /// The angle that a rigid body turns by between two instants is the same for every sensor on it, whatever the
 /// extrinsic: correlated over all offsets at which the streams overlap, it finds the offset of clocks that
-/// share nothing. Then the certified minimum of the cost (18) as a function of the offset is minimised. Empty
-/// where the streams are too short or never turn.
+/// share nothing. Then the certified minimum of the cost (18) as a function of offset and drift is minimised
+/// over motions that are not outliers. Time and memory are bounded by the number of poses (n log n), never by
+/// the span of their stamps.
+class TimeOffsetSearch {
+ public:
+  /// Poses that are not valid, or whose stamps do not increase, are skipped.
+  TimeOffsetSearch(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options = {});
+  ~TimeOffsetSearch();
+  TimeOffsetSearch(TimeOffsetSearch&&) noexcept;
+  TimeOffsetSearch& operator=(TimeOffsetSearch&&) noexcept;
+
+  /// Does the next pieces of work, of about `work` poses together. Returns whether the search is finished.
+  bool step(std::size_t work);
+  /// Does what is left. Empty where the streams are too short, never turn or do not match.
+  std::optional<TimeOffset> finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The whole search at once.
 std::optional<TimeOffset> estimate_time_offset(const Trajectory& a, const Trajectory& b,
                                                const TimeOffsetOptions& options = {});
 

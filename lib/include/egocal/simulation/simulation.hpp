@@ -61,7 +61,7 @@ struct SimulationOptions {
   bool random_walk = false;  ///< the noise of consecutive motions is correlated (0.9 from one to the next)
   bool heavy_tails = false;  ///< the noise has Student's distribution with three degrees of freedom
   std::uint64_t seed = 1;    ///< of path, surface, noise and faults
-  std::vector<SensorFaults> faults;  ///< per sensor; empty or shorter: none
+  std::vector<SensorFaults> faults{};  ///< per sensor; empty or shorter: none
 };
 
 /// One trajectory a sensor, each in its own start frame, with the motions' noise accumulated. The same

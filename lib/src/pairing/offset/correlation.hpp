@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace egocal::detail {
+
+/// A series on a grid; negative where not known.
+using Series = std::vector<double>;
+
+/// Pearson's correlation of two series where both are known.
+struct Correlation {
+  double value = 0;
+  double significance = 0;  ///< in standard deviations of chance, taking every point as independent
+  std::ptrdiff_t lag = 0;   ///< grid points by which b was shifted to the right
+};
+
+/// Of a and the points [begin, end) of b, shifted by `lag`. Zero where fewer than least_count points are
+/// known in both.
+Correlation correlation_at(std::span<const double> a, std::span<const double> b, std::size_t begin,
+                           std::size_t end, std::ptrdiff_t lag, std::size_t least_count);
+
+/// The most significant one over all lags at which the series overlap, in n log n by Fourier transforms; in
+/// steps, for one takes as long as n poses. Call next() until it returns true, then best().
+class LagSearch {
+ public:
+  LagSearch(Series a, Series b, std::size_t least_count);
+  bool next();
+  const Correlation& best() const { return best_; }
+  std::size_t size() const { return size_; }  ///< of a transform
+
+ private:
+  using Complex = std::complex<double>;
+  std::vector<Complex> packed(const Series& series, bool squares) const;
+  void transform(std::vector<Complex>& values, bool back) const;
+  void pick();
+
+  Series a_, b_;
+  std::size_t least_count_, size_;
+  int step_ = 0;
+  std::vector<Complex> roots_;
+  std::vector<Complex> spectra_[4];  ///< of a + i known, a^2, b + i known, b^2
+  std::vector<Complex> sums_[3];     ///< by lag: (n, sum ab), (sum a, sum b), (sum aa, sum bb)
+  Correlation best_;
+};
+
+}  // namespace egocal::detail

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace egocal::detail {
+
+/// Work in small pieces, done in the order in which it was added. What a piece adds is done right after it.
+class Schedule {
+ public:
+  /// cost: about as many poses as the piece looks at.
+  void add(std::size_t cost, std::function<void()> piece) { added_.push_back({cost, std::move(piece)}); }
+
+  /// piece(begin, end) on consecutive ranges of n items.
+  template <typename Piece>
+  void add_range(std::size_t n, Piece piece) {
+    constexpr std::size_t most = 256;
+    for (std::size_t begin = 0; begin < n; begin += most) {
+      const std::size_t end = std::min(n, begin + most);
+      add(end - begin, [piece, begin, end] { piece(begin, end); });
+    }
+  }
+
+  /// Does at least one piece, and more until `cost` is spent. Returns whether nothing is left.
+  bool run(std::size_t cost) {
+    std::size_t spent = 0;
+    while (take_added()) {
+      const Piece piece = std::move(pieces_.front());
+      pieces_.pop_front();
+      piece.work();
+      spent += piece.cost;
+      if (spent >= cost) break;
+    }
+    return !take_added();
+  }
+
+ private:
+  bool take_added() {
+    pieces_.insert(pieces_.begin(), std::make_move_iterator(added_.begin()),
+                   std::make_move_iterator(added_.end()));
+    added_.clear();
+    return !pieces_.empty();
+  }
+
+  struct Piece {
+    std::size_t cost;
+    std::function<void()> work;
+  };
+  std::deque<Piece> pieces_;
+  std::vector<Piece> added_;
+};
+
+}  // namespace egocal::detail
