@@ -30,7 +30,9 @@ int main(int argc, char** argv) {
   options.poses = static_cast<int>(parts * poses_per_part);
   options.relative_noise = 0.01;
   options.T_vehicle_sensor = {Pose{}, {rotation_exp({0.3, -0.2, 1.0}), {0.5, -0.2, 0.3}}};
-  const auto drive = simulate(options);
+  auto drive = simulate(options);
+  for (Trajectory& trajectory : drive)
+    for (StampedPose& pose : trajectory) pose.time_us += 1'700'000'000'000'000;
   const auto kind = mcap ? MessageEncoder::Kind::cdr : MessageEncoder::Kind::ros1;
   Random random(1);
   std::string image(256 << 10, ' ');

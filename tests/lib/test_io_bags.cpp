@@ -193,6 +193,24 @@ TEST(Bags, MessagesWithoutAPoseAreCountedAndSkipped) {
   EXPECT_THAT(losses_in_words(reading.losses), HasSubstr("2 without a usable pose"));
 }
 
+/// Headers without a time: the time of recording, unless other messages of the topic have one.
+TEST(Bags, MessagesWithoutAStampTakeTheTimeOfRecording) {
+  const testing::ScratchFolder folder;
+  const Trajectory trajectory = some_trajectory(30);
+  auto messages = testing::as_messages(trajectory, "/odom", types[1], MessageEncoder::Kind::cdr);
+  const auto unstamped = [&](std::size_t i) {
+    return testing::encoded(MessageEncoder::Kind::cdr, types[1], {0, trajectory[i].pose});
+  };
+  messages[0].data = unstamped(0);  // a simulation that begins at zero
+  TrajectoryReading reading = read_trajectory_file(folder.file("a.mcap", testing::mcap_file(messages, {})));
+  expect_equal(reading.trajectory, {trajectory.begin() + 1, trajectory.end()}, "one");
+  EXPECT_EQ(reading.losses.refused, 1u);
+  for (std::size_t i = 0; i < messages.size(); ++i) messages[i].data = unstamped(i);
+  reading = read_trajectory_file(folder.file("b.mcap", testing::mcap_file(messages, {})));
+  expect_equal(reading.trajectory, {trajectory.begin() + 1, trajectory.end()}, "all");
+  EXPECT_THAT(reading.notes, ::testing::Contains(HasSubstr("no time stamp in their header")));
+}
+
 TEST(Bags, OrderIsRestoredAndCounted) {
   const testing::ScratchFolder folder;
   const Trajectory trajectory = some_trajectory(30);

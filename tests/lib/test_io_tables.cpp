@@ -158,9 +158,9 @@ TEST_F(Tables, ALastRowThatIsCutOffIsCounted) {
 }
 
 TEST_F(Tables, EmptyFieldsOfATableAreCounted) {
-  const TrajectoryReading reading = read("t,x,y,yaw,note\n0,1,2,0,a\n1,,,,b\n2,3,4,0.5,c\n");
+  const TrajectoryReading reading = read("t,x,y,yaw,note\n0,1,2,0,a\n1,,,,b\n1.5,,,,\n2,3,4,0.5,c\n");
   EXPECT_EQ(reading.trajectory.size(), 2u);
-  EXPECT_EQ(reading.losses.refused, 1u);
+  EXPECT_EQ(reading.losses.refused, 2u);
   EXPECT_THAT(reading.losses.first_refused, HasSubstr("line 3"));
 }
 

@@ -41,6 +41,8 @@ class Recordings : public ::testing::Test {
     options.terrain = Terrain::free;
     options.T_vehicle_sensor = {Pose{}, T};
     drive = simulate(options);
+    for (Trajectory& trajectory : drive)
+      for (StampedPose& pose : trajectory) pose.time_us += 1'700'000'000'000'000;
     const auto messages = [&](MessageEncoder::Kind kind) {
       auto all = testing::as_messages(drive[0], "/lidar", "nav_msgs/Odometry", kind);
       for (auto& message : testing::as_messages(drive[1], "/camera", "geometry_msgs/PoseStamped", kind))

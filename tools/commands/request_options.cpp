@@ -26,6 +26,7 @@ Reading reading(bool invert, const std::string& order) {
 SolveRequest understood(const RequestOptions& options) {
   SolveRequest result;
   result.source = options.source;
+  result.source.reading_a.rate = result.source.reading_b.rate = options.rate;
   if (!options.times.empty()) {
     if (result.source.times_a.empty()) result.source.times_a = options.times;
     if (result.source.times_b.empty()) result.source.times_b = options.times;
@@ -94,9 +95,10 @@ void add_request_options(cli::App command, RequestOptions& options) {
   command.add_option("--times", options.times, "times of KITTI poses, one a line [s]");
   command.add_option("--times-a", options.source.times_a, "times of A alone");
   command.add_option("--times-b", options.source.times_b, "times of B alone");
-  command.add_option("--columns", options.source.reading.columns,
-                     "names of a table's columns: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
-  command.add_option("--rate", options.source.reading.rate, "of KITTI poses without times [Hz; 10]");
+  command.add_option("--columns-a", options.source.reading_a.columns,
+                     "names of the columns of table A: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
+  command.add_option("--columns-b", options.source.reading_b.columns, "names of the columns of table B");
+  command.add_option("--rate", options.rate, "of KITTI poses without times [Hz; 10]");
   command.add_option("--method", options.method, "solver, or a baseline of the paper")
       .check(cli::Check::one_of(
           {"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))

@@ -17,7 +17,7 @@ struct RequestOptions {
   std::string method = "global";
   bool planar = false;
   std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal;
-  double max_gap = 0.5;
+  double max_gap = 0.5, rate = 0;
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
 };

@@ -39,15 +39,14 @@ Motions read_motions(const MotionSource& source) {
   if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
   if (source.log.empty()) {
     Motions motions;
-    const auto read = [&](const std::string& name, const std::string& times) {
-      ReadOptions options = source.reading;
+    const auto read = [&](const std::string& name, const std::string& times, ReadOptions options) {
       options.times_file = times;
       TrajectoryReading reading = read_any_trajectory(name, options);
       for (const std::string& note : reading.notes) motions.warnings.push_back(name + ": " + note);
       return std::move(reading.trajectory);
     };
-    motions.a = read(source.a, source.times_a);
-    motions.b = read(source.b, source.times_b);
+    motions.a = read(source.a, source.times_a, source.reading_a);
+    motions.b = read(source.b, source.times_b, source.reading_b);
     return motions;
   }
   LogTrajectory a = read_log_trajectory(source.log, source.a);

@@ -17,7 +17,7 @@ struct MotionSource {
   std::string times_a, times_b;  ///< for KITTI files
   std::string log;
   std::string pairs;
-  ReadOptions reading;  ///< of both files; its times_file is not used
+  ReadOptions reading_a, reading_b;  ///< their times_file is not used
 };
 
 /// What `egocal solve` was asked for.

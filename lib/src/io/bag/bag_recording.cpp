@@ -33,6 +33,7 @@ void BagRecording::read(const std::string& topic, const TakePose& take) {
   losses_ = {};
   notes_.clear();
   unstamped_ = 0;
+  stamps_.clear();
   for (const auto& part : parts_) {
     if (read_before_) part->rewind();
     read_part(*part, topic, take);
@@ -101,6 +102,21 @@ std::size_t BagRecording::transform_stream(const BagTopic& topic, const MessageP
   return streams_.size() - 1;
 }
 
+/// Of the header; the time of recording where no message of the stream has another. A simulation that begins
+/// at zero has one message that looks unstamped, at its beginning: the second one decides.
+std::optional<std::int64_t> BagRecording::time_of(const MessagePose& pose, const BagMessage& message,
+                                                  std::size_t stream) {
+  const auto rounded = [](std::int64_t ns) { return ns / 1000 + (ns % 1000 >= 500 ? 1 : 0); };
+  if (stream >= stamps_.size()) stamps_.resize(stream + 1);
+  Stamps& stamps = stamps_[stream];
+  if (streams_[stream].fixed) return rounded(pose.time_ns != 0 ? pose.time_ns : message.log_time_ns);
+  ++(pose.time_ns != 0 ? stamps.stamped : stamps.unstamped);
+  if (pose.time_ns != 0) return rounded(pose.time_ns);
+  if (stamps.stamped > 0 || stamps.unstamped == 1) return std::nullopt;
+  ++unstamped_;
+  return rounded(message.log_time_ns);
+}
+
 void BagRecording::take_message(MessageReader& part, const BagMessage& message, std::size_t stream,
                                 const TakePose& take) {
   const BagTopic& topic = part.topics()[message.topic];
@@ -117,14 +133,14 @@ void BagRecording::take_message(MessageReader& part, const BagMessage& message, 
       streams_[target].parent = frame(pose.parent);
       streams_[target].child = frame(pose.child);
     }
-    const bool fixed = streams_[target].fixed;
-    if (pose.time_ns == 0 && !fixed) ++unstamped_;
-    const std::int64_t time_ns = pose.time_ns != 0 ? pose.time_ns : message.log_time_ns;
-    const std::int64_t time_us = time_ns / 1000 + (time_ns % 1000 >= 500 ? 1 : 0);
-    if (!plausible_relative_time(time_us)) return refuse("its time is not between 1840 and 2100");
     const CheckedPose checked = checked_pose(pose.translation, pose.wxyz);
     if (!checked.reason.empty()) return refuse(checked.reason);
-    take(target, {time_us, checked.pose});
+    if (const auto time_us = time_of(pose, message, target); !time_us)
+      refuse("it has no time stamp, others of the topic do");
+    else if (!plausible_relative_time(*time_us))
+      refuse("its time is out of range");
+    else
+      take(target, {*time_us, checked.pose});
   });
   if (!decoded)
     refuse("the message is damaged or not a " + topic.type + " in the encoding " + topic.encoding);

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,11 +33,19 @@ class BagRecording : public Recording {
   std::size_t transform_stream(const BagTopic& topic, const MessagePose& pose);
   void take_message(MessageReader& part, const BagMessage& message, std::size_t stream, const TakePose& take);
 
+  std::optional<std::int64_t> time_of(const MessagePose& pose, const BagMessage& message, std::size_t stream);
+
+  /// How many messages of a stream have a time in their header.
+  struct Stamps {
+    std::uint64_t stamped = 0, unstamped = 0;
+  };
+
   std::string format_;
   Parts parts_;
   bool read_before_ = false;
   std::map<std::pair<std::string, std::string>, std::size_t> topics_;      ///< stream by topic and type
   std::map<std::pair<std::size_t, std::string>, std::size_t> transforms_;  ///< by stream of the topic, frames
+  std::vector<Stamps> stamps_;                                             ///< by stream
   std::uint64_t unstamped_ = 0;
 };
 

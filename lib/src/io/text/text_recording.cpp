@@ -40,6 +40,9 @@ struct TextRecording::Rows {
         line = points;
       }
       split(line, layout.separator, fields);
+      width = layout.separator == ' '
+                  ? fields.size()
+                  : static_cast<std::size_t>(std::count(line.begin(), line.end(), layout.separator)) + 1;
       ++count;
       return true;
     }
@@ -51,6 +54,7 @@ struct TextRecording::Rows {
   std::vector<std::string_view> fields;
   std::string points;
   std::size_t count = 0;  ///< rows so far
+  std::size_t width = 0;  ///< fields of this row, empty ones at its end included
 };
 
 TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions options)
@@ -148,6 +152,12 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
 /// Empty: the row is skipped and counted.
 std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
   const std::size_t n = rows.fields.size();
+  const auto empty_field = [&] {
+    if (losses_.refused++ == 0)
+      losses_.first_refused = "line " + std::to_string(rows.lines.number()) + ": an empty field";
+    return std::nullopt;
+  };
+  if (layout_.format == "table" && n < layout_.fields && rows.width >= layout_.fields) return empty_field();
   if (layout_.more_fields ? n < layout_.fields : n != layout_.fields) {
     if (!rows.lines.terminated() && n < layout_.fields && rows.count > 1) {
       losses_.truncated = true;
@@ -165,11 +175,7 @@ std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
   }
   if (layout_.format == "table")
     for (const auto& column : layout_.columns.of)
-      if (column && rows.fields[column->index].empty()) {
-        if (losses_.refused++ == 0)
-          losses_.first_refused = "line " + std::to_string(rows.lines.number()) + ": an empty field";
-        return std::nullopt;
-      }
+      if (column && rows.fields[column->index].empty()) return empty_field();
   StampedPose pose;
   pose.time_us = time_of_row(rows);
   pose.pose = layout_.matrix ? pose_of_matrix(rows) : pose_of_columns(rows);
