@@ -78,13 +78,24 @@ bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
     *this = another;
     in_order = true;
   }
+  // Numbers that jump and come back to where they would be without the jump were damaged alike: nothing was
+  // cut out there, nor put elsewhere.
+  bool back = false;
+  if (!in_order && damaged_bytes == 0) {
+    back = run_ &&
+           static_cast<std::uint64_t>(number) == static_cast<std::uint64_t>(run_->before) + run_->length + 1;
+    if (back) top_ = run_->top_before;
+    run_ = back ? std::nullopt : std::optional<Run>(Run{last_, top_, 1});
+  } else if (run_) {
+    ++run_->length;
+  }
   // Two numbers in a row bear each other out. One that comes after damaged bytes can be believed as far as
   // these can have held the events in between; one that stands alone is damaged itself.
   const std::uint64_t most_between = damaged_bytes / (header_size + 1) + 1;
   const bool close =
       damaged_bytes > 0 && number > last_ &&
       static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(last_) - 1 <= most_between;
-  if (number >= 0 && number < INT64_MAX && (in_order || close)) top_ = std::max(top_, number + 1);
+  if (number >= 0 && number < INT64_MAX && (in_order || close || back)) top_ = std::max(top_, number + 1);
   has_zero_ = has_zero_ || number == 0;
   last_ = number;
   ++count_;

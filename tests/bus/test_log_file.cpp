@@ -176,6 +176,17 @@ TEST_F(LogFile, TenThousandDamagedCopiesCostNoMoreThanWhatWasDamaged) {
   EXPECT_LE(wrong_counts, counts / 50);
 }
 
+TEST_F(LogFile, NumbersThatAreDamagedAlikeInventNoLostEvents) {
+  for (const std::size_t events : {1, 2, 5}) {
+    std::string bytes = log.bytes;
+    for (std::size_t event = 8; event < 8 + events; ++event) bytes[log.begin[event] + 9] ^= 0x04;
+    const Read result = read(bytes);
+    EXPECT_EQ(result.events.size(), log.events());
+    EXPECT_EQ(result.damage.lost_events, 0u) << events;
+    EXPECT_EQ(result.damage.jumps, 2u);
+  }
+}
+
 TEST_F(LogFile, SeeksByTimeWithoutReadingWhatIsBefore) {
   const std::string long_log = ::testing::TempDir() + "egocal_seek_" + std::to_string(getpid()) + ".log";
   constexpr std::int64_t begin = 1'700'000'000'000'000, step = 10'000;

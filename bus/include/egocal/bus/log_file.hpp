@@ -55,6 +55,11 @@ class EventNumbers {
   std::int64_t top_ = 0;      ///< one more than the highest number that can be believed
   std::int64_t count_ = 0;    ///< events read
   std::uint64_t before_ = 0;  ///< missing from the logs before, in a file of several
+  struct Run {
+    std::int64_t before, top_before;
+    std::uint64_t length;
+  };
+  std::optional<Run> run_;  ///< since the numbers jumped last: the number and the top before it, events since
 };
 
 /// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs what it held: the
