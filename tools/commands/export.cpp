@@ -2,21 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
+#include <chrono>
 #include <memory>
+#include <vector>
 
+#include "answers/answers.hpp"
 #include "arguments.hpp"
 #include "commands/commands.hpp"
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
-#include "egocal/bus/log_file.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "egocal/online/algorithm1.hpp"
 
 namespace egocal::tools {
 
@@ -27,87 +26,79 @@ struct Options {
   double timeout = 5;
 };
 
-/// Of all answers heard for each pair the one that counts.
-class Answers {
- public:
-  void hear(const calibration_t& message) {
-    const bus::Checked<Answer> answer = bus::to_answer(message);
-    if (!answer) return;
-    const AnswerRank claim{message.session, message.seq, answer.value->certificate.optimality,
-                           answer.value->certificate.cost};
-    const auto [entry, fresh] = best_.try_emplace({message.sensor_a, message.sensor_b}, Best{message, claim});
-    if (!fresh && outranks(claim, entry->second.claim)) entry->second = {message, claim};
-  }
-  bool has(const std::string& pair) const { return find(pair) != best_.end(); }
-
-  /// Throws Error where there is none, or more than one pair and no choice was made.
-  NamedExtrinsic chosen(const std::string& pair) const {
-    const auto entry = find(pair);
-    if (entry == best_.end())
-      throw Error(best_.empty() ? "export: there is no answer"
-                                : "export: there is no answer for the pair " + pair);
-    if (pair.empty() && best_.size() > 1) {
-      std::string known;
-      for (const auto& [names, best] : best_)
-        known += (known.empty() ? "" : ", ") + names.first + "," + names.second;
-      throw UsageError("--pair: several pairs have answers, choose one of: " + known);
-    }
-    const calibration_t& message = entry->second.message;
-    const Answer answer = *bus::to_answer(message).value;
-    return {entry->first.first,  entry->first.second, to_pose(answer.T_a_b),
-            message.status == 0, message.pairs,       answer.observability.stddev};
-  }
-
- private:
-  struct Best {
-    calibration_t message;
-    AnswerRank claim;
-  };
-  using Map = std::map<std::pair<std::string, std::string>, Best>;
-  Map::const_iterator find(const std::string& pair) const {
-    return std::find_if(best_.begin(), best_.end(), [&](const auto& entry) {
-      return pair.empty() || entry.first.first + "," + entry.first.second == pair;
-    });
-  }
-  Map best_;
-};
-
-Answers recorded(const Options& options) {
-  Answers answers;
-  bus::LogReader log(options.log);
-  while (const auto event = log.next()) {
-    calibration_t message{};
-    if (event->channel.rfind("EGOCAL_CALIBRATION_", 0) == 0 && bus::decode(event->data, message))
-      answers.hear(message);
-  }
-  return answers;
+std::string listed(const std::vector<PairName>& pairs) {
+  std::string all;
+  for (const PairName& pair : pairs) all += (all.empty() ? "" : " ") + text(pair);
+  return all;
 }
 
-/// Whoever solves sends its newest answer again every second.
-Answers live(const Options& options) {
+/// The pair that was asked for, or the only one. Throws UsageError naming those that are there.
+PairName chosen(const std::string& wanted, const std::vector<PairName>& pairs) {
+  if (wanted.empty() && pairs.size() == 1) return pairs.front();
+  for (const PairName& pair : pairs)
+    if (text(pair) == wanted) return pair;
+  throw UsageError(wanted.empty() ? "--pair: there are several, choose one of: " + listed(pairs)
+                                  : "--pair: there is no " + bus::printable(wanted, 100) +
+                                        ", choose one of: " + listed(pairs));
+}
+
+struct Found {
+  PairName pair;
   Answers answers;
+};
+
+Found recorded(const Options& options) {
+  Found found{{}, recorded_answers(options.log)};
+  std::vector<PairName> pairs;
+  for (const auto& [pair, best] : found.answers.all()) pairs.push_back(pair);
+  if (pairs.empty()) throw Error("export: there is no answer in " + options.log);
+  found.pair = chosen(options.pair, pairs);
+  return found;
+}
+
+/// Solvers send their newest answer, and pairing its problem, again every second. What is certified for a
+/// problem on the bus cannot be outdone but by newer problems; anything less is waited with until the end.
+Found live(const Options& options) {
   const bus::Rig rig = bus::read_rig(options.rig);
+  std::vector<PairName> pairs;
+  for (const bus::PairConfig& pair : rig.pairs) pairs.emplace_back(pair.a, pair.b);
+  Found found{chosen(options.pair, pairs), {}};
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
-  for (const bus::PairConfig& pair : rig.pairs)
-    loop.subscribe<calibration_t>(
-        bus::calibration_channel(pair.a, pair.b),
-        [&answers](const calibration_t& message, const bus::Arrival&) { answers.hear(message); });
+  loop.subscribe<problem_t>(
+      bus::problem_channel(found.pair.first, found.pair.second),
+      [&](const problem_t& message, const bus::Arrival&) { found.answers.hear(message); });
+  loop.subscribe<calibration_t>(
+      bus::calibration_channel(found.pair.first, found.pair.second),
+      [&](const calibration_t& message, const bus::Arrival&) { found.answers.hear(message); });
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.timeout);
-  while (!answers.has(options.pair) && std::chrono::steady_clock::now() < end)
+  const auto done = [&] {
+    const Answers::Best* best = found.answers.best(found.pair);
+    return best && best->certified();
+  };
+  while (!done() && std::chrono::steady_clock::now() < end)
     if (!loop.run_once(std::chrono::milliseconds(50))) break;
-  return answers;
+  return found;
 }
 
 void run(const Options& options) {
   if (options.log.empty() == options.rig.empty()) throw UsageError("export: expected either --log or --rig");
-  const NamedExtrinsic extrinsic =
-      (options.log.empty() ? live(options) : recorded(options)).chosen(options.pair);
-  const std::string text = extrinsic_text(extrinsic, *extrinsic_format_from_name(options.format));
+  const Found found = options.log.empty() ? live(options) : recorded(options);
+  for (const auto& [reason, count] : found.answers.refused())
+    fmt::print(stderr, "egocal: warning: {} answers were refused: {}\n", count, reason);
+  const Answers::Best* best = found.answers.best(found.pair);
+  if (!best) throw Error("export: there is no answer for the pair " + text(found.pair));
+  const Answer& answer = best->checked.answer;
+  const NamedExtrinsic extrinsic{found.pair.first,  found.pair.second,   to_pose(answer.T_a_b),
+                                 best->certified(), best->message.pairs, answer.observability.stddev};
+  const std::string content = extrinsic_text(extrinsic, *extrinsic_format_from_name(options.format));
   if (options.out.empty())
-    fmt::print("{}", text);
+    fmt::print("{}", content);
   else
-    write_whole_file(options.out, text);
-  if (!extrinsic.certified) fmt::print(stderr, "egocal: this answer is not certified\n");
+    write_whole_file(options.out, content);
+  if (best->checked.standing == bus::Standing::unverified)
+    fmt::print(stderr, "egocal: warning: this answer could not be verified: its problem was not received\n");
+  else if (!extrinsic.certified)
+    fmt::print(stderr, "egocal: warning: this answer is not certified\n");
 }
 
 }  // namespace
@@ -117,13 +108,13 @@ void add_export(cli::App program) {
   cli::App command = program.add_subcommand("export", "export the current answer (YAML, ROS, URDF, ...)");
   command.add_option("--rig", options->rig, "rig file: takes the answer from the running processes");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
-  command.add_option("--log", options->log, "LCM log of a session: takes its last answer");
+  command.add_option("--log", options->log, "LCM log of a session: takes the answer that counted at its end");
   command.add_option("--pair", options->pair, "A,B where there are several");
   command.add_option("--format", options->format)
       .check(cli::Check::one_of(extrinsic_format_names()))
       .show_default();
   command.add_option("--out", options->out, "file, written whole or not at all; standard output without it");
-  command.add_option("--timeout", options->timeout, "waits so long for an answer [s]")
+  command.add_option("--timeout", options->timeout, "waits for a certified answer for at most this time [s]")
       .check(cli::Check::not_negative())
       .show_default();
   command.callback([options] { run(*options); });

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Which answer is exported: verified by the listener, of the right session and pair.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "answers/answers.hpp"
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/log_file.hpp"
+#include "support/random_motion.hpp"
+
+namespace egocal::tools {
+namespace {
+
+using ::testing::HasSubstr;
+
+const PairName pair_name{"left", "right"};
+constexpr std::int64_t begin_us = 1'700'000'000'000'000;
+
+class AnswersTest : public ::testing::Test {
+ protected:
+  AnswersTest() : random(5), T(testing::random_extrinsic(random)) {
+    folder = std::filesystem::temp_directory_path() / ("egocal_answers_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+  }
+  ~AnswersTest() override { std::filesystem::remove_all(folder); }
+
+  problem_t problem(std::int64_t seq, std::int64_t session = begin_us, std::uint64_t pairs = 60) {
+    Problem problem;
+    Statistics statistics;
+    for (const MotionPair& pair : testing::random_pairs(T, {.pairs = pairs, .noise = 0.01}, random))
+      statistics.add(pair.a, pair.b);
+    problem.blocks = {statistics};
+    problem_t message = bus::to_message(problem);
+    message.utime = session + 100'000 * seq;
+    message.session = session;
+    message.seq = seq;
+    message.sensor_a = pair_name.first;
+    message.sensor_b = pair_name.second;
+    return message;
+  }
+  static calibration_t answer(const problem_t& to) {
+    calibration_t message = bus::to_message(solve(*bus::to_problem(to).value, Method::dual), to);
+    message.solver = "egocal-global";
+    return message;
+  }
+  /// Moved by this much, and honest about it.
+  static calibration_t poor_answer(const problem_t& to, double metres) {
+    const Problem problem = *bus::to_problem(to).value;
+    Answer poor = solve(problem, Method::dual);
+    Pose pose = to_pose(poor.T_a_b);
+    pose.translation.x() += metres;
+    poor.T_a_b = to_dual_quaternion(pose);
+    poor.certificate = bus::verify_answer(problem, poor.T_a_b);
+    calibration_t message = bus::to_message(poor, to);
+    message.solver = "egocal-fast";
+    return message;
+  }
+
+  testing::Random random;
+  DualQuaternion T;
+  std::filesystem::path folder;
+};
+
+TEST_F(AnswersTest, TheCertifiedOneCountsInWhateverOrderTheyAreHeard) {
+  const problem_t to = problem(10);
+  const calibration_t good = answer(to), poor = poor_answer(to, 3);
+  for (const bool poor_first : {true, false})
+    for (const bool problem_first : {true, false}) {
+      Answers answers;
+      if (problem_first) answers.hear(to);
+      answers.hear(poor_first ? poor : good);
+      if (!problem_first) answers.hear(to);
+      answers.hear(poor_first ? good : poor);
+      const Answers::Best* best = answers.best(pair_name);
+      ASSERT_NE(best, nullptr);
+      EXPECT_TRUE(best->certified());
+      EXPECT_EQ(best->message.solver, "egocal-global");
+    }
+}
+
+TEST_F(AnswersTest, OneHeardBeforeItsProblemIsVerifiedWhenThatComes) {
+  const problem_t to = problem(10);
+  Answers answers;
+  answers.hear(answer(to));
+  ASSERT_NE(answers.best(pair_name), nullptr);
+  EXPECT_FALSE(answers.best(pair_name)->certified()) << "the sender's word is no proof";
+  answers.hear(to);
+  EXPECT_TRUE(answers.best(pair_name)->certified());
+}
+
+TEST_F(AnswersTest, ForgedOnesCountForNothing) {
+  const problem_t to = problem(10);
+  Answers answers;
+  answers.hear(to);
+  answers.hear(answer(to));
+  calibration_t forged = answer(to);
+  forged.solver = "forger";
+  forged.pos[0] = forged.pos[1] = forged.pos[2] = 9;
+  forged.cost = forged.lower_bound = forged.gap = forged.scaled_gap = 0;
+  answers.hear(forged);  // a lower cost for the same problem
+  for (const std::int64_t session : {begin_us, begin_us + 1'000'000'000}) {
+    forged.session = session;
+    forged.seq = 1'000'000;
+    answers.hear(forged);  // of a problem to come
+  }
+  const Answers::Best* best = answers.best(pair_name);
+  ASSERT_NE(best, nullptr);
+  EXPECT_TRUE(best->certified());
+  EXPECT_EQ(best->message.solver, "egocal-global");
+  EXPECT_EQ(answers.refused().size(), 1u);
+}
+
+TEST_F(AnswersTest, OfALogIsTheSessionThatRanAtItsEnd) {
+  const std::string log = folder / "session.log";
+  {
+    bus::LogWriter writer(log);
+    const auto write = [&](const problem_t& to) {
+      writer.write(to.utime, bus::problem_channel("left", "right"), bus::encode(to));
+      writer.write(to.utime, bus::calibration_channel("left", "right"), bus::encode(answer(to)));
+    };
+    for (int i = 1; i <= 5; ++i) write(problem(i, begin_us, static_cast<std::uint64_t>(100 + i)));
+    // a second pairing process sent for a moment, under a higher session
+    for (int i = 1; i <= 3; ++i) write(problem(i, begin_us + 12'000'000, static_cast<std::uint64_t>(20 + i)));
+    for (int i = 6; i <= 9; ++i) write(problem(i, begin_us, static_cast<std::uint64_t>(100 + i)));
+    writer.close();
+  }
+  const Answers answers = recorded_answers(log);
+  const Answers::Best* best = answers.best(pair_name);
+  ASSERT_NE(best, nullptr);
+  EXPECT_EQ(best->message.session, begin_us);
+  EXPECT_EQ(best->message.seq, 9);
+  EXPECT_EQ(best->message.pairs, 109);
+  EXPECT_TRUE(best->certified());
+}
+
+TEST_F(AnswersTest, SeveralPairsWithoutAChoiceAreWrongUsage) {
+  std::ofstream(folder / "rig.toml") << R"(
+[[sensor]]
+name = "lidar"
+channel = "L"
+[[sensor]]
+name = "camera"
+channel = "C"
+[[sensor]]
+name = "radar"
+channel = "R"
+[[pair]]
+a = "lidar"
+b = "camera"
+[[pair]]
+a = "lidar"
+b = "radar"
+)";
+  const std::string command = EGOCAL_BIN_DIR "/egocal export --rig " + (folder / "rig.toml").string() +
+                              " 2>" + (folder / "said").string();
+  for (const std::string more : {"", " --pair lidar,sonar"}) {
+    const int status = std::system((command + more).c_str());
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 2);
+    std::ifstream stream(folder / "said");
+    const std::string said{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_THAT(said, HasSubstr("lidar,camera lidar,radar"));
+  }
+}
+
+}  // namespace
+}  // namespace egocal::tools
