@@ -10,6 +10,7 @@
 
 #include "egocal/solvers/planar.hpp"
 #include "uncertainty/frame_a.hpp"
+#include "uncertainty/takes_off.hpp"
 
 namespace egocal {
 
@@ -89,6 +90,7 @@ Vector6d largest_variance(const Problem& problem, ErrorCorrelation errors, const
   Problem doubled = problem;
   doubled.blocks.clear();
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    if (detail::takes_off(problem.blocks[i])) continue;
     if (i % 2 == 0) doubled.blocks.emplace_back();
     doubled.blocks.back() += problem.blocks[i];
   }
@@ -127,6 +129,7 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, double 
   const Vector8d v = q.vec();
   Jackknife jackknife(static_cast<double>(all.count));
   for (const Statistics& block : problem.blocks) {
+    if (detail::takes_off(block)) continue;
     Statistics rest = all;
     rest.dual_rows -= block.dual_rows;
     rest.weight -= block.weight;
@@ -251,6 +254,7 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   const Vector6d variance = largest_variance(problem, errors, [&](const Problem& given) {
     Jackknife jackknife(count);
     for (const Statistics& block : given.blocks) {
+      if (detail::takes_off(block)) continue;
       Statistics rest = all;
       rest.dual_rows -= block.dual_rows;
       rest.weight -= block.weight;

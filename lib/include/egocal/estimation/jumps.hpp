@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "egocal/problem/problem.hpp"
+
+namespace egocal {
+
+/// A motion between neighbouring instants, as the search for jumps sees it.
+struct Step {
+  DualQuaternion a, b;  ///< motions of the sensors (planar mode: seen from the ground planes)
+  bool usable = true;   ///< false: the two instants are in different chains
+};
+
+/// What a jump spoils. A translation that jumps leaves the rotation of the motions across it valid.
+enum class Jump : std::uint8_t { none, translation, all };
+
+/// Tuning of find_jumps().
+struct JumpOptions {
+  /// A residual is a jump where it exceeds the typical one by (q75 / q25)^(tail / 2), a log-normal
+  /// extrapolation of its own quartiles. 5 puts Gaussian noise at 7 standard deviations; measured on the
+  /// benchmark in docs/accuracy.md (six of KITTI's 0930_27, none of KITTI 07).
+  double tail = 5;
+  /// The ratio sqrt(q75 / q25) is limited to this range: Gaussian noise in three dimensions has 1.36; above
+  /// 1.7 (14 times the typical residual) the quartiles say too little about the tail.
+  double least_ratio = 1.36, most_ratio = 1.7;
+  /// Not more than this part of the steps are jumps: then there is no majority to judge by.
+  double most_jumps = 0.4;
+};
+
+/// Where one sensor's odometry jumps: tracking lost and found again elsewhere, a slip, a single wrong step.
+/// Screw congruence sees one component of such a jump; the residual of A T = T B sees all six. Rotation and
+/// translation are judged apart, against their own quartiles, both absolutely and relative to the size of the
+/// step, so noise may grow with motion.
+///
+/// q: the extrinsic to judge by (planar mode: T_p); empty: found by graduated non-convexity over the steps
+/// and `before`, statistics of earlier steps, so that a first turn is never taken for a jump. Deterministic.
+/// Returns one verdict per step.
+std::vector<Jump> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
+                             const std::optional<DualQuaternion>& q, const JumpOptions& options = {});
+
+}  // namespace egocal

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "egocal/problem/problem.hpp"
+
+namespace egocal {
+
+/// Motions that begin in one block of instants and end in another (or the same).
+struct StrideCell {
+  Statistics motions;    ///< that count in rotation and translation
+  Statistics rotations;  ///< that count in rotation only: they span a jump of a translation
+};
+
+/// Statistics of the motions of one stride, by the blocks of instants they begin and end in. A motion of s
+/// steps ends s / L or s / L + 1 blocks of L instants later.
+struct StrideSum {
+  int stride = 1;
+  std::vector<StrideCell> near, far;  ///< by the block of the first instant
+};
+
+/// How motions of each stride are weighted, per motion.
+struct StrideWeights {
+  std::vector<double> rotation;     ///< [1/rad^2], up to a common factor
+  std::vector<double> translation;  ///< of the dual rows [1/m^2], up to the same factor
+};
+
+/// Statistics of motions of many strides, in blocks of instants: leaving out a block of instants leaves out
+/// every motion with an end in it, which gives long motions an honest spread. Bounded: when all blocks are in
+/// use, neighbours are merged and blocks become twice as long.
+class StrideBlocks {
+ public:
+  static constexpr std::size_t most_blocks = 32;
+
+  /// All there is; continuing from a copy gives the same bits.
+  struct State {
+    std::uint64_t block_length = 1;       ///< instants
+    std::vector<std::uint64_t> instants;  ///< per block, those that were added
+    std::vector<std::uint8_t> outlier;    ///< per block: left out, contradicts the others
+    std::vector<StrideSum> strides;       ///< ascending
+  };
+
+  StrideBlocks() = default;
+  /// strides: steps of one motion, ascending.
+  explicit StrideBlocks(const std::vector<int>& strides);
+  explicit StrideBlocks(State state) : state_(std::move(state)) {}
+
+  /// Opens the block that the instant with this index (counted from 0, ascending) belongs to.
+  void add_instant(std::uint64_t index);
+  /// Adds a motion of strides()[stride] that begins at an instant and ends at the newest one.
+  void add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a, const DualQuaternion& b,
+           bool rotation_only);
+  /// One verdict a block.
+  void leave_out(std::vector<std::uint8_t> outlier) { state_.outlier = std::move(outlier); }
+
+  std::size_t blocks() const { return state_.instants.size(); }
+  const std::vector<StrideSum>& strides() const { return state_.strides; }
+  /// Calls visit(cell, first block, last block) for the cells that hold motions and are not left out.
+  template <typename Visit>
+  void each_cell(std::size_t stride, const Visit& visit) const;
+  /// Of one stride, without the blocks left out.
+  StrideCell total(std::size_t stride) const;
+  /// Motions within one block, weighted: what the blocks say independently of each other.
+  std::vector<Statistics> within(const StrideWeights& weights) const;
+  /// Instants in blocks that are left out.
+  std::uint64_t instants_left_out() const;
+  const State& state() const { return state_; }
+
+ private:
+  std::size_t block_of(std::uint64_t index) const {
+    return static_cast<std::size_t>(index / state_.block_length);
+  }
+  void merge();
+
+  State state_;
+};
+
+/// The sums of StrideBlocks by the blocks that a motion touches, without those left out: made once, weighted
+/// in many ways.
+class TouchingSums {
+ public:
+  explicit TouchingSums(const StrideBlocks& blocks);
+
+  /// Of one stride.
+  const StrideCell& total(std::size_t stride) const { return strides_[stride].total; }
+  /// The weighted sum, in blocks. Every block holds each motion with an end in it; a last block with a
+  /// negative weight takes off what is in two of them, so the sum of the blocks is the whole, and leaving out
+  /// one of the others leaves out every motion that touches it. The blocks count instants. Balance to use:
+  /// {0, 1}.
+  void fill(const StrideWeights& weights, Problem& problem) const;
+
+ private:
+  struct PerStride {
+    std::vector<StrideCell> blocks;
+    StrideCell shared, total;
+  };
+  std::vector<PerStride> strides_;
+  std::vector<std::uint64_t> instants_;
+};
+
+/// weights.translation of the motions plus weights.rotation of the rotations, as one Statistics: its upper
+/// left block holds the rotation part as well, so the balance to use is {0, 1}.
+void add_weighted(Statistics& sum, const StrideCell& cell, double rotation, double translation);
+
+}  // namespace egocal

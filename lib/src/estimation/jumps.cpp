@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/estimation/jumps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Residuals smaller than this are rounding of what sensors send [rad, m].
+constexpr double rotation_floor = 1e-7, translation_floor = 1e-6;
+/// Steps with a smaller weight say nothing about what is typical.
+constexpr double counts = 0.3;
+/// The non-convexity is sharpened fourfold at a time; then the verdicts settle.
+constexpr double sharpen = 4;
+constexpr int most_rounds = 24;
+/// Fewer steps have no quartiles.
+constexpr std::size_t least_steps = 8;
+
+double quantile(std::vector<double>& values, double part) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// One component (rotation or translation) of all steps.
+struct Component {
+  std::vector<double> size;      ///< the smaller of the two sensors', for a jump makes one of them large
+  std::vector<double> residual;  ///< at the extrinsic under consideration
+  double limit = 0, limit_relative = 0, cap = 0, typical = 0;
+
+  double relative(std::size_t i) const { return residual[i] / (std::min(size[i], cap) + 1e-9); }
+
+  void learn(const std::vector<double>& weights, double floor, const JumpOptions& options) {
+    std::vector<double> sizes, absolute, part;
+    for (std::size_t i = 0; i < size.size(); ++i)
+      if (weights[i] > counts) sizes.push_back(size[i]);
+    if (sizes.size() < least_steps) return;
+    cap = quantile(sizes, 0.9);
+    for (std::size_t i = 0; i < size.size(); ++i) {
+      if (!(weights[i] > counts)) continue;
+      absolute.push_back(residual[i]);
+      part.push_back(relative(i));
+    }
+    typical = std::max(quantile(absolute, 0.5), floor);
+    limit = typical * factor(absolute, options);
+    limit_relative = quantile(part, 0.5) * factor(part, options);
+  }
+
+  /// Squared, as a multiple of the limit: above one it is a jump.
+  double excess(std::size_t i) const {
+    if (!(limit > 0)) return 0;
+    const double x = limit_relative > 0 ? std::min(residual[i] / limit, relative(i) / limit_relative)
+                                        : residual[i] / limit;
+    return x * x;
+  }
+
+ private:
+  static double factor(std::vector<double>& values, const JumpOptions& options) {
+    const double low = quantile(values, 0.25), high = quantile(values, 0.75);
+    const double ratio = low > 0 ? std::sqrt(high / low) : options.most_ratio;
+    return std::pow(std::clamp(ratio, options.least_ratio, options.most_ratio), options.tail);
+  }
+};
+
+class Judge {
+ public:
+  Judge(std::span<const Step> steps, const JumpOptions& options) : steps_(steps), options_(options) {
+    for (const Step& step : steps) {
+      const Pose a = to_pose(step.a), b = to_pose(step.b);
+      rotation_.size.push_back(std::min(screw_of(step.a).angle, screw_of(step.b).angle));
+      translation_.size.push_back(std::min(a.translation.norm(), b.translation.norm()));
+      a_.push_back(a);
+      b_.push_back(b);
+      weights.push_back(step.usable ? 1 : 0);
+    }
+    rotation_.residual.resize(steps.size());
+    translation_.residual.resize(steps.size());
+  }
+
+  /// Residuals at q, and what is typical of them.
+  void look_from(const DualQuaternion& q) {
+    const Pose T = to_pose(q);
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      if (!steps_[i].usable) continue;
+      const Pose left = a_[i] * T, right = T * b_[i];
+      rotation_.residual[i] = 2 * (left.rotation * right.rotation.conjugate()).vec().norm();
+      translation_.residual[i] = (left.translation - right.translation).norm();
+    }
+    rotation_.learn(weights, rotation_floor, options_);
+    translation_.learn(weights, translation_floor, options_);
+  }
+
+  double excess(std::size_t i) const {
+    return steps_[i].usable ? std::max(rotation_.excess(i), translation_.excess(i)) : 0;
+  }
+  double largest_excess() const {
+    double largest = 0;
+    for (std::size_t i = 0; i < steps_.size(); ++i) largest = std::max(largest, excess(i));
+    return largest;
+  }
+
+  /// Geman-McClure weights.
+  void weigh(double mu) {
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      if (!steps_[i].usable) continue;
+      const double w = mu / (excess(i) + mu);
+      weights[i] = w * w;
+    }
+  }
+
+  /// Of rotations in units of the typical residuals; the dual rows see half of a translation.
+  double rotation_weight() const {
+    if (!(rotation_.typical > 0) || !(translation_.typical > 0)) return 1;
+    const double ratio = translation_.typical / rotation_.typical;
+    return 0.25 * ratio * ratio;
+  }
+
+  std::vector<Jump> verdicts() const {
+    std::vector<Jump> result(steps_.size(), Jump::none);
+    std::size_t jumps = 0;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      if (!steps_[i].usable || excess(i) <= 1) continue;
+      result[i] = rotation_.excess(i) > 1 ? Jump::all : Jump::translation;
+      ++jumps;
+    }
+    if (static_cast<double>(jumps) > options_.most_jumps * static_cast<double>(steps_.size()))
+      result.assign(steps_.size(), Jump::none);
+    return result;
+  }
+
+  std::vector<double> weights;  ///< per step
+
+ private:
+  std::span<const Step> steps_;
+  const JumpOptions& options_;
+  std::vector<Pose> a_, b_;
+  Component rotation_, translation_;
+};
+
+DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
+  return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
+}
+
+/// Verdicts by a given extrinsic: what is typical is learnt again without what has been found.
+std::vector<Jump> settle(Judge& judge, const DualQuaternion& q) {
+  std::vector<Jump> verdicts;
+  for (int round = 0; round < most_rounds; ++round) {
+    judge.look_from(q);
+    std::vector<Jump> next = judge.verdicts();
+    if (next == verdicts) break;
+    verdicts = std::move(next);
+    judge.weigh(1);
+  }
+  return verdicts;
+}
+
+}  // namespace
+
+std::vector<Jump> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
+                             const std::optional<DualQuaternion>& q, const JumpOptions& options) {
+  Judge judge(steps, options);
+  if (q) return settle(judge, *q);
+
+  std::vector<Statistics> statistics;
+  for (const Step& step : steps) {
+    statistics.emplace_back();
+    if (step.usable) statistics.back().add(step.a, step.b);
+  }
+  double balance = 100;  // rotation to translation [m^2]: a centimetre for a milliradian
+  double mu = 0;
+  std::vector<Jump> verdicts;
+  for (int round = 0; round < most_rounds; ++round) {
+    Statistics sum = before;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (!steps[i].usable) continue;
+      sum.dual_rows += judge.weights[i] * statistics[i].dual_rows;
+      sum.weight += judge.weights[i];
+    }
+    judge.look_from(minimiser(cost_matrix(sum, {balance, 1}), mode));
+    balance = judge.rotation_weight();
+    const bool sharp = mu == 1;
+    mu = round == 0 ? std::max(1.0, 2 * judge.largest_excess()) : std::max(1.0, mu / sharpen);
+    std::vector<Jump> next = judge.verdicts();
+    if (sharp && next == verdicts) break;
+    verdicts = std::move(next);
+    judge.weigh(mu);
+  }
+  return verdicts;
+}
+
+}  // namespace egocal

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/estimation/stride_blocks.hpp"
+
+#include <algorithm>
+
+namespace egocal {
+
+namespace {
+
+void add(StrideCell& to, const StrideCell& cell) {
+  to.motions += cell.motions;
+  to.rotations += cell.rotations;
+}
+
+bool empty(const StrideCell& cell) {
+  return cell.motions.count + cell.rotations.count == 0;
+}
+
+/// Blocks between the ends of a motion of so many steps, at least.
+std::size_t offset(int stride, std::uint64_t block_length) {
+  return static_cast<std::size_t>(static_cast<std::uint64_t>(stride) / block_length);
+}
+
+}  // namespace
+
+void add_weighted(Statistics& sum, const StrideCell& cell, double rotation, double translation) {
+  if (cell.motions.count > 0) {
+    sum.dual_rows += translation * cell.motions.dual_rows;
+    sum.dual_rows.topLeftCorner<4, 4>() += rotation * cell.motions.dual_rows.bottomRightCorner<4, 4>();
+    sum.weight += translation * cell.motions.weight;
+  }
+  if (cell.rotations.count > 0) {
+    sum.dual_rows.topLeftCorner<4, 4>() += rotation * cell.rotations.dual_rows.bottomRightCorner<4, 4>();
+    sum.weight += translation * cell.rotations.weight;
+  }
+}
+
+StrideBlocks::StrideBlocks(const std::vector<int>& strides) {
+  for (const int stride : strides) state_.strides.push_back({stride, {}, {}});
+}
+
+void StrideBlocks::add_instant(std::uint64_t index) {
+  while (block_of(index) >= most_blocks) merge();
+  const std::size_t block = block_of(index);
+  while (state_.instants.size() <= block) {
+    state_.instants.push_back(0);
+    state_.outlier.push_back(0);
+    for (StrideSum& sum : state_.strides) {
+      sum.near.emplace_back();
+      sum.far.emplace_back();
+    }
+  }
+  ++state_.instants[block];
+}
+
+void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a,
+                       const DualQuaternion& b, bool rotation_only) {
+  StrideSum& sum = state_.strides[stride];
+  const std::size_t first = block_of(first_index);
+  const std::size_t last = block_of(first_index + static_cast<std::uint64_t>(sum.stride));
+  StrideCell& cell = (last - first == offset(sum.stride, state_.block_length) ? sum.near : sum.far)[first];
+  (rotation_only ? cell.rotations : cell.motions).add(a, b);
+}
+
+void StrideBlocks::merge() {
+  const std::uint64_t length = 2 * state_.block_length;
+  const std::size_t count = (state_.instants.size() + 1) / 2;
+  State merged{length, std::vector<std::uint64_t>(count, 0), std::vector<std::uint8_t>(count, 0), {}};
+  for (std::size_t block = 0; block < state_.instants.size(); ++block) {
+    merged.instants[block / 2] += state_.instants[block];
+    if (state_.outlier[block] != 0) merged.outlier[block / 2] = 1;
+  }
+  for (const StrideSum& sum : state_.strides) {
+    StrideSum& to = merged.strides.emplace_back(
+        StrideSum{sum.stride, std::vector<StrideCell>(count), std::vector<StrideCell>(count)});
+    const std::size_t near = offset(sum.stride, state_.block_length), near_to = offset(sum.stride, length);
+    for (std::size_t first = 0; first < sum.near.size(); ++first)
+      for (const bool is_far : {false, true}) {
+        const StrideCell& cell = is_far ? sum.far[first] : sum.near[first];
+        if (empty(cell)) continue;
+        const std::size_t last = first + near + (is_far ? 1 : 0);
+        egocal::add((last / 2 - first / 2 == near_to ? to.near : to.far)[first / 2], cell);
+      }
+  }
+  state_ = std::move(merged);
+}
+
+template <typename Visit>
+void StrideBlocks::each_cell(std::size_t stride, const Visit& visit) const {
+  const StrideSum& sum = state_.strides[stride];
+  const std::size_t near = offset(sum.stride, state_.block_length);
+  for (std::size_t first = 0; first < sum.near.size(); ++first) {
+    if (state_.outlier[first] != 0) continue;
+    for (const bool is_far : {false, true}) {
+      const std::size_t last = first + near + (is_far ? 1 : 0);
+      const StrideCell& cell = is_far ? sum.far[first] : sum.near[first];
+      if (last >= blocks() || empty(cell) || state_.outlier[last] != 0) continue;
+      visit(cell, first, last);
+    }
+  }
+}
+
+StrideCell StrideBlocks::total(std::size_t stride) const {
+  StrideCell sum;
+  each_cell(stride, [&](const StrideCell& cell, std::size_t, std::size_t) { egocal::add(sum, cell); });
+  return sum;
+}
+
+std::vector<Statistics> StrideBlocks::within(const StrideWeights& weights) const {
+  std::vector<Statistics> parts(blocks());
+  for (std::size_t i = 0; i < state_.strides.size(); ++i) {
+    const StrideSum& sum = state_.strides[i];
+    if (offset(sum.stride, state_.block_length) > 0) break;
+    for (std::size_t block = 0; block < blocks(); ++block) {
+      add_weighted(parts[block], sum.near[block], weights.rotation[i], weights.translation[i]);
+      if (i == 0) parts[block].count = sum.near[block].motions.count;
+    }
+  }
+  return parts;
+}
+
+TouchingSums::TouchingSums(const StrideBlocks& blocks)
+    : strides_(blocks.strides().size()), instants_(blocks.state().instants) {
+  for (std::size_t i = 0; i < strides_.size(); ++i) {
+    PerStride& sums = strides_[i];
+    sums.blocks.resize(blocks.blocks());
+    blocks.each_cell(i, [&](const StrideCell& cell, std::size_t first, std::size_t last) {
+      egocal::add(sums.total, cell);
+      egocal::add(sums.blocks[first], cell);
+      if (first == last) return;
+      egocal::add(sums.blocks[last], cell);
+      egocal::add(sums.shared, cell);
+    });
+  }
+}
+
+void TouchingSums::fill(const StrideWeights& weights, Problem& problem) const {
+  std::vector<Statistics> parts(instants_.size());
+  Statistics shared;
+  for (std::size_t i = 0; i < strides_.size(); ++i) {
+    const double rotation = weights.rotation[i], translation = weights.translation[i];
+    if (!(rotation > 0) && !(translation > 0)) continue;
+    for (std::size_t block = 0; block < parts.size(); ++block)
+      add_weighted(parts[block], strides_[i].blocks[block], rotation, translation);
+    add_weighted(shared, strides_[i].shared, rotation, translation);
+  }
+  problem.balance = {0, 1};
+  problem.blocks.clear();
+  for (std::size_t block = 0; block < parts.size(); ++block) {
+    if (!(parts[block].weight > 0)) continue;
+    parts[block].count = instants_[block];
+    problem.blocks.push_back(parts[block]);
+  }
+  if (!(shared.weight > 0)) return;
+  shared.dual_rows *= -1;
+  shared.weight *= -1;
+  problem.blocks.push_back(shared);
+}
+
+std::uint64_t StrideBlocks::instants_left_out() const {
+  std::uint64_t count = 0;
+  for (std::size_t block = 0; block < blocks(); ++block)
+    if (state_.outlier[block] != 0) count += state_.instants[block];
+  return count;
+}
+
+}  // namespace egocal

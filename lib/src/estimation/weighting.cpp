@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/estimation/weighting.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "egocal/uncertainty/leave_out.hpp"
+#include "egocal/uncertainty/observability.hpp"
+#include "online/solve_and_verify.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Squared residuals of one motion below this are rounding [rad^2, m^2].
+constexpr double least_variance = 1e-28;
+/// Weights of rotation and translation differ by at most this factor, beyond the square of the motions'
+/// length per turn: noise-free data must not make the cost singular.
+constexpr double most_imbalance = 1e6;
+/// Fewer motions of a stride have no variance.
+constexpr std::uint64_t least_motions = 6;
+/// Fewer blocks have no spread.
+constexpr std::size_t least_blocks = 6;
+constexpr int rounds = 4;
+/// Grid of the ratio of a random walk's variance a step to that of the noise on poses.
+constexpr int grid = 24;
+constexpr double least_growth = 1e-3, most_growth = 1e3;
+
+/// The strides with enough motions, their sums, and how many strides each stands for.
+struct Ladder {
+  std::vector<StrideCell> sums;
+  std::vector<double> strides, width, motions, turns;
+
+  template <typename Sums>
+  Ladder(const StrideBlocks& blocks, const Sums& totals) {
+    for (std::size_t i = 0; i < blocks.strides().size(); ++i) {
+      sums.push_back(totals.total(i));
+      const StrideCell& sum = sums.back();
+      const auto translations = static_cast<double>(sum.motions.count);
+      strides.push_back(blocks.strides()[i].stride);
+      motions.push_back(sum.motions.count < least_motions ? 0 : translations);
+      turns.push_back(sum.motions.count + sum.rotations.count < least_motions
+                          ? 0
+                          : translations + static_cast<double>(sum.rotations.count));
+    }
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < strides.size(); ++i)
+      if (turns[i] > 0) last = i;
+    for (std::size_t i = 0; i < strides.size(); ++i) {
+      const double low = i > 0 ? 0.5 * (strides[i] + strides[i - 1]) : 0.5;
+      const double high = i < last ? 0.5 * (strides[i] + strides[i + 1]) : 2 * strides[i] - low;
+      width.push_back(std::max(1.0, high - low));
+    }
+  }
+
+  std::size_t size() const { return strides.size(); }
+
+  /// Motion of all strides, squared: lengths [m^2] and turns.
+  std::pair<double, double> squared_size() const {
+    double lengths = 0, squared_turns = 0;
+    for (const StrideCell& sum : sums) {
+      lengths += sum.motions.dual_rows.topLeftCorner<4, 4>().trace();
+      squared_turns += sum.motions.dual_rows.bottomRightCorner<4, 4>().trace();
+    }
+    return {lengths, squared_turns};
+  }
+};
+
+Matrix8d weighted_sum(const Ladder& ladder, const StrideWeights& weights) {
+  Statistics sum;
+  for (std::size_t i = 0; i < ladder.size(); ++i)
+    if (weights.rotation[i] > 0 || weights.translation[i] > 0)
+      add_weighted(sum, ladder.sums[i], weights.rotation[i], weights.translation[i]);
+  return sum.weight > 0 ? Matrix8d(sum.dual_rows / sum.weight) : sum.dual_rows;
+}
+
+DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
+  return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
+}
+
+/// Mean squared residuals of one motion of each stride at q, of the real rows and of the dual rows.
+struct Residuals {
+  std::vector<double> rotation, translation;
+};
+
+Residuals residuals(const Ladder& ladder, const DualQuaternion& q) {
+  Residuals result;
+  const Vector8d v = q.vec();
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    const Matrix8d& motions = ladder.sums[i].motions.dual_rows;
+    const Eigen::Matrix4d turns =
+        motions.bottomRightCorner<4, 4>() + ladder.sums[i].rotations.dual_rows.bottomRightCorner<4, 4>();
+    const double n_turns = std::max(1.0, ladder.turns[i]), n_motions = std::max(1.0, ladder.motions[i]);
+    result.rotation.push_back(std::max(least_variance, q.real.dot(turns * q.real) / n_turns));
+    result.translation.push_back(std::max(least_variance, v.dot(motions * v) / n_motions));
+  }
+  return result;
+}
+
+/// lambda of variances 2 a + b s of motions of s steps: lambda + 1 / lambda = 2 + b / a, from the precision
+/// matrix of a random walk seen through white noise.
+double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
+                     const std::vector<double>& counts) {
+  double best = std::numeric_limits<double>::infinity(), lambda = 0;
+  for (int k = 0; k <= grid; ++k) {
+    const double growth = least_growth * std::pow(most_growth / least_growth, static_cast<double>(k) / grid);
+    double total = 0, mean = 0, squares = 0;
+    for (std::size_t i = 0; i < ladder.size(); ++i) {
+      const double count = counts[i] / ladder.strides[i];  // independent ones
+      if (!(count > 0)) continue;
+      const double log_ratio = std::log(variances[i] / (2 + growth * ladder.strides[i]));
+      total += count;
+      const double step = log_ratio - mean;
+      mean += count / total * step;
+      squares += count * step * (log_ratio - mean);
+    }
+    if (!(total > 0) || !(squares < best)) continue;
+    best = squares;
+    const double half = 1 + 0.5 * growth;
+    lambda = half - std::sqrt(half * half - 1);
+  }
+  return lambda;
+}
+
+/// Per motion, before rotation and translation are balanced.
+std::vector<double> shape(const Ladder& ladder, double lambda, const std::vector<double>& counts) {
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < ladder.size(); ++i)
+    weights.push_back(counts[i] > 0 ? ladder.width[i] * std::pow(lambda, ladder.strides[i] - 1) : 0);
+  return weights;
+}
+
+double weighted_mean(const std::vector<double>& values, const std::vector<double>& weights,
+                     const std::vector<double>& counts) {
+  double sum = 0, total = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += weights[i] * counts[i] * values[i];
+    total += weights[i] * counts[i];
+  }
+  return total > 0 ? sum / total : 0;
+}
+
+/// Rotation and translation by the inverse of their mean squared residuals, each normalised to one in all.
+StrideWeights balanced(const Ladder& ladder, StrideWeights shapes, const Residuals& residual) {
+  const std::vector<double> ones(ladder.size(), 1.0);
+  const double rotation = weighted_mean(residual.rotation, shapes.rotation, ladder.turns);
+  const double translation = weighted_mean(residual.translation, shapes.translation, ladder.motions);
+  double n_turns = 0, n_motions = 0;
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    n_turns += shapes.rotation[i] * ladder.turns[i];
+    n_motions += shapes.translation[i] * ladder.motions[i];
+  }
+  const auto [lengths, turns] = ladder.squared_size();
+  double ratio = rotation > 0 && translation > 0 ? translation / rotation : 1;
+  if (lengths > 0 && turns > 0)
+    ratio = std::clamp(ratio, lengths / turns / most_imbalance, lengths / turns * most_imbalance);
+  for (double& weight : shapes.rotation) weight *= n_turns > 0 ? ratio / n_turns : 0;
+  for (double& weight : shapes.translation) weight *= n_motions > 0 ? 1 / n_motions : 0;
+  return shapes;
+}
+
+WeightChoice completed(const Ladder& ladder, StrideWeights weights, const DualQuaternion& q, double memory) {
+  WeightChoice choice{std::move(weights), q, memory, 1, 1, {}};
+  double rotation = 0, translation = 0, strides = 0;
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    rotation += choice.weights.rotation[i] * ladder.turns[i];
+    translation += choice.weights.translation[i] * ladder.motions[i];
+    strides += choice.weights.translation[i] * ladder.motions[i] * ladder.strides[i];
+  }
+  if (translation > 0) {
+    choice.mean_stride = strides / translation;
+    choice.ratio = rotation / translation;
+  }
+  return choice;
+}
+
+std::optional<WeightChoice> residual_weights(const Ladder& ladder, Mode mode) {
+  const auto [lengths, turns] = ladder.squared_size();
+  if (!(lengths > 0) || !(ladder.motions.front() > 0)) return std::nullopt;
+  StrideWeights weights{shape(ladder, 0.5, ladder.turns), shape(ladder, 0.5, ladder.motions)};
+  weights = balanced(ladder, std::move(weights),
+                     {std::vector<double>(ladder.size(), 1e-4), std::vector<double>(ladder.size(), 1e-2)});
+  DualQuaternion q = minimiser(weighted_sum(ladder, weights), mode);
+  for (int round = 0; round < rounds; ++round) {
+    const Residuals residual = residuals(ladder, q);
+    weights = {shape(ladder, fitted_lambda(ladder, residual.rotation, ladder.turns), ladder.turns),
+               shape(ladder, fitted_lambda(ladder, residual.translation, ladder.motions), ladder.motions)};
+    weights = balanced(ladder, std::move(weights), residual);
+    q = minimiser(weighted_sum(ladder, weights), mode);
+  }
+  return completed(ladder, std::move(weights), q, 0);
+}
+
+WeightChoice with_memory(const Ladder& ladder, Mode mode, double memory, DualQuaternion q) {
+  const double lambda = std::exp(-1 / memory);
+  StrideWeights weights;
+  for (int round = 0; round < rounds; ++round) {
+    weights = balanced(ladder, {shape(ladder, lambda, ladder.turns), shape(ladder, lambda, ladder.motions)},
+                       residuals(ladder, q));
+    q = minimiser(weighted_sum(ladder, weights), mode);
+  }
+  return completed(ladder, std::move(weights), q, memory);
+}
+
+/// Spread of the answers by leaving out blocks, over the directions that are seen.
+struct JackknifeSpread {
+  double score = 0;               ///< sum of the logarithms of rotation's and translation's
+  double rotation = 0;            ///< [rad]
+  double translation = 0;         ///< [m]
+  std::vector<double> influence;  ///< of each block on the score
+};
+
+using Seen = std::array<bool, 6>;
+
+JackknifeSpread jackknife_spread(const Problem& problem, const Seen& seen) {
+  const Matrix8d Q = cost_matrix(problem);
+  const DualQuaternion q = minimiser(Q, problem.mode);
+  const DualQuaternion T_a_b =
+      problem.mode == Mode::planar
+          ? extrinsic_from_planar(q, plane_frame(problem.plane_a), plane_frame(problem.plane_b))
+          : q;
+  const auto differences = leave_out_differences(problem, Q, T_a_b);
+  const auto blocks = static_cast<double>(differences.size());
+  Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const auto& difference : differences) mean += difference / blocks;
+  JackknifeSpread result;
+  std::vector<std::array<double, 2>> squares;
+  std::array<double, 2> sums{};
+  for (const auto& difference : differences) {
+    squares.emplace_back();
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (seen[i]) squares.back()[i < 3 ? 0 : 1] += std::pow(difference[k] - mean[k], 2);
+    }
+    for (const std::size_t part : {0u, 1u}) sums[part] += squares.back()[part];
+  }
+  result.translation = std::sqrt(sums[0] * (blocks - 1) / blocks);
+  result.rotation = std::sqrt(sums[1] * (blocks - 1) / blocks);
+  for (const std::size_t part : {0u, 1u}) result.score += sums[part] > 0 ? 0.5 * std::log(sums[part]) : 0;
+  for (const auto& square : squares) {
+    double influence = 0;
+    for (const std::size_t part : {0u, 1u}) influence += sums[part] > 0 ? 0.5 * square[part] / sums[part] : 0;
+    result.influence.push_back(influence);
+  }
+  return result;
+}
+
+/// Standard error of the difference of two scores.
+double standard_error(const JackknifeSpread& x, const JackknifeSpread& y) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.influence.size(); ++i) sum += std::pow(x.influence[i] - y.influence[i], 2);
+  return std::sqrt(sum);
+}
+
+Seen seen_directions(const Problem& problem) {
+  const Matrix8d Q = cost_matrix(problem);
+  const Answer answer = detail::solve_and_verify(problem, Q, Method::dual);
+  return assess_observability(problem, Q, answer.T_a_b, ErrorCorrelation::independent).observable;
+}
+
+std::string reason(const WeightChoice& choice, const JackknifeSpread& spread) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "sum over strides, %.1f steps in the mean, weighted by the residuals%s: spread %.3f deg, %.2f cm",
+      choice.mean_stride, choice.memory > 0 ? " and the jack-knife" : "",
+      spread.rotation * 180 / std::numbers::pi, 100 * spread.translation);
+  return text;
+}
+
+}  // namespace
+
+std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode) {
+  return residual_weights(Ladder(blocks, blocks), mode);
+}
+
+std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Problem& problem,
+                                           std::optional<double> current, const WeightingOptions& options) {
+  const TouchingSums sums(blocks);
+  const Ladder ladder(blocks, sums);
+  std::optional<WeightChoice> best = residual_weights(ladder, problem.mode);
+  if (!best) return std::nullopt;
+  Problem trial = problem;
+  sums.fill(best->weights, trial);
+  if (trial.blocks.size() < least_blocks) return std::nullopt;
+  const Problem suggested = trial;
+  std::vector<WeightChoice> others;
+  for (const double memory : options.memories)
+    others.push_back(with_memory(ladder, problem.mode, memory, best->q));
+
+  // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights
+  Seen seen = seen_directions(suggested);
+  if (!others.empty()) {
+    sums.fill(others.back().weights, trial);
+    const Seen more = seen_directions(trial);
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || more[i];
+  }
+  if (std::none_of(seen.begin(), seen.end(), [](bool direction) { return direction; })) return std::nullopt;
+
+  const JackknifeSpread reference = jackknife_spread(suggested, seen);
+  JackknifeSpread least = reference;
+  const bool reference_fails = !std::isfinite(reference.score);
+  double least_score = reference_fails ? std::numeric_limits<double>::infinity()
+                                       : reference.score - (current == 0 ? options.hysteresis : 0);
+  for (WeightChoice& choice : others) {
+    sums.fill(choice.weights, trial);
+    if (trial.blocks.size() != suggested.blocks.size()) continue;
+    JackknifeSpread here = jackknife_spread(trial, seen);
+    if (!std::isfinite(here.score)) continue;
+    const double here_score = here.score - (current == choice.memory ? options.hysteresis : 0);
+    if (here_score >= least_score) continue;
+    if (!reference_fails && reference.score - here.score < options.evidence * standard_error(reference, here))
+      continue;
+    best = std::move(choice);
+    least = std::move(here);
+    least_score = here_score;
+  }
+  if (!std::isfinite(least.score)) return std::nullopt;
+  best->reason = reason(*best, least);
+  return best;
+}
+
+}  // namespace egocal
