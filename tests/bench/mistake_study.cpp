@@ -55,6 +55,8 @@ void add_tampere(std::vector<Drive>& drives) {
     std::ifstream file(truths[i]);
     Pose T;
     double w = 1, x = 0, y = 0, z = 0;
+    std::string comment;
+    while ((file >> std::ws).peek() == '#') std::getline(file, comment);
     file >> T.translation[0] >> T.translation[1] >> T.translation[2] >> w >> x >> y >> z;
     T.rotation = Eigen::Quaterniond(w, x, y, z).normalized();
     streams.T = to_dual_quaternion(T);

@@ -108,7 +108,8 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   if (answered.problem.mode == Mode::planar)
     for (Finding& finding : check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
       result.findings.push_back(std::move(finding));
-  const Misfit misfit{std::sqrt(at_answer.typical), std::sqrt(evidence.given.explained.fit.typical)};
+  const Misfit misfit{detail::misfit(motions, at_answer),
+                      detail::misfit(motions, evidence.given.explained.fit)};
   const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain; });
   if (!explained) look_further(evidence, answered, misfit, result.findings);
@@ -123,7 +124,7 @@ Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
   result.fit = fit_at(motions, to_pose(answered.T_a_b), 0);
   Misfit misfit;
   if (motions.all.size() >= least_motions) {
-    misfit.at_answer = misfit.best = std::sqrt(evaluated(motions, answered.T_a_b).typical);
+    misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
   } else {
     result.findings.push_back(too_little_motion(motions.all.size()));
   }

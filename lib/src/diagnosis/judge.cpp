@@ -73,6 +73,13 @@ bool misread(const Finding& finding) {
          finding.code != "clock_drift" && finding.code != "mount_moved";
 }
 
+/// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
+/// unknown.
+bool casts_doubt(const Finding& finding) {
+  return finding.code != "inverted_both" && finding.code != "scale" && finding.code != "clock_offset" &&
+         finding.code != "clock_drift";
+}
+
 struct Opinion {
   Verdict verdict = Verdict::good;
   std::string reason;
@@ -88,7 +95,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     else if (misread(finding) || (finding.certain && (far > 1 || finding.improvement > overwhelming)))
       verdict = Verdict::contradictory;
     else if ((finding.certain && (far > 0.5 || finding.code == "mount_moved")) ||
-             (finding.code != "inverted_both" && far > 1))
+             (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }

@@ -13,8 +13,9 @@ inline constexpr std::size_t least_motions = 5;
 inline constexpr double doubtful_misfit = 0.45, contradictory_misfit = 0.7;
 
 struct Misfit {
-  double at_answer = 0;  ///< median residual at the answer, as a part of the typical motion
-  double best = 0;       ///< at the extrinsic that suits the motions best
+  double at_answer =
+      0;  ///< residual at the answer that a third of the motion keeps below, as a part of the typical motion
+  double best = 0;  ///< at the extrinsic that suits the motions best
 };
 
 /// Sets verdict and reason from fit, findings and what is known of each direction.

@@ -19,11 +19,12 @@ constexpr double inlier = 9;
 /// Squares below this part of the motion are rounding.
 constexpr double rounding = 1e-16;
 
-/// Size of a motion in units of the typical one.
+/// Size of a motion in units of the typical one; the smaller of the two, for an outlier makes one of them
+/// large.
 double size_of(const Motion& motion, const Motions& motions) {
   double size = 0;
-  if (motions.rotation > 0) size += std::sqrt(motion.angle_a * motion.angle_b) / motions.rotation;
-  if (motions.translation > 0) size += std::sqrt(motion.t_a.norm() * motion.t_b.norm()) / motions.translation;
+  if (motions.rotation > 0) size += std::min(motion.angle_a, motion.angle_b) / motions.rotation;
+  if (motions.translation > 0) size += std::min(motion.t_a.norm(), motion.t_b.norm()) / motions.translation;
   return size;
 }
 
@@ -52,16 +53,28 @@ DualQuaternion weighted_solution(const Motions& motions, const std::vector<doubl
 
 }  // namespace
 
-double weighted_median(std::vector<std::pair<double, double>> values) {
+double weighted_quantile(std::vector<std::pair<double, double>> values, double part) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   double total = 0, sum = 0;
   for (const auto& entry : values) total += entry.second;
   for (const auto& [value, weight] : values) {
     sum += weight;
-    if (2 * sum >= total) return value;
+    if (sum >= part * total) return value;
   }
   return values.back().first;
+}
+
+double weighted_median(std::vector<std::pair<double, double>> values) {
+  return weighted_quantile(std::move(values), 0.5);
+}
+
+double misfit(const Motions& motions, const RobustFit& fit) {
+  constexpr double better_third = 1.0 / 3;
+  std::vector<std::pair<double, double>> values;
+  for (std::size_t i = 0; i < motions.all.size(); ++i)
+    values.emplace_back(fit.squares[i], size_of(motions.all[i], motions));
+  return std::sqrt(weighted_quantile(std::move(values), better_third));
 }
 
 Residual residual_at(const Motion& motion, const Pose& T) {

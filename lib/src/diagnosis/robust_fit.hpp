@@ -26,6 +26,10 @@ Residual residual_at(const Motion& motion, const Pose& T);
 
 /// Squares and typical of a given extrinsic; weights all one.
 RobustFit evaluated(const Motions& motions, const DualQuaternion& T);
+/// Residual that the better third of the motion keeps below, as a part of the typical motion. A fifth of
+/// wrong poses in each stream spoils up to two thirds of the motions; what contradicts, contradicts
+/// everywhere.
+double misfit(const Motions& motions, const RobustFit& fit);
 /// The extrinsic by iteratively reweighted global solves of (18).
 RobustFit robust_fit(const Motions& motions);
 
@@ -48,7 +52,8 @@ struct Comparison {
 };
 Comparison compare(const Explained& x, const Explained& y);
 
-/// Median where the halves of the total weight meet.
+/// The value below which `part` of the total weight lies.
+double weighted_quantile(std::vector<std::pair<double, double>> values_weights, double part);
 double weighted_median(std::vector<std::pair<double, double>> values_weights);
 
 }  // namespace egocal::detail
