@@ -10,6 +10,7 @@
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/selection.hpp"
 #include "egocal/robust/robust_statistics.hpp"
+#include "egocal/scale/estimate_scale.hpp"
 
 namespace egocal {
 
@@ -84,6 +85,67 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   return choice;
 }
 
+bool with_scale(const CalibrationOptions& options) {
+  return options.estimate_scale || options.scale != 1;
+}
+
+CalibrationOptions without_scale(CalibrationOptions options) {
+  options.estimate_scale = false;
+  options.scale = 1;
+  return options;
+}
+
+DriveScaleOptions scale_options(const CalibrationOptions& options) {
+  DriveScaleOptions result;
+  result.scale.side = options.scale_side;
+  return result;
+}
+
+/// What the scale adds to an answer.
+void put_scale(const std::optional<ScaleSolution>& estimate, double scale, Calibration& result) {
+  result.scale = estimate;
+  result.scale_applied = scale;
+  if (!estimate || (estimate->observable && estimate->certified) || result.verdict != Verdict::good) return;
+  result.verdict = Verdict::incomplete;
+  result.reason = estimate->observable ? "The scale is not proven to be the best one."
+                                       : "The motions do not show the scale.";
+}
+
+/// Scales one stream, then calibrates as always.
+Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+  std::optional<ScaleSolution> estimate;
+  PairingOptions pairing = options.pairing;
+  if (options.estimate_scale) {
+    // rotations alone show the time offset, whatever the scale
+    std::optional<TimeOffset> offset;
+    if (options.estimate_time_offset) offset = estimate_time_offset(a, b);
+    if (offset) pairing.time_offset = 0;
+    estimate = estimate_scale(a, offset ? on_clock_of_a(*offset, b) : b, pairing, scale_options(options));
+  }
+  const double scale = estimate ? estimate->scale : options.scale;
+  const bool on_a = options.scale_side == Side::a;
+  Calibration result =
+      calibrate(on_a ? scaled(a, scale) : a, on_a ? b : scaled(b, scale), without_scale(options));
+  put_scale(estimate, scale, result);
+  return result;
+}
+
+Calibration calibrate_scaled(std::span<const MotionPair> pairs, const CalibrationOptions& options) {
+  if (options.pairing.mode == Mode::planar && options.estimate_scale)
+    throw Error("scale: cannot be estimated from motion pairs in planar mode; give it, or trajectories");
+  std::optional<ScaleSolution> estimate;
+  if (options.estimate_scale) estimate = estimate_scale(pairs, scale_options(options));
+  const double scale = estimate ? estimate->scale : options.scale;
+  std::vector<MotionPair> scaled_pairs(pairs.begin(), pairs.end());
+  for (MotionPair& pair : scaled_pairs) {
+    DualQuaternion& motion = options.scale_side == Side::a ? pair.a : pair.b;
+    motion = scaled(motion, scale);
+  }
+  Calibration result = calibrate(scaled_pairs, without_scale(options));
+  put_scale(estimate, scale, result);
+  return result;
+}
+
 }  // namespace
 
 std::string rejections_in_words(const PairingCounts& counts) {
@@ -101,6 +163,7 @@ Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const Cali
     rest.read_a = rest.read_b = {};
     return calibrate(reread(a, options.read_a), reread(given_b, options.read_b), rest);
   }
+  if (with_scale(options)) return calibrate_scaled(a, given_b, options);
   PairingOptions pairing_options = options.pairing;
   std::optional<TimeOffset> time_offset;
   if (options.estimate_time_offset) {
@@ -129,6 +192,7 @@ Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const Cali
 
 Calibration calibrate(std::span<const MotionPair> given, const CalibrationOptions& options) {
   if (given.empty()) throw Error("no motion pairs");
+  if (with_scale(options)) return calibrate_scaled(given, options);
   const PairingOptions& pairing = options.pairing;
   PairingCounts counts;
   std::vector<MotionPair> pairs(given.begin(), given.end());

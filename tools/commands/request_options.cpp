@@ -21,12 +21,23 @@ Reading reading(bool invert, const std::string& order) {
   return result;
 }
 
+void read_scale(const char* option, const std::string& text, Side side, CalibrationOptions& calibration) {
+  if (text.empty()) return;
+  calibration.scale_side = side;
+  calibration.estimate_scale = text == "auto";
+  if (calibration.estimate_scale) return;
+  calibration.scale = number(option, text);
+  if (!(calibration.scale >= 1e-9 && calibration.scale <= 1e9))
+    throw UsageError(std::string(option) + ": expected auto or a factor above 0, got '" + text + "'");
+}
+
 }  // namespace
 
 SolveRequest understood(const RequestOptions& options) {
   SolveRequest result;
   result.source = options.source;
   result.source.reading_a.rate = result.source.reading_b.rate = options.rate;
+  result.append = options.append;
   if (!options.times.empty()) {
     if (result.source.times_a.empty()) result.source.times_a = options.times;
     if (result.source.times_b.empty()) result.source.times_b = options.times;
@@ -77,6 +88,10 @@ SolveRequest understood(const RequestOptions& options) {
       (options.invert_a || options.invert_b || !options.order_a.empty() || !options.order_b.empty()))
     throw UsageError("--invert, --quaternion-order: apply to poses, not to motion pairs");
   if (!options.goal.empty()) result.calibration.diagnosis.goal = goal("--goal", options.goal);
+  read_scale("--scale", options.scale, Side::a, result.calibration);
+  read_scale("--scale-b", options.scale_b, Side::b, result.calibration);
+  if (!options.scale.empty() && !options.scale_b.empty())
+    throw UsageError("--scale-b: one sensor's translations only; the other one's unit is that of the answer");
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
   if (!options.nominal.empty())
     result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
@@ -130,6 +145,11 @@ void add_request_options(cli::App command, RequestOptions& options) {
   command.add_option("--goal", options.goal,
                      "ROTATION,TRANSLATION as 0.1deg,2cm: standard deviations that are enough; exit code 3 "
                      "where they are not reached");
+  command.add_option("--scale", options.scale,
+                     "the translations of A are multiplied by it: auto (a camera without scale) or a factor");
+  command.add_option("--scale-b", options.scale_b, "the same for B; the extrinsic is in the unit of A");
+  command.add_option("--append", options.append,
+                     "another drive of the same sensors: a file for A and one for B; may be repeated");
   command.add_option("--nominal", options.nominal, "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
   command.add_option("--truth", options.truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "egocal/cli/cli.hpp"
 #include "offline/calibration.hpp"
@@ -16,10 +17,11 @@ struct RequestOptions {
   std::string times;
   std::string method = "global";
   bool planar = false;
-  std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal;
+  std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal, scale, scale_b;
   double max_gap = 0.5, rate = 0;
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
+  std::vector<std::string> append;  ///< further drives: files of A and B by turns
 };
 
 /// Adds A, B and all options of the struct. It must live until the command has run.

@@ -16,6 +16,7 @@
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
+#include "offline/append.hpp"
 #include "offline/log_trajectory.hpp"
 #include "offline/trajectory_source.hpp"
 
@@ -55,6 +56,16 @@ Motions read_motions(const MotionSource& source) {
   for (std::string* not_used : {&a.not_used, &b.not_used})
     if (!not_used->empty()) motions.warnings.push_back(std::move(*not_used));
   return motions;
+}
+
+/// Further drives, each after the ones before it.
+void append_drives(const SolveRequest& request, Motions& motions) {
+  if (request.append.empty()) return;
+  if (!request.source.pairs.empty()) throw UsageError("--append: goes with two trajectories");
+  if (request.append.size() % 2 != 0) throw UsageError("--append: expected a file for A and one for B");
+  for (std::size_t i = 0; i < request.append.size(); i += 2)
+    append_drive({&motions.a, &motions.b}, {read_any_trajectory(request.append[i]).trajectory,
+                                            read_any_trajectory(request.append[i + 1]).trajectory});
 }
 
 Calibration calibrate_motions(const MotionSource& source, const Motions& motions,
@@ -140,7 +151,8 @@ SolveResult calibrate_offline(const SolveRequest& request) {
     throw UsageError("--method " + request.method + ": has no planar mode");
   CalibrationOptions options = request.calibration;
   options.method = method.value_or(Method::dual);
-  const Motions motions = read_motions(request.source);
+  Motions motions = read_motions(request.source);
+  append_drives(request, motions);
   SolveResult result;
   result.warnings = motions.warnings;
   result.calibration = calibrate_motions(request.source, motions, options);

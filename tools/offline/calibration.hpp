@@ -23,8 +23,9 @@ struct MotionSource {
 /// What `egocal solve` was asked for.
 struct SolveRequest {
   MotionSource source;
-  std::string method = "global";   ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
-  CalibrationOptions calibration;  ///< its method is set from the name above
+  std::string method = "global";    ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
+  CalibrationOptions calibration;   ///< its method is set from the name above
+  std::vector<std::string> append;  ///< further drives of the same sensors: files of a and b by turns
   std::optional<Pose> truth;
   bool keep_motions = false;  ///< hand back what was read, for a report
 };

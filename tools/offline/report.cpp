@@ -51,6 +51,34 @@ Pose with_positive_scalar(Pose T) {
   return T;
 }
 
+nlohmann::ordered_json scale_json(const Calibration& calibration) {
+  const ScaleSolution& scale = *calibration.scale;
+  return {{"value", scale.scale},
+          {"stddev", scale.stddev},
+          {"observable", scale.observable},
+          {"certified", scale.certified},
+          {"least", scale.least_scale},
+          {"most", scale.most_scale},
+          {"gap", scale.gap},
+          {"attenuation", scale.attenuation},
+          {"observability", scale.observability},
+          {"solves", scale.solves}};
+}
+
+std::string scale_text(const Calibration& calibration) {
+  if (!calibration.scale)
+    return calibration.scale_applied == 1 ? ""
+                                          : fmt::format("scale         {:g}\n", calibration.scale_applied);
+  const ScaleSolution& scale = *calibration.scale;
+  const std::string value =
+      scale.observable
+          ? fmt::format("+- {:.6g}", scale.stddev)
+          : "NOT OBSERVABLE, the motions do not show it: drive curves of different radius and speed";
+  return fmt::format("scale         {:.6g} {}, {}, noise can hide up to {:.2g} % more or less\n", scale.scale,
+                     value, scale.certified ? "certified over all scales" : "NOT CERTIFIED",
+                     100 * scale.attenuation);
+}
+
 }  // namespace
 
 std::string report_json(const SolveResult& result, const std::optional<Pose>& truth) {
@@ -88,6 +116,8 @@ std::string report_json(const SolveResult& result, const std::optional<Pose>& tr
                                     {"rate", result.calibration.time_offset->rate},
                                     {"rate_stddev", result.calibration.time_offset->rate_stddev},
                                     {"drifts", result.calibration.time_offset->drifts}};
+  if (result.calibration.scale) json["scale"] = scale_json(result.calibration);
+  if (result.calibration.scale_applied != 1) json["scale_applied"] = result.calibration.scale_applied;
   json["synchronised"] = result.calibration.counts.synchronised;
   json["outliers"] = result.calibration.counts.outliers;
   json["rejected"] = nlohmann::ordered_json::object();
@@ -132,6 +162,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
       pairing.push_back(fmt::format("{} rejected: {}", result.calibration.counts.rejected[i],
                                     name(static_cast<Rejection>(i))));
   if (!pairing.empty()) text += fmt::format("pairing       {}\n", fmt::join(pairing, ", "));
+  text += scale_text(result.calibration);
   if (result.calibration.time_offset)
     text += fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
                         result.calibration.time_offset->seconds, result.calibration.time_offset->stddev,

@@ -13,6 +13,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
+#include "egocal/scale/solve_scale.hpp"
 
 namespace egocal {
 
@@ -23,6 +24,9 @@ struct CalibrationOptions {
   bool estimate_time_offset = false;  ///< estimate the clock offset of b first; replaces pairing.time_offset
   Reading read_a, read_b;             ///< for streams that do not mean what their format says
   DiagnosisOptions diagnosis;         ///< when an answer counts as known, and the goal
+  double scale = 1;                   ///< the translations of scale_side are multiplied by it first
+  bool estimate_scale = false;        ///< estimate that scale from the drive; replaces `scale`
+  Side scale_side = Side::a;          ///< the extrinsic is in the other sensor's unit
 };
 
 /// Everything that is known about one pair of sensors. Lengths in metres, angles in radians.
@@ -41,6 +45,8 @@ struct Calibration {
   PairingCounts counts;                   ///< poses, instants, inliers, outliers, rejections by reason
   std::optional<TimeOffset> time_offset;  ///< the estimate, where one was asked for
   double time_offset_applied = 0;         ///< added to the stamps of b [s]
+  std::optional<ScaleSolution> scale;     ///< the estimate, where one was asked for
+  double scale_applied = 1;               ///< the translations of one sensor were multiplied by it
   Problem problem;                        ///< the statistics that were solved, in blocks
 };
 
