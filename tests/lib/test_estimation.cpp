@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../support/random_motion.hpp"
+#include "../support/simulated_drive.hpp"
+#include "egocal/estimation/estimate.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/online/answer.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::displacement;
+using testing::Random;
+
+/// White noise on every pose of both streams [rad, m].
+testing::Streams with_pose_noise(testing::Streams streams, double rotation, double translation,
+                                 std::uint64_t seed) {
+  Random random(seed);
+  for (Trajectory* trajectory : {&streams.a, &streams.b})
+    for (StampedPose& pose : *trajectory)
+      pose.pose = pose.pose * displacement(random.normal3(rotation), random.normal3(translation));
+  return streams;
+}
+
+testing::Streams free_drive(std::uint64_t seed, double noise = 0) {
+  SimulationOptions options;
+  options.terrain = Terrain::free;
+  options.poses = 201;
+  options.relative_noise = noise;
+  options.seed = seed;
+  return testing::simulated_drive(options);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Noise on poses is the same however long a motion is: long motions say more than neighbours do.
+TEST(Estimation, SumsOverStridesBeatNeighboursWhereNoiseIsOnPoses) {
+  std::vector<double> sums, neighbours;
+  for (std::uint64_t seed = 1; seed <= 7; ++seed) {
+    const testing::Streams s = with_pose_noise(free_drive(seed), 0.005, 0.05, seed);
+    const auto estimate = sum_over_strides({}, s.a, s.b);
+    ASSERT_TRUE(estimate) << seed;
+    EXPECT_GT(estimate->choice.stride, 2) << seed;
+    sums.push_back(extrinsic_error(s.T, solve(estimate->problem, Method::dual).T_a_b).rotation);
+    PairingOptions plain;
+    plain.stride = 1;
+    plain.balance = Balance{1, 0.01};
+    const Problem problem = pair_motions(plain, s.a, s.b).drive.problem();
+    neighbours.push_back(extrinsic_error(s.T, solve(problem, Method::dual).T_a_b).rotation);
+  }
+  EXPECT_LT(median(sums), 0.6 * median(neighbours));
+}
+
+/// Tracking that is lost and found again elsewhere: no motion spans it.
+TEST(Estimation, LastingJumpsBelowTheScreeningAreFound) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    testing::Streams s = free_drive(seed, 0.01);
+    const auto clean = sum_over_strides({}, s.a, s.b);
+    const DualQuaternion jump = displacement({0, 0, 0}, {0, 0.5, 0.5});
+    for (std::size_t i = 100; i < s.b.size(); ++i) s.b[i].pose = jump * s.b[i].pose;
+    const auto jumped = sum_over_strides({}, s.a, s.b);
+    ASSERT_TRUE(clean && jumped);
+    const auto error = [&](const StrideProblem& given) {
+      return extrinsic_error(s.T, solve(given.problem, Method::dual).T_a_b).translation;
+    };
+    EXPECT_LT(error(*jumped), 1.5 * error(*clean) + 0.01) << seed;
+  }
+}
+
+/// Leaving out a block leaves out every motion that touches it; the sum of the blocks is every motion once.
+TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
+  Random random(1);
+  StrideBlocks blocks(std::vector<int>{1, 3, 8});
+  std::vector<DualQuaternion> poses{{}};
+  Statistics expected;
+  const StrideWeights weights{{2, 1, 0.5}, {0.3, 0.2, 0.1}};
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    if (i > 0) poses.push_back(poses.back() * displacement(random.normal3(0.1), random.normal3()));
+    blocks.add_instant(i);
+    for (std::size_t k = 0; k < blocks.strides().size(); ++k) {
+      const auto steps = static_cast<std::uint64_t>(blocks.strides()[k].stride);
+      if (steps > i) continue;
+      const DualQuaternion motion = motion_between(poses[i - steps], poses[i]);
+      const DualQuaternion other = motion * displacement(random.normal3(0.01), random.normal3(0.1));
+      blocks.add(k, i - steps, motion, other, false);
+      StrideCell one;
+      one.motions.add(motion, other);
+      add_weighted(expected, one, weights.rotation[k], weights.translation[k]);
+    }
+  }
+  Problem problem;
+  TouchingSums(blocks).fill(weights, problem);
+  EXPECT_LE(problem.blocks.size(), StrideBlocks::most_blocks + 1);
+  const Statistics all = total(problem.blocks);
+  EXPECT_NEAR(all.weight, expected.weight, 1e-9 * expected.weight);
+  EXPECT_LT((all.dual_rows - expected.dual_rows).norm(), 1e-9 * expected.dual_rows.norm());
+}
+
+/// Continuing from the state gives the same bits.
+TEST(Estimation, StrideSumsContinueFromTheirState) {
+  const testing::Streams s = free_drive(3, 0.01);
+  const auto run = [&](std::size_t cut) {
+    StrideSums sums{PairingOptions{}};
+    sums.begin(100'000);
+    for (std::size_t i = 0; i < s.a.size(); ++i) {
+      if (i == cut) sums = StrideSums(PairingOptions{}, {}, StrideSumsState(sums.state()));
+      sums.add({s.a[i].time_us, s.a[i].pose, s.b[i].pose, 0, i + 1});
+      if (i % 50 == 49) sums.choose();
+    }
+    return cost_matrix(sums.problem());
+  };
+  const Matrix8d expected = run(s.a.size());
+  for (const std::size_t cut : {10u, 99u, 150u}) EXPECT_EQ(run(cut), expected) << cut;
+}
+
+TEST(Estimation, FixedSettingsAndShortDrivesAreLeftToThePairing) {
+  const testing::Streams s = free_drive(1);
+  PairingOptions fixed;
+  fixed.stride = 1;
+  EXPECT_FALSE(sum_over_strides(fixed, s.a, s.b));
+  EXPECT_FALSE(sum_over_strides({}, Trajectory(s.a.begin(), s.a.begin() + 20), s.b));
+}
+
+}  // namespace
+}  // namespace egocal
