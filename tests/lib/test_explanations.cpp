@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "../support/mistakes.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "../support/mistakes.hpp"
 
 namespace egocal {
 namespace {

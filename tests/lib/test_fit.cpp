@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "../support/mistakes.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/robust_fit.hpp"
-#include "../support/mistakes.hpp"
 
 namespace egocal {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "egocal/calibrate.hpp"
 #include "../support/simulated_drive.hpp"
+#include "egocal/calibrate.hpp"
 
 namespace egocal {
 namespace {

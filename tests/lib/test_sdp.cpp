@@ -65,7 +65,7 @@ TEST(Sdp, MultipliersAreFeasibleAndMeetTheCost) {
     const Matrix8d Q = cost_of(random_pairs(random_extrinsic(random), drive, random));
     const Solution solution = solve_sdp(Q);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 8, 8>> Z(lagrangian_matrix(Q, solution.lambda),
-                                                    Eigen::EigenvaluesOnly);
+                                                                       Eigen::EigenvaluesOnly);
     EXPECT_GT(Z.eigenvalues()[0], -1e-12 * Q.trace()) << seed;
     EXPECT_NEAR(solution.lambda.norm, solution.cost, 1e-11 * Q.trace()) << seed;
   }

@@ -3,9 +3,9 @@
 // Whether an answer can be used.
 #include <gtest/gtest.h>
 
-#include "egocal/calibrate.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/real_drives.hpp"
+#include "egocal/calibrate.hpp"
 
 namespace egocal {
 namespace {

@@ -130,7 +130,7 @@ DualQuaternion interpolate(const DualQuaternion& p, const DualQuaternion& q, dou
     const Pose whole = to_pose(motion);
     part.dual =
         0.5 * quaternion_product(QuaternionVector(0, s * whole.translation.x(), s * whole.translation.y(),
-                                                 s * whole.translation.z()),
+                                                  s * whole.translation.z()),
                                  part.real);
   } else {
     const double half_angle = std::atan2(sine, motion.real[0]);

@@ -9,8 +9,8 @@ OnlineStep algorithm1_step(const Problem& problem, std::int64_t time_us, const O
   OnlineStep step;
   step.state = state;
   if (state.last || !options.global) {
-    step.answer = solve(problem, options.fast, state.last, options.clock);             // line 6
-    step.fast_certificate = step.answer.certificate;                                   // line 7
+    step.answer = solve(problem, options.fast, state.last, options.clock);  // line 6
+    step.fast_certificate = step.answer.certificate;                        // line 7
     step.fast_verified = step.answer.certificate.optimality == Optimality::certified;
   }
   if (!state.last || !step.fast_verified) step.state.last_local_error_us = time_us;  // lines 8, 9

@@ -6,8 +6,8 @@
 
 namespace egocal::detail {
 
-/// Blocks need not be disjoint: then a last one with a negative weight takes off what is in two of them. It is
-/// no part of the drive to leave out.
+/// Blocks need not be disjoint: then a last one with a negative weight takes off what is in two of them. It
+/// is no part of the drive to leave out.
 inline bool takes_off(const Statistics& block) {
   return block.weight < 0;
 }

@@ -268,7 +268,8 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
       seconds ? set_tum(layout) : set_euroc(layout);
       if (seconds)
         layout.notes.push_back(
-            "no header: columns are taken as time x y z qx qy qz qw (name others with --columns-a, --columns-b)");
+            "no header: columns are taken as time x y z qx qy qz qw (name others with --columns-a, "
+            "--columns-b)");
     }
   }
   if (layout.times) set_time_unit(layout, sniffed);
