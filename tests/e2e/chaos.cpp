@@ -162,7 +162,7 @@ std::map<std::string, std::int64_t> interruptions(const std::string& file) {
     if (json.is_discarded()) continue;
     for (const auto& event : json["events"]) {
       const std::string text = event["text"];
-      if (text != "process was started anew" && text != "process is back") continue;
+      if (text != "process was restarted" && text != "process is back") continue;
       auto& times = events[{event["subject"], text, event["time_us"]}];
       times = std::max<std::int64_t>(times, event["repeated"]);
     }

@@ -209,7 +209,8 @@ TEST_F(View, DialogsAreWholeOnSmallScreens) {
   } dialogs[] = {
       {Dialog::help, {"q quit", "n N pair", "+ - zoom", "r   reset", "spc pause view", "^L    redraw"}},
       {Dialog::reset, {"Forget all motions", "camera?", "y  yes", "any other key  no"}},
-      {Dialog::pause, {"Pause the calibration", "camera?", "are not used", "y  yes", "any other key  no"}},
+      {Dialog::pause,
+       {"Pause the calibration", "camera?", "Motions in the meantime", "y  yes", "any other key  no"}},
       {Dialog::resume, {"Resume the calibration", "camera?", "y  yes", "any other key  no"}},
       {Dialog::export_format, {"Write the answer", "y YAML", "k Kalibr", "any other key  nothing"}}};
   for (const auto& [dialog, parts] : dialogs) {

@@ -115,7 +115,7 @@ TEST_F(Recordings, InfoSaysWhatAFileHolds) {
     path += to_pose(conjugate(drive[0][i - 1].pose) * drive[0][i].pose).translation.norm();
   EXPECT_NEAR(lidar["path_length_m"].get<double>(), path, 1e-6 * path);
   const Outcome text = egocal("info " + folder.path("lidar.tum"));
-  EXPECT_THAT(text.out, HasSubstr("TUM, 1 stream"));
+  EXPECT_THAT(text.out, HasSubstr("table, 1 stream"));
   EXPECT_THAT(text.out, HasSubstr("poses           400"));
   // a gap, a jump and times out of order
   Trajectory damaged = drive[0];
@@ -196,7 +196,7 @@ TEST_F(Recordings, RosShapedTypesOfLcmAreRead) {
     std::string message = big(0x94e17f94648cf0e4u, 8) + big(static_cast<std::uint64_t>(i), 4) +
                           big(1'700'000'000, 4) + big(static_cast<std::uint64_t>(i) * 10'000'000, 4) +
                           text("odom") + text("base");
-    for (const double value : {1.0 * i, 2.0, 3.0, 0.0, 0.0, 0.6, 0.8})
+    for (const double value : {0.1 * i, 2.0, 3.0, 0.0, 0.0, 0.6, 0.8})
       message += big(std::bit_cast<std::uint64_t>(value), 8);
     message += std::string((36 + 6 + 36) * 8, '\0');
     log.write(1'700'000'000'000'000 + 10'000 * i, "/odom#nav_msgs.Odometry",
@@ -206,7 +206,7 @@ TEST_F(Recordings, RosShapedTypesOfLcmAreRead) {
   const json info = parsed("info --json '" + folder.path("ros.log") + ":/odom#nav_msgs.Odometry'");
   EXPECT_EQ(info["streams"][0]["poses"], 50);
   EXPECT_EQ(info["streams"][0]["type"], "nav_msgs.Odometry");
-  EXPECT_NEAR(info["streams"][0]["path_length_m"].get<double>(), 49, 1e-9);
+  EXPECT_NEAR(info["streams"][0]["path_length_m"].get<double>(), 4.9, 1e-9);
   EXPECT_NEAR(info["streams"][0]["rate_hz"].get<double>(), 100, 1e-3);
 }
 
