@@ -35,6 +35,8 @@ class Feed {
   /// False: not sent, see error().
   bool send(const command_t& command) { return loop_.publish(bus::command_channel, command); }
   const std::string& error() const { return loop_.send_error(); }
+  /// Why the network is away, and the cure; empty where it is there.
+  const std::string& network_error() const { return loop_.network_error(); }
 
  private:
   Model& model_;

@@ -62,6 +62,7 @@ class Source {
   bool live() const { return feed_ != nullptr; }
   bool at_end() const { return recording_ && recording_->at_end(); }
   const std::string& name() const { return name_; }
+  std::string network_error() const { return feed_ ? feed_->network_error() : std::string(); }
 
   /// wait() also returns when one of these is readable.
   void watch(std::vector<int> fds) {
@@ -266,6 +267,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
   const bool heard = std::any_of(model.pairs().begin(), model.pairs().end(),
                                  [](const PairState& p) { return p.answer() || p.has_problem; }) ||
                      !model.processes().empty();
+  if (!heard && !source.network_error().empty()) throw Error(source.network_error());
   if (!heard) throw Error(source.live() ? "nothing heard on " + source.name() : no_session(source.name()));
   return 0;
 }
