@@ -102,10 +102,10 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T) {
   return fit;
 }
 
-static RobustFit reweighted(const Motions& motions, int rounds) {
+static RobustFit reweighted(const Motions& motions, int repeats) {
   std::vector<double> weights(motions.all.size(), 1.0);
   RobustFit fit;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < repeats; ++round) {
     fit = evaluated(motions, weighted_solution(motions, weights));
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const double w = 1 / (1 + fit.squares[i] / (inlier * fit.typical));
