@@ -22,8 +22,13 @@ class InputBytes {
   /// Near the one before, mostly; anything now and then.
   std::int64_t near(std::int64_t before, std::int64_t unit) {
     const std::uint8_t choice = byte();
-    if (choice < 160) return before + unit;
-    if (choice < 220) return before + unit * step();
+    // near the ends of the range the sum wraps round, as a hostile sender's would
+    const auto moved = [&](std::int64_t steps) {
+      return static_cast<std::int64_t>(static_cast<std::uint64_t>(before) +
+                                       static_cast<std::uint64_t>(unit) * static_cast<std::uint64_t>(steps));
+    };
+    if (choice < 160) return moved(1);
+    if (choice < 220) return moved(step());
     if (choice < 240)
       return static_cast<std::int64_t>(static_cast<std::uint64_t>(before) ^ 1ULL << (byte() & 63));
     return number();
