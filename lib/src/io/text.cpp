@@ -114,7 +114,7 @@ std::int64_t time_us(const std::string& file, long line, std::string_view text, 
   for (std::size_t i = 0; i < digits.size() && decimal; ++i) {
     if (static_cast<std::ptrdiff_t>(i) == whole) continue;
     decimal = digits[i] >= '0' && digits[i] <= '9';
-    take(digits[i] - '0');
+    if (decimal) take(digits[i] - '0');
   }
   while (left > 0) take(0);
   if (!decimal) {  // 1.5e9 and the like: as good as a double is
