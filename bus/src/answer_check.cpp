@@ -95,14 +95,7 @@ CheckedAnswer AnswerCheck::check(const calibration_t& message) const {
 }
 
 void set_certificate(const CheckedAnswer& checked, calibration_t& message) {
-  const Certificate& certificate = checked.answer.certificate;
-  message.cost = certificate.cost;
-  message.lower_bound = certificate.lower_bound;
-  message.gap = certificate.gap;
-  message.scaled_gap = certificate.scaled_gap;
-  message.status = wire_status(certificate.optimality);
-  message.reach_translation = certificate.reach_translation;
-  message.reach_rotation = certificate.reach_rotation;
+  set_certificate(checked.answer.certificate, message);
 }
 
 bool outranks(const StandingRank& x, const StandingRank& y) {

@@ -231,6 +231,16 @@ std::optional<Optimality> optimality_from_wire(std::int8_t status) {
   return std::nullopt;
 }
 
+void set_certificate(const Certificate& certificate, calibration_t& message) {
+  message.cost = certificate.cost;
+  message.lower_bound = certificate.lower_bound;
+  message.gap = certificate.gap;
+  message.scaled_gap = certificate.scaled_gap;
+  message.status = wire_status(certificate.optimality);
+  message.reach_translation = certificate.reach_translation;
+  message.reach_rotation = certificate.reach_rotation;
+}
+
 Checked<Answer> to_answer(const calibration_t& message) {
   if (!plausible_time(message.utime)) return {{}, "time out of range"};
   if (!plausible_time(message.session)) return {{}, "session out of range"};
@@ -286,14 +296,7 @@ calibration_t to_message(const Answer& answer, const problem_t& problem) {
   message.method =
       problem.mode == 1 && answer.method != Method::slsqp ? "planar" : std::string(name(answer.method));
   set_pose(answer.T_a_b, message.pos, message.quat);
-  const Certificate& certificate = answer.certificate;
-  message.cost = certificate.cost;
-  message.lower_bound = certificate.lower_bound;
-  message.gap = certificate.gap;
-  message.scaled_gap = certificate.scaled_gap;
-  message.status = wire_status(certificate.optimality);
-  message.reach_translation = certificate.reach_translation;
-  message.reach_rotation = certificate.reach_rotation;
+  set_certificate(answer.certificate, message);
   for (std::size_t i = 0; i < 6; ++i) {
     message.observable[i] = answer.observability.observable[i];
     message.stddev[i] = answer.observability.stddev[i];

@@ -30,6 +30,8 @@ bot_core::pose_t to_pose_message(const StampedPose& pose);
 /// Position [m] and quaternion (w x y z) of a message. Quaternions within 1 % of unit length are normalised.
 Checked<DualQuaternion> to_dual_quaternion(const double (&pos)[3], const double (&quat)[4]);
 void set_pose(const DualQuaternion& T, double (&pos)[3], double (&quat)[4]);
+/// Optimality, cost, bound, gap and reach of an answer.
+void set_certificate(const Certificate& certificate, calibration_t& message);
 
 /// Checks the whole message: a value means that every field may be used as it stands.
 Checked<Problem> to_problem(const problem_t& message);
