@@ -52,7 +52,7 @@ Pose pose(const std::string& option, const std::string& text) {
 GroundPlane plane(const std::string& option, const std::string& text) {
   const std::vector<double> v = numbers(option, text, 4);
   try {
-    return checked({{v[0], v[1], v[2]}, v[3]});
+    return validated({{v[0], v[1], v[2]}, v[3]});
   } catch (const Error& error) {
     throw UsageError(option + ": " + error.what());
   }

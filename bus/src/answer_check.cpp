@@ -41,7 +41,7 @@ std::string AnswerCheck::take(const problem_t& message) {
   Pair& pair = pairs_[{message.sensor_a, message.sensor_b}];
   pair.touched = ++touches_;
   Known known{message.session, message.seq, message.utime, std::move(*problem.value)};
-  known.problem.blocks = {total(known.problem.blocks)};
+  known.problem.blocks = {sum_blocks(known.problem.blocks)};
   const auto again = std::find_if(pair.problems.begin(), pair.problems.end(), [&](const Known& k) {
     return k.session == known.session && k.seq == known.seq && k.utime == known.utime;
   });

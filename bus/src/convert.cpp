@@ -156,8 +156,8 @@ Checked<Problem> to_problem(const problem_t& message) {
   if (message.mode == 1) {
     problem.mode = Mode::planar;
     try {
-      problem.plane_a = checked(to_plane(message.plane_a));
-      problem.plane_b = checked(to_plane(message.plane_b));
+      problem.plane_a = validated(to_plane(message.plane_a));
+      problem.plane_b = validated(to_plane(message.plane_b));
     } catch (const Error&) {
       return {{}, "ground plane out of range"};
     }
@@ -294,7 +294,7 @@ calibration_t to_message(const Answer& answer, const problem_t& problem) {
   message.sensor_a = problem.sensor_a;
   message.sensor_b = problem.sensor_b;
   message.method =
-      problem.mode == 1 && answer.method != Method::slsqp ? "planar" : std::string(name(answer.method));
+      problem.mode == 1 && answer.method != Method::slsqp ? "planar" : std::string(to_string(answer.method));
   set_pose(answer.T_a_b, message.pos, message.quat);
   set_certificate(answer.certificate, message);
   for (std::size_t i = 0; i < 6; ++i) {

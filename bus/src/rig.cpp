@@ -167,7 +167,7 @@ Sensor read_sensor(const Table& in) {
   if (in.has("plane")) {
     const std::vector<double> v = in.numbers("plane", 4, "[nx, ny, nz, d]");
     try {
-      sensor.plane = checked(GroundPlane{{v[0], v[1], v[2]}, v[3]});
+      sensor.plane = validated(GroundPlane{{v[0], v[1], v[2]}, v[3]});
     } catch (const Error& error) {
       in.fail("plane", error.what());
     }

@@ -78,7 +78,7 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   for (const double translation : {1.0, 0.1, 0.01, 0.001})
     candidates.push_back({1, {1, translation}, problem.blocks});
   choice.reason = "too few motions to choose";
-  if (const auto selection = select(problem, candidates, std::nullopt)) {
+  if (const auto selection = select_candidate(problem, candidates, std::nullopt)) {
     choice.balance = candidates[selection->index].balance;
     choice.reason = "smallest jack-knife spread of 4 balances";
   }
@@ -153,7 +153,7 @@ std::string rejections_in_words(const PairingCounts& counts) {
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
       text += (text.empty() ? "rejected: " : ", ") + std::to_string(counts.rejected[i]) + " " +
-              std::string(name(static_cast<Rejection>(i)));
+              std::string(to_string(static_cast<Rejection>(i)));
   return text.empty() ? "none rejected" : text;
 }
 
@@ -167,7 +167,7 @@ Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const Cali
   PairingOptions pairing_options = options.pairing;
   std::optional<TimeOffset> time_offset;
   if (options.estimate_time_offset) {
-    time_offset = estimate_time_offset(a, given_b, {.max_gap = checked(pairing_options).max_gap});
+    time_offset = estimate_time_offset(a, given_b, {.max_gap = validated(pairing_options).max_gap});
     if (!time_offset)
       throw Error("time offset: cannot be estimated, the streams are too short or never turn");
     pairing_options.time_offset =

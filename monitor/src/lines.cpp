@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "answer_text.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/geometry/pose.hpp"
 
 namespace egocal::monitor {
@@ -37,8 +38,8 @@ const char* severity_name(Severity severity) {
   return "info";
 }
 
-const char* status_name(int status) {
-  return status == 0 ? "certified" : status == 1 ? "not optimal" : "undecided";
+std::string_view status_name(std::int8_t status) {
+  return to_string(bus::optimality_from_wire(status).value_or(Optimality::undecided));
 }
 
 const char* reference_name(ReferenceKind kind) {

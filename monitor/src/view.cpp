@@ -62,7 +62,7 @@ Action press_in_dialog(ViewState& view, const Model& model, KeyPress key) {
     constexpr ExtrinsicFormat formats[] = {ExtrinsicFormat::yaml, ExtrinsicFormat::ros, ExtrinsicFormat::urdf,
                                            ExtrinsicFormat::kalibr};
     for (ExtrinsicFormat format : formats)
-      if (c == name(format)[0]) {
+      if (c == to_string(format)[0]) {
         Action action = about_pair(Action::Kind::export_answer, *pair);
         action.format = format;
         return action;

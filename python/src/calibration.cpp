@@ -73,18 +73,6 @@ Calibration solve_trajectories(const py::object& a, const py::object& b, const s
   return calibrate(trajectory_a, trajectory_b, options);
 }
 
-const char* status_of(const Calibration& calibration) {
-  switch (calibration.certificate.optimality) {
-    case Optimality::certified:
-      return "certified";
-    case Optimality::not_optimal:
-      return "not optimal";
-    case Optimality::undecided:
-      break;
-  }
-  return "undecided";
-}
-
 constexpr const char* solve_doc = R"(The extrinsic of two rigidly mounted sensors from their trajectories.
 
 a, b: a file name (TUM, KITTI, EuRoC, csv; 'recording.mcap:/odom' for a bag), an (N, 8) array of rows
@@ -123,7 +111,9 @@ void bind_calibration(py::module_& module) {
       .def_property_readonly(
           "certified", [](const Calibration& c) { return c.certificate.optimality == Optimality::certified; },
           "no extrinsic has a lower cost: optimal, which is not the same as right")
-      .def_property_readonly("status", &status_of, "'certified', 'not optimal' or 'undecided'")
+      .def_property_readonly(
+          "status", [](const Calibration& c) { return to_string(c.certificate.optimality); },
+          "'certified', 'not optimal' or 'undecided'")
       .def_property_readonly(
           "cost", [](const Calibration& c) { return c.certificate.cost; }, "J of (16)")
       .def_property_readonly(
@@ -142,7 +132,8 @@ void bind_calibration(py::module_& module) {
           "hint", [](const Calibration& c) { return c.observability.hint; },
           "which motion would help most; empty where nothing is missing")
       .def_property_readonly(
-          "pairs", [](const Calibration& c) { return total(c.problem.blocks).count; }, "motion pairs used")
+          "pairs", [](const Calibration& c) { return sum_blocks(c.problem.blocks).count; },
+          "motion pairs used")
       .def_property_readonly(
           "outliers", [](const Calibration& c) { return c.counts.outliers; },
           "motion pairs that contradict the others")
@@ -151,7 +142,7 @@ void bind_calibration(py::module_& module) {
           [](const Calibration& c) {
             py::dict reasons;
             for (std::size_t i = 0; i < c.counts.rejected.size(); ++i)
-              reasons[py::str(std::string(name(static_cast<Rejection>(i))))] = c.counts.rejected[i];
+              reasons[py::str(std::string(to_string(static_cast<Rejection>(i))))] = c.counts.rejected[i];
             return reasons;
           },
           "number of poses and motions rejected, by reason")
@@ -169,7 +160,8 @@ void bind_calibration(py::module_& module) {
       .def("__repr__", [](const Calibration& c) {
         const Eigen::Vector3d t = c.T_a_b.translation;
         return "<egocal.Calibration translation [" + std::to_string(t.x()) + ", " + std::to_string(t.y()) +
-               ", " + std::to_string(t.z()) + "] m, " + status_of(c) + ">";
+               ", " + std::to_string(t.z()) + "] m, " + std::string(to_string(c.certificate.optimality)) +
+               ">";
       });
 
   module.def("solve", &solve_trajectories, solve_doc, "a"_a, "b"_a, py::kw_only(), "method"_a = "global",

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/accumulation.hpp"
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 
 namespace egocal::services {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
 
 namespace egocal::services {
@@ -120,7 +120,7 @@ void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
   counters["left out"] += static_cast<std::int64_t>(counts.outliers);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
-      counters["rejected: " + std::string(name(static_cast<Rejection>(i)))] +=
+      counters["rejected: " + std::string(to_string(static_cast<Rejection>(i)))] +=
           static_cast<std::int64_t>(counts.rejected[i]);
 }
 

@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 
 namespace egocal::services {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/cli/cli.hpp"
 #include "player/player.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 
 namespace egocal::services {
 

@@ -17,6 +17,7 @@
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "support/mistakes.hpp"
+#include "support/paths.hpp"
 #include "support/real_drives.hpp"
 
 namespace {
@@ -43,14 +44,14 @@ Streams of_files(const std::string& folder, const char* a, const char* b) {
 
 /// Every fourth run of each level, with the truth of the benchmark.
 void add_tampere(std::vector<Drive>& drives) {
-  const std::filesystem::path root = EGOCAL_DATA_DIR "/tampere";
+  const std::filesystem::path root = paths::data_dir() + "/tampere";
   std::vector<std::filesystem::path> truths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
     if (entry.path().filename() == "truth.txt") truths.push_back(entry.path());
   std::sort(truths.begin(), truths.end());
   for (std::size_t i = 0; i < truths.size(); i += 4) {
     const std::string folder =
-        std::filesystem::relative(truths[i].parent_path(), EGOCAL_DATA_DIR).string() + "/";
+        std::filesystem::relative(truths[i].parent_path(), paths::data_dir()).string() + "/";
     Streams streams = of_files(folder, "a.tum", "b.tum");
     std::ifstream file(truths[i]);
     Pose T;
@@ -157,7 +158,7 @@ void run(const Drive& drive, const Mistake& mistake, Totals& totals, bool verbos
   }
   if (verbose || bad)
     std::printf("%-24s %-24s %-14s off %8.2f deg %9.1f cm  fit %6.2f %%  %4.0f ms %s%s%s\n",
-                drive.name.c_str(), mistake.name.c_str(), std::string(name(calibration.verdict)).c_str(),
+                drive.name.c_str(), mistake.name.c_str(), std::string(to_string(calibration.verdict)).c_str(),
                 drive.truth ? error.rotation * 180 / std::numbers::pi : 0.0,
                 drive.truth ? 100 * error.translation : 0.0,
                 100 * calibration.fit.translation_relative_median, 1e3 * seconds, codes.c_str(),

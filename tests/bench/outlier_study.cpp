@@ -13,6 +13,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "support/corruption.hpp"
+#include "support/paths.hpp"
 #include "support/real_drives.hpp"
 
 namespace {
@@ -43,7 +44,7 @@ void measure(const Streams& streams, std::uint64_t seeds, Errors& errors) {
         (corruption == Corruption::missing ? errors.missing : errors.wrong).push_back(error);
         if (corruption == Corruption::missing || error <= errors.worst) continue;
         errors.worst = error;
-        errors.worst_kind = testing::name(corruption) + (in_b ? " in b" : " in a");
+        errors.worst_kind = testing::to_string(corruption) + (in_b ? " in b" : " in a");
       }
 }
 
@@ -81,7 +82,7 @@ int main(int argc, char** argv) {
     print(name, errors);
   }
   if (!testing::have_real_drives()) {
-    std::puts("the real drives in " EGOCAL_DATA_DIR " are not here");
+    std::fputs(("the real drives in " + paths::data_dir() + " are not here\n").c_str(), stdout);
     return 0;
   }
   const auto real = [&](const char* name, const Streams& streams) {

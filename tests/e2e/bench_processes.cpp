@@ -16,12 +16,13 @@
 #include <vector>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 
 namespace egocal {
 namespace {
@@ -30,7 +31,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using test::ChildProcess;
 
-const std::string bin = EGOCAL_BIN_DIR;
+const std::string bin = paths::bin_dir();
 
 struct Options {
   int pairs = 4;

@@ -16,7 +16,7 @@
 #include <tuple>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/cli/cli.hpp"
@@ -24,6 +24,7 @@
 #include "egocal/online/answer.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal {
@@ -33,7 +34,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using test::ChildProcess;
 
-const std::string bin = EGOCAL_BIN_DIR;
+const std::string bin = paths::bin_dir();
 
 struct Options {
   int kills = 100;

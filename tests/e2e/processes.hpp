@@ -17,7 +17,7 @@
 #include <optional>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
@@ -26,12 +26,13 @@
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 #include "support/steady_sender.hpp"
 
 namespace egocal::test {
 
 using namespace std::chrono_literals;  // NOLINT: for the tests that include this
-inline const std::string bin = EGOCAL_BIN_DIR;
+inline const std::string bin = paths::bin_dir();
 
 inline std::vector<Trajectory> drive(int poses, double noise = 0.01, std::uint64_t seed = 1) {
   SimulationOptions options;

@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -21,6 +21,7 @@
 #include "support/child_process.hpp"
 #include "support/lossy_relay.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 
 namespace egocal {
 namespace {
@@ -29,7 +30,7 @@ using namespace std::chrono_literals;
 using test::ChildProcess;
 using test::Losses;
 
-const std::string bin = EGOCAL_BIN_DIR;
+const std::string bin = paths::bin_dir();
 const Pose truth{rotation_exp({0.3, -0.2, 0.9}), {0.4, -0.8, 0.3}};
 
 std::vector<Trajectory> drive() {

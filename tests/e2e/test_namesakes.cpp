@@ -10,11 +10,12 @@
 #include <set>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 
 namespace egocal {
 namespace {
@@ -65,7 +66,7 @@ class Namesakes : public ::testing::Test {
     }
   }
   ChildProcess pairing(const std::string& state) const {
-    return ChildProcess({EGOCAL_BIN_DIR "/egocal-pairing", "--rig", rig, "--state", folder / state},
+    return ChildProcess({paths::bin_dir() + "/egocal-pairing", "--rig", rig, "--state", folder / state},
                         folder / "said");
   }
 

@@ -16,6 +16,7 @@
 #include "egocal/bus/loop.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 #include "support/several_hosts.hpp"
 
 namespace egocal {
@@ -24,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::ChildProcess;
 
-const std::string bin = EGOCAL_BIN_DIR;
+const std::string bin = paths::bin_dir();
 constexpr int poses = 400;
 
 class SeveralHosts : public testing::Test {

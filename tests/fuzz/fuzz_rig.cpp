@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 #include "require.hpp"

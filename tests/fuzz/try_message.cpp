@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/decode.hpp"
-#include "egocal/bus/glue.hpp"
 #include "require.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/rig.hpp"
 #include "fuzz/input_bytes.hpp"
 #include "fuzz/require.hpp"

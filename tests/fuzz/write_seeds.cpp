@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "support/bag_writer.hpp"
 

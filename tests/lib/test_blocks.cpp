@@ -30,10 +30,10 @@ TEST(BlockStatistics, StayBoundedMergeNeighboursAndKeepTheSum) {
     for (std::size_t i = 0; i + 1 < state.blocks.size(); ++i)
       ASSERT_EQ(state.blocks[i].statistics.count, state.pairs_per_block);
     ASSERT_LE(blocks.inliers().size(), BlockStatistics::max_inlier_blocks);
-    ASSERT_EQ(total(blocks.inliers()).count, sum.count);
+    ASSERT_EQ(sum_blocks(blocks.inliers()).count, sum.count);
   }
   EXPECT_GT(blocks.inliers().size(), BlockStatistics::max_inlier_blocks / 2);
-  EXPECT_LT((total(blocks.inliers()).dual_rows - sum.dual_rows).cwiseAbs().maxCoeff(),
+  EXPECT_LT((sum_blocks(blocks.inliers()).dual_rows - sum.dual_rows).cwiseAbs().maxCoeff(),
             1e-12 * sum.dual_rows.trace());
 }
 
@@ -48,14 +48,14 @@ TEST(BlockStatistics, VerdictsStayApartWhenBlocksMergeAndNothingIsLost) {
     ASSERT_LE(blocks.state().blocks.size(), BlockStatistics::max_blocks);
     ASSERT_EQ(blocks.inlier_pairs(), kept.count);
   }
-  EXPECT_LT((total(blocks.inliers()).dual_rows - kept.dual_rows).cwiseAbs().maxCoeff(),
+  EXPECT_LT((sum_blocks(blocks.inliers()).dual_rows - kept.dual_rows).cwiseAbs().maxCoeff(),
             1e-12 * kept.dual_rows.trace());
   // a verdict can be revised: everything comes back
   blocks.leave_out(std::vector<bool>(blocks.state().blocks.size(), false));
   EXPECT_EQ(blocks.inlier_pairs(), kept.count + left_out.count);
   Statistics all = kept;
   all += left_out;
-  EXPECT_LT((total(blocks.inliers()).dual_rows - all.dual_rows).cwiseAbs().maxCoeff(),
+  EXPECT_LT((sum_blocks(blocks.inliers()).dual_rows - all.dual_rows).cwiseAbs().maxCoeff(),
             1e-12 * all.dual_rows.trace());
 }
 

@@ -197,7 +197,7 @@ TEST(RobustStatistics, AreBoundedAndContinueFromTheirStateBitForBit) {
       EXPECT_LE(statistics.state().waiting.size(), RobustStatistics::most_waiting);
       EXPECT_LE(statistics.state().blocks.state().blocks.size(), BlockStatistics::max_blocks);
     }
-    return total(statistics.inliers());
+    return sum_blocks(statistics.inliers());
   };
   const Statistics expected = run(pairs.size());
   for (const std::size_t cut : {1u, 17u, 100u, 1999u}) EXPECT_EQ(run(cut).dual_rows, expected.dual_rows);

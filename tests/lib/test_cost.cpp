@@ -100,7 +100,7 @@ TEST(Cost, AMillionPairsLoseNothing) {
     one.add(pair);
     exact += one.dual_rows.cast<long double>() * 1000.0L;
   }
-  const Statistics all = total(blocks.inliers());
+  const Statistics all = sum_blocks(blocks.inliers());
   EXPECT_EQ(all.count, 1000000u);
   EXPECT_LT((all.dual_rows.cast<long double>() - exact).cwiseAbs().maxCoeff() / exact.trace(), 1e-13L);
 }

@@ -100,7 +100,7 @@ TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   Problem problem;
   TouchingSums(blocks).fill(weights, problem);
   EXPECT_LE(problem.blocks.size(), StrideBlocks::most_blocks + 1);
-  const Statistics all = total(problem.blocks);
+  const Statistics all = sum_blocks(problem.blocks);
   EXPECT_NEAR(all.weight, expected.weight, 1e-9 * expected.weight);
   EXPECT_LT((all.dual_rows - expected.dual_rows).norm(), 1e-9 * expected.dual_rows.norm());
 }

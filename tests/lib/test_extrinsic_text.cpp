@@ -36,9 +36,9 @@ NamedExtrinsic example() {
 TEST(ExtrinsicText, EveryFormatNamesFramesAndQuaternionOrder) {
   for (const ExtrinsicFormat format : formats) {
     const std::string text = extrinsic_text(example(), format);
-    EXPECT_THAT(text, HasSubstr("lidar")) << name(format);
-    EXPECT_THAT(text, HasSubstr("camera")) << name(format);
-    EXPECT_EQ(extrinsic_format_from_name(name(format)), format);
+    EXPECT_THAT(text, HasSubstr("lidar")) << to_string(format);
+    EXPECT_THAT(text, HasSubstr("camera")) << to_string(format);
+    EXPECT_EQ(extrinsic_format_from_name(to_string(format)), format);
   }
   EXPECT_FALSE(extrinsic_format_from_name("xml"));
   EXPECT_THAT(extrinsic_text(example(), ExtrinsicFormat::ros), HasSubstr("0.125 -0.25 2"));
@@ -52,7 +52,7 @@ TEST(ExtrinsicText, WhatShouldNotBeUsedIsSaidInEveryFormat) {
     EXPECT_THAT(
         extrinsic_text(extrinsic, format),
         ::testing::AnyOf(HasSubstr("DO NOT USE"), HasSubstr("usable: false"), HasSubstr("\"usable\": false")))
-        << name(format);
+        << to_string(format);
 }
 
 /// Points of the parent taken to the child: as kalibr's and OpenCV's transforms do, and the others do

@@ -121,7 +121,7 @@ TEST(Errors, AreThoseOf32) {
 }
 
 TEST(GroundPlane, FrameStandsOnTheGroundWithZUp) {
-  const GroundPlane plane = checked({Eigen::Vector3d(-0.0066, -0.9998, -0.0177).normalized(), -1.685});
+  const GroundPlane plane = validated({Eigen::Vector3d(-0.0066, -0.9998, -0.0177).normalized(), -1.685});
   const Pose G = to_pose(plane_frame(plane));
   EXPECT_LT((G.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(), 1e-15);
   // the origin of the plane's frame lies on the plane, right below the sensor

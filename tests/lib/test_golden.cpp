@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "../support/paths.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/dual.hpp"
@@ -26,7 +27,7 @@ struct Golden {
 };
 
 Golden read_golden() {
-  std::ifstream file(EGOCAL_SOURCE_DIR "/tests/lib/golden/six_pairs.txt");
+  std::ifstream file(paths::source_dir() + "/tests/lib/golden/six_pairs.txt");
   std::ostringstream numbers;
   for (std::string line; std::getline(file, line);)
     if (!line.starts_with('#')) numbers << line << '\n';

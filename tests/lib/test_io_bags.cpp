@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "../support/bag_writer.hpp"
+#include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/scratch_folder.hpp"
 #include "egocal/error.hpp"
@@ -317,7 +318,7 @@ class RealBags : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(bags)) GTEST_SKIP() << "shared/data/bags is not there";
   }
-  const std::string bags = EGOCAL_DATA_DIR "/bags/";
+  const std::string bags = paths::data_dir() + "/bags/";
 };
 
 TEST_F(RealBags, HoldWhatTheirIndexesSay) {

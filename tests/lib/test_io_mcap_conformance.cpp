@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "../support/paths.hpp"
 #include "../support/scratch_folder.hpp"
 #include "io/bag/mcap_records.hpp"
 #include "io/bytes/little_endian.hpp"
@@ -177,7 +178,7 @@ bool is_pointer(const std::filesystem::path& file) {
 }
 
 TEST(McapConformance, EveryFileIsReadAsDescribed) {
-  const std::filesystem::path folder = EGOCAL_DATA_DIR "/mcap_conformance";
+  const std::filesystem::path folder = paths::data_dir() + "/mcap_conformance";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "shared/data/mcap_conformance is not there";
   const egocal::testing::ScratchFolder made;
   std::filesystem::path files_folder = folder;
@@ -186,8 +187,8 @@ TEST(McapConformance, EveryFileIsReadAsDescribed) {
     pointers = pointers || (entry.path().extension() == ".mcap" && is_pointer(entry.path()));
   if (pointers) {
     files_folder = made.path("");
-    const std::string command = EGOCAL_SOURCE_DIR "/tests/support/mcap_from_descriptions " + folder.string() +
-                                " " + files_folder.string();
+    const std::string command = paths::source_dir() + "/tests/support/mcap_from_descriptions " +
+                                folder.string() + " " + files_folder.string();
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
   int files = 0;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "../support/paths.hpp"
 #include "../support/real_drives.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/evaluation/errors.hpp"
@@ -195,7 +196,7 @@ TEST(Moves, TheSameDriveGivesTheSameBits) {
 }
 
 TEST(Moves, NoRealDriveRaisesAnAlarm) {
-  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " EGOCAL_DATA_DIR;
+  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " << paths::data_dir();
   std::vector<testing::Streams> drives = {testing::euroc(), testing::robot_arm(),
                                           testing::kitti_asynchronous()};
   for (const char* name : {"05", "07"}) {
@@ -217,7 +218,7 @@ TEST(Moves, NoRealDriveRaisesAnAlarm) {
 }
 
 TEST(Moves, ABumpOfARealCameraIsFound) {
-  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " EGOCAL_DATA_DIR;
+  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " << paths::data_dir();
   testing::Streams streams = testing::kitti("07");
   const std::size_t half = streams.b.size() / 2;
   const DualQuaternion change = to_dual_quaternion({rotation_exp({0, 1.5 / degrees, 0}), {0.05, 0, 0}});

@@ -110,7 +110,7 @@ TEST(Observability, NoMotionShowsNothing) {
   problem.prior = T_a_b;
   for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
     const Answer answer = solve(problem, method);
-    EXPECT_EQ(answer.observability.observable, Flags{}) << name(method);
+    EXPECT_EQ(answer.observability.observable, Flags{}) << to_string(method);
     EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).translation, 1e-12);
     EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 1e-12);
     EXPECT_NE(answer.observability.hint, "");
@@ -134,7 +134,7 @@ TEST(Observability, FlatDirectionsAreTakenFromThePrior) {
   for (const Method method : {Method::dual, Method::sdp, Method::sqp}) {
     const Answer answer = solve(problem, method, problem.prior);
     const Pose T = to_pose(answer.T_a_b), truth = to_pose(T_a_b);
-    EXPECT_NEAR(T.translation.x(), truth.translation.x(), 1e-9) << name(method);
+    EXPECT_NEAR(T.translation.x(), truth.translation.x(), 1e-9) << to_string(method);
     EXPECT_NEAR(T.translation.y(), truth.translation.y(), 1e-9);
     EXPECT_NEAR(T.translation.z(), prior.translation.z(), 1e-6);
     EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 1e-9);
@@ -155,7 +155,7 @@ TEST(Observability, PlanarModeShowsXYAndYaw) {
   problem.plane_b = plane_b;
   for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
     const Answer answer = solve(problem, method);
-    EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << name(method);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << to_string(method);
     EXPECT_EQ(answer.observability.observable, (Flags{true, true, false, false, false, true}));
     EXPECT_LT(extrinsic_error(T, answer.T_a_b).translation, 0.1);
     EXPECT_LT(extrinsic_error(T, answer.T_a_b).rotation, 0.01);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "../support/corruption.hpp"
+#include "../support/paths.hpp"
 #include "../support/real_drives.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -64,8 +65,8 @@ TEST(Outliers, AFifthOfThePosesWrongAtMostDoublesTheError) {
         const auto errors = errors_of(simulated(terrain, seed), corruption, seed);
         return std::array{errors[0].rotation, errors[1].rotation};
       });
-      EXPECT_LE(median, 2 * std::max(clean, missing)) << name(corruption);
-      EXPECT_LE(worst, 2 * std::max(worst_clean, worst_missing)) << name(corruption);
+      EXPECT_LE(median, 2 * std::max(clean, missing)) << to_string(corruption);
+      EXPECT_LE(worst, 2 * std::max(worst_clean, worst_missing)) << to_string(corruption);
     }
   }
 }
@@ -74,7 +75,7 @@ class RealOutliers : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!testing::have_real_drives())
-      GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
+      GTEST_SKIP() << "the folder of real drives " << paths::data_dir() << " is not here";
   }
   /// At most twice the larger of the errors of the clean run and of one in which a fifth is missing.
   static void check(const Streams& data) {
@@ -85,8 +86,8 @@ class RealOutliers : public ::testing::Test {
         2 * std::max({clean.translation, missing[0].translation, missing[1].translation});
     for (const Corruption corruption : corruptions)
       for (const ExtrinsicError& error : errors_of(data, corruption, 7)) {
-        EXPECT_LE(error.rotation, degrees) << name(corruption);
-        EXPECT_LE(error.translation, centimetres) << name(corruption);
+        EXPECT_LE(error.rotation, degrees) << to_string(corruption);
+        EXPECT_LE(error.translation, centimetres) << to_string(corruption);
       }
   }
 };
@@ -115,7 +116,7 @@ TEST_F(RealOutliers, RobotArm) {
     for (const Corruption corruption :
          {Corruption::lasting_jumps, Corruption::frozen_once, Corruption::frozen_often})
       for (const ExtrinsicError& error : errors_of(data, corruption, seed))
-        EXPECT_LE(error.rotation, 2 * missing) << name(corruption) << ", seed " << seed;
+        EXPECT_LE(error.rotation, 2 * missing) << to_string(corruption) << ", seed " << seed;
 }
 
 TEST_F(RealOutliers, HandheldAtDifferentRates) {

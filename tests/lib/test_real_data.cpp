@@ -5,6 +5,7 @@
 // so and are skipped; everything they cover is tested on simulated drives elsewhere.
 #include <gtest/gtest.h>
 
+#include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/real_drives.hpp"
 #include "egocal/evaluation/errors.hpp"
@@ -30,7 +31,7 @@ class RealData : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!testing::have_real_drives())
-      GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
+      GTEST_SKIP() << "the folder of real drives " << paths::data_dir() << " is not here";
   }
   static Trajectory read(const std::string& name) { return testing::real_trajectory(name); }
 

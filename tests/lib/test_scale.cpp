@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/real_drives.hpp"
 #include "egocal/certificate/certificate.hpp"
@@ -147,7 +148,7 @@ TEST(Scale, NoScanFindsALowerCost) {
                                                           : testing::random_extrinsic(random);
     const auto blocks = scale_blocks(unscaled_pairs(T, random.log_uniform(0.02, 50), drive, random));
     const ScaleSolution solution = solve_scale(blocks, options);
-    const double least = scanned(total(blocks), solution, options);
+    const double least = scanned(sum_blocks(blocks), solution, options);
     EXPECT_GE(least, solution.lower_bound - solution.rounding) << k;
     if (solution.certified) {
       EXPECT_LE(solution.cost - least, 1e-9 * std::abs(solution.cost) + 2 * solution.rounding) << k;
@@ -245,7 +246,7 @@ TEST(Scale, OnTheOtherSensorItIsTheInverse) {
 }
 
 TEST(Scale, RealCameraScaledDown) {
-  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " EGOCAL_DATA_DIR;
+  if (!testing::have_real_drives()) GTEST_SKIP() << "real drives are not at " << paths::data_dir();
   for (const char* name : {"05", "07"}) {
     testing::Streams streams = testing::kitti(name);
     streams.options.stride = 4;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "../support/mistakes.hpp"
+#include "../support/paths.hpp"
 #include "../support/real_drives.hpp"
 #include "egocal/calibrate.hpp"
 
@@ -62,7 +63,7 @@ TEST(Verdict, OfMotionPairsThatAgree) {
 }
 
 TEST(Verdict, OfCleanRealDrives) {
-  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " EGOCAL_DATA_DIR;
+  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " << paths::data_dir();
   for (const testing::Streams& streams : {testing::kitti("07"), testing::euroc(), testing::robot_arm(),
                                           testing::planar(testing::kitti("07"))}) {
     CalibrationOptions options;
@@ -74,7 +75,7 @@ TEST(Verdict, OfCleanRealDrives) {
 }
 
 TEST(Verdict, OfBothStreamsInvertedOnARealRoad) {
-  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " EGOCAL_DATA_DIR;
+  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " << paths::data_dir();
   testing::Streams streams = testing::kitti("07");
   const Calibration calibration =
       calibrate(testing::inverted(streams.a), testing::inverted(streams.b), CalibrationOptions{});

@@ -15,6 +15,7 @@
 #include "scene.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 #include "tmux.hpp"
 
 namespace egocal {
@@ -35,8 +36,8 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
 
-const std::string program = EGOCAL_BIN_DIR "/egocal-monitor";
-const std::string feeder = EGOCAL_TEST_DIR "/egocal-monitor-feeder";
+const std::string program = paths::bin_dir() + "/egocal-monitor";
+const std::string feeder = paths::test_dir() + "/egocal-monitor-feeder";
 std::filesystem::path scratch;  // of this run, with the recorded session in it
 std::string recording;
 
@@ -409,10 +410,11 @@ TEST(Terminal, HostileSendersReachNeitherTheTerminalNorTheTitle) {
 }
 
 TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
-  const std::string rig = EGOCAL_SOURCE_DIR "/logs/drive.toml", log = EGOCAL_SOURCE_DIR "/logs/drive.log";
+  const std::string rig = paths::source_dir() + "/logs/drive.toml",
+                    log = paths::source_dir() + "/logs/drive.log";
   const std::string url = "udpm://239.255.76.67:7674?ttl=0";
   const auto start = [&](const std::string& name, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments{EGOCAL_BIN_DIR "/" + name, "--rig", rig, "--lcm-url", url};
+    std::vector<std::string> arguments{paths::bin_dir() + "/" + name, "--rig", rig, "--lcm-url", url};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return test::ChildProcess(arguments);
   };

@@ -14,7 +14,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "pairing/state/saved_state.hpp"

@@ -27,7 +27,7 @@ inline constexpr Corruption corruptions[] = {Corruption::missing,       Corrupti
                                              Corruption::frozen_often,  Corruption::swapped_axes,
                                              Corruption::mirrored_axes, Corruption::swapped_often};
 
-inline std::string name(Corruption corruption) {
+inline std::string to_string(Corruption corruption) {
   constexpr const char* names[] = {"missing",      "isolated jumps", "lasting jumps", "frozen once",
                                    "frozen often", "swapped axes",   "mirrored axes", "swapped often"};
   return names[static_cast<int>(corruption)];

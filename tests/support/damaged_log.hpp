@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/random_motion.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of the real drives in EGOCAL_DATA_DIR. Their licences do not allow copies here.
+// What is known of the real drives in data_dir(). Their licences do not allow copies here.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,17 @@
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/io/trajectory_file.hpp"
+#include "paths.hpp"
 #include "simulated_drive.hpp"
 
 namespace egocal::testing {
 
 inline bool have_real_drives() {
-  return std::filesystem::exists(EGOCAL_DATA_DIR);
+  return std::filesystem::exists(paths::data_dir());
 }
 
 inline Trajectory real_trajectory(const std::string& name) {
-  return read_trajectory(std::string(EGOCAL_DATA_DIR "/") + name);
+  return read_trajectory(std::string(paths::data_dir() + "/") + name);
 }
 
 /// Pose of KITTI's left camera in its lidar, and its ground planes.

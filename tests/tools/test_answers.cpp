@@ -14,6 +14,7 @@
 #include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "support/paths.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::tools {
@@ -159,7 +160,7 @@ b = "camera"
 a = "lidar"
 b = "radar"
 )";
-  const std::string command = EGOCAL_BIN_DIR "/egocal export --rig " + (folder / "rig.toml").string() +
+  const std::string command = paths::bin_dir() + "/egocal export --rig " + (folder / "rig.toml").string() +
                               " 2>" + (folder / "said").string();
   for (const std::string more : {"", " --pair lidar,sonar"}) {
     const int status = std::system((command + more).c_str());

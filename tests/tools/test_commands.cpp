@@ -17,6 +17,7 @@
 #include <sstream>
 
 #include "egocal/io/pairs_file.hpp"
+#include "support/paths.hpp"
 #include "support/random_motion.hpp"
 
 namespace {
@@ -50,7 +51,7 @@ class Commands : public ::testing::Test {
   }
   Outcome program(const std::string& name, const std::string& arguments) const {
     const std::string command =
-        EGOCAL_BIN_DIR "/" + name + " " + arguments + " >" + path("out") + " 2>" + path("err");
+        egocal::paths::bin_dir() + "/" + name + " " + arguments + " >" + path("out") + " 2>" + path("err");
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("out")), read(path("err"))};
   }
@@ -249,12 +250,12 @@ TEST_F(Commands, NothingHalfWrittenIsLeft) {
 }
 
 TEST_F(Commands, RealDrivesGiveWhatTheyShould) {
-  if (!fs::exists(EGOCAL_DATA_DIR))
-    GTEST_SKIP() << "the folder of real drives " EGOCAL_DATA_DIR " is not here";
+  if (!fs::exists(egocal::paths::data_dir()))
+    GTEST_SKIP() << "the folder of real drives " << egocal::paths::data_dir() << " is not here";
   const std::string kitti =
-      EGOCAL_DATA_DIR "/kitti_07/velodyne_pylidar.tum " EGOCAL_DATA_DIR
-                      "/kitti_07/cam0_orbslam2.tum --truth 0.333504767535,-0.00479610810717,-0.0755785517707,"
-                      "0.499924473812,-0.499145921532,0.504084765332,-0.496817289214 --weights equal ";
+      egocal::paths::data_dir() + "/kitti_07/velodyne_pylidar.tum " + egocal::paths::data_dir() +
+      "/kitti_07/cam0_orbslam2.tum --truth 0.333504767535,-0.00479610810717,-0.0755785517707,"
+      "0.499924473812,-0.499145921532,0.504084765332,-0.496817289214 --weights equal ";
   const json spatial = solved(kitti);
   EXPECT_EQ(spatial["pairs"], 1100);
   EXPECT_NEAR(spatial["error_rotation_deg"], 0.278, 0.0006);
@@ -267,8 +268,8 @@ TEST_F(Commands, RealDrivesGiveWhatTheyShould) {
   EXPECT_NEAR(planar["error_rotation_deg"], 0.262, 0.0006);
   EXPECT_NEAR(planar["error_translation_m"], 0.1434, 0.0001);
   const json euroc =
-      solved(EGOCAL_DATA_DIR "/euroc_v2_01/body_gt.tum " EGOCAL_DATA_DIR
-                             "/euroc_v2_01/body_vio.tum --truth 0,0,0,1,0,0,0 --weights equal");
+      solved(egocal::paths::data_dir() + "/euroc_v2_01/body_gt.tum " + egocal::paths::data_dir() +
+             "/euroc_v2_01/body_vio.tum --truth 0,0,0,1,0,0,0 --weights equal");
   EXPECT_NEAR(euroc["error_rotation_deg"], 0.184, 0.001);
   EXPECT_NEAR(euroc["error_translation_m"], 0.0185, 0.0001);
 }

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "egocal/error.hpp"
 #include "experiments/comparison.hpp"
@@ -270,16 +271,17 @@ Pose truth_of(const std::string& file) {
 }
 
 TEST(Compare, RepeatsTableIIOnKitti07) {
-  const std::string folder = std::string(EGOCAL_DATA_DIR) + "/kitti_07";
+  const std::string folder = paths::data_dir() + "/kitti_07";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
   const DataSet data = load(
       {.file_a = folder + "/velodyne_pylidar.tum",
        .file_b = folder + "/cam0_orbslam2.tum",
        .truth = truth_of(folder + "/truth.txt"),
-       .plane_a = checked({{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
-                           -1.779603641715662210e+00}),
-       .plane_b = checked({{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
-                           -1.684677553916568593e+00})});
+       .plane_a = validated({{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
+                             -1.779603641715662210e+00}),
+       .plane_b =
+           validated({{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
+                      -1.684677553916568593e+00})});
   EXPECT_EQ(data.pairs.size(), 1100u);
   std::map<std::string, ComparisonRow> by_name;
   for (const ComparisonRow& row : compare(data, 1)) by_name[row.method] = row;

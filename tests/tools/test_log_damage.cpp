@@ -14,6 +14,7 @@
 #include "support/child_process.hpp"
 #include "support/damaged_log.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 
 namespace egocal {
 namespace {
@@ -38,7 +39,7 @@ class LogDamage : public ::testing::Test {
     std::string said;
   };
   Outcome egocal(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), EGOCAL_BIN_DIR "/egocal");
+    arguments.insert(arguments.begin(), paths::bin_dir() + "/egocal");
     std::filesystem::remove(path("said"));
     const int code = ChildProcess(arguments, path("said")).wait(60s);
     return {code, test::read_bytes(path("said"))};
@@ -118,7 +119,7 @@ TEST_F(LogDamage, RepairWritesTheWholeFileOrNone) {
 
   // a disk that is full, over a log that was there before
   test::write_bytes(path("out.log"), "the old one");
-  const std::string command = "trap '' XFSZ; ulimit -f 4; exec " EGOCAL_BIN_DIR "/egocal log repair " +
+  const std::string command = "trap '' XFSZ; ulimit -f 4; exec " + paths::bin_dir() + "/egocal log repair " +
                               path("good.log") + " --out " + path("out.log");
   EXPECT_EQ(ChildProcess({"sh", "-c", command}).wait(60s), 1);
   EXPECT_EQ(test::read_bytes(path("out.log")), "the old one");

@@ -18,6 +18,7 @@
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/bag_writer.hpp"
+#include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace egocal {
@@ -63,7 +64,7 @@ class Recordings : public ::testing::Test {
 
   Outcome egocal(const std::string& arguments) const {
     const std::string command =
-        EGOCAL_BIN_DIR "/egocal " + arguments + " >" + folder.path("out") + " 2>" + folder.path("err");
+        paths::bin_dir() + "/egocal " + arguments + " >" + folder.path("out") + " 2>" + folder.path("err");
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
   }

@@ -19,7 +19,7 @@
 #include <thread>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/error.hpp"
@@ -27,6 +27,7 @@
 #include "supervision/supervisor.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 
 namespace egocal {
 namespace {
@@ -332,14 +333,14 @@ TEST_F(Supervision, WithTheMonitorOnTheScreenNothingElseIsWrittenThere) {
 class Up : public Supervision {
  protected:
   Up() : rig(path("drive.toml")), log(path("drive.log")) {
-    const int code = ChildProcess({EGOCAL_BIN_DIR "/egocal", "simulate", "--out", log, "--rig-out", rig,
+    const int code = ChildProcess({paths::bin_dir() + "/egocal", "simulate", "--out", log, "--rig-out", rig,
                                    "--poses", "400", "--noise", "0.001"})
                          .wait(60s);
     EXPECT_EQ(code, 0);
   }
   ChildProcess up(std::vector<std::string> more) const {
     static int port = 7780;
-    std::vector<std::string> arguments{EGOCAL_BIN_DIR "/egocal",
+    std::vector<std::string> arguments{paths::bin_dir() + "/egocal",
                                        "up",
                                        rig,
                                        "--output-dir",
@@ -436,7 +437,7 @@ TEST_F(Up, TheirProcessesCanBeTold) {
       if (counter.name == "out") out = counter.value;
   });
   const auto tell = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {EGOCAL_BIN_DIR "/egocal", "tell", "--lcm-url", url});
+    words.insert(words.begin(), {paths::bin_dir() + "/egocal", "tell", "--lcm-url", url});
     std::filesystem::remove(path("told"));
     return ChildProcess(words, path("told")).wait(30s);
   };
@@ -476,7 +477,7 @@ TEST_F(Up, LeavesNoOrphans) {
 
 TEST_F(Up, SaysInOneLineWhatIsWrong) {
   const auto refused = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {EGOCAL_BIN_DIR "/egocal", "up"});
+    arguments.insert(arguments.begin(), {paths::bin_dir() + "/egocal", "up"});
     std::filesystem::remove(path("said"));
     EXPECT_EQ(ChildProcess(arguments, path("said")).wait(30s), 1);
     EXPECT_EQ(lines(path("said")).size(), 1u) << read(path("said"));

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/stream_summary.hpp"
 #include "offline/trajectory_source.hpp"

@@ -9,7 +9,7 @@
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"

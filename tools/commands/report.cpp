@@ -19,7 +19,7 @@ struct Options {
 };
 
 std::string headline(const Calibration& calibration) {
-  return std::string(name(calibration.verdict)) + ": " + calibration.reason;
+  return std::string(to_string(calibration.verdict)) + ": " + calibration.reason;
 }
 
 ReportInput report_input(const SolveRequest& request, SolveResult result, const std::string& command) {

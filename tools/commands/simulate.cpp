@@ -10,7 +10,7 @@
 #include "arguments.hpp"
 #include "commands/commands.hpp"
 #include "commands/simulated_faults.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"

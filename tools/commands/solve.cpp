@@ -31,7 +31,7 @@ void write_extrinsic(const Options& options, const SolveResult& result) {
   extrinsic.child = options.frame_b;
   extrinsic.T_parent_child = calibration.T_a_b;
   extrinsic.certified = calibration.certificate.optimality == Optimality::certified;
-  extrinsic.pairs = static_cast<long long>(total(calibration.problem.blocks).count);
+  extrinsic.pairs = static_cast<long long>(sum_blocks(calibration.problem.blocks).count);
   extrinsic.stddev = calibration.observability.stddev;
   for (std::size_t i = 0; i < 6; ++i)
     if (!calibration.observability.observable[i])

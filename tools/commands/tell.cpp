@@ -6,7 +6,7 @@
 #include "arguments.hpp"
 #include "commands/commands.hpp"
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"

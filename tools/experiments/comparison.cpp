@@ -34,18 +34,6 @@ double median_milliseconds(int repeats, const Work& work) {
   return times[times.size() / 2];
 }
 
-std::string verdict_of(const Certificate& certificate) {
-  switch (certificate.optimality) {
-    case Optimality::certified:
-      return "certified";
-    case Optimality::not_optimal:
-      return "not optimal";
-    case Optimality::undecided:
-      break;
-  }
-  return "undecided";
-}
-
 std::string verdict_of(const BaselineAnswer& answer) {
   if (!answer.note.empty()) return answer.note;
   return answer.certified ? "certified" : answer.valid ? "valid" : "not valid";
@@ -79,7 +67,7 @@ std::vector<ComparisonRow> compare(const DataSet& data, int repeats) {
     row.milliseconds =
         median_milliseconds(repeats, [&] { solution = solve(cost_of(data.pairs, data.balance)); });
     row.T_a_b = solution.q;
-    row.verdict = verdict_of(verify(cost_of(data.pairs, data.balance), solution.q));
+    row.verdict = to_string(verify(cost_of(data.pairs, data.balance), solution.q).optimality);
     finish(row);
   };
 
@@ -102,7 +90,7 @@ std::vector<ComparisonRow> compare(const DataSet& data, int repeats) {
       };
       row.milliseconds = median_milliseconds(repeats, [&] { solution = solve(cost()); });
       row.T_a_b = extrinsic_from_planar(solution.q, G_a, G_b);
-      row.verdict = verdict_of(verify_planar(cost(), solution.q));
+      row.verdict = to_string(verify_planar(cost(), solution.q).optimality);
       finish(row);
     };
     planar("global (closed form)", [](const Matrix8d& Q) { return solve_planar(Q); });

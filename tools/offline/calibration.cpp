@@ -169,7 +169,7 @@ SolveResult calibrate_offline(const SolveRequest& request) {
     return result;
   }
   const bool closed_form = options.pairing.mode == Mode::planar && *method != Method::slsqp;
-  result.method = closed_form ? "planar" : std::string(name(*method));
+  result.method = closed_form ? "planar" : std::string(to_string(*method));
   result.solve_us = time_of_method(*method, result.calibration.problem);
   return result;
 }

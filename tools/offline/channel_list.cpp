@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/channel_list.hpp"
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 
 namespace egocal::tools {
 

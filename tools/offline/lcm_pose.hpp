@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/decode.hpp"
-#include "egocal/bus/glue.hpp"
 
 namespace egocal::tools {
 

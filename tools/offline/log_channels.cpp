@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
 #include "offline/channel_list.hpp"

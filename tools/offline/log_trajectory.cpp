@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
 #include "offline/channel_list.hpp"

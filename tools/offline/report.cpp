@@ -87,14 +87,12 @@ std::string report_json(const SolveResult& result, const std::optional<Pose>& tr
   nlohmann::ordered_json json = trust_json(result.calibration);
   json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
   json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
-  json["pairs"] = total(result.calibration.problem.blocks).count;
+  json["pairs"] = sum_blocks(result.calibration.problem.blocks).count;
   json["cost"] = certificate.cost;
   json["lower_bound"] = certificate.lower_bound;
   json["gap"] = certificate.gap;
   json["certified"] = certificate.optimality == Optimality::certified;
-  json["status"] = certificate.optimality == Optimality::certified     ? "certified"
-                   : certificate.optimality == Optimality::not_optimal ? "not optimal"
-                                                                       : "undecided";
+  json["status"] = to_string(certificate.optimality);
   json["reach_translation"] = certificate.reach_translation;
   json["reach_rotation"] = certificate.reach_rotation;
   json["observable"] = result.calibration.observability.observable;
@@ -122,7 +120,8 @@ std::string report_json(const SolveResult& result, const std::optional<Pose>& tr
   json["outliers"] = result.calibration.counts.outliers;
   json["rejected"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < result.calibration.counts.rejected.size(); ++i)
-    json["rejected"][std::string(name(static_cast<Rejection>(i)))] = result.calibration.counts.rejected[i];
+    json["rejected"][std::string(to_string(static_cast<Rejection>(i)))] =
+        result.calibration.counts.rejected[i];
   if (result.a) json["a"] = stream_json(*result.a);
   if (result.b) json["b"] = stream_json(*result.b);
   if (truth) {
@@ -145,7 +144,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
 
   text +=
       fmt::format("\nmotions       {} pairs, stride {}, weights rotation : translation = {:g} : {:g} ({})\n",
-                  total(result.calibration.problem.blocks).count, result.calibration.choice.stride,
+                  sum_blocks(result.calibration.problem.blocks).count, result.calibration.choice.stride,
                   result.calibration.choice.balance.rotation, result.calibration.choice.balance.translation,
                   result.calibration.choice.reason);
   if (result.calibration.counts.outliers > 0)
@@ -160,7 +159,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   for (std::size_t i = 0; i < result.calibration.counts.rejected.size(); ++i)
     if (result.calibration.counts.rejected[i] > 0)
       pairing.push_back(fmt::format("{} rejected: {}", result.calibration.counts.rejected[i],
-                                    name(static_cast<Rejection>(i))));
+                                    to_string(static_cast<Rejection>(i))));
   if (!pairing.empty()) text += fmt::format("pairing       {}\n", fmt::join(pairing, ", "));
   text += scale_text(result.calibration);
   if (result.calibration.time_offset)

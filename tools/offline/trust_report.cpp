@@ -60,7 +60,7 @@ nlohmann::ordered_json goal_json(const Goal& goal) {
 }
 
 std::string verdict_word(Verdict verdict) {
-  std::string word(name(verdict));
+  std::string word(to_string(verdict));
   if (verdict == Verdict::contradictory)
     for (char& letter : word) letter = static_cast<char>(letter - 'a' + 'A');
   return word;
@@ -70,7 +70,7 @@ std::string verdict_word(Verdict verdict) {
 
 nlohmann::ordered_json trust_json(const Calibration& calibration) {
   nlohmann::ordered_json json;
-  json["verdict"] = name(calibration.verdict);
+  json["verdict"] = to_string(calibration.verdict);
   json["reason"] = calibration.reason;
   json["fit"] = fit_json(calibration.fit);
   json["findings"] = nlohmann::ordered_json::array();

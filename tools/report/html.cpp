@@ -218,7 +218,7 @@ std::string settings(const ReportInput& input) {
   table += row("mode", calibration.problem.mode == Mode::planar ? "planar" : "three-dimensional");
   table +=
       row("motions", fmt::format("{} of stride {}, weights rotation : translation = {:g} : {:g} ({})",
-                                 total(calibration.problem.blocks).count, calibration.choice.stride,
+                                 sum_blocks(calibration.problem.blocks).count, calibration.choice.stride,
                                  calibration.choice.balance.rotation, calibration.choice.balance.translation,
                                  escaped(calibration.choice.reason)));
   table += row("poses", fmt::format("{} of a, {} of b, {} instants synchronised", calibration.counts.poses_a,

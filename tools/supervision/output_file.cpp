@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 
 namespace egocal::tools {

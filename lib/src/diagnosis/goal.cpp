@@ -10,7 +10,7 @@
 
 namespace egocal {
 
-std::string_view name(Platform platform) {
+std::string_view to_string(Platform platform) {
   switch (platform) {
     case Platform::car:
       return "car";
@@ -26,7 +26,7 @@ std::string_view name(Platform platform) {
 
 std::optional<Platform> platform_from_name(std::string_view text) {
   for (const Platform platform : {Platform::car, Platform::handheld, Platform::drone, Platform::arm})
-    if (name(platform) == text) return platform;
+    if (to_string(platform) == text) return platform;
   return std::nullopt;
 }
 

@@ -14,7 +14,7 @@
 
 namespace egocal {
 
-std::string_view name(Verdict verdict) {
+std::string_view to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::good:
       return "good";

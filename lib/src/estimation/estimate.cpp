@@ -51,7 +51,7 @@ class Instants {
 std::optional<StrideProblem> sum_over_strides(const PairingOptions& given, const Trajectory& a,
                                               const Trajectory& b, const StrideSumsOptions& tuning) {
   if (given.stride || given.balance || !given.robust) return std::nullopt;
-  const PairingOptions options = checked(given);
+  const PairingOptions options = validated(given);
   Instants instants(options);
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {

@@ -28,7 +28,7 @@ constexpr Writer writers[] = {
 
 }  // namespace
 
-std::string_view name(ExtrinsicFormat format) {
+std::string_view to_string(ExtrinsicFormat format) {
   for (const Writer& writer : writers)
     if (writer.format == format) return writer.name;
   return "";

@@ -29,7 +29,7 @@ double median(std::vector<double> values) {
 }
 
 DualQuaternion minimiser(const std::vector<Statistics>& blocks, const Problem& problem) {
-  const Matrix8d Q = cost_matrix(total(blocks), problem.balance);
+  const Matrix8d Q = cost_matrix(sum_blocks(blocks), problem.balance);
   return (problem.mode == Mode::planar ? solve_planar(Q) : solve_dual(Q)).q;
 }
 
@@ -89,7 +89,7 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
 Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count) {
   Linearised result;
   const Gated gated = gated_blocks(pairs, problem, count);
-  const Statistics all = total(gated.blocks);
+  const Statistics all = sum_blocks(gated.blocks);
   const Matrix8d Q_metres = cost_matrix(all, problem.balance);
   if (!Q_metres.allFinite() || !(Q_metres.diagonal().maxCoeff() > 0)) return result;
   result.length = length_scale(Q_metres);

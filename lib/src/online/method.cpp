@@ -4,7 +4,7 @@
 
 namespace egocal {
 
-std::string_view name(Method method) {
+std::string_view to_string(Method method) {
   switch (method) {
     case Method::dual:
       return "dual";
@@ -22,7 +22,7 @@ std::optional<Method> method_from_name(std::string_view text) {
   if (text == "global") return Method::dual;
   if (text == "fast") return Method::sqp;
   for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp})
-    if (text == name(method)) return method;
+    if (text == to_string(method)) return method;
   return std::nullopt;
 }
 

@@ -112,7 +112,7 @@ void Accumulator::choose() {
       if (options_.balance) break;
     }
   }
-  const std::optional<Selection> selection = select(problem, candidates, current);
+  const std::optional<Selection> selection = select_candidate(problem, candidates, current);
   if (!selection) return;
   const Candidate& chosen = candidates[selection->index];
   state_.choice.stride = chosen.stride;

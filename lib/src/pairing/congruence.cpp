@@ -151,8 +151,8 @@ bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, doubl
          unexplained_length(d, scale) > gross_lengths * steps * scale.length.large;
 }
 
-void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
-           double longest_lever_arm) {
+void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
+                       double longest_lever_arm) {
   if (doubted && ++scale.doubted % doubted_that_teach != 0) return;
   const Difference d = difference(a, b);
   remember(d.angle, scale.angle);
@@ -173,7 +173,7 @@ std::vector<bool> incongruent(std::span<const MotionPair> pairs, const Screening
     const std::size_t count = pairs.size() < 2 * memory ? pairs.size() : memory;
     CongruenceScale scale;
     for (const MotionPair& pair : pairs.first(count))
-      learn(pair.a, pair.b, false, scale, options.longest_lever_arm);
+      update_congruence(pair.a, pair.b, false, scale, options.longest_lever_arm);
     for (const MotionPair& pair : pairs.first(count))
       verdicts.push_back(incongruence(pair.a, pair.b, scale) > options.doubtful);
     pairs = pairs.subspan(count);

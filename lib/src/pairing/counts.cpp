@@ -4,7 +4,7 @@
 
 namespace egocal {
 
-std::string_view name(Rejection reason) {
+std::string_view to_string(Rejection reason) {
   switch (reason) {
     case Rejection::not_finite:
       return "not finite";

@@ -20,14 +20,14 @@ bool plausible(const StampedPose& pose) {
 }  // namespace
 
 MotionPairing::MotionPairing(PairingOptions options)
-    : options_(checked(std::move(options))),
+    : options_(validated(std::move(options))),
       clock_(options_),
       synchroniser_(options_),
       screening_(options_.screening),
       accumulator_(options_) {}
 
 MotionPairing::MotionPairing(PairingOptions options, PairingState state)
-    : options_(checked(std::move(options))),
+    : options_(validated(std::move(options))),
       poses_a_(state.poses_a),
       poses_b_(state.poses_b),
       rejections_(state.rejections),

@@ -65,7 +65,7 @@ void check(const AccumulatorOptions& options) {
 
 }  // namespace
 
-PairingOptions checked(PairingOptions options) {
+PairingOptions validated(PairingOptions options) {
   if (options.stride) require("stride", *options.stride, limits::stride, " steps");
   if (options.balance) {
     require("rotation weight", options.balance->rotation, limits::rotation_weight, "");
@@ -79,8 +79,8 @@ PairingOptions checked(PairingOptions options) {
   check(options.screening);
   check(options.accumulator);
   if (options.mode == Mode::planar) {
-    options.plane_a = checked(options.plane_a);
-    options.plane_b = checked(options.plane_b);
+    options.plane_a = validated(options.plane_a);
+    options.plane_b = validated(options.plane_b);
   }
   return options;
 }

@@ -93,8 +93,8 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
     return difference(from, to, period_us, state_.congruence) <= options_.doubtful;
   };
   const auto learn_from = [&](const Instant& from, bool doubted) {
-    learn(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted, state_.congruence,
-          options_.longest_lever_arm);
+    update_congruence(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted,
+                      state_.congruence, options_.longest_lever_arm);
   };
   const Instant newest = *state_.accepted;
   if (agree(newest, instant)) {

@@ -25,7 +25,7 @@ double score(const Spread& spread) {
 
 }  // namespace
 
-std::vector<Statistics> joined(const std::vector<Statistics>& blocks, std::uint64_t least_pairs) {
+std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std::uint64_t least_pairs) {
   std::vector<Statistics> parts;
   for (const Statistics& block : blocks) {
     if (parts.empty() || parts.back().count >= least_pairs) parts.emplace_back();
@@ -42,13 +42,13 @@ std::vector<Statistics> joined(const std::vector<Statistics>& blocks, std::uint6
 
 std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride) {
   const auto steps = static_cast<std::uint64_t>(stride);
-  std::vector<Statistics> long_ones = joined(blocks, 4 * steps);
-  return long_ones.size() >= least_parts ? long_ones : joined(blocks, 2 * steps);
+  std::vector<Statistics> long_ones = merge_blocks(blocks, 4 * steps);
+  return long_ones.size() >= least_parts ? long_ones : merge_blocks(blocks, 2 * steps);
 }
 
-std::optional<Spread> spread(const Problem& problem, int stride) {
+std::optional<Spread> answer_spread(const Problem& problem, int stride) {
   Problem parts = problem;
-  parts.blocks = joined(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
+  parts.blocks = merge_blocks(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
   if (parts.blocks.size() < least_parts) return std::nullopt;
   const Matrix8d Q = cost_matrix(parts);
   const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
@@ -66,8 +66,8 @@ std::optional<Spread> spread(const Problem& problem, int stride) {
   return result;
 }
 
-std::optional<Selection> select(const Problem& problem, std::span<const Candidate> candidates,
-                                std::optional<std::size_t> current) {
+std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
+                                          std::optional<std::size_t> current) {
   constexpr double hysteresis = 0.1;
   // What the spread does not see (stamps, interpolation) weighs less in longer motions.
   constexpr double longer = 0.075;
@@ -77,7 +77,7 @@ std::optional<Selection> select(const Problem& problem, std::span<const Candidat
     Problem trial = problem;
     trial.balance = candidates[i].balance;
     trial.blocks = candidates[i].blocks;
-    const std::optional<Spread> here = spread(trial, candidates[i].stride);
+    const std::optional<Spread> here = answer_spread(trial, candidates[i].stride);
     if (!here) continue;
     const double here_score =
         score(*here) - longer * std::log2(candidates[i].stride) - (current == i ? 2 * hysteresis : 0);

@@ -107,7 +107,7 @@ Matrix8d cost_matrix(const Statistics& statistics, const Balance& balance) {
   return Q;
 }
 
-Statistics total(const std::vector<Statistics>& blocks) {
+Statistics sum_blocks(const std::vector<Statistics>& blocks) {
   Statistics sum;
   for (const Statistics& block : blocks) sum += block;
   return sum;
@@ -119,7 +119,7 @@ double cost(const Matrix8d& Q, const DualQuaternion& q) {
 }
 
 Matrix8d cost_matrix(const Problem& problem) {
-  return cost_matrix(total(problem.blocks), problem.balance);
+  return cost_matrix(sum_blocks(problem.blocks), problem.balance);
 }
 
 }  // namespace egocal

@@ -8,7 +8,7 @@
 
 namespace egocal {
 
-GroundPlane checked(const GroundPlane& plane) {
+GroundPlane validated(const GroundPlane& plane) {
   const double norm = plane.normal.norm();
   if (!std::isfinite(plane.distance)) throw Error("ground plane: distance is not finite");
   if (!(std::abs(norm - 1) < 1e-3))

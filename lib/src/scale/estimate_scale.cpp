@@ -56,7 +56,7 @@ double residual(const MotionPair& pair, const ScaleSolution& solution, Side side
 
 /// Rotations and translations weigh alike where nothing is known of their noise.
 Balance even_balance(std::span<const ScaleStatistics> blocks, Side side) {
-  const ScaleStatistics all = total(blocks);
+  const ScaleStatistics all = sum_blocks(blocks);
   const double square = side == Side::a ? all.square_b : all.square_a;
   const double rotation = 0.25 * all.rotation.trace();
   return {1, square > 0 && rotation > 0 ? rotation / square : 1};

@@ -46,7 +46,7 @@ ScaleStatistics& ScaleStatistics::operator-=(const ScaleStatistics& other) {
   return *this;
 }
 
-ScaleStatistics total(std::span<const ScaleStatistics> blocks) {
+ScaleStatistics sum_blocks(std::span<const ScaleStatistics> blocks) {
   ScaleStatistics sum;
   for (const ScaleStatistics& block : blocks) sum += block;
   return sum;

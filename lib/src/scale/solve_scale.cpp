@@ -297,7 +297,7 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   std::vector<ScaleStatistics> blocks(given.begin(), given.end());
   if (options.side == Side::b)
     for (ScaleStatistics& block : blocks) block = with_scale_on_b(block);
-  const ScaleStatistics all = total(blocks);
+  const ScaleStatistics all = sum_blocks(blocks);
   const double sizes = all.square_a + all.square_b + all.rotation.trace();
   if (!(all.weight > 0) || !(all.square_a > 0) || !std::isfinite(sizes) || !(options.least > 0) ||
       !(options.most > options.least) || !std::isfinite(options.most))

@@ -18,7 +18,7 @@ using detail::Vector6d;
 std::vector<Vector6d> leave_out_differences(const Problem& problem, const Matrix8d& Q_metres,
                                             const DualQuaternion& T_a_b) {
   std::vector<Vector6d> differences;
-  const Statistics all = total(problem.blocks);
+  const Statistics all = sum_blocks(problem.blocks);
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
   const double length = detail::length_scale(Q_metres);
   const DualQuaternion q = detail::in_units_of(length, T_a_b);

@@ -151,7 +151,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
                                     const DualQuaternion& T_a_b, ErrorCorrelation errors) {
   Observability result;
   result.stddev.fill(infinity);
-  const Statistics all = total(problem.blocks);
+  const Statistics all = sum_blocks(problem.blocks);
   const double length = detail::length_scale(Q_metres);
   const Matrix8d Q = detail::in_units_of(length, Q_metres);
   const DualQuaternion q = detail::in_units_of(length, T_a_b);
@@ -213,7 +213,7 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
                                    ErrorCorrelation errors) {
   Observability result;
   result.stddev.fill(infinity);
-  const Statistics all = total(problem.blocks);
+  const Statistics all = sum_blocks(problem.blocks);
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
   const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, G_b);
 

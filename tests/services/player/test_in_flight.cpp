@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "player/in_flight.hpp"
 
 namespace egocal::services {

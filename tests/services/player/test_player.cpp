@@ -16,11 +16,12 @@
 #include <stdexcept>
 
 #include "egocal/bus/channels.hpp"
-#include "egocal/bus/glue.hpp"
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/loop.hpp"
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
+#include "support/paths.hpp"
 
 namespace egocal {
 namespace {
@@ -74,7 +75,7 @@ class PlayerProcess : public ::testing::Test {
     return seconds;
   }
   void start(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments{EGOCAL_BIN_DIR "/egocal-player", log, "--lcm-url", url};
+    std::vector<std::string> arguments{paths::bin_dir() + "/egocal-player", log, "--lcm-url", url};
     arguments.insert(arguments.end(), more.begin(), more.end());
     player = std::make_unique<ChildProcess>(arguments, folder / "said");
   }
@@ -301,7 +302,7 @@ TEST_F(PlayerProcess, WrongLogsAndOptionsAreRefused) {
 class OnTerminal : public PlayerProcess {
  protected:
   void start(std::vector<std::string> more) {
-    std::vector<std::string> arguments{EGOCAL_BIN_DIR "/egocal-player", log, "--lcm-url", url};
+    std::vector<std::string> arguments{paths::bin_dir() + "/egocal-player", log, "--lcm-url", url};
     arguments.insert(arguments.end(), more.begin(), more.end());
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <string_view>
 
 #include "egocal/problem/constraints.hpp"
 
@@ -14,6 +15,8 @@ enum class Optimality {
   not_optimal,  ///< a better extrinsic is known
   undecided,    ///< too imprecise to decide
 };
+/// "certified", "not optimal", "undecided": the words of JSON, tables and Python.
+std::string_view to_string(Optimality optimality);
 
 struct CertificateOptions {
   /// An answer is also certified when every better one is proven to lie this close to it.

@@ -20,7 +20,7 @@ enum class Verdict {
   doubtful,       ///< the motions agree badly, or another reading of them would give another answer
   contradictory,  ///< the motions contradict each other, or another explanation fits clearly better
 };
-std::string_view name(Verdict verdict);
+std::string_view to_string(Verdict verdict);
 
 /// Agreement in one consecutive tenth of the drive.
 struct FitTenth {
@@ -59,7 +59,7 @@ struct Finding {
 
 /// What carries the sensors: which manoeuvres can be asked for.
 enum class Platform { car, handheld, drone, arm };
-std::string_view name(Platform platform);
+std::string_view to_string(Platform platform);
 std::optional<Platform> platform_from_name(std::string_view name);
 
 /// How well each direction is to be known.

@@ -49,7 +49,7 @@ struct StrideSumsState {
 /// depends on the instants alone, not on when it is asked for.
 class StrideSums {
  public:
-  /// Uses mode, planes, prior and accumulator options; checked() ones.
+  /// Uses mode, planes, prior and accumulator options; validated() ones.
   explicit StrideSums(const PairingOptions& options, const StrideSumsOptions& tuning = {});
   StrideSums(const PairingOptions& options, const StrideSumsOptions& tuning, StrideSumsState state);
 

@@ -34,7 +34,7 @@ enum class ExtrinsicFormat {
   opencv,    ///< FileStorage with R and T as stereoRectify takes them: points of the parent to the child
   matrix,    ///< 4 x 4 numbers, for numpy.loadtxt and the like
 };
-std::string_view name(ExtrinsicFormat format);
+std::string_view to_string(ExtrinsicFormat format);
 std::optional<ExtrinsicFormat> extrinsic_format_from_name(std::string_view name);
 /// All of them, in the order above.
 std::vector<std::string> extrinsic_format_names();

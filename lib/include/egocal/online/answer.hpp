@@ -16,7 +16,7 @@ namespace egocal {
 
 /// How to solve (18). In planar mode dual and sdp are the closed form; sqp is too (it needs no start).
 enum class Method { dual, sdp, sqp, slsqp };
-std::string_view name(Method method);
+std::string_view to_string(Method method);
 std::optional<Method> method_from_name(std::string_view name);  ///< also "global" (dual) and "fast" (sqp)
 
 /// Per direction x y z roll pitch yaw of sensor a's frame.

@@ -41,7 +41,7 @@ struct AccumulatorState {
 /// Instants in, statistics of every stride under consideration and the choice among them out.
 class Accumulator {
  public:
-  /// Uses mode, planes, stride, balance, robust, prior and the options of its own stage; checked() ones.
+  /// Uses mode, planes, stride, balance, robust, prior and the options of its own stage; validated() ones.
   explicit Accumulator(const PairingOptions& options);
   Accumulator(const PairingOptions& options, AccumulatorState state);
 

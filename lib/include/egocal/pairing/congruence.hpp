@@ -56,7 +56,7 @@ std::vector<bool> incongruent(std::span<const MotionPair> pairs, const Screening
 
 /// Learns what is typical. Of motions that were doubted only one in eight teaches: they may be wrong, or the
 /// beginning of another regime. longest_lever_arm [m]: see ScreeningOptions.
-void learn(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
-           double longest_lever_arm = ScreeningOptions{}.longest_lever_arm);
+void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
+                       double longest_lever_arm = ScreeningOptions{}.longest_lever_arm);
 
 }  // namespace egocal

@@ -20,7 +20,7 @@ enum class Rejection {
   too_much_rotation,  ///< so near to half a turn that the sign of its quaternion is a guess
   count_
 };
-std::string_view name(Rejection reason);
+std::string_view to_string(Rejection reason);
 
 /// Number of rejections by reason.
 struct Rejections {

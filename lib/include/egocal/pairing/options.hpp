@@ -98,6 +98,6 @@ struct PairingOptions {
 
 /// The options, with unit normals of the planes. Throws Error naming the option that is not finite or out of
 /// its range (egocal/limits.hpp).
-PairingOptions checked(PairingOptions options);
+PairingOptions validated(PairingOptions options);
 
 }  // namespace egocal

@@ -18,7 +18,7 @@ struct Candidate {
 };
 
 /// The blocks, neighbours joined until each has at least so many pairs.
-std::vector<Statistics> joined(const std::vector<Statistics>& blocks, std::uint64_t least_pairs);
+std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std::uint64_t least_pairs);
 
 /// Blocks so long that what neighbours share (motions of so many steps overlap) hardly matters to the
 /// jack-knife: four motions, or two where that would leave too few blocks.
@@ -31,7 +31,7 @@ struct Spread {
   int directions = 0;      ///< observable ones
 };
 /// Empty where too few parts of at least two strides' length are there, or nothing is observable.
-std::optional<Spread> spread(const Problem& problem, int stride);
+std::optional<Spread> answer_spread(const Problem& problem, int stride);
 
 /// The candidate with the smallest spread, in rotation and translation together (their product: it has no
 /// unit to choose). One that shows more directions beats one that shows fewer. `current` (an index) keeps its
@@ -40,7 +40,7 @@ struct Selection {
   std::size_t index = 0;
   Spread spread;
 };
-std::optional<Selection> select(const Problem& problem, std::span<const Candidate> candidates,
-                                std::optional<std::size_t> current);
+std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
+                                          std::optional<std::size_t> current);
 
 }  // namespace egocal

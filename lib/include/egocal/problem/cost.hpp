@@ -49,7 +49,7 @@ EGOCAL_SAME_LAYOUT(Statistics)
 Matrix8d cost_matrix(const Statistics& statistics, const Balance& balance = {});
 
 /// The sum of the blocks, in their order.
-Statistics total(const std::vector<Statistics>& blocks);
+Statistics sum_blocks(const std::vector<Statistics>& blocks);
 
 /// J(q) = q' Q q (16).
 double cost(const Matrix8d& Q, const DualQuaternion& q);

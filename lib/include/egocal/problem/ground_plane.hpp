@@ -16,7 +16,7 @@ EGOCAL_SAME_LAYOUT(GroundPlane)
 
 /// Throws Error where the normal is not of length one (to 1e-3; it is then normalised) or a value is not
 /// finite.
-GroundPlane checked(const GroundPlane& plane);
+GroundPlane validated(const GroundPlane& plane);
 
 /// G of (23): the pose of the plane's frame (z up, origin on the ground below the sensor) in the sensor's
 /// frame, with the least rotation that takes e_z to the normal.

@@ -36,7 +36,7 @@ struct ScaleStatistics {
   ScaleStatistics& operator-=(const ScaleStatistics& other);
 };
 
-ScaleStatistics total(std::span<const ScaleStatistics> blocks);
+ScaleStatistics sum_blocks(std::span<const ScaleStatistics> blocks);
 
 /// The same motions with the scale multiplying the translations of b instead. The extrinsic is then in the
 /// units of a.

@@ -120,7 +120,7 @@ Meaning meaning_of(const ColumnName& name) {
 
 }  // namespace
 
-std::string_view name(Quantity quantity) {
+std::string_view to_string(Quantity quantity) {
   constexpr std::string_view names[] = {"time", "seconds", "nanoseconds", "x",         "y",     "z",
                                         "qw",   "qx",      "qy",          "qz",        "roll",  "pitch",
                                         "yaw",  "heading", "latitude",    "longitude", "height"};

@@ -33,7 +33,7 @@ enum class Quantity {
   count_
 };
 inline constexpr std::size_t quantities = static_cast<std::size_t>(Quantity::count_);
-std::string_view name(Quantity quantity);
+std::string_view to_string(Quantity quantity);
 
 /// Which column holds which quantity, and in which unit where a header says so.
 struct ColumnMap {

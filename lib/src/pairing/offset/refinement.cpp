@@ -221,7 +221,7 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
     (k < 3 ? unit.real : unit.dual)[k % 3 + 1] = 1;
     tangent.col(k) = (*q_ * unit).vec();
   }
-  const double weight = total(statistics_[1]).weight;
+  const double weight = sum_blocks(statistics_[1]).weight;
   std::vector<Part> parts;
   Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
@@ -244,7 +244,7 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
     mixed += part.cross * part.row.transpose();
     parts.push_back(part);
   }
-  const Matrix8d Q = cost_matrix(total(statistics_[1]), balance);
+  const Matrix8d Q = cost_matrix(sum_blocks(statistics_[1]), balance);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> curvature(2 * tangent.transpose() * Q *
                                                                              tangent);
   // directions that the motions do not show change nothing
@@ -286,10 +286,10 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
 void Refinement::conclude() {
   const Balance balance{1, options_.translation_weight};
   std::array<Solution, 3> solutions;
-  const double weight = total(statistics_[1]).weight;
+  const double weight = sum_blocks(statistics_[1]).weight;
   if (weight < 10) return done_();
   for (std::size_t which = 0; which < 3; ++which)
-    solutions[which] = solve_dual(cost_matrix(total(statistics_[which]), balance));
+    solutions[which] = solve_dual(cost_matrix(sum_blocks(statistics_[which]), balance));
   const double low = solutions[0].cost, middle = solutions[1].cost, high = solutions[2].cost;
   q_ = solutions[1].q;
   const double arm = arm_us_ / second_us;
