@@ -270,8 +270,15 @@ std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOpti
 }  // namespace
 
 Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
-  Evidence evidence{
-      {a, b, {}, {}, max_gap, 1, most_motions}, clock, synchronised(a, b, clock, max_gap), 1, {}};
+  Evidence evidence{turning_of(a),
+                    turning_of(b),
+                    {a, b, {}, {}, max_gap, 1, most_motions, {}, {}},
+                    clock,
+                    synchronised(a, b, clock, max_gap),
+                    1,
+                    {}};
+  evidence.streams.turning_a = evidence.turning_a;
+  evidence.streams.turning_b = evidence.turning_b;
   evidence.given.clock = clock;
   const auto n = static_cast<int>(evidence.instants.time.size());
   double least = INFINITY;
