@@ -17,7 +17,7 @@ struct Streams {
   PoseReading read_a, read_b;
   double max_gap = 0.5;      ///< [s]
   double motion_length = 1;  ///< of the motions that are compared [s]
-  std::size_t most = 1000;   ///< motions
+  DiagnosisOptions options;
   /// From each pose to the next, see turning_of() [rad].
   std::span<const double> turning_a, turning_b;
 };

@@ -4,19 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace egocal::detail {
 
 namespace {
 
-/// Nearer to half a turn the sign of the quaternion is a guess [rad].
-constexpr double most_rotation = 170 * std::numbers::pi / 180;
-/// Blocks that the comparison of two explanations counts, at most: more would not be independent.
-constexpr std::size_t most_blocks = 64;
-/// A motion that spans more than this many times its usual duration crosses a gap.
-constexpr double most_stretched = 4;
 /// Distances of stamps that show the usual one.
 constexpr std::size_t most_periods = 1000;
 
@@ -136,7 +129,7 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
 }
 
 Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
-                   std::size_t most) {
+                   std::size_t most, const MotionSampleOptions& options) {
   Motions motions;
   motions.stride = stride;
   const auto steps = static_cast<std::size_t>(stride);
@@ -146,26 +139,26 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   motions.all.reserve((n - steps) / each + 1);
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
-    if (instants.time[k] - instants.time[i] > most_stretched * stride * instants.period) continue;
+    if (instants.time[k] - instants.time[i] > options.most_stretched * stride * instants.period) continue;
     Motion motion = motion_from(conjugate(reread(instants.a(i), read_a)) * reread(instants.a(k), read_a),
                                 conjugate(reread(instants.b(i), read_b)) * reread(instants.b(k), read_b));
-    if (std::max(motion.angle_a, motion.angle_b) > most_rotation) continue;
+    if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
     motion.time = 0.5 * (instants.time[i] + instants.time[k]);
     motions.all.push_back(std::move(motion));
   }
   const std::size_t independent = n / (2 * steps) >= 16 ? n / (2 * steps) : n / steps;
-  motions.blocks = std::max<std::size_t>(1, std::min({most_blocks, independent, motions.all.size()}));
+  motions.blocks = std::max<std::size_t>(1, std::min({options.most_blocks, independent, motions.all.size()}));
   measure_sizes(motions);
   return motions;
 }
 
-Motions motions_of(std::span<const MotionPair> pairs) {
+Motions motions_of(std::span<const MotionPair> pairs, const MotionSampleOptions& options) {
   Motions motions;
   for (const MotionPair& pair : pairs) {
     motions.all.push_back(motion_from(normalized(pair.a), normalized(pair.b)));
     motions.all.back().time = static_cast<double>(motions.all.size() - 1);
   }
-  motions.blocks = std::max<std::size_t>(1, std::min(most_blocks, motions.all.size()));
+  motions.blocks = std::max<std::size_t>(1, std::min(options.most_blocks, motions.all.size()));
   measure_sizes(motions);
   return motions;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnosis/reading.hpp"
+#include "egocal/diagnosis/options.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/cost.hpp"
 
@@ -70,10 +71,10 @@ struct Motions {
 
 /// Motions over `stride` instants, at most `most` of them, evenly spread.
 Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
-                   std::size_t most);
+                   std::size_t most, const MotionSampleOptions& options = {});
 
 /// Motions that come as such; their order takes the place of time.
-Motions motions_of(std::span<const MotionPair> pairs);
+Motions motions_of(std::span<const MotionPair> pairs, const MotionSampleOptions& options = {});
 
 /// The same motions with the lengths of b multiplied.
 Motions scaled(const Motions& motions, double scale_b);
