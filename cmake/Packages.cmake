@@ -63,7 +63,6 @@ set(needs_library "")
 if(library_type STREQUAL "SHARED_LIBRARY")
   set(needs_library "${library_package} (= ${PROJECT_VERSION})")
   set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "${needs_library}")
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/triggers)
   string(PREPEND needs_library ", ")
 endif()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
