@@ -5,6 +5,7 @@
 #include "egocal/online/algorithm1.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/trajectory.hpp"
+#include "egocal/rig/consistent_set.hpp"
 
 #define EGOCAL_DEFINE_LAYOUT(Type) \
   template <>                      \
@@ -29,5 +30,6 @@ EGOCAL_DEFINE_LAYOUT(OnlineOptions)
 EGOCAL_DEFINE_LAYOUT(OnlineState)
 EGOCAL_DEFINE_LAYOUT(OnlineStep)
 EGOCAL_DEFINE_LAYOUT(StampedPose)
+EGOCAL_DEFINE_LAYOUT(RigEdge)
 
 }  // namespace egocal::detail

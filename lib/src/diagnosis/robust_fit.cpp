@@ -12,6 +12,10 @@ namespace egocal::detail {
 
 namespace {
 
+/// Reweighting rounds: the weights of gross outliers are negligible after three.
+constexpr int rounds = 4;
+/// Squares beyond this many times the typical one lose weight (three standard deviations of a residual).
+constexpr double inlier = 9;
 /// Squares below this part of the motion are rounding.
 constexpr double rounding = 1e-16;
 
@@ -98,10 +102,10 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T) {
   return fit;
 }
 
-static RobustFit reweighted(const Motions& motions, int rounds, double inlier) {
+static RobustFit reweighted(const Motions& motions, int repeats) {
   std::vector<double> weights(motions.all.size(), 1.0);
   RobustFit fit;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < repeats; ++round) {
     fit = evaluated(motions, weighted_solution(motions, weights));
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const double w = 1 / (1 + fit.squares[i] / (inlier * fit.typical));
@@ -112,12 +116,12 @@ static RobustFit reweighted(const Motions& motions, int rounds, double inlier) {
   return fit;
 }
 
-RobustFit robust_fit(const Motions& motions, const RobustFitOptions& options) {
-  return reweighted(motions, options.rounds, options.inlier);
+RobustFit robust_fit(const Motions& motions) {
+  return reweighted(motions, rounds);
 }
 
-RobustFit quick_fit(const Motions& motions, const RobustFitOptions& options) {
-  return reweighted(motions, 2, options.inlier);
+RobustFit quick_fit(const Motions& motions) {
+  return reweighted(motions, 2);
 }
 
 namespace {

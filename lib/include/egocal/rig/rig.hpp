@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "egocal/certificate/certificate.hpp"
+#include "egocal/problem/problem.hpp"
+#include "egocal/rig/consistent_set.hpp"
+
+namespace egocal {
+
+/// The motions of two sensors of a rig. Sensors are numbered from 0.
+struct RigPair {
+  std::size_t a = 0, b = 0;
+  Problem problem;                ///< mode, planes and balance; its blocks are not looked at
+  std::vector<MotionPair> pairs;  ///< consecutive, in the order of time; outliers are left out
+  /// Motions are rejected that fit this answer far worse than the median one does; empty: around their own.
+  std::optional<DualQuaternion> T_a_b;
+};
+
+struct RigOptions {
+  /// Parts of the drive that the jack-knife of a loop leaves out, the same times for all pairs. Four times
+  /// the parameters of a loop.
+  std::size_t blocks = 24;
+  double false_alarms = 1e-3;  ///< chance that any loop of a consistent rig is called open
+  /// A loop is called open where its misfit also exceeds one of these: odometry has systematic errors that
+  /// repeat in every part of a drive (0.5 cm between three Tango devices, docs/rigs.md).
+  double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
+  double least_translation = 0.01;                        ///< [m]
+  /// A sensor is blamed where its noise (variance) is this many times that of every other one.
+  double blame_ratio = 3;
+};
+
+/// Optimum of one pair by itself.
+struct RigPairAnswer {
+  std::size_t a = 0, b = 0;
+  DualQuaternion T_a_b;
+  Certificate certificate;
+  double residual_rotation = 0;     ///< mean squared residual of the real rows
+  double residual_translation = 0;  ///< of the dual rows [m^2]
+};
+
+/// Three sensors and the misfit of their pairwise answers, T_ab T_bc T_ca, that should be the identity.
+struct Loop {
+  std::array<std::size_t, 3> sensors{};
+  std::array<double, 6> misfit{};  ///< x y z and rotation vector in the frame of the first [m, rad]
+  std::array<double, 6> stddev{};  ///< by the jack-knife of the loop, whose answers share their errors, with
+                                   ///< what noisy rotations take off the translations (docs/method.md)
+  double chi_square = 0;           ///< misfit against its covariance: Hotelling's T^2 of 6 components
+  double false_alarm = 1;          ///< chance of at least this in a consistent rig
+  bool closed = true;
+};
+
+struct RigSolution {
+  std::vector<RigPairAnswer> pairs;
+  std::vector<Loop> loops;
+  /// Poses of all sensors; not solved in planar mode, where the pairs with sensor 0 take its place.
+  ConsistentSet set;
+  /// Per sensor, what it adds to the residuals of its pairs (three-cornered hat), as a part of the mean;
+  /// empty with two sensors.
+  std::vector<double> noise;
+  std::optional<std::size_t> blamed;  ///< the sensor that stands out by its noise
+};
+
+/// All pairs, all loops of three, and the one consistent set of extrinsics that fits all pairs best. Throws
+/// Error where a sensor has no pair with sensor 0, or a pair has no motions. Deterministic.
+RigSolution solve_rig(std::size_t sensors, std::span<const RigPair> pairs, const RigOptions& options = {});
+
+}  // namespace egocal

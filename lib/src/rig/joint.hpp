@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "solvers/tangent.hpp"
+
+namespace egocal::detail {
+
+/// One pair of the joint problem, lengths in a common unit.
+struct JointPair {
+  std::size_t a = 0, b = 0;  ///< a < b
+  Matrix8d Q;                ///< symmetric; divided by the pair's minimum, so that noisy pairs count less
+  DualQuaternion optimum;    ///< of this pair alone
+};
+
+/// T_a_b of two poses in sensor 0.
+inline DualQuaternion relative(const DualQuaternion& a, const DualQuaternion& b) {
+  return canonical_sign(normalized(conjugate(a) * b));
+}
+
+double joint_cost(std::span<const JointPair> pairs, const std::vector<DualQuaternion>& poses);
+
+/// Half the gradient and half the Hessian over (x_1, ..., x_n), pose i moving to q_i (1 + x_i); sensor 0
+/// stays.
+struct JointDerivatives {
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+};
+JointDerivatives joint_derivatives(std::span<const JointPair> pairs,
+                                   const std::vector<DualQuaternion>& poses);
+
+/// The local minimum that Newton's method reaches from these poses.
+std::vector<DualQuaternion> minimise_joint(std::span<const JointPair> pairs,
+                                           std::vector<DualQuaternion> poses);
+
+/// What docs/rigs.md proves of a joint minimum.
+struct JointProof {
+  double pairwise_bound = 0;
+  double lower_bound = 0;  ///< of every set of poses
+  double rounding = 0;     ///< of the cost in double precision
+  bool global = false;  ///< the minimum is proven to be the only one as low, but for a rest of its gradient
+};
+
+/// Empty where not even the bounds of the pairs are proven. Unit poses, up to rounding.
+std::optional<JointProof> prove_joint_minimum(std::span<const JointPair> pairs,
+                                              const std::vector<DualQuaternion>& poses);
+
+}  // namespace egocal::detail

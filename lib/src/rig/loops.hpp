@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "egocal/rig/rig.hpp"
+
+namespace egocal::detail {
+
+/// Statistics of one pair in parts of the drive that are the same for all pairs.
+struct TimedPair {
+  std::vector<Statistics> blocks;
+  Statistics all;
+};
+
+/// T_a_b that minimises (18) over the statistics; mode, planes and balance are the problem's.
+DualQuaternion extrinsic_of(const Problem& problem, const Statistics& statistics);
+
+/// All loops of three sensors that have all three pairs. timed: one of every pair, with options.blocks
+/// blocks.
+std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
+                           std::span<const TimedPair> timed, const RigOptions& options);
+
+}  // namespace egocal::detail

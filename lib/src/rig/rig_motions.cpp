@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/rig/rig_motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "egocal/pairing/congruence.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Poses of all sensors at one time.
+struct Instant {
+  std::int64_t time_us = 0;
+  std::vector<DualQuaternion> poses;
+};
+
+/// The sensor whose poses are furthest apart.
+std::size_t slowest(std::span<const Trajectory> sensors) {
+  std::size_t found = 0;
+  double longest = -1;
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    if (sensors[k].size() < 2) return k;
+    const double period = static_cast<double>(sensors[k].back().time_us - sensors[k].front().time_us) /
+                          static_cast<double>(sensors[k].size() - 1);
+    if (period > longest) longest = period, found = k;
+  }
+  return found;
+}
+
+/// The pose at a time, interpolated; empty outside of the trajectory and within a gap.
+std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t time_us, double max_gap) {
+  const auto next =
+      std::lower_bound(trajectory.begin(), trajectory.end(), time_us,
+                       [](const StampedPose& pose, std::int64_t time) { return pose.time_us < time; });
+  if (next == trajectory.end()) return std::nullopt;
+  if (next->time_us == time_us) return next->pose;
+  if (next == trajectory.begin()) return std::nullopt;
+  const auto last = std::prev(next);
+  const auto gap = static_cast<double>(next->time_us - last->time_us);
+  if (gap > 1e6 * max_gap) return std::nullopt;
+  return interpolate(last->pose, next->pose, static_cast<double>(time_us - last->time_us) / gap);
+}
+
+std::vector<Instant> instants_of(std::span<const Trajectory> sensors, double max_gap) {
+  std::vector<Instant> instants;
+  for (const StampedPose& reference : sensors[slowest(sensors)]) {
+    Instant instant{reference.time_us, {}};
+    for (const Trajectory& sensor : sensors)
+      if (const auto pose = pose_at(sensor, reference.time_us, max_gap)) instant.poses.push_back(*pose);
+    if (instant.poses.size() == sensors.size()) instants.push_back(std::move(instant));
+  }
+  return instants;
+}
+
+DualQuaternion motion(const Instant& begin, const Instant& end, std::size_t sensor) {
+  return canonical_sign(normalized(conjugate(begin.poses[sensor]) * end.poses[sensor]));
+}
+
+}  // namespace
+
+std::vector<RigPair> rig_motions(std::span<const Trajectory> sensors, const RigMotionsOptions& options) {
+  std::vector<RigPair> pairs;
+  if (sensors.size() < 2) return pairs;
+  const std::vector<Instant> instants = instants_of(sensors, options.max_gap);
+  const auto stride = static_cast<std::size_t>(std::max(1, options.stride));
+  const std::size_t count = instants.size() > stride ? instants.size() - stride : 0;
+  std::vector<bool> wrong(count, false);
+  for (std::size_t a = 0; a < sensors.size(); ++a)
+    for (std::size_t b = a + 1; b < sensors.size(); ++b) {
+      RigPair pair{a, b, {}, {}, {}};
+      pair.problem.balance = options.balance;
+      for (std::size_t i = 0; i < count; ++i)
+        pair.pairs.push_back({motion(instants[i], instants[i + stride], a),
+                              motion(instants[i], instants[i + stride], b), instants[i].time_us,
+                              instants[i + stride].time_us, 1});
+      const std::vector<bool> incongruent_here = incongruent(pair.pairs, options.screening);
+      for (std::size_t i = 0; i < count; ++i) wrong[i] = wrong[i] || incongruent_here[i];
+      pairs.push_back(std::move(pair));
+    }
+  for (RigPair& pair : pairs) {
+    std::size_t i = 0;
+    std::erase_if(pair.pairs, [&](const MotionPair&) { return wrong[i++]; });
+  }
+  return pairs;
+}
+
+}  // namespace egocal
