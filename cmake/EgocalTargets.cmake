@@ -31,10 +31,35 @@ function(egocal_target_defaults target)
   endif()
 endfunction()
 
-# A program of ours: lands in build/bin, is installed to bin, knows its version.
+# A program of ours: lands in build/bin, is installed to bin with its manual pages, knows its version. The target
+# egocal-program makes the program egocal, as the library has that name already.
 function(egocal_add_program name)
   add_executable(${name} ${ARGN})
   egocal_target_defaults(${name})
   target_compile_definitions(${name} PRIVATE EGOCAL_VERSION="${PROJECT_VERSION}")
-  egocal_install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  egocal_install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+  string(REGEX REPLACE "-program$" "" program ${name})
+  egocal_document_program(${name} ${program})
+endfunction()
+
+# Manual pages and shell completion of a program, written by the program itself from its command line.
+function(egocal_document_program target program)
+  if(NOT EGOCAL_INSTALL OR CMAKE_CROSSCOMPILING)
+    return()
+  endif()
+  set(share ${CMAKE_BINARY_DIR}/manual/${program})
+  file(MAKE_DIRECTORY ${share})
+  add_custom_command(
+    OUTPUT ${share}/written
+    COMMAND ${target} --manual ${share} ${PROJECT_VERSION}
+    COMMAND ${CMAKE_COMMAND} -E touch ${share}/written
+    DEPENDS ${target}
+    COMMENT "Manual pages and shell completion of ${program}")
+  add_custom_target(${program}-manual ALL DEPENDS ${share}/written)
+  install(DIRECTORY ${share}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs FILES_MATCHING PATTERN *.1)
+  set(completions ${CMAKE_INSTALL_DATADIR})
+  install(FILES ${share}/${program}.bash DESTINATION ${completions}/bash-completion/completions RENAME ${program}
+          COMPONENT programs)
+  install(FILES ${share}/_${program} DESTINATION ${completions}/zsh/vendor-completions COMPONENT programs)
+  install(FILES ${share}/${program}.fish DESTINATION ${completions}/fish/vendor_completions.d COMPONENT programs)
 endfunction()

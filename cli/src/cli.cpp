@@ -5,7 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <utility>
+
+#include "completion.hpp"
+#include "manual.hpp"
 
 namespace egocal::cli {
 
@@ -78,6 +82,37 @@ std::string advice(const CLI::App& program, int argc, char** argv) {
   }
   const std::string name = &command == &program ? "" : program.get_name() + " ";
   return "; see " + name + command.get_name() + " --help";
+}
+
+void write_file(const std::string& name, const std::string& text) {
+  std::ofstream file(name, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error(name + ": cannot be written");
+}
+
+/// `--completion SHELL` prints a script; `--manual FOLDER VERSION` writes the manual pages and the scripts
+/// into a folder, for packages. Not listed in the help. Empty: neither was given.
+std::optional<int> write_description(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.size() == 2 && arguments[0] == "--completion") {
+    const CommandDescription program = describe(app);
+    if (arguments[1] != "bash" && arguments[1] != "zsh" && arguments[1] != "fish")
+      throw UsageError("--completion: expected bash, zsh or fish, got '" + arguments[1] + "'");
+    const std::string script = arguments[1] == "bash"  ? bash_completion(program)
+                               : arguments[1] == "zsh" ? zsh_completion(program)
+                                                       : fish_completion(program);
+    std::fputs(script.c_str(), stdout);
+    return 0;
+  }
+  if (arguments.size() != 3 || arguments[0] != "--manual") return std::nullopt;
+  const CommandDescription program = describe(app);
+  const std::string folder = arguments[1] + "/";
+  for (const CommandDescription* command : all_commands(program))
+    write_file(folder + manual_file(*command), manual_page(*command, arguments[2]));
+  write_file(folder + program.path + ".bash", bash_completion(program));
+  write_file(folder + "_" + program.path, zsh_completion(program));
+  write_file(folder + program.path + ".fish", fish_completion(program));
+  return 0;
 }
 
 void print_error(const std::string& name, const std::string& message) {
@@ -256,8 +291,9 @@ std::optional<int> Program::parse(int argc, char** argv) {
     arguments.erase(arguments.begin());
     arguments.emplace_back("--help");
   }
-  std::reverse(arguments.begin(), arguments.end());
   try {
+    if (const std::optional<int> written = write_description(*app_, arguments)) return written;
+    std::reverse(arguments.begin(), arguments.end());
     app_->parse(arguments);
     return std::nullopt;
   } catch (const CLI::Success& success) {

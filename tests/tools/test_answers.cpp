@@ -142,6 +142,35 @@ TEST_F(AnswersTest, OfALogIsTheSessionThatRanAtItsEnd) {
   EXPECT_TRUE(best->certified());
 }
 
+TEST_F(AnswersTest, AllOfThemAreOneTree) {
+  const std::string log = folder / "session.log";
+  {
+    bus::LogWriter writer(log);
+    for (const char* b : {"right", "rear"}) {
+      problem_t to = problem(1);
+      to.sensor_b = b;
+      writer.write(to.utime, bus::problem_channel("left", b), bus::encode(to));
+      writer.write(to.utime, bus::calibration_channel("left", b), bus::encode(answer(to)));
+    }
+    writer.close();
+  }
+  const std::string out = folder / "robot.urdf";
+  const auto run = [&](const std::string& options) {
+    const int status = std::system(
+        (paths::bin_dir() + "/egocal export --log " + log + " " + options + " --out " + out + " 2>/dev/null")
+            .c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  EXPECT_EQ(run("--all --format matrix"), 1);
+  EXPECT_EQ(run("--all --pair left,right"), 2);
+  EXPECT_FALSE(std::filesystem::exists(out));
+  ASSERT_EQ(run("--all --format urdf"), 0);
+  std::ifstream stream(out);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const char* part : {"<robot", "left_to_right", "left_to_rear", "</robot>"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
 TEST_F(AnswersTest, SeveralPairsWithoutAChoiceAreWrongUsage) {
   std::ofstream(folder / "rig.toml") << R"(
 [[sensor]]

@@ -10,6 +10,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/alignment.hpp"
+#include "offline/provenance.hpp"
 #include "offline/trajectory_source.hpp"
 
 namespace egocal::tools {
@@ -41,7 +42,7 @@ std::string pose_text(const Pose& T) {
                      T.rotation.y(), T.rotation.z());
 }
 
-void run(const Options& options) {
+void run(const Options& options, const std::string& command_line) {
   const Trajectory a = read(options, options.a, options.times_a).trajectory;
   const Trajectory b = read(options, options.b, options.times_b).trajectory;
   CalibrationOptions calibration_options;
@@ -52,15 +53,18 @@ void run(const Options& options) {
   if (!options.out.empty()) write_tum(options.out, alignment.b_as_a);
   constexpr double degrees = 180 / std::numbers::pi;
   if (options.json) {
-    const nlohmann::ordered_json object{{"T_a_b", pose_json(calibration.T_a_b)},
-                                        {"T_world_a_world_b", pose_json(alignment.T_world_a_world_b)},
-                                        {"certified", certified},
-                                        {"poses", alignment.b_as_a.size()},
-                                        {"compared", alignment.compared},
-                                        {"rms_translation_m", alignment.rms_translation},
-                                        {"rms_rotation_rad", alignment.rms_rotation},
-                                        {"time_offset_s", calibration.time_offset_applied}};
-    fmt::print("{}\n", object.dump(2));
+    nlohmann::ordered_json object{{"T_a_b", pose_json(calibration.T_a_b)},
+                                  {"T_world_a_world_b", pose_json(alignment.T_world_a_world_b)},
+                                  {"certified", certified},
+                                  {"poses", alignment.b_as_a.size()},
+                                  {"compared", alignment.compared},
+                                  {"rms_translation_m", alignment.rms_translation},
+                                  {"rms_rotation_rad", alignment.rms_rotation},
+                                  {"time_offset_s", calibration.time_offset_applied}};
+    append_json(object, provenance_json(command_line));
+    object["files"] = files_json(
+        {{"a", options.a}, {"b", options.b}, {"times_a", options.times_a}, {"times_b", options.times_b}});
+    fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return;
   }
   fmt::print("extrinsic    T_a_b, pose of sensor b in sensor a: {}{}\n", pose_text(calibration.T_a_b),
@@ -87,7 +91,7 @@ void add_align(cli::App program) {
   command.add_flag("--time-offset", options->time_offset, "estimates the offset of the clocks first");
   command.add_option("--out", options->out, "B as a trajectory of sensor a in the world of a, as TUM");
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options] { run(*options); });
+  command.callback([options, command] { run(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

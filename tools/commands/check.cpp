@@ -6,6 +6,7 @@
 
 #include "commands/commands.hpp"
 #include "offline/calibration.hpp"
+#include "offline/provenance.hpp"
 #include "offline/trust_report.hpp"
 
 namespace egocal::tools {
@@ -27,15 +28,20 @@ std::string tenths_text(const Fit& fit) {
   return text;
 }
 
-void run(const Options& options) {
+void run(const Options& options, const std::string& command_line) {
   SolveRequest request;
   request.source = options.source;
   if (!options.times.empty()) request.source.times_a = request.source.times_b = options.times;
   const Calibration calibration = calibrate_offline(request).calibration;
-  if (options.json)
-    fmt::print("{}\n", trust_json(calibration).dump(2));
-  else
+  if (options.json) {
+    nlohmann::ordered_json json = trust_json(calibration);
+    append_json(json, provenance_json(command_line));
+    json["settings"] = settings_json(request);
+    json["files"] = files_json(request);
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
     fmt::print("{}{}", trust_text(calibration), tenths_text(calibration.fit));
+  }
   if (calibration.verdict == Verdict::contradictory) throw cli::Exit{3};
 }
 
@@ -50,7 +56,7 @@ void add_check(cli::App program) {
   command.add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
   command.add_option("--times", options->times, "times of KITTI poses, one a line [s]");
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options] { run(*options); });
+  command.callback([options, command] { run(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

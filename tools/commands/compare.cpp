@@ -10,6 +10,7 @@
 
 #include "commands/source_options.hpp"
 #include "experiments/comparison.hpp"
+#include "offline/provenance.hpp"
 
 namespace egocal::tools {
 
@@ -37,11 +38,15 @@ nlohmann::ordered_json row_json(const ComparisonRow& row) {
   return json;
 }
 
-void run(const Options& options) {
+void run(const Options& options, const std::string& command_line) {
   const DataSet data = load(options.source);
   const std::vector<ComparisonRow> rows = compare(data, options.repeats);
   if (options.json) {
-    nlohmann::ordered_json json;
+    nlohmann::ordered_json json = provenance_json(command_line);
+    json["files"] = files_json({{"a", options.source.file_a},
+                                {"b", options.source.file_b},
+                                {"times_a", options.source.times_a},
+                                {"times_b", options.source.times_b}});
     json["pairs"] = data.pairs.size();
     json["methods"] = nlohmann::ordered_json::array();
     for (const ComparisonRow& row : rows) json["methods"].push_back(row_json(row));
@@ -63,7 +68,7 @@ void add_compare(cli::App program) {
       .show_default()
       .check(cli::Check::range(1, 100000));
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options] { run(*options); });
+  command.callback([options, command] { run(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
+#include "egocal/io/extrinsic_tree.hpp"
 #include "egocal/io/whole_file.hpp"
 
 namespace egocal::tools {
@@ -24,6 +26,7 @@ namespace {
 struct Options {
   std::string log, rig, url, pair, format = "yaml", out;
   double timeout = 5;
+  bool all = false;
 };
 
 std::string listed(const std::vector<PairName>& pairs) {
@@ -43,16 +46,15 @@ PairName chosen(const std::string& wanted, const std::vector<PairName>& pairs) {
 }
 
 struct Found {
-  PairName pair;
+  std::vector<PairName> pairs;  ///< the one that was asked for, or all of them
   Answers answers;
 };
 
 Found recorded(const Options& options) {
   Found found{{}, recorded_answers(options.log)};
-  std::vector<PairName> pairs;
-  for (const auto& [pair, best] : found.answers.all()) pairs.push_back(pair);
-  if (pairs.empty()) throw Error("export: there is no answer in " + options.log);
-  found.pair = chosen(options.pair, pairs);
+  for (const auto& [pair, best] : found.answers.all()) found.pairs.push_back(pair);
+  if (found.pairs.empty()) throw Error("export: there is no answer in " + options.log);
+  if (!options.all) found.pairs = {chosen(options.pair, found.pairs)};
   return found;
 }
 
@@ -62,22 +64,50 @@ Found live(const Options& options) {
   const bus::Rig rig = bus::read_rig(options.rig);
   std::vector<PairName> pairs;
   for (const bus::PairConfig& pair : rig.pairs) pairs.emplace_back(pair.a, pair.b);
-  Found found{chosen(options.pair, pairs), {}};
+  Found found{options.all ? pairs : std::vector<PairName>{chosen(options.pair, pairs)}, {}};
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
-  loop.subscribe<problem_t>(
-      bus::problem_channel(found.pair.first, found.pair.second),
-      [&](const problem_t& message, const bus::Arrival&) { found.answers.hear(message); });
-  loop.subscribe<calibration_t>(
-      bus::calibration_channel(found.pair.first, found.pair.second),
-      [&](const calibration_t& message, const bus::Arrival&) { found.answers.hear(message); });
+  for (const auto& [a, b] : found.pairs) {
+    loop.subscribe<problem_t>(bus::problem_channel(a, b), [&](const problem_t& message, const bus::Arrival&) {
+      found.answers.hear(message);
+    });
+    loop.subscribe<calibration_t>(
+        bus::calibration_channel(a, b),
+        [&](const calibration_t& message, const bus::Arrival&) { found.answers.hear(message); });
+  }
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.timeout);
   const auto done = [&] {
-    const Answers::Best* best = found.answers.best(found.pair);
-    return best && best->certified();
+    return std::all_of(found.pairs.begin(), found.pairs.end(), [&](const PairName& pair) {
+      const Answers::Best* best = found.answers.best(pair);
+      return best && best->certified();
+    });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
     if (!loop.run_once(std::chrono::milliseconds(50))) break;
   return found;
+}
+
+NamedExtrinsic named(const PairName& pair, const Answers::Best& best) {
+  const Answer& answer = best.checked.answer;
+  if (best.checked.standing == bus::Standing::unverified)
+    fmt::print(stderr,
+               "egocal: warning: {}: this answer could not be verified: its problem was not received\n",
+               text(pair));
+  else if (!best.certified())
+    fmt::print(stderr, "egocal: warning: {}: this answer is not certified\n", text(pair));
+  return {pair.first,       pair.second,        to_pose(answer.T_a_b),
+          best.certified(), best.message.pairs, answer.observability.stddev};
+}
+
+/// One extrinsic, or all of a rig as a tree.
+std::string text_of(const std::vector<NamedExtrinsic>& extrinsics, const Options& options) {
+  const ExtrinsicFormat format = *extrinsic_format_from_name(options.format);
+  if (!options.all) return extrinsic_text(extrinsics.front(), format);
+  if (extrinsics.empty()) throw Error("export: there is no answer for any pair");
+  const ExtrinsicTree tree = extrinsic_tree(extrinsics);
+  for (const NamedExtrinsic& pair : tree.unused)
+    fmt::print(stderr, "egocal: note: {},{} closes a loop and is not part of the tree\n", pair.parent,
+               pair.child);
+  return extrinsic_tree_text(tree, format);
 }
 
 void run(const Options& options) {
@@ -85,20 +115,19 @@ void run(const Options& options) {
   const Found found = options.log.empty() ? live(options) : recorded(options);
   for (const auto& [reason, count] : found.answers.refused())
     fmt::print(stderr, "egocal: warning: {} answers were refused: {}\n", count, reason);
-  const Answers::Best* best = found.answers.best(found.pair);
-  if (!best) throw Error("export: there is no answer for the pair " + text(found.pair));
-  const Answer& answer = best->checked.answer;
-  const NamedExtrinsic extrinsic{found.pair.first,  found.pair.second,   to_pose(answer.T_a_b),
-                                 best->certified(), best->message.pairs, answer.observability.stddev};
-  const std::string content = extrinsic_text(extrinsic, *extrinsic_format_from_name(options.format));
+  std::vector<NamedExtrinsic> extrinsics;
+  for (const PairName& pair : found.pairs)
+    if (const Answers::Best* best = found.answers.best(pair))
+      extrinsics.push_back(named(pair, *best));
+    else if (options.all)
+      fmt::print(stderr, "egocal: warning: there is no answer for the pair {}\n", text(pair));
+    else
+      throw Error("export: there is no answer for the pair " + text(pair));
+  const std::string content = text_of(extrinsics, options);
   if (options.out.empty())
     fmt::print("{}", content);
   else
     write_whole_file(options.out, content);
-  if (best->checked.standing == bus::Standing::unverified)
-    fmt::print(stderr, "egocal: warning: this answer could not be verified: its problem was not received\n");
-  else if (!extrinsic.certified)
-    fmt::print(stderr, "egocal: warning: this answer is not certified\n");
 }
 
 }  // namespace
@@ -109,7 +138,11 @@ void add_export(cli::App program) {
   command.add_option("--rig", options->rig, "rig file: takes the answer from the running processes");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
   command.add_option("--log", options->log, "LCM log of a session: takes the answer that counted at its end");
-  command.add_option("--pair", options->pair, "A,B where there are several");
+  const cli::Option pair = command.add_option("--pair", options->pair, "A,B where there are several");
+  command
+      .add_flag("--all", options->all,
+                "all pairs of the rig as one tree: urdf, ros, ros-launch, yaml or json")
+      .excludes(pair);
   command.add_option("--format", options->format)
       .check(cli::Check::one_of(extrinsic_format_names()))
       .show_default();

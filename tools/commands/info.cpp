@@ -11,6 +11,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/stream_summary.hpp"
+#include "offline/provenance.hpp"
 #include "offline/trajectory_source.hpp"
 
 namespace egocal::tools {
@@ -102,10 +103,11 @@ ordered_json row_json(const Row& row) {
   return object;
 }
 
-void print_json(const Options& options, const Contents& contents) {
-  ordered_json object{{"file", bus::printable(options.name)},
-                      {"format", contents.format},
-                      {"streams", ordered_json::array()}};
+void print_json(const Options& options, const Contents& contents, const std::string& command_line) {
+  ordered_json object = provenance_json(command_line);
+  object["file"] = bus::printable(options.name);
+  object["format"] = contents.format;
+  object["streams"] = ordered_json::array();
   for (const Row& row : contents.rows) object["streams"].push_back(row_json(row));
   object["damaged_regions"] = contents.losses.regions;
   object["lost_bytes"] = contents.losses.bytes;
@@ -143,9 +145,9 @@ void print_row(const Row& row) {
     fmt::print("  order           {} times do not increase\n", summary.out_of_order);
 }
 
-void run(const Options& options) {
+void run(const Options& options, const std::string& command_line) {
   const Contents contents = read_contents(options);
-  if (options.json) return print_json(options, contents);
+  if (options.json) return print_json(options, contents, command_line);
   fmt::print("{}: {}, {} stream{}\n", bus::printable(options.name), contents.format, contents.rows.size(),
              contents.rows.size() == 1 ? "" : "s");
   for (const std::string& note : contents.notes) fmt::print("note: {}\n", note);
@@ -164,7 +166,7 @@ void add_info(cli::App program) {
                      "names of a table's columns: t,x,y,z,qx,qy,qz,qw");
   command.add_option("--rate", options->reading.rate, "of KITTI poses without times [Hz; 10]");
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options] { run(*options); });
+  command.callback([options, command] { run(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

@@ -13,6 +13,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
+#include "egocal/io/mcap_writer.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "egocal/simulation/simulation.hpp"
@@ -111,6 +112,20 @@ void write_log(const std::string& file, const std::vector<MountedSensor>& sensor
   log.close();
 }
 
+/// The same as a recording of ROS 2: one topic a sensor.
+void write_mcap(const std::string& file, const std::vector<MountedSensor>& sensors,
+                const std::vector<Trajectory>& trajectories, const SimulationOptions& simulation) {
+  McapWriter mcap(file);
+  Progress progress("writing");
+  const std::vector<Sent> sent = in_order_of_time(trajectories, simulation);
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    const std::string& name = sensors[sent[i].sensor].name;
+    mcap.write_pose("/" + name, name + "_start", trajectories[sent[i].sensor][sent[i].index]);
+    progress(static_cast<double>(i + 1) / static_cast<double>(sent.size()));
+  }
+  mcap.close();
+}
+
 void write_directory(const std::string& directory, const std::vector<MountedSensor>& sensors,
                      const std::vector<Trajectory>& trajectories) {
   std::error_code error;
@@ -143,7 +158,10 @@ void run(Options options) {
   for (const MountedSensor& sensor : sensors) names.push_back(sensor.name);
   simulation.faults = understood(options.faults, names);
   const std::vector<Trajectory> trajectories = simulate(simulation);
-  if (std::filesystem::path(options.out).extension() == ".log")
+  const std::string extension = std::filesystem::path(options.out).extension();
+  if (extension == ".mcap")
+    write_mcap(options.out, sensors, trajectories, simulation);
+  else if (extension == ".log")
     write_log(options.out, sensors, trajectories, simulation, options.type);
   else
     write_directory(options.out, sensors, trajectories);
@@ -156,8 +174,8 @@ void add_simulate(cli::App program) {
   const auto options = std::make_shared<Options>();
   SimulationOptions& simulation = options->simulation;
   cli::App command =
-      program.add_subcommand("simulate", "a drive with known truth, as an LCM log or as TUM files");
-  command.add_option("--out", options->out, "a file .log, or a directory for TUM files").required();
+      program.add_subcommand("simulate", "a drive with known truth, as an LCM log, MCAP or TUM files");
+  command.add_option("--out", options->out, "a file .log or .mcap, or a directory for TUM files").required();
   command.add_option("--rig-out", options->rig_out, "also writes a rig file for it");
   command
       .add_option("--terrain", options->terrain,

@@ -10,6 +10,7 @@
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/calibration.hpp"
+#include "offline/provenance.hpp"
 #include "offline/report.hpp"
 
 namespace egocal::tools {
@@ -45,7 +46,19 @@ void write_extrinsic(const Options& options, const SolveResult& result) {
     write_whole_file(options.out, text);
 }
 
-void run(const Options& options) {
+/// Everything that docs/json.md lists.
+std::string json_text(const Options& options, const SolveRequest& request, const SolveResult& result,
+                      const std::string& command_line) {
+  nlohmann::ordered_json json = report_json(result, request.truth);
+  json["frames"] = {{"parent", options.frame_a}, {"child", options.frame_b}};
+  json["notes"] = result.warnings;
+  append_json(json, provenance_json(command_line));
+  json["settings"] = settings_json(request);
+  json["files"] = files_json(request);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void run(const Options& options, const std::string& command_line) {
   const SolveRequest request = understood(options.request);
   const SolveResult result = calibrate_offline(request);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
@@ -55,8 +68,8 @@ void run(const Options& options) {
   if (written && calibration.verdict == Verdict::contradictory)
     fmt::print(stderr, "egocal: the motions contradict each other: do not use this extrinsic\n");
   if (!written || !options.out.empty())
-    fmt::print("{}\n",
-               options.json ? report_json(result, request.truth) : report_text(result, request.truth));
+    fmt::print("{}\n", options.json ? json_text(options, request, result, command_line)
+                                    : report_text(result, request.truth));
   if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
     throw cli::Exit{3};
 }
@@ -75,7 +88,7 @@ void add_solve(cli::App program) {
   command.add_option("--frame-a", options->frame_a, "name of sensor a's frame in it").show_default();
   command.add_option("--frame-b", options->frame_b, "name of sensor b's frame in it").show_default();
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options] { run(*options); });
+  command.callback([options, command] { run(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

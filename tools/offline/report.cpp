@@ -51,6 +51,15 @@ Pose with_positive_scalar(Pose T) {
   return T;
 }
 
+/// Four rows of four numbers.
+nlohmann::ordered_json matrix_json(const Pose& T) {
+  const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({R(i, 0), R(i, 1), R(i, 2), T.translation[i]});
+  rows.push_back({0.0, 0.0, 0.0, 1.0});
+  return rows;
+}
+
 nlohmann::ordered_json scale_json(const Calibration& calibration) {
   const ScaleSolution& scale = *calibration.scale;
   return {{"value", scale.scale},
@@ -81,12 +90,17 @@ std::string scale_text(const Calibration& calibration) {
 
 }  // namespace
 
-std::string report_json(const SolveResult& result, const std::optional<Pose>& truth) {
+nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth) {
   const Pose T = result.calibration.T_a_b;
   const Certificate& certificate = result.calibration.certificate;
   nlohmann::ordered_json json = trust_json(result.calibration);
   json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
   json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
+  const Pose T_b_a = with_positive_scalar(result.calibration.T_b_a);
+  json["T_b_a"] = {
+      {"translation", {T_b_a.translation.x(), T_b_a.translation.y(), T_b_a.translation.z()}},
+      {"rotation_wxyz", {T_b_a.rotation.w(), T_b_a.rotation.x(), T_b_a.rotation.y(), T_b_a.rotation.z()}}};
+  json["matrix"] = matrix_json(T);
   json["pairs"] = sum_blocks(result.calibration.problem.blocks).count;
   json["cost"] = certificate.cost;
   json["lower_bound"] = certificate.lower_bound;
@@ -130,7 +144,7 @@ std::string report_json(const SolveResult& result, const std::optional<Pose>& tr
     json["error_translation_m"] = error.translation;
     json["error_rotation_deg"] = error.rotation * degrees;
   }
-  return json.dump(2);
+  return json;
 }
 
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth) {

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "offline/calibration.hpp"
 
 namespace egocal::tools {
 
-/// One JSON object; numbers that are not finite are null.
-std::string report_json(const SolveResult& result, const std::optional<Pose>& truth);
+/// One JSON object (docs/json.md); numbers that are not finite are null when it is printed.
+nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth);
 /// For people: degrees and centimetres, both directions of T, fit and optimality and uncertainty kept apart.
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth);
 

@@ -10,25 +10,15 @@ namespace egocal::detail {
 
 namespace {
 
-/// Grid of the turning rates, at most so many points; offsets are looked for up to a quarter of the drive and
-/// a minute.
-constexpr std::size_t most_points = 1200;
-constexpr double widest = 60;
-/// Pieces of the drive whose own offsets show the rate.
-constexpr std::size_t pieces = 6;
-/// A clock's rate beyond this is not believed [s/s].
-constexpr double most_rate = 0.02;
-
 /// Turning rate of one stream in each cell of a grid [rad/s]; negative where unknown.
-std::vector<double> turning_rates(const Trajectory& trajectory, std::int64_t origin_us, double shift,
-                                  double step, std::size_t count) {
+std::vector<double> turning_rates(const Trajectory& trajectory, std::span<const double> turning,
+                                  std::int64_t origin_us, double shift, double step, std::size_t count) {
   std::vector<double> turned(count, 0.0), covered(count, 0.0);
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const double t0 = 1e-6 * static_cast<double>(trajectory[i - 1].time_us - origin_us) + shift;
     const double t1 = 1e-6 * static_cast<double>(trajectory[i].time_us - origin_us) + shift;
     if (!(t1 > t0) || t1 - t0 > 10 * step) continue;
-    const double angle =
-        screw_of(canonical_sign(conjugate(trajectory[i - 1].pose) * trajectory[i].pose)).angle;
+    const double angle = turning[i - 1];
     // share out over the cells that the interval touches
     const auto first = static_cast<std::ptrdiff_t>(std::floor(t0 / step));
     const auto last = static_cast<std::ptrdiff_t>(std::floor(t1 / step));
@@ -94,24 +84,27 @@ double misfit(const Explained& explained) {
 
 /// Offset, and rate if asked for, from the turning rates alone.
 std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel& start, bool with_rate) {
+  const ClockSearchOptions& options = streams.options.clock;
   const std::int64_t origin_us = streams.a.front().time_us;
   const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - origin_us);
-  const double step = std::max(0.1, span / static_cast<double>(most_points));
+  const double step = std::max(0.1, span / static_cast<double>(options.grid));
   const auto count = static_cast<std::size_t>(span / step);
   if (count < 40) return std::nullopt;
-  const std::vector<double> x = turning_rates(streams.a, origin_us, 0, step, count);
-  const std::vector<double> y = turning_rates(streams.b, origin_us, start.offset, step, count);
+  const std::vector<double> x = turning_rates(streams.a, streams.turning_a, origin_us, 0, step, count);
+  const std::vector<double> y =
+      turning_rates(streams.b, streams.turning_b, origin_us, start.offset, step, count);
   const auto most_lag =
-      static_cast<std::ptrdiff_t>(std::min(widest / step, 0.25 * static_cast<double>(count)));
+      static_cast<std::ptrdiff_t>(std::min(options.widest / step, 0.25 * static_cast<double>(count)));
   const std::optional<double> lag = best_lag(x, y, most_lag, 0, count);
   if (!lag) return std::nullopt;
   ClockModel clock{start.offset + *lag * step, 0, 0.5 * span};
   if (!with_rate) return clock;
-  const std::vector<double> aligned = turning_rates(streams.b, origin_us, clock.offset, step, count);
-  const auto near = static_cast<std::ptrdiff_t>(std::ceil(0.5 * most_rate * span / step)) + 2;
+  const std::vector<double> aligned =
+      turning_rates(streams.b, streams.turning_b, origin_us, clock.offset, step, count);
+  const auto near = static_cast<std::ptrdiff_t>(std::ceil(0.5 * options.most_rate * span / step)) + 2;
   double n = 0, st = 0, so = 0, stt = 0, sto = 0;
-  for (std::size_t piece = 0; piece < pieces; ++piece) {
-    const std::size_t first = piece * count / pieces, last = (piece + 1) * count / pieces;
+  for (std::size_t piece = 0; piece < options.pieces; ++piece) {
+    const std::size_t first = piece * count / options.pieces, last = (piece + 1) * count / options.pieces;
     const std::optional<double> own = best_lag(x, aligned, std::min(near, most_lag), first, last);
     if (!own) continue;
     const double t = 0.5 * static_cast<double>(first + last) * step - clock.middle;
@@ -123,7 +116,7 @@ std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel&
   }
   const double determinant = n * stt - st * st;
   if (n < 3 || !(determinant > 0)) return clock;
-  clock.rate = std::clamp((n * sto - st * so) / determinant, -most_rate, most_rate);
+  clock.rate = std::clamp((n * sto - st * so) / determinant, -options.most_rate, options.most_rate);
   clock.offset += (so - clock.rate * st) / n;
   return clock;
 }
@@ -166,13 +159,22 @@ void refine(const Streams& streams, double ClockModel::*number, double width, in
 
 }  // namespace
 
+std::vector<double> turning_of(const Trajectory& trajectory) {
+  std::vector<double> angles;
+  angles.reserve(trajectory.size());
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    angles.push_back(screw_of(canonical_sign(conjugate(trajectory[i - 1].pose) * trajectory[i].pose)).angle);
+  return angles;
+}
+
 Explained explained_by(const Streams& streams, const ClockModel& clock) {
   const Instants instants = synchronised(streams.a, streams.b, clock, streams.max_gap);
   Explained result;
   if (instants.time.size() < 2 || !(instants.period > 0)) return result;
   const int stride = std::max(1, static_cast<int>(std::lround(streams.motion_length / instants.period)));
-  result.motions = motions_of(instants, streams.read_a, streams.read_b, stride, streams.most);
-  if (!result.motions.all.empty()) result.fit = robust_fit(result.motions);
+  result.motions = motions_of(instants, streams.read_a, streams.read_b, stride, streams.options.motions.most,
+                              streams.options.motions);
+  if (!result.motions.all.empty()) result.fit = robust_fit(result.motions, streams.options.fit);
   return result;
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "diagnosis/robust_fit.hpp"
 
@@ -15,8 +17,13 @@ struct Streams {
   PoseReading read_a, read_b;
   double max_gap = 0.5;      ///< [s]
   double motion_length = 1;  ///< of the motions that are compared [s]
-  std::size_t most = 1000;   ///< motions
+  DiagnosisOptions options;
+  /// From each pose to the next, see turning_of() [rad].
+  std::span<const double> turning_a, turning_b;
 };
+
+/// The angle from each pose to the next [rad].
+std::vector<double> turning_of(const Trajectory& trajectory);
 
 /// The motions under a clock, of about the given length, and their best extrinsic.
 Explained explained_by(const Streams& streams, const ClockModel& clock);

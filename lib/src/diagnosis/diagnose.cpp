@@ -48,38 +48,35 @@ Finding unrelated(double correlation) {
   return finding;
 }
 
-Finding too_little_motion(std::size_t motions) {
+Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) {
   Finding finding;
   finding.code = "too_little_motion";
   finding.certain = true;
-  finding.message = motions < least_motions
+  finding.message = motions < options.motions.least
                         ? format("Only %zu motions: too few to judge the fit.", motions)
                         : "The sensors hardly turn: an extrinsic cannot be found from this drive.";
   finding.remedy = "Record a longer drive with turns in different directions.";
   return finding;
 }
 
-/// In all, robustly: turned by less than this, odometry noise decides [rad].
-constexpr double least_turning = 0.1;
-
 /// What is left where no reading, scale or clock explains the motions.
 void look_further(const Evidence& evidence, const Answered& answered, const Misfit& misfit,
-                  std::vector<Finding>& findings) {
+                  const DiagnosisOptions& options, std::vector<Finding>& findings) {
   const Motions& motions = evidence.given.explained.motions;
   double turned = 0;
   for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
   turned *= static_cast<double>(evidence.instants.time.size()) /
             static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
-  if (turned < least_turning) {
-    findings.push_back(too_little_motion(motions.all.size()));
+  if (turned < options.least_turning) {
+    findings.push_back(too_little_motion(motions.all.size(), options));
     return;
   }
   const double correlation = turning_correlation(motions);
-  if (misfit.best > contradictory_misfit && correlation < 0.5) {
+  if (misfit.best > options.contradictory_misfit && correlation < options.unrelated_correlation) {
     findings.push_back(unrelated(correlation));
     return;
   }
-  std::vector<Finding> moves = moved_mount(evidence.instants, answered);
+  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options.mount);
   // a mount that moved looks like many things
   if (!moves.empty()) findings = std::move(moves);
 }
@@ -88,16 +85,16 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
 
 Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                    const Answered& given, const DiagnosisOptions& options) {
-  const Evidence evidence = gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap);
+  const Evidence evidence = gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap, options);
   const Motions& motions = evidence.given.explained.motions;
   Answered answered = given;
   if (!evidence.instants.time.empty())
     answered.seconds = evidence.instants.time.back() - evidence.instants.time.front();
-  answered.platform = forward(heading(motions)) ? Platform::car : Platform::handheld;
-  if (motions.all.size() < least_motions) {
+  answered.platform = forward(heading(motions), options.heading) ? Platform::car : Platform::handheld;
+  if (motions.all.size() < options.motions.least) {
     Diagnosis result = diagnose(answered, options);
     result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
-    result.findings.push_back(too_little_motion(motions.all.size()));
+    result.findings.push_back(too_little_motion(motions.all.size(), options));
     judge(result, answered, {}, options);
     return result;
   }
@@ -106,27 +103,28 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
   result.findings = explain(evidence, options);
   if (answered.problem.mode == Mode::planar)
-    for (Finding& finding : check_planes(motions, answered.problem.plane_a, answered.problem.plane_b))
+    for (Finding& finding :
+         check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
       result.findings.push_back(std::move(finding));
   const Misfit misfit{detail::misfit(motions, at_answer),
                       detail::misfit(motions, evidence.given.explained.fit)};
   const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain; });
-  if (!explained) look_further(evidence, answered, misfit, result.findings);
+  if (!explained) look_further(evidence, answered, misfit, options, result.findings);
   judge(result, answered, misfit, options);
   return result;
 }
 
 Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
                    const DiagnosisOptions& options) {
-  const Motions motions = motions_of(pairs);
+  const Motions motions = motions_of(pairs, options.motions);
   Diagnosis result;
   result.fit = fit_at(motions, to_pose(answered.T_a_b), 0);
   Misfit misfit;
-  if (motions.all.size() >= least_motions) {
+  if (motions.all.size() >= options.motions.least) {
     misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
   } else {
-    result.findings.push_back(too_little_motion(motions.all.size()));
+    result.findings.push_back(too_little_motion(motions.all.size(), options));
   }
   judge(result, answered, misfit, options);
   return result;

@@ -17,14 +17,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// Motions that an explanation is judged by, and those that a first look takes.
-constexpr std::size_t most_motions = 700, first_look = 200;
-/// A scale this near to a thousand is a unit.
-constexpr double unit_tolerance = 0.1;
-/// A continuous parameter (scale, clock) is named where it explains at least this [mean log ratio]: ten times
-/// what one fitted number gains by chance in a hundred motions.
-constexpr double least_gain = 0.05;
-
 struct Candidate {
   const char* code;
   PoseReading a, b;
@@ -64,16 +56,18 @@ std::vector<PoseReading> wrong_axes() {
 }
 
 Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
-                      std::size_t most) {
+                      const DiagnosisOptions& options) {
   Explanation result{code, a, b, evidence.clock, 1, {}};
-  result.explained.motions = motions_of(evidence.instants, a, b, evidence.stride, most);
-  if (!result.explained.motions.all.empty()) result.explained.fit = robust_fit(result.explained.motions);
+  result.explained.motions =
+      motions_of(evidence.instants, a, b, evidence.stride, options.motions.most, options.motions);
+  if (!result.explained.motions.all.empty())
+    result.explained.fit = robust_fit(result.explained.motions, options.fit);
   return result;
 }
 
-Explanation with_scale(const Explanation& explanation) {
+Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& options) {
   Explanation result = explanation;
-  ScaledFit scaled = fit_with_scale(explanation.explained.motions);
+  ScaledFit scaled = fit_with_scale(explanation.explained.motions, options);
   result.scale = scaled.scale;
   result.explained = std::move(scaled.explained);
   return result;
@@ -88,7 +82,7 @@ bool better(const Comparison& comparison, double least_log_ratio, const Diagnosi
 /// One number more explains a little of any noise: it must be clear beyond what few blocks can show, or gain
 /// much.
 bool number_explains(const Comparison& comparison, const DiagnosisOptions& options) {
-  if (!better(comparison, least_gain, options)) return false;
+  if (!better(comparison, options.least_gain, options)) return false;
   return comparison.sigmas >= options.sigmas || comparison.gain >= options.gain;
 }
 
@@ -107,33 +101,33 @@ struct Ranked {
   Explanation as_is, scaled;
 };
 
-std::vector<Ranked> best_readings(const Evidence& evidence) {
-  constexpr std::size_t followed = 3;
+std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptions& options) {
   std::vector<std::pair<double, std::size_t>> looks;
   const std::vector<Candidate> candidates = common_mistakes();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (std::string_view(candidates[i].code) == "inverted_both") continue;  // decided by itself
-    const Motions motions =
-        motions_of(evidence.instants, candidates[i].a, candidates[i].b, evidence.stride, first_look);
+    const Motions motions = motions_of(evidence.instants, candidates[i].a, candidates[i].b, evidence.stride,
+                                       options.motions.first_look, options.motions);
     if (!motions.all.empty())
-      looks.emplace_back(fit_with_scale(motions, Effort::look).explained.fit.typical, i);
+      looks.emplace_back(fit_with_scale(motions, options, Effort::look).explained.fit.typical, i);
   }
   std::sort(looks.begin(), looks.end());
   std::vector<Ranked> ranked;
-  for (std::size_t i = 0; i < std::min(followed, looks.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(options.followed, looks.size()); ++i) {
     const Candidate& candidate = candidates[looks[i].second];
-    Explanation here = explained(evidence, candidate.code, candidate.a, candidate.b, most_motions);
+    Explanation here = explained(evidence, candidate.code, candidate.a, candidate.b, options);
     if (here.explained.motions.all.empty()) continue;
-    Explanation scaled = with_scale(here);
+    Explanation scaled = with_scale(here, options);
     ranked.push_back({std::move(here), std::move(scaled)});
   }
   return ranked;
 }
 
 /// Of twins, which are each other with both streams inverted, the one under which a vehicle travels forward.
-bool preferred(const Explanation& x, const Explanation& y) {
+bool preferred(const Explanation& x, const Explanation& y, const HeadingOptions& options) {
   const Heading of_x = heading(x.explained.motions), of_y = heading(y.explained.motions);
-  if (forward(of_x) != forward(of_y)) return forward(of_x);
+  const bool x_forward = forward(of_x, options), y_forward = forward(of_y, options);
+  if (x_forward != y_forward) return x_forward;
   return compare(y.explained, x.explained).ratio > 1;
 }
 
@@ -144,21 +138,23 @@ struct BestReading {
 
 /// The best single reading; as given unless another one is clearly better.
 BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options) {
-  const Explanation given_scaled = with_scale(evidence.given);
+  const Explanation given_scaled = with_scale(evidence.given, options);
   Ranked best{evidence.given, given_scaled};
   std::optional<Explanation> twin;
-  for (Ranked& here : best_readings(evidence)) {
+  for (Ranked& here : best_readings(evidence, options)) {
     if (!better(compare(given_scaled.explained, here.scaled.explained), 0.01, options)) continue;
     const Comparison against = compare(best.scaled.explained, here.scaled.explained);
     const bool first = best.as_is.code.empty();
-    const bool alike = !first && std::abs(against.gain) < 0.7;
-    if (first || (alike ? preferred(here.scaled, best.scaled) : against.gain > 0)) std::swap(best, here);
+    const bool alike = !first && std::abs(against.gain) < options.alike;
+    if (first || (alike ? preferred(here.scaled, best.scaled, options.heading) : against.gain > 0))
+      std::swap(best, here);
     if (alike)
       twin = here.as_is;
     else if (!first && against.gain > 0)
       twin.reset();
   }
-  if (twin && forward(heading(best.scaled.explained.motions)) && !forward(heading(twin->explained.motions)))
+  if (twin && forward(heading(best.scaled.explained.motions), options.heading) &&
+      !forward(heading(twin->explained.motions), options.heading))
     twin.reset();
   if (number_explains(compare(best.as_is.explained, best.scaled.explained), options))
     return {best.scaled, twin};
@@ -177,10 +173,11 @@ Explanation best_axes(const Evidence& evidence, const Explanation& best, const D
   for (const bool in_b : {false, true})
     for (std::size_t i = 0; i < readings.size(); ++i) {
       const PoseReading as_read;
-      const Motions motions = motions_of(evidence.instants, in_b ? as_read : readings[i],
-                                         in_b ? readings[i] : as_read, evidence.stride, first_look);
+      const Motions motions =
+          motions_of(evidence.instants, in_b ? as_read : readings[i], in_b ? readings[i] : as_read,
+                     evidence.stride, options.motions.first_look, options.motions);
       if (motions.all.empty()) continue;
-      looks.push_back({quick_fit(motions).typical, in_b, i});
+      looks.push_back({quick_fit(motions, options.fit).typical, in_b, i});
     }
   const std::size_t followed = std::min<std::size_t>(4, looks.size());
   std::partial_sort(looks.begin(), looks.begin() + static_cast<std::ptrdiff_t>(followed), looks.end(),
@@ -193,7 +190,7 @@ Explanation best_axes(const Evidence& evidence, const Explanation& best, const D
     const PoseReading as_read;
     Explanation here =
         explained(evidence, look.in_b ? "axes_b" : "axes_a", look.in_b ? as_read : readings[look.index],
-                  look.in_b ? readings[look.index] : as_read, most_motions);
+                  look.in_b ? readings[look.index] : as_read, options);
     if (better(compare(result.explained, here.explained), 0.05, options)) result = std::move(here);
   }
   return result;
@@ -228,18 +225,17 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
 /// is certain where a vehicle's way points forward under it alone. Noise that grows with the distance from
 /// the start speaks for the streams as given, but not for the inverted ones: a mount that moved looks the
 /// same. Otherwise both answers stand.
-std::optional<Finding> both_inverted(const Evidence& evidence) {
+std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
   PoseReading inverted;
   inverted.invert = true;
-  const Explanation both = explained(evidence, "inverted_both", inverted, inverted, most_motions);
+  const Explanation both = explained(evidence, "inverted_both", inverted, inverted, options);
   if (both.explained.motions.all.empty()) return std::nullopt;
   const Comparison comparison = compare(evidence.given.explained, both.explained);
   const Heading as_given = heading(evidence.given.explained.motions);
   const Heading as_inverted = heading(both.explained.motions);
-  constexpr double decisive = 3;
-  const bool noise_says_given = comparison.ratio < 1 / decisive && comparison.sigmas < 0;
-  if (forward(as_given) && !forward(as_inverted)) return std::nullopt;
-  const bool trace = forward(as_inverted) && scattered(as_given);
+  const bool noise_says_given = comparison.ratio < 1 / options.decisive && comparison.sigmas < 0;
+  if (forward(as_given, options.heading) && !forward(as_inverted, options.heading)) return std::nullopt;
+  const bool trace = forward(as_inverted, options.heading) && scattered(as_given, options.heading);
   if (!trace && noise_says_given) return std::nullopt;
   // an explanation that does not fit at all cannot be told apart from nothing
   if (!trace && comparison.gain < -1) return std::nullopt;
@@ -254,11 +250,11 @@ std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOpti
   Evidence brief = evidence;
   brief.stride = std::max(1, evidence.stride / 16);
   if (brief.stride == evidence.stride) return std::nullopt;
-  const Explanation given = explained(brief, "", {}, {}, most_motions);
+  const Explanation given = explained(brief, "", {}, {}, options);
   std::optional<Finding> best;
   for (const Candidate& candidate : common_mistakes()) {
     if (std::string_view(candidate.code) != "quaternion_order_both") continue;
-    const Explanation here = explained(brief, candidate.code, candidate.a, candidate.b, most_motions);
+    const Explanation here = explained(brief, candidate.code, candidate.a, candidate.b, options);
     if (given.explained.motions.all.empty() || here.explained.motions.all.empty()) continue;
     const Comparison comparison = compare(given.explained, here.explained);
     if (!better(comparison, 0, options) || (best && best->improvement > std::exp(comparison.gain))) continue;
@@ -269,9 +265,17 @@ std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOpti
 
 }  // namespace
 
-Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
-  Evidence evidence{
-      {a, b, {}, {}, max_gap, 1, most_motions}, clock, synchronised(a, b, clock, max_gap), 1, {}};
+Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
+                const DiagnosisOptions& options) {
+  Evidence evidence{turning_of(a),
+                    turning_of(b),
+                    {a, b, {}, {}, max_gap, 1, options, {}, {}},
+                    clock,
+                    synchronised(a, b, clock, max_gap),
+                    1,
+                    {}};
+  evidence.streams.turning_a = evidence.turning_a;
+  evidence.streams.turning_b = evidence.turning_b;
   evidence.given.clock = clock;
   const auto n = static_cast<int>(evidence.instants.time.size());
   double least = INFINITY;
@@ -279,9 +283,10 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
   readings.insert(readings.begin(), Candidate{"", {}, {}});
   for (int stride = std::max(1, n / 32), looks = 0; looks < 4; stride /= 4, ++looks) {
     for (const Candidate& candidate : readings) {
-      const Motions motions = motions_of(evidence.instants, candidate.a, candidate.b, stride, first_look);
+      const Motions motions = motions_of(evidence.instants, candidate.a, candidate.b, stride,
+                                         options.motions.first_look, options.motions);
       if (motions.all.empty()) continue;
-      const double typical = quick_fit(motions).typical;
+      const double typical = quick_fit(motions, options.fit).typical;
       if (typical < 0.8 * least) {
         least = typical;
         evidence.stride = stride;
@@ -289,7 +294,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
     }
     if (stride < 4) break;
   }
-  evidence.given.explained = explained(evidence, "", {}, {}, most_motions).explained;
+  evidence.given.explained = explained(evidence, "", {}, {}, options).explained;
   return evidence;
 }
 
@@ -311,8 +316,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
 
   const Explained& final = clocks.empty() ? best.explained : clocks.back().explained;
   // an explanation under which the motions still do not agree explains nothing
-  constexpr double explains = 0.5;
-  if (!(final.fit.typical < explains * explains)) return findings;
+  if (!(final.fit.typical < options.explains * options.explains)) return findings;
   const Comparison overall = compare(given, final);
   const bool certain = overall.gain >= options.gain;
   const auto add = [&](Finding finding) {
@@ -327,7 +331,8 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
                        reading.twin->read_a, reading.twin->read_b));
   if (best.scale != 1) {
     const double power = std::round(std::log10(best.scale) / 3);
-    const bool units = power != 0 && std::abs(std::log(best.scale / std::pow(1000, power))) < unit_tolerance;
+    const bool units =
+        power != 0 && std::abs(std::log(best.scale / std::pow(1000, power))) < options.scale.unit_tolerance;
     Finding finding = finding_of(best, overall, certain);
     finding.code = units ? "units" : "scale";
     finding.value = units ? std::pow(1000, power) : best.scale;
@@ -346,7 +351,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     if (std::optional<Finding> orders = both_orders(evidence, options))
       findings.push_back(std::move(*orders));
   if (findings.empty())
-    if (std::optional<Finding> both = both_inverted(evidence))
+    if (std::optional<Finding> both = both_inverted(evidence, options))
       findings.push_back(worded_reading(std::move(*both), {}, {}));
   return findings;
 }

@@ -7,7 +7,7 @@
 
 #include "diagnosis/clock.hpp"
 #include "diagnosis/robust_fit.hpp"
-#include "egocal/diagnosis/verdict.hpp"
+#include "egocal/diagnosis/options.hpp"
 
 namespace egocal::detail {
 
@@ -22,6 +22,7 @@ struct Explanation {
 
 /// The drive as the explanations see it.
 struct Evidence {
+  std::vector<double> turning_a, turning_b;
   Streams streams;   ///< as given, with the clock offset applied in `clock`
   ClockModel clock;  ///< in force
   Instants instants;
@@ -31,7 +32,8 @@ struct Evidence {
 
 /// Synchronises, chooses the length of the motions, and fits the streams as given. The stride is the one at
 /// which some reading fits best, among those that leave enough independent motions.
-Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap);
+Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
+                const DiagnosisOptions& options);
 
 /// Findings about the streams: readings, scale, clock. In the order of importance; answers included.
 std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& options);

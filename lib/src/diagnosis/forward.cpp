@@ -6,15 +6,6 @@
 
 namespace egocal::detail {
 
-namespace {
-
-/// Mean directions of vehicles are 0.95 to 1 long, those of hand-held rigs, drones and arms below 0.6.
-constexpr double always = 0.9, seldom = 0.7;
-/// Without turning every reading travels straight [rad].
-constexpr double least_turning = 1.5;
-
-}  // namespace
-
 Heading heading(const Motions& motions) {
   Heading result;
   Eigen::Vector3d sum_a = Eigen::Vector3d::Zero(), sum_b = Eigen::Vector3d::Zero();
@@ -38,13 +29,13 @@ Heading heading(const Motions& motions) {
   return result;
 }
 
-bool forward(const Heading& heading) {
-  return heading.turned > least_turning &&
-         std::min(heading.concentration_a, heading.concentration_b) > always;
+bool forward(const Heading& heading, const HeadingOptions& options) {
+  return heading.turned > options.least_turning &&
+         std::min(heading.concentration_a, heading.concentration_b) > options.always;
 }
 
-bool scattered(const Heading& heading) {
-  return std::max(heading.concentration_a, heading.concentration_b) < seldom;
+bool scattered(const Heading& heading, const HeadingOptions& options) {
+  return std::max(heading.concentration_a, heading.concentration_b) < options.seldom;
 }
 
 }  // namespace egocal::detail

@@ -15,8 +15,8 @@ struct Heading {
 Heading heading(const Motions& motions);
 
 /// A vehicle: both sensors always travel the same way of their bodies.
-bool forward(const Heading& heading);
+bool forward(const Heading& heading, const HeadingOptions& options);
 /// Neither does.
-bool scattered(const Heading& heading);
+bool scattered(const Heading& heading, const HeadingOptions& options);
 
 }  // namespace egocal::detail

@@ -34,9 +34,6 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
-/// An explanation so much better (squared residuals) makes the streams as given useless, wherever its answer
-/// lies.
-constexpr double overwhelming = 7.4;
 /// 95 % of a normal distribution.
 constexpr double confidence = 1.96;
 
@@ -92,7 +89,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     const double far = shift(finding, answered, options);
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
-    else if (misread(finding) || (finding.certain && (far > 1 || finding.improvement > overwhelming)))
+    else if (misread(finding) || (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
       verdict = Verdict::contradictory;
     else if ((finding.certain && (far > 0.5 || finding.code == "mount_moved")) ||
              (casts_doubt(finding) && far > 1))
@@ -102,9 +99,9 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
   return worst;
 }
 
-Opinion of_fit(const Misfit& misfit, const Answered& answered) {
-  if (misfit.at_answer > doubtful_misfit) {
-    const bool contradictory = misfit.at_answer > contradictory_misfit;
+Opinion of_fit(const Misfit& misfit, const Answered& answered, const DiagnosisOptions& options) {
+  if (misfit.at_answer > options.doubtful_misfit) {
+    const bool contradictory = misfit.at_answer > options.contradictory_misfit;
     return {contradictory ? Verdict::contradictory : Verdict::doubtful,
             format("These motions contradict each other: %.0f %% of the typical motion is not explained.",
                    100 * misfit.at_answer)};
@@ -123,7 +120,8 @@ Opinion of_fit(const Misfit& misfit, const Answered& answered) {
 
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
-  const Opinion of_explanations = of_findings(diagnosis, answered, options), fit = of_fit(misfit, answered);
+  const Opinion of_explanations = of_findings(diagnosis, answered, options),
+                fit = of_fit(misfit, answered, options);
   if (options.goal) diagnosis.goal = goal_of(answered, *options.goal);
   const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
   diagnosis.verdict = worse.verdict;

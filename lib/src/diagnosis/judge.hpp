@@ -6,12 +6,6 @@
 
 namespace egocal::detail {
 
-/// Fewer motions are explained by anything.
-inline constexpr std::size_t least_motions = 5;
-/// Residuals as parts of the typical motion. Clean drives with a noise of a tenth of every single motion stay
-/// below 0.35, streams that do not belong together are at 1 and more.
-inline constexpr double doubtful_misfit = 0.45, contradictory_misfit = 0.7;
-
 struct Misfit {
   double at_answer =
       0;  ///< residual at the answer that a third of the motion keeps below, as a part of the typical motion

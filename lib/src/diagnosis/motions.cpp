@@ -4,28 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace egocal::detail {
 
 namespace {
 
-/// Nearer to half a turn the sign of the quaternion is a guess [rad].
-constexpr double most_rotation = 170 * std::numbers::pi / 180;
-/// Blocks that the comparison of two explanations counts, at most: more would not be independent.
-constexpr std::size_t most_blocks = 64;
-/// A motion that spans more than this many times its usual duration crosses a gap.
-constexpr double most_stretched = 4;
+/// Distances of stamps that show the usual one.
+constexpr std::size_t most_periods = 1000;
 
 double seconds(std::int64_t us) {
   return 1e-6 * static_cast<double>(us);
 }
 
+/// Median of at most most_periods distances, evenly spread.
 double median_period(const std::vector<double>& times) {
   if (times.size() < 2) return 0;
   std::vector<double> periods;
-  for (std::size_t i = 1; i < times.size(); ++i) periods.push_back(times[i] - times[i - 1]);
+  const std::size_t each = std::max<std::size_t>(1, times.size() / most_periods);
+  for (std::size_t i = 1; i < times.size(); i += each) periods.push_back(times[i] - times[i - 1]);
   std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
                    periods.end());
   return periods[periods.size() / 2];
@@ -41,25 +38,28 @@ std::vector<double> times_of(const Trajectory& trajectory, std::int64_t origin_u
   return times;
 }
 
-/// Poses of one stream at given times by screw interpolation, looked up in order.
-class Interpolation {
+/// Where given times lie among those of a stream, looked up in order.
+class Lookup {
  public:
-  Interpolation(const Trajectory& trajectory, const std::vector<double>& times, double max_gap)
-      : trajectory_(trajectory), times_(times), max_gap_(max_gap) {}
+  Lookup(const std::vector<double>& times, double max_gap) : times_(times), max_gap_(max_gap) {}
 
-  std::optional<DualQuaternion> at(double time) {
+  struct Found {
+    std::size_t before = 0;
+    double part = 0;
+  };
+  std::optional<Found> at(double time) {
     while (from_ + 1 < times_.size() && times_[from_ + 1] <= time) ++from_;
     if (times_[from_] > time) return std::nullopt;
     const double before = time - times_[from_];
-    if (before < 5e-7) return trajectory_[from_].pose;
+    if (before < same_time) return Found{from_, 0};
     if (from_ + 1 >= times_.size()) return std::nullopt;
     const double period = times_[from_ + 1] - times_[from_];
     if (period > max_gap_) return std::nullopt;
-    return interpolate(trajectory_[from_].pose, trajectory_[from_ + 1].pose, before / period);
+    return Found{from_, before / period};
   }
 
  private:
-  const Trajectory& trajectory_;
+  static constexpr double same_time = 5e-7;  ///< half of a stamp's resolution [s]
   const std::vector<double>& times_;
   double max_gap_;
   std::size_t from_ = 0;
@@ -99,28 +99,37 @@ void measure_sizes(Motions& motions) {
 
 }  // namespace
 
+DualQuaternion Instants::between(std::size_t i) const {
+  const Place& place = places_[i];
+  const DualQuaternion& before = (*others_)[place.before].pose;
+  return place.part > 0 ? interpolate(before, (*others_)[place.before + 1].pose, place.part) : before;
+}
+
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
   Instants instants;
   if (a.empty() || b.empty()) return instants;
   const std::int64_t origin_us = a.front().time_us;
   const std::vector<double> times_a = times_of(a, origin_us, {}), times_b = times_of(b, origin_us, clock);
   const bool b_slower = 10 * median_period(times_b) >= 9 * median_period(times_a);
-  const Trajectory& keys = b_slower ? b : a;
+  instants.b_slower_ = b_slower;
+  instants.keys_ = b_slower ? &b : &a;
+  instants.others_ = b_slower ? &a : &b;
   const std::vector<double>& key_times = b_slower ? times_b : times_a;
-  Interpolation other(b_slower ? a : b, b_slower ? times_a : times_b, max_gap);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::optional<DualQuaternion> pose = other.at(key_times[i]);
-    if (!pose) continue;
+  Lookup other(b_slower ? times_a : times_b, max_gap);
+  instants.time.reserve(key_times.size());
+  instants.places_.reserve(key_times.size());
+  for (std::size_t i = 0; i < key_times.size(); ++i) {
+    const std::optional<Lookup::Found> found = other.at(key_times[i]);
+    if (!found) continue;
     instants.time.push_back(key_times[i]);
-    instants.a.push_back(b_slower ? *pose : keys[i].pose);
-    instants.b.push_back(b_slower ? keys[i].pose : *pose);
+    instants.places_.push_back({i, found->before, found->part});
   }
   instants.period = median_period(instants.time);
   return instants;
 }
 
 Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
-                   std::size_t most) {
+                   std::size_t most, const MotionSampleOptions& options) {
   Motions motions;
   motions.stride = stride;
   const auto steps = static_cast<std::size_t>(stride);
@@ -130,26 +139,26 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   motions.all.reserve((n - steps) / each + 1);
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
-    if (instants.time[k] - instants.time[i] > most_stretched * stride * instants.period) continue;
-    Motion motion = motion_from(conjugate(reread(instants.a[i], read_a)) * reread(instants.a[k], read_a),
-                                conjugate(reread(instants.b[i], read_b)) * reread(instants.b[k], read_b));
-    if (std::max(motion.angle_a, motion.angle_b) > most_rotation) continue;
+    if (instants.time[k] - instants.time[i] > options.most_stretched * stride * instants.period) continue;
+    Motion motion = motion_from(conjugate(reread(instants.a(i), read_a)) * reread(instants.a(k), read_a),
+                                conjugate(reread(instants.b(i), read_b)) * reread(instants.b(k), read_b));
+    if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
     motion.time = 0.5 * (instants.time[i] + instants.time[k]);
     motions.all.push_back(std::move(motion));
   }
   const std::size_t independent = n / (2 * steps) >= 16 ? n / (2 * steps) : n / steps;
-  motions.blocks = std::max<std::size_t>(1, std::min({most_blocks, independent, motions.all.size()}));
+  motions.blocks = std::max<std::size_t>(1, std::min({options.most_blocks, independent, motions.all.size()}));
   measure_sizes(motions);
   return motions;
 }
 
-Motions motions_of(std::span<const MotionPair> pairs) {
+Motions motions_of(std::span<const MotionPair> pairs, const MotionSampleOptions& options) {
   Motions motions;
   for (const MotionPair& pair : pairs) {
     motions.all.push_back(motion_from(normalized(pair.a), normalized(pair.b)));
     motions.all.back().time = static_cast<double>(motions.all.size() - 1);
   }
-  motions.blocks = std::max<std::size_t>(1, std::min(most_blocks, motions.all.size()));
+  motions.blocks = std::max<std::size_t>(1, std::min(options.most_blocks, motions.all.size()));
   measure_sizes(motions);
   return motions;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnosis/reading.hpp"
+#include "egocal/diagnosis/options.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/cost.hpp"
 
@@ -21,11 +22,32 @@ struct ClockModel {
   double middle = 0;  ///< [s], on b's clock
 };
 
-/// Both poses at the stamps of the slower stream.
-struct Instants {
+/// Both poses at the stamps of the slower stream; the other one is interpolated when it is asked for, as the
+/// comparison of two clocks looks at a few hundred motions of a drive of any length.
+class Instants {
+ public:
   std::vector<double> time;  ///< [s], since the first stamp of a
-  std::vector<DualQuaternion> a, b;
-  double period = 0;  ///< median distance [s]
+  double period = 0;         ///< median distance [s]
+
+  /// Poses at instant i; the trajectories of synchronised() must still be there.
+  DualQuaternion a(std::size_t i) const { return b_slower_ ? between(i) : key(i); }
+  DualQuaternion b(std::size_t i) const { return b_slower_ ? key(i) : between(i); }
+
+ private:
+  friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double);
+
+  struct Place {
+    std::size_t key = 0;     ///< pose of the slower stream
+    std::size_t before = 0;  ///< pose of the other one, at or before the instant
+    double part = 0;         ///< of the way to the next one
+  };
+  DualQuaternion key(std::size_t i) const { return (*keys_)[places_[i].key].pose; }
+  DualQuaternion between(std::size_t i) const;
+
+  const Trajectory* keys_ = nullptr;
+  const Trajectory* others_ = nullptr;
+  bool b_slower_ = false;
+  std::vector<Place> places_;
 };
 
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap);
@@ -49,10 +71,10 @@ struct Motions {
 
 /// Motions over `stride` instants, at most `most` of them, evenly spread.
 Motions motions_of(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b, int stride,
-                   std::size_t most);
+                   std::size_t most, const MotionSampleOptions& options = {});
 
 /// Motions that come as such; their order takes the place of time.
-Motions motions_of(std::span<const MotionPair> pairs);
+Motions motions_of(std::span<const MotionPair> pairs, const MotionSampleOptions& options = {});
 
 /// The same motions with the lengths of b multiplied.
 Motions scaled(const Motions& motions, double scale_b);

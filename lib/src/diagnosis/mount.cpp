@@ -16,19 +16,20 @@ namespace {
 
 /// Motion pairs of the stride that was answered with, of all instants; in planar mode as seen from the
 /// planes.
-std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered) {
-  // blocks of three motions that share no time, and enough of them to know their scatter
-  constexpr std::size_t wanted_blocks = 32;
-  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * wanted_blocks));
+std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered,
+                                 const MountCheckOptions& options) {
+  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * options.blocks));
   const std::size_t steps = std::min(longest, static_cast<std::size_t>(std::max(1, answered.stride)));
   const bool planar = answered.problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(answered.problem.plane_a) : DualQuaternion{};
   const DualQuaternion G_b = planar ? plane_frame(answered.problem.plane_b) : DualQuaternion{};
   std::vector<MotionPair> pairs;
-  for (std::size_t i = 0; i + steps < instants.time.size(); ++i) {
+  // overlapping motions of a long drive say little that is new
+  const std::size_t each = std::clamp<std::size_t>(instants.time.size() / options.most_motions, 1, steps);
+  for (std::size_t i = 0; i + steps < instants.time.size(); i += each) {
     const std::size_t k = i + steps;
-    MotionPair pair{canonical_sign(normalized(conjugate(instants.a[i]) * instants.a[k])),
-                    canonical_sign(normalized(conjugate(instants.b[i]) * instants.b[k])),
+    MotionPair pair{canonical_sign(normalized(conjugate(instants.a(i)) * instants.a(k))),
+                    canonical_sign(normalized(conjugate(instants.b(i)) * instants.b(k))),
                     std::llround(1e6 * instants.time[i]), std::llround(1e6 * instants.time[k]), 1};
     if (planar) {
       pair.a = planar_motion(pair.a, G_a);
@@ -51,8 +52,9 @@ double length(const Move& move, std::size_t first) {
 
 }  // namespace
 
-std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered) {
-  const std::vector<MotionPair> pairs = pairs_of(instants, answered);
+std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
+                                 const MountCheckOptions& options) {
+  const std::vector<MotionPair> pairs = pairs_of(instants, answered, options);
   std::vector<Finding> findings;
   if (pairs.empty()) return findings;
   const double begin = 1e-6 * static_cast<double>(pairs.front().begin_us);

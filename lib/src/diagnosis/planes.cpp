@@ -11,11 +11,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// A vehicle turns about one axis far more than about the others (ratio of the mean squares).
-constexpr double one_axis = 10;
-/// The normal of a level road is within a few degrees of the axis; 0.9 is 26 degrees.
-constexpr double aligned = 0.9;
-
 struct Turning {
   Eigen::Matrix3d squares_a = Eigen::Matrix3d::Zero(), squares_b = Eigen::Matrix3d::Zero();
   double common = 0;  ///< sum of the products of the turns about both normals
@@ -26,7 +21,7 @@ Eigen::Vector3d turn(const DualQuaternion& motion) {
 }
 
 /// Direction of the axis, if there is one.
-bool axis_of(const Eigen::Matrix3d& squares, Eigen::Vector3d& axis) {
+bool axis_of(const Eigen::Matrix3d& squares, double one_axis, Eigen::Vector3d& axis) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
   axis = eigen.eigenvectors().col(2);
   return eigen.eigenvalues()[2] > one_axis * std::max(0.0, eigen.eigenvalues()[1]) &&
@@ -44,7 +39,8 @@ Finding plane_finding(char which, std::string message, std::string remedy, bool 
 
 }  // namespace
 
-std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, const GroundPlane& b) {
+std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, const GroundPlane& b,
+                                  const PlaneCheckOptions& options) {
   std::vector<Finding> findings;
   for (const auto& [which, plane] : {std::pair{'a', a}, std::pair{'b', b}})
     if (plane.distance > 0)
@@ -65,11 +61,13 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
     turning.common += turn_a.dot(a.normal) * turn_b.dot(b.normal);
   }
   Eigen::Vector3d axis_a, axis_b;
-  if (!axis_of(turning.squares_a, axis_a) || !axis_of(turning.squares_b, axis_b)) return findings;
-  const bool a_fits = std::abs(axis_a.dot(a.normal)) > aligned,
-             b_fits = std::abs(axis_b.dot(b.normal)) > aligned;
-  if (!a_fits && !b_fits && std::abs(axis_a.dot(b.normal)) > aligned &&
-      std::abs(axis_b.dot(a.normal)) > aligned) {
+  if (!axis_of(turning.squares_a, options.one_axis, axis_a) ||
+      !axis_of(turning.squares_b, options.one_axis, axis_b))
+    return findings;
+  const bool a_fits = std::abs(axis_a.dot(a.normal)) > options.aligned,
+             b_fits = std::abs(axis_b.dot(b.normal)) > options.aligned;
+  if (!a_fits && !b_fits && std::abs(axis_a.dot(b.normal)) > options.aligned &&
+      std::abs(axis_b.dot(a.normal)) > options.aligned) {
     for (const char which : {'a', 'b'})
       findings.push_back(plane_finding(which, "The ground planes of a and b are exchanged.",
                                        "Exchange --plane-a and --plane-b."));

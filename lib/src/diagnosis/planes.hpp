@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "diagnosis/motions.hpp"
-#include "egocal/diagnosis/verdict.hpp"
+#include "egocal/diagnosis/options.hpp"
 #include "egocal/problem/ground_plane.hpp"
 
 namespace egocal::detail {
 
 /// Whether the ground planes suit the motions: the normals point up (the ground is below the sensor) and
 /// along the axis that each sensor turns about, both in the same sense.
-std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, const GroundPlane& b);
+std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, const GroundPlane& b,
+                                  const PlaneCheckOptions& options);
 
 }  // namespace egocal::detail

@@ -12,10 +12,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// Reweighting rounds: the weights of gross outliers are negligible after three.
-constexpr int rounds = 4;
-/// Squares beyond this many times the typical one lose weight (three standard deviations of a residual).
-constexpr double inlier = 9;
 /// Squares below this part of the motion are rounding.
 constexpr double rounding = 1e-16;
 
@@ -102,10 +98,10 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T) {
   return fit;
 }
 
-static RobustFit reweighted(const Motions& motions, int repeats) {
+static RobustFit reweighted(const Motions& motions, int rounds, double inlier) {
   std::vector<double> weights(motions.all.size(), 1.0);
   RobustFit fit;
-  for (int round = 0; round < repeats; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     fit = evaluated(motions, weighted_solution(motions, weights));
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const double w = 1 / (1 + fit.squares[i] / (inlier * fit.typical));
@@ -116,12 +112,12 @@ static RobustFit reweighted(const Motions& motions, int repeats) {
   return fit;
 }
 
-RobustFit robust_fit(const Motions& motions) {
-  return reweighted(motions, rounds);
+RobustFit robust_fit(const Motions& motions, const RobustFitOptions& options) {
+  return reweighted(motions, options.rounds, options.inlier);
 }
 
-RobustFit quick_fit(const Motions& motions) {
-  return reweighted(motions, 2);
+RobustFit quick_fit(const Motions& motions, const RobustFitOptions& options) {
+  return reweighted(motions, 2, options.inlier);
 }
 
 namespace {

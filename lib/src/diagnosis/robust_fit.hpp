@@ -31,10 +31,10 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T);
 /// everywhere.
 double misfit(const Motions& motions, const RobustFit& fit);
 /// The extrinsic by iteratively reweighted global solves of (18).
-RobustFit robust_fit(const Motions& motions);
+RobustFit robust_fit(const Motions& motions, const RobustFitOptions& options = {});
 
 /// The same with two rounds and without weights: a first look.
-RobustFit quick_fit(const Motions& motions);
+RobustFit quick_fit(const Motions& motions, const RobustFitOptions& options = {});
 
 /// An explanation's motions with the extrinsic that suits them best.
 struct Explained {

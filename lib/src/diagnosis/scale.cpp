@@ -11,11 +11,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// Scales are looked for within this factor of the ratio of the lengths: a rig that turns much and travels
-/// little has unlike lengths.
-constexpr double widest = 64;
-constexpr int grid = 48, refinements = 24;
-
 /// The 8 x 8 cost as a polynomial in the scale of b: rotation + (zero + s one + s^2 two) / s. Dividing by s
 /// makes a and b alike: neither is shrunk to explain noise.
 struct ScaledCost {
@@ -49,12 +44,12 @@ ScaledCost accumulate(const Motions& motions, const std::vector<double>& weights
   return cost;
 }
 
-double best_scale(const ScaledCost& cost, double centre) {
+double best_scale(const ScaledCost& cost, double centre, const ScaleSearchOptions& options) {
   const auto value = [&](double log_scale) { return solve_dual(cost.at(std::exp(log_scale))).cost; };
-  const double low = std::log(centre / widest), step = 2 * std::log(widest) / grid;
+  const double low = std::log(centre / options.widest), step = 2 * std::log(options.widest) / options.grid;
   int best = 0;
   double least = value(low);
-  for (int i = 1; i <= grid; ++i) {
+  for (int i = 1; i <= options.grid; ++i) {
     const double here = value(low + i * step);
     if (here < least) {
       least = here;
@@ -63,7 +58,7 @@ double best_scale(const ScaledCost& cost, double centre) {
   }
   constexpr double golden = 0.6180339887498949;
   double left = low + (best - 1) * step, right = low + (best + 1) * step;
-  for (int i = 0; i < refinements; ++i) {
+  for (int i = 0; i < options.refinements; ++i) {
     const double x = right - golden * (right - left), y = left + golden * (right - left);
     (value(x) < value(y) ? right : left) = value(x) < value(y) ? y : x;
   }
@@ -72,7 +67,7 @@ double best_scale(const ScaledCost& cost, double centre) {
 
 }  // namespace
 
-ScaledFit fit_with_scale(const Motions& motions, Effort effort) {
+ScaledFit fit_with_scale(const Motions& motions, const DiagnosisOptions& options, Effort effort) {
   double length_a = 0, length_b = 0;
   for (const Motion& motion : motions.all) {
     length_a += motion.t_a.norm();
@@ -80,17 +75,17 @@ ScaledFit fit_with_scale(const Motions& motions, Effort effort) {
   }
   ScaledFit result;
   if (!(length_a > 0) || !(length_b > 0)) {
-    result.explained = {motions, robust_fit(motions)};
+    result.explained = {motions, robust_fit(motions, options.fit)};
     return result;
   }
   std::vector<double> weights(motions.all.size(), 1.0);
   const int rounds = effort == Effort::full ? 3 : 1;
   for (int round = 0; round < rounds; ++round) {
-    result.scale = best_scale(accumulate(motions, weights), length_a / length_b);
+    result.scale = best_scale(accumulate(motions, weights), length_a / length_b, options.scale);
     result.explained.motions = scaled(motions, result.scale);
     result.explained.fit = round + 1 == rounds && effort == Effort::full
-                               ? robust_fit(result.explained.motions)
-                               : quick_fit(result.explained.motions);
+                               ? robust_fit(result.explained.motions, options.fit)
+                               : quick_fit(result.explained.motions, options.fit);
     weights = result.explained.fit.weights;
   }
   return result;

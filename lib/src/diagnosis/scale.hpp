@@ -14,6 +14,7 @@ struct ScaledFit {
 enum class Effort { look, full };
 
 /// The scale of b and the extrinsic that fit best, both sensors' translations weighing alike.
-ScaledFit fit_with_scale(const Motions& motions, Effort effort = Effort::full);
+ScaledFit fit_with_scale(const Motions& motions, const DiagnosisOptions& options,
+                         Effort effort = Effort::full);
 
 }  // namespace egocal::detail

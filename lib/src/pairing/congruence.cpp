@@ -120,6 +120,25 @@ void remember(const Seen& seen, TypicalDifference& typical) {
   if (typical.newest.size() > memory) typical.newest.pop_front();
 }
 
+void remember(const DualQuaternion& a, const DualQuaternion& b, CongruenceScale& scale) {
+  const Difference d = difference(a, b);
+  remember(d.angle, scale.angle);
+  if (d.turns) remember(d.slide, scale.slide);
+  remember(d.length, scale.length);
+  remember({d.angle.size, d.length.difference}, scale.lever);
+  ++scale.taught;
+}
+
+bool estimate_is_due(std::uint64_t taught) {
+  const std::uint64_t every = taught > memory ? estimate_every_when_full : estimate_every;
+  return taught == first_estimate || (taught > first_estimate && taught % every == 0);
+}
+
+void estimate(CongruenceScale& scale, double longest_lever_arm) {
+  for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical);
+  scale.arm = arm_of(scale.lever, longest_lever_arm);
+}
+
 double sigmas(const Seen& seen, const TypicalDifference& typical, double floor) {
   if (typical.newest.size() < first_estimate) return 0;
   return seen.difference / (typical.constant + typical.growing * seen.size + floor);
@@ -154,16 +173,8 @@ bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, doubl
 void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
                        double longest_lever_arm) {
   if (doubted && ++scale.doubted % doubted_that_teach != 0) return;
-  const Difference d = difference(a, b);
-  remember(d.angle, scale.angle);
-  if (d.turns) remember(d.slide, scale.slide);
-  remember(d.length, scale.length);
-  remember({d.angle.size, d.length.difference}, scale.lever);
-  ++scale.taught;
-  const std::uint64_t every = scale.taught > memory ? estimate_every_when_full : estimate_every;
-  if (scale.taught != first_estimate && (scale.taught < first_estimate || scale.taught % every != 0)) return;
-  for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical);
-  scale.arm = arm_of(scale.lever, longest_lever_arm);
+  remember(a, b, scale);
+  if (estimate_is_due(scale.taught)) estimate(scale, longest_lever_arm);
 }
 
 std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& options) {
@@ -172,8 +183,12 @@ std::vector<bool> incongruent(std::span<const MotionPair> pairs, const Screening
     // the last ones are judged with those before them
     const std::size_t count = pairs.size() < 2 * memory ? pairs.size() : memory;
     CongruenceScale scale;
-    for (const MotionPair& pair : pairs.first(count))
-      update_congruence(pair.a, pair.b, false, scale, options.longest_lever_arm);
+    std::uint64_t last_estimate = count;
+    while (last_estimate > 0 && !estimate_is_due(last_estimate)) --last_estimate;
+    for (const MotionPair& pair : pairs.first(count)) {
+      remember(pair.a, pair.b, scale);
+      if (scale.taught == last_estimate) estimate(scale, options.longest_lever_arm);
+    }
     for (const MotionPair& pair : pairs.first(count))
       verdicts.push_back(incongruence(pair.a, pair.b, scale) > options.doubtful);
     pairs = pairs.subspan(count);

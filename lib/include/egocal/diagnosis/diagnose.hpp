@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "egocal/diagnosis/verdict.hpp"
+#include "egocal/diagnosis/options.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 

@@ -87,21 +87,4 @@ struct Diagnosis {
   std::optional<Goal> goal;       ///< where one was given
 };
 
-/// When an answer counts as known or as wrong.
-struct DiagnosisOptions {
-  bool enabled = true;  ///< of calibrate(): without it the verdict knows of no other explanation
-  /// An answer is not called good where a direction may be off by more than this (1.96 standard deviations),
-  /// and is called contradictory where a better explanation has an answer further away [rad, m]. What users
-  /// of vehicles call wrong; an arm wants less.
-  double tolerance_rotation = 0.017453292519943295;
-  double tolerance_translation = 0.6;
-  /// Signed-rank test of an explanation against the streams as given, over up to 64 blocks of the drive. 3.5
-  /// standard deviations are one false alarm in 2000 comparisons of streams that fit equally well.
-  double sigmas = 3.5;
-  /// Least mean log ratio of the squared residuals of an explanation that is called certain. Clean drives
-  /// stay below 0.1 for all explanations but "both inverted" (tests/bench/mistake_study.cpp).
-  double gain = 0.3;
-  std::optional<GoalOptions> goal;
-};
-
 }  // namespace egocal

@@ -45,6 +45,7 @@ std::string yaml_text(const ExtrinsicWords& words);
 std::string json_text(const ExtrinsicWords& words);
 std::string ros_text(const ExtrinsicWords& words);
 std::string ros_launch_text(const ExtrinsicWords& words);
+std::string ros_launch_node(const ExtrinsicWords& words);  ///< without <launch> around it
 std::string urdf_text(const ExtrinsicWords& words);
 std::string kalibr_text(const ExtrinsicWords& words);
 std::string autoware_text(const ExtrinsicWords& words);

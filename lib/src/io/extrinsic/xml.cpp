@@ -28,15 +28,18 @@ std::string urdf_text(const ExtrinsicWords& words) {
 }
 
 std::string ros_launch_text(const ExtrinsicWords& words) {
+  return "<launch>\n" + ros_launch_node(words) + "</launch>\n";
+}
+
+std::string ros_launch_node(const ExtrinsicWords& words) {
   const Eigen::Quaterniond& q = words.T.rotation;
   const Eigen::Vector3d& t = words.T.translation;
   std::string node;  // names of nodes take letters, digits and _
   for (const char c : words.a + "_to_" + words.b) node += c == '-' || c == '.' || c == '/' ? '_' : c;
-  return "<launch>\n  " + described(words) +
-         "  <node pkg=\"tf2_ros\" exec=\"static_transform_publisher\" name=\"" + node +
-         "\"\n        args=\"--x " + exact(t.x()) + " --y " + exact(t.y()) + " --z " + exact(t.z()) +
+  return "  " + described(words) + "  <node pkg=\"tf2_ros\" exec=\"static_transform_publisher\" name=\"" +
+         node + "\"\n        args=\"--x " + exact(t.x()) + " --y " + exact(t.y()) + " --z " + exact(t.z()) +
          " --qx " + exact(q.x()) + " --qy " + exact(q.y()) + " --qz " + exact(q.z()) + " --qw " +
-         exact(q.w()) + " --frame-id " + words.a + " --child-frame-id " + words.b + "\"/>\n</launch>\n";
+         exact(q.w()) + " --frame-id " + words.a + " --child-frame-id " + words.b + "\"/>\n";
 }
 
 }  // namespace egocal::detail

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Every number that the diagnosis decides by. "Study" is tests/bench/mistake_study.cpp: mistakes of users on
+// real and simulated drives, and the same drives without any; docs/trust.md has its tables.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "egocal/diagnosis/verdict.hpp"
+
+namespace egocal {
+
+/// The motions that explanations are compared on.
+struct MotionSampleOptions {
+  std::size_t most = 700;        ///< motions that decide; bounds the cost of a drive of any length
+  std::size_t first_look = 200;  ///< motions that choose which explanations are worth a closer look
+  double most_rotation =
+      2.9670597283903604;        ///< [rad], 170 degrees: nearer to half a turn the sign is a guess
+  std::size_t most_blocks = 64;  ///< independent parts of a drive that a comparison counts, at most
+  double most_stretched = 4;     ///< a motion of more than this many times its usual duration crosses a gap
+  /// Fewer motions are explained by anything: six unknowns, two equations of three each.
+  std::size_t least = 5;
+};
+
+/// Iteratively reweighted fit.
+struct RobustFitOptions {
+  int rounds = 4;  ///< of reweighting; the weights of gross outliers are negligible after three
+  double inlier =
+      9;  ///< squares beyond this many times the typical one lose weight: three standard deviations
+};
+
+/// Search for the clock of b.
+struct ClockSearchOptions {
+  std::size_t grid = 1200;  ///< points of the turning rates that are correlated, at most
+  double widest = 60;       ///< offsets up to this are looked for, and up to a quarter of the drive [s]
+  std::size_t pieces = 6;   ///< of the drive, whose own offsets show the rate
+  double most_rate = 0.02;  ///< a clock that is wrong by more is not believed [s/s]; crystals are within 1e-4
+};
+
+/// Search for the scale of b.
+struct ScaleSearchOptions {
+  /// Scales are looked for within this factor of the ratio of the lengths: a rig that turns much and travels
+  /// little has unlike lengths.
+  double widest = 64;
+  int grid = 48;         ///< scales of the first look, evenly in the logarithm
+  int refinements = 24;  ///< steps of the golden section after it: to 3e-6 of the scale
+  double unit_tolerance =
+      0.1;  ///< logarithm of what a scale may differ from a power of 1000 to be called a unit
+};
+
+/// In which direction of their own bodies the sensors travel.
+struct HeadingOptions {
+  /// Length of the mean direction of travel: vehicles of the study have 0.95 to 1, hand-held rigs, drones and
+  /// arms less than 0.6.
+  double always = 0.9, seldom = 0.7;
+  double least_turning = 1.5;  ///< in all [rad]; without turning every reading travels straight
+};
+
+/// Whether the ground planes suit the motions.
+struct PlaneCheckOptions {
+  double one_axis =
+      10;  ///< ratio of the mean squares of the turns about the first and the second axis: a vehicle
+  double aligned =
+      0.9;  ///< cosine of the angle between axis and normal, 26 degrees; level roads are within a few
+};
+
+/// Search for a mounting that moved.
+struct MountCheckOptions {
+  std::size_t blocks = 32;  ///< of three motions each that share no time: enough to know their scatter
+  std::size_t most_motions = 20000;  ///< of long drives: overlapping motions say little that is new
+};
+
+/// When an answer counts as known or as wrong.
+struct DiagnosisOptions {
+  bool enabled = true;  ///< of calibrate(): without it the verdict knows of no other explanation
+  /// An answer is not called good where a direction may be off by more than this (1.96 standard deviations),
+  /// and is called contradictory where a better explanation has an answer further away [rad, m]. What users
+  /// of vehicles call wrong; an arm wants less.
+  double tolerance_rotation = 0.017453292519943295;
+  double tolerance_translation = 0.6;
+  /// Signed-rank test of an explanation against the streams as given, over up to 64 blocks of the drive. 3.5
+  /// standard deviations are one false alarm in 2000 comparisons of streams that fit equally well.
+  double sigmas = 3.5;
+  /// Least mean log ratio of the squared residuals of an explanation that is called certain. Clean drives of
+  /// the study stay below 0.1 for all explanations but "both inverted".
+  double gain = 0.3;
+  /// Least gain of one fitted number (scale, clock): ten times what it gains by chance in a hundred motions.
+  double least_gain = 0.05;
+  /// Readings of the files that are fitted in full after the first look, the most promising first.
+  std::size_t followed = 3;
+  /// Two readings whose gains differ by less are told apart by the way that a vehicle travels, or not at all.
+  double alike = 0.7;
+  /// An explanation that leaves more than this part of the typical motion unexplained explains nothing.
+  double explains = 0.5;
+  /// "Both inverted" is ruled out where it fits worse by this factor (mean squares): noise that grows with
+  /// the distance from the start. Real drives: EuRoC 1.6, Tango 1.2, raw KITTI 4, KITTI 25 to 73.
+  double decisive = 3;
+  /// An explanation so much better (squared residuals) makes the streams as given useless, wherever its
+  /// answer lies.
+  double overwhelming = 7.4;
+  /// Residual at the answer as a part of the typical motion. Clean drives with a noise of a tenth of every
+  /// single motion stay below 0.35; streams that do not belong together are at 1 and more.
+  double doubtful_misfit = 0.45, contradictory_misfit = 0.7;
+  /// Correlation of the turning of both streams below which they are called unrelated, where nothing fits
+  /// either.
+  double unrelated_correlation = 0.5;
+  /// In all, of outliers cleared: turned by less, the noise of odometry decides [rad].
+  double least_turning = 0.1;
+  MotionSampleOptions motions;
+  RobustFitOptions fit;
+  ClockSearchOptions clock;
+  ScaleSearchOptions scale;
+  HeadingOptions heading;
+  PlaneCheckOptions planes;
+  MountCheckOptions mount;
+  std::optional<GoalOptions> goal;
+};
+
+}  // namespace egocal
