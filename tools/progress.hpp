@@ -6,7 +6,7 @@
 
 namespace egocal::tools {
 
-/// A progress bar on standard error, where somebody is looking (a terminal); silent otherwise.
+/// A progress bar on standard error, on a terminal; silent otherwise.
 class Progress {
  public:
   explicit Progress(std::string label);

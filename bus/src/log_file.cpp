@@ -241,9 +241,9 @@ std::string LogReader::channel_of(const Place& place) const {
 }
 
 /// Whether the header found inside of an event is the log going on there, and not a piece of a log that
-/// somebody has sent as a message. The next number alone proves nothing: every log has a 1. It is borne
-/// out by a higher one after it, wherever that stands (the events in between may be damaged, too), or by an
-/// end where the outer event has its own.
+/// another program has sent as a message. The next number alone proves nothing: every log has a 1. It is
+/// borne out by a higher one after it, wherever that stands (the events in between may be damaged, too), or
+/// by an end where the outer event has its own.
 bool LogReader::goes_on(const Place& inner, const Place& outer) const {
   if (!follows(inner.number, outer.number)) return false;
   if (inner.end() == outer.end()) return true;

@@ -117,7 +117,7 @@ std::optional<problem_t> PairSession::message() {
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
   const PairingCounts counts = drive_.counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
-  counters["left out"] += static_cast<std::int64_t>(counts.outliers);
+  counters["outliers"] += static_cast<std::int64_t>(counts.outliers);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
     if (counts.rejected[i] > 0)
       counters["rejected: " + std::string(to_string(static_cast<Rejection>(i)))] +=

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int acknowledge_every = 16;
-/// An acknowledgement that nobody can be waiting for yet is put off this long: more may come.
+/// An acknowledgement that no sender waits for yet is delayed this long: more may come.
 constexpr auto acknowledge_delay = 300us;
 /// Messages of one channel that may wait: more than any player has on the way.
 constexpr int queue_capacity = 1024;
@@ -115,7 +115,7 @@ void Pairing::after_batch(bool caught_up) {
   }
   publish_new_problems();
   publish_motions();
-  // somebody may be waiting for it: a player that keeps in step
+  // a sender may be waiting for it: a player that keeps in step
   if (caught_up && unacknowledged_ > 0 && !acknowledge_timer_ && heartbeat_.alive(bus::Role::player))
     acknowledge_timer_ = loop_.after(acknowledge_delay, [this] {
       acknowledge_timer_.reset();

@@ -7,7 +7,7 @@
 
 namespace egocal::services {
 
-/// What somebody at the player wants, by a key or by a command on the bus.
+/// What a user wants of the player, by a key or by a command on the bus.
 struct Control {
   enum class Verb { pause, resume, toggle, step, seek, skip, speed, faster, quit };
   Verb verb;

@@ -11,7 +11,7 @@ namespace {
 const std::string held_back_prefix = "held back: ";
 /// A status can be forged: names of channels that are remembered.
 constexpr std::size_t most_channels = 256;
-/// After so many times without success pairing takes it that there is nothing to fill the gap with.
+/// After this many attempts without success pairing takes it that there is nothing to fill the gap with.
 constexpr int most_tries = 2;
 }  // namespace
 

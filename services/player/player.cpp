@@ -55,7 +55,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
         static_cast<std::int64_t>(tape_.damage().regions);
     heartbeat_.counter("lost: events of the log") = static_cast<std::int64_t>(tape_.damage().lost_events);
   });
-  // first the ears: whoever sees that it is there may send a command at once
+  // listens before it announces itself: a command may follow the first status at once
   loop_.subscribe<command_t>(bus::command_channel,
                              [this](const command_t& command, const bus::Arrival&) { hear(command); });
   heartbeat_.set_state(paused_ ? bus::State::paused : bus::State::running);
@@ -216,7 +216,7 @@ void Player::wait_until(std::int64_t mono_us) {
 void Player::play() {
   if (timer_) loop_.cancel(*timer_);
   timer_.reset();
-  // at any speed but that of the recording it is worth waiting for somebody to keep in step with
+  // at any speed but that of the recording it waits for a pairing to keep in step with
   const bool waits_for_pairing = !in_flight_.heard() && !alone_ && options_.speed != 1 && !step_;
   for (int sent = 0; next_ && (!paused_ || step_) && !waits_for_pairing; ++sent) {
     if (in_flight_.count() >= most_in_flight) return;  // goes on with the next acknowledgement
@@ -257,11 +257,11 @@ void Player::play() {
     ended_ = true;
     progress_mono_us_ = loop_.mono_us();
   }
-  // paused at the end, by a step: whoever steps may want to look and to go back
+  // paused at the end, by a step: a person who steps may want to go back
   if (ended_ && in_flight_.count() == 0 && !paused_) finish();
 }
 
-/// Ten times a second: nobody there, something lost, the end.
+/// Ten times a second: no pairing, something lost, the end.
 void Player::watch_over() {
   const std::int64_t now = loop_.mono_us();
   show_progress(false);
@@ -278,7 +278,7 @@ void Player::watch_over() {
     send_again();
     progress_mono_us_ = now;
   }
-  // whoever is gone for long at the end of the log will not be waited for
+  // a pairing that has been gone for long at the end of the log is not waited for
   if (ended_ && in_flight_.count() > 0 && now - progress_mono_us_ > 10'000'000) {
     say(text("%zu messages were never acknowledged", in_flight_.count()));
     in_flight_.clear();
@@ -306,7 +306,7 @@ void Player::say_damage() {
              static_cast<unsigned long long>(damage.bytes),
              static_cast<unsigned long long>(damage.lost_events)));
   else if (told_regions_ + told_jumps_ <= most_told)
-    say("the log is damaged in more places; their sum will be told at the end");
+    say("the log is damaged in more places; their number will be reported at the end");
   told_regions_ = damage.regions;
   told_jumps_ = damage.jumps;
 }
@@ -323,7 +323,7 @@ void Player::report() {
     say(text("%llu events with damaged times were played when their neighbours were",
              static_cast<unsigned long long>(tape_.damaged_times())));
   if (tape_.left_out() > 0)
-    say(text("%llu events of egocal's own channels (EGOCAL_*) were left out; --channel plays them",
+    say(text("%llu events of egocal's own channels (EGOCAL_*) were skipped; --channel plays them",
              static_cast<unsigned long long>(tape_.left_out())));
 }
 

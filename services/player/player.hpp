@@ -66,7 +66,7 @@ class Player {
   std::int64_t anchor_us_ = 0;       ///< recorded time that ...
   std::int64_t anchor_mono_us_ = 0;  ///< ... is played at this time of the clock
   std::int64_t started_mono_us_ = 0, progress_mono_us_ = 0, shown_mono_us_ = 0;
-  std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was told
+  std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported
   std::optional<bus::Loop::TimerId> timer_;
   bool paused_ = false, step_ = false, alone_ = false, ended_ = false, terminal_ = false, line_open_ = false;
   std::uint64_t out_ = 0, told_regions_ = 0, told_jumps_ = 0;

@@ -73,22 +73,22 @@ void Tape::look_ahead() {
 /// That of the next event.
 void Tape::mend_time() {
   const std::int64_t time = ahead_[0].time_us;
-  std::int64_t mended = time;
+  std::int64_t corrected = time;
   if (last_us_ && ahead_.size() > 1) {
     const std::int64_t after = ahead_[1].time_us;
     const bool goes_on = !later(*last_us_, after, disorder_us);  // a clock set back stays back
     if (goes_on && (later(time, after, disorder_us) || later(*last_us_, time, disorder_us)))
-      mended = *last_us_;
+      corrected = *last_us_;
   } else if (last_us_) {
-    if (later(*last_us_, time, disorder_us) || later(time, *last_us_, longest_gap_us)) mended = *last_us_;
+    if (later(*last_us_, time, disorder_us) || later(time, *last_us_, longest_gap_us)) corrected = *last_us_;
   } else if (ahead_.size() > 2) {
     const std::int64_t second = ahead_[1].time_us, third = ahead_[2].time_us;
     const bool in_order = !later(second, third, disorder_us);
     if (in_order && (later(time, second, disorder_us) || later(second, time, longest_gap_us)))
-      mended = second;
+      corrected = second;
   }
-  if (mended == time) return;
-  ahead_[0].time_us = mended;
+  if (corrected == time) return;
+  ahead_[0].time_us = corrected;
   ++damaged_times_;
 }
 

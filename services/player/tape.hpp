@@ -21,8 +21,8 @@ struct TapeOptions {
 };
 
 /// The events of a log that are to be played, in the order of the file. A time that fits neither the event
-/// before nor the one after it is damaged and replaced by that of the event before: nobody waits years for
-/// one flipped bit.
+/// before nor the one after it is damaged and replaced by that of the event before: the player does not wait
+/// years for one flipped bit.
 class Tape {
  public:
   /// Throws Error where there is nothing to play.

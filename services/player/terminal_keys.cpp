@@ -11,7 +11,7 @@ namespace egocal::services {
 
 namespace {
 
-/// Started with & in a shell: keys are for somebody else, and reading would stop us.
+/// Started with & in a shell: keys belong to the shell, and reading would stop us.
 bool in_foreground() {
   return tcgetpgrp(STDIN_FILENO) == getpgrp();
 }

@@ -17,7 +17,7 @@ class TerminalKeys {
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
   bool there() const { return there_; }
-  /// What was typed; empty: nothing (or the terminal belongs to somebody else just now).
+  /// What was typed; empty: nothing, or another process has the terminal.
   std::string read();
   bool ended() const { return ended_; }
 

@@ -360,7 +360,7 @@ TEST_F(LogFile, AMessageThatHoldsThePieceOfALogIsWhole) {
 
 TEST_F(LogFile, WhereTheSameBytesAreTwoLogsTheOneWithMoreEventsIsRead) {
   // These are at the same time the events of a log whose first one has a damaged length, and a message in
-  // which somebody has sent them.
+  // which another program has sent them.
   const std::string next = event_bytes(1, "CHANNEL", "data"), after = event_bytes(2, "CHANNEL", "data");
   for (const std::string& rest : {next, next + after, next + after + "cut off"}) {
     std::string lying = event_bytes(0, "CHANNEL", "data") + rest;

@@ -167,7 +167,7 @@ TEST_F(Processes, AStateFileThatDoesNotFitIsRefusedWithOneLine) {
   // the status is sent before the line is written
   ASSERT_TRUE(until([&] { return lines("anew.log").size() == 1u; }, 5s));
   EXPECT_THAT(lines("anew.log")[0], testing::HasSubstr("kept as " + state + ".refused"));
-  // no state at all: somebody's rig file
+  // no state at all: a rig file
   EXPECT_EQ(ChildProcess({bin + "/egocal-pairing", "--rig", rig_file, "--lcm-url", url, "--state", rig_file},
                          folder / "not.log")
                 .wait(5s),
@@ -191,7 +191,7 @@ TEST_F(Processes, KilledAndSwappedSolversLeaveTheAnswerAsItWas) {
   processes.at("egocal-global").signal(SIGKILL);
   play(part(600, 900));
   answers.clear();
-  // a fast solver of another kind, with nothing else told to anybody
+  // a fast solver of another kind, with no other change
   start("egocal-fast", {"--method", "slsqp"}, "another-fast");
   const auto restarted = std::chrono::steady_clock::now();
   ASSERT_TRUE(

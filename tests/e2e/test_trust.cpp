@@ -114,8 +114,8 @@ TEST_F(Trust, TwoSolversOfOneNameBothGoOnAndSaySo) {
       10s));
 }
 
-/// Somebody sends without end on one channel after the other, garbage and what looks like ours, large and
-/// small. A third sensor is flooded, not one of the pair that is watched.
+/// A foreign program sends without end on one channel after the other, garbage and what looks like ours,
+/// large and small. A third sensor is flooded, not one of the pair that is watched.
 TEST_F(Trust, AFloodOnAnyChannelStopsNothingElseAndTakesNoMemory) {
   write_rig("egocal.odometry_t",
             "[[sensor]]\nname = \"third\"\nchannel = \"ODO_THIRD\"\n[[pair]]\na = \"left\"\nb = "
@@ -130,7 +130,7 @@ TEST_F(Trust, AFloodOnAnyChannelStopsNothingElseAndTakesNoMemory) {
   status_t status = statuses["egocal-pairing"];
   status.role = "monitor";
   calibration_t answer = answers["egocal-fast"];
-  answer.solver = "nobody";
+  answer.solver = "unknown";
   command_t command{};
   command.to = "*";
   command.verb = "nonsense";

@@ -65,7 +65,7 @@ bool has_two_readings(const std::vector<unsigned char>& bytes, std::size_t last,
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const test::InMemoryFile input, mended;
+  static const test::InMemoryFile input, repaired;
   input.set(data, size);
   try {
     bus::LogReader log(input.name());
@@ -89,10 +89,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const std::byte b : event.data) bytes.push_back(std::to_integer<unsigned char>(b));
     }
     if (has_two_readings(bytes, last, number)) return 0;
-    mended.set(bytes.data(), bytes.size());
-    bus::LogReader again(mended.name());
-    require(equal(events, events_of(again)), "a mended log holds the same events");
-    require(!again.damage().any(), "a mended log has no damage");
+    repaired.set(bytes.data(), bytes.size());
+    bus::LogReader again(repaired.name());
+    require(equal(events, events_of(again)), "a repaired log holds the same events");
+    require(!again.damage().any(), "a repaired log has no damage");
   } catch (const Error& error) {
     fuzz::require_one_line(error.what());
   }

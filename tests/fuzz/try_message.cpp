@@ -20,7 +20,7 @@ bool finite(const DualQuaternion& q) {
 }
 
 void enter(const StampedPose& pose) {
-  require(finite(pose.pose), "a pose at the door is finite");
+  require(finite(pose.pose), "a decoded pose is finite");
   require(std::abs(pose.pose.real.norm() - 1) < 1e-9, "its quaternion is of unit length");
   require(bus::plausible_time(pose.time_us), "its time is one");
 }
@@ -37,13 +37,13 @@ void enter(const problem_t& message) {
     return;
   }
   const Problem& p = *problem.value;
-  require(p.blocks.size() == message.blocks.size(), "no block is lost at the door");
+  require(p.blocks.size() == message.blocks.size(), "no block is lost by decoding");
   for (const Statistics& block : p.blocks) {
-    require(block.dual_rows.allFinite(), "statistics at the door are finite");
+    require(block.dual_rows.allFinite(), "decoded statistics are finite");
     require(block.dual_rows == block.dual_rows.transpose(), "and symmetric");
     require(std::isfinite(block.weight) && block.weight > 0, "and have a weight");
   }
-  require(!p.prior || finite(*p.prior), "a prior at the door is finite");
+  require(!p.prior || finite(*p.prior), "a decoded prior is finite");
   // names and counts are the sender's; all the rest must go out as it came in
   problem_t out = bus::to_message(p);
   out.sensor_a = message.sensor_a;
@@ -59,10 +59,10 @@ void enter(const calibration_t& message) {
     fuzz::require_one_line(answer.reason);
     return;
   }
-  require(finite(answer.value->T_a_b), "an answer at the door is finite");
+  require(finite(answer.value->T_a_b), "a decoded answer is finite");
   require(std::isfinite(answer.value->certificate.cost), "and so is its cost");
   require(answer.value->certificate.gap >= 0, "and its gap is one");
-  fuzz::require(bus::printable(message.solver) == message.solver, "names at the door can be printed");
+  fuzz::require(bus::printable(message.solver) == message.solver, "decoded names can be printed");
 }
 void enter(const status_t& message) {
   const std::string text = bus::printable(message.name + message.last_error);

@@ -7,7 +7,7 @@
 
 namespace egocal::fuzz {
 
-/// The bytes of a datagram through the decoder and the checks at the door. For the messages of the project.
+/// The bytes of a datagram through the decoder and the checks of its values. For the messages of the project.
 template <class Message>
 void try_message(std::span<const std::uint8_t> data);
 

@@ -45,7 +45,7 @@ TEST(Calibrate, BeginsWithTheGlobalSolverAndThenRunsFastAndCertified) {
       EXPECT_TRUE(step.global_used);
     }
     if (step.global_used) last_global = time;
-    // whoever answered, it is the global answer
+    // whichever solver answered, it is the global answer
     if (i >= 10) {
       EXPECT_EQ(step.answer.certificate.optimality, Optimality::certified) << i;
       const Answer global = solve(problem, Method::dual);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Plays the processes of a rig towards the monitor: so many pairs, so many messages a second, with problems
-// of full size. Usage: egocal-monitor-feeder PAIRS HZ SECONDS [hostile]; LCM's default URL or
+// Plays the processes of a rig towards the monitor: a number of pairs, a number of messages a second, with
+// problems of full size. Usage: egocal-monitor-feeder PAIRS HZ SECONDS [hostile]; LCM's default URL or
 // LCM_DEFAULT_URL.
 #include <chrono>
 #include <cstdlib>

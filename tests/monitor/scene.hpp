@@ -31,7 +31,7 @@ inline Pose extrinsic_at(double n) {
           {-0.08 + 0.3 * off * wobble, -0.05 - 0.2 * off, -0.27 + 0.4 * off}};
 }
 
-/// Motions that this extrinsic fits without error, so that whoever verifies it certifies it.
+/// Motions that this extrinsic fits without error, so that every verification certifies it.
 inline std::vector<statistics_t> blocks_for(const Pose& extrinsic, int count) {
   const DualQuaternion T = to_dual_quaternion(extrinsic);
   Problem problem;

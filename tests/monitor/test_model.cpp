@@ -319,7 +319,7 @@ TEST(ModelPause, KnownByCommandsByStatesAndByMotionsThatGoOn) {
   drive.fast = true;
   drive.change_problem = [](problem_t&) {};
   drive.run(1);
-  EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "somebody has resumed it unheard";
+  EXPECT_FALSE(pair_is_paused(drive.model, drive.pair())) << "it was resumed by a message that was lost";
   status_t status = status_of("egocal-pairing", "pairing", 1);
   status.state = "paused";
   drive.heartbeat(status);

@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(Terminal, ADumbOneGetsPlainLines) {
-  for (const std::string term : {"dumb", "nobody-knows-this-terminal"}) {
+  for (const std::string term : {"dumb", "unknown-terminal"}) {
     Tmux tmux(160, 40, "read go\n" + script(environment(term), "--log " + recording));
     tmux.run("pipe-pane -t s 'cat > " + (tmux.folder() / "raw").string() + "'");
     tmux.keys("Enter");
@@ -289,7 +289,7 @@ TEST(Terminal, IsGivenBackWhileSuspendedAndTakenAgain) {
   expect_screen(tmux, overview);
   tmux.keys("C-z");
   ASSERT_TRUE(until([&] { return tmux.shows("Stopped"); }));
-  tmux.resize(110, 35);  // while nobody looks
+  tmux.resize(110, 35);  // while detached
   tmux.type("clear; fg");
   expect_screen(tmux, expected("overview", 110, 35, false));
   tmux.keys("q");

@@ -233,8 +233,8 @@ TEST_F(Commands, BadLogsAndRigsAreRefused) {
   EXPECT_EQ(check.code, 1);
   EXPECT_THAT(check.err, HasSubstr("cut off at the end"));
   EXPECT_GT(solved("--log " + cut + " ODOMETRY_LIDAR ODOMETRY_CAMERA --stride 1")["pairs"], 150);
-  ASSERT_EQ(egocal("log repair " + cut + " --out " + path("mended.log")).code, 0);
-  EXPECT_EQ(egocal("log check " + path("mended.log")).code, 0);
+  ASSERT_EQ(egocal("log repair " + cut + " --out " + path("repaired.log")).code, 0);
+  EXPECT_EQ(egocal("log check " + path("repaired.log")).code, 0);
 }
 
 TEST_F(Commands, NothingHalfWrittenIsLeft) {

@@ -18,7 +18,7 @@ namespace egocal::tools {
 
 namespace {
 
-/// A progress bar on standard error, where somebody is looking.
+/// A progress bar on standard error, on a terminal.
 class Progress {
  public:
   void operator()(double part) {

@@ -264,10 +264,10 @@ void add_log(cli::App program) {
   });
 
   const auto out = std::make_shared<std::string>();
-  cli::App mend = log.add_subcommand("repair", "all events that can be read, as a new log");
-  mend.add_option("LOG", *file).required();
-  mend.add_option("--out", *out, "the new log").required();
-  mend.callback([file, out] { repair(*file, *out); });
+  cli::App repairing = log.add_subcommand("repair", "all events that can be read, as a new log");
+  repairing.add_option("LOG", *file).required();
+  repairing.add_option("--out", *out, "the new log").required();
+  repairing.callback([file, out] { repair(*file, *out); });
 
   cli::App exported = log.add_subcommand("export", "poses and calibrations of a log for ROS 2 and Foxglove");
   exported.add_option("LOG", *file).required();

@@ -59,7 +59,7 @@ void run(const Options& options) {
 void add_tell(cli::App program) {
   const auto options = std::make_shared<Options>();
   cli::App command =
-      program.add_subcommand("tell", "a word to a process that runs: pause, step, seek, reset");
+      program.add_subcommand("tell", "sends a command to a running process: pause, step, seek, reset");
   command.add_option("NAME", options->to, "of the process, e.g. egocal-player; * for all").required();
   command.add_option("VERB", options->verb, "pause, resume, reset; the player also: step, seek S, speed S")
       .check(cli::Check::one_of({"pause", "resume", "reset", "step", "seek", "speed"}))

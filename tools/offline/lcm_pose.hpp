@@ -17,8 +17,8 @@ struct LcmPose {
   std::string type;       ///< "egocal.odometry_t"; empty: no pose message
 };
 
-/// Any of the types that hold a pose, told by their fingerprints; a message of another type, or with values
-/// that are no pose, is refused.
+/// Any of the types that hold a pose, recognised by their fingerprints; a message of another type, or with
+/// values that are no pose, is refused.
 LcmPose decode_lcm_pose(bus::Bytes bytes);
 
 }  // namespace egocal::tools

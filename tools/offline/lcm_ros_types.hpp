@@ -20,8 +20,8 @@ struct LcmRosPose {
 };
 
 /// nav_msgs.Odometry, geometry_msgs.PoseStamped, PoseWithCovarianceStamped, TransformStamped (with
-/// std_msgs.Header as in ROS 1 and ROS 2) and dairlib.lcmt_ros_odometry, told by their fingerprints. Empty
-/// for any other type, or where the bytes are not exactly one message.
+/// std_msgs.Header as in ROS 1 and ROS 2) and dairlib.lcmt_ros_odometry, recognised by their fingerprints.
+/// Empty for any other type, or where the bytes are not exactly one message.
 std::optional<LcmRosPose> decode_lcm_ros_pose(bus::Bytes bytes);
 
 }  // namespace egocal::tools

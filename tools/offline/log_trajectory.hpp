@@ -17,7 +17,7 @@ struct LogTrajectory {
   std::string not_used;
 };
 
-/// The poses of one channel of an LCM log (egocal.odometry_t or bot_core.pose_t, told apart by their
+/// The poses of one channel of an LCM log (egocal.odometry_t or bot_core.pose_t, recognised by their
 /// fingerprint), of its first session: up to where time goes back by more than 10 s. They pass the Stream
 /// that live odometry passes, with its look-ahead: a damaged time stamp or number costs its own pose. Throws
 /// Error naming the file and, where the channel is not there, channels that are.

@@ -6,7 +6,7 @@
 
 namespace egocal::tools {
 
-/// Where the outputs of supervised processes go if nobody says: egocal in the user's folder for states
+/// Where the outputs of supervised processes go by default: egocal in the user's folder for states
 /// (XDG_STATE_HOME, ~/.local/state), or in /tmp.
 std::string default_output_directory();
 

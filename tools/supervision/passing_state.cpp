@@ -25,7 +25,7 @@ constexpr const char* prefix = "pairing-";
 constexpr const char* suffix = ".state";
 constexpr const char* owner_suffix = ".owner";
 
-/// -1: somebody owns it, or it cannot be opened.
+/// -1: a process owns it, or it cannot be opened.
 int owned(const std::string& file) {
   const int fd = open((file + owner_suffix).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;

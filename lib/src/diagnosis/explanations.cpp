@@ -223,7 +223,7 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
 
 /// Both files inverted is no contradiction by itself: the answer is then that of the two odometry frames. It
 /// is certain where a vehicle's way points forward under it alone. Noise that grows with the distance from
-/// the start speaks for the streams as given, but not for the inverted ones: a mount that moved looks the
+/// the start supports the streams as given, but not the inverted ones: a mount that moved looks the
 /// same. Otherwise both answers stand.
 std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
   PoseReading inverted;
@@ -237,7 +237,7 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
   if (forward(as_given, options.heading) && !forward(as_inverted, options.heading)) return std::nullopt;
   const bool trace = forward(as_inverted, options.heading) && scattered(as_given, options.heading);
   if (!trace && noise_says_given) return std::nullopt;
-  // an explanation that does not fit at all cannot be told apart from nothing
+  // an explanation that does not fit at all says nothing
   if (!trace && comparison.gain < -1) return std::nullopt;
   Finding finding = finding_of(both, comparison, trace);
   finding.improvement = comparison.ratio;

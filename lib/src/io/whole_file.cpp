@@ -82,7 +82,7 @@ WholeFile::WholeFile(const std::string& file) : file_(file), target_(without_lin
       fail(std::string("cannot be written: ") + std::strerror(errno));
   }
   if (exists && fchmod(fd_, there.st_mode & 07777) != 0) {
-    // a file of somebody else: it gets the usual permissions
+    // a file of another owner: it gets the usual permissions
   }
   buffer_.reserve(buffer_size);
 }

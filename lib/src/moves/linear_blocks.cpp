@@ -15,8 +15,8 @@ namespace egocal::detail {
 
 namespace {
 
-/// A pair that fits this many times worse than the median of its block is left out: ten standard deviations,
-/// beyond the tails of odometry and below the jumps that matter.
+/// A pair that fits this many times worse than the median of its block is an outlier: ten standard
+/// deviations, beyond the tails of odometry and below the jumps that matter.
 constexpr double most_residual = 100;
 
 /// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.

@@ -16,7 +16,7 @@ using Seen = TypicalDifference::Seen;
 
 /// Below this angle a motion has no axis to slide along [rad].
 constexpr double least_turn = 0.02;
-/// Differences that are never worth a word: rounding of what sensors send [rad, m].
+/// Differences that mean nothing: rounding of what sensors send [rad, m].
 constexpr double angle_floor = 1e-6, length_floor = 1e-5;
 /// Memory, in motions, and how many of them make a first and every further estimate.
 constexpr std::size_t memory = 1024, first_estimate = 24;

@@ -7,7 +7,7 @@
 
 namespace egocal::services {
 
-/// When something was written, by a clock that nobody can set: the time since the machine's start [us], and
+/// When something was written, by a clock that cannot be set: the time since the machine's start [us], and
 /// which start that was. It counts on while the machine sleeps.
 struct BootTime {
   std::string boot;  ///< the kernel's name of this start; empty: unknown

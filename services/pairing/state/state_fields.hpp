@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // What of each struct goes into a state file: everything. The structured bindings do not compile where a
-// struct gains or loses a field, so that none is forgotten. Whoever changes one raises state_layout.
+// struct gains or loses a field, so that none is forgotten. A change of one raises state_layout.
 #pragma once
 
 #include "egocal/pairing/motion_pairing.hpp"

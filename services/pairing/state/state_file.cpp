@@ -74,7 +74,7 @@ void append_part(std::vector<std::byte>& out, std::span<const std::byte> part, s
 /// A state of the largest rigs has some megabytes.
 constexpr std::int64_t largest_state = std::int64_t{256} << 20;
 
-/// The file, checked before its content is read: somebody's own file must not be moved away because of a
+/// The file, checked before its content is read: a user's own file must not be moved away because of a
 /// slip on the command line, nor a pipe be waited for. Empty: there is none.
 std::optional<std::vector<std::byte>> whole(const std::string& file, std::int64_t& time_s) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -208,7 +208,7 @@ void StateFile::refuse(const std::string& why) {
 }
 
 void StateFile::snapshot(std::span<const std::byte> bytes) {
-  // the folder was there when this began: whoever removed it did not mean what is known here
+  // the folder was there when this began: its removal was not meant for what is known here
   std::error_code none;
   std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
   lock_.confirm();

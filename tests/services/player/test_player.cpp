@@ -149,7 +149,7 @@ TEST_F(PlayerProcess, SpeedIsThatOfTheOptionAndChangesLive) {
   write(evenly(100, 0.1));  // 10 s
   start({"--speed", "5", "--paused"});
   ASSERT_TRUE(until([&] { return status.state == "paused"; }));
-  listen(3500ms);  // nobody to keep in step with: it goes on alone
+  listen(3500ms);  // no pairing to keep in step with: it goes on alone
   EXPECT_TRUE(heard.empty());
   command("resume");
   ASSERT_TRUE(until([&] { return heard.size() >= 40; })) << said();
@@ -278,7 +278,7 @@ TEST_F(PlayerProcess, OwnChannelsOfAnotherDayStayInTheLog) {
   start();
   EXPECT_EQ(ended(), 0);
   EXPECT_EQ(heard.size(), 2u);
-  EXPECT_THAT(said(), HasSubstr("1 events of egocal's own channels (EGOCAL_*) were left out"));
+  EXPECT_THAT(said(), HasSubstr("1 events of egocal's own channels (EGOCAL_*) were skipped"));
   start({"--channel", ".*"});
   EXPECT_EQ(ended(), 0);
   EXPECT_EQ(heard.size(), 5u);

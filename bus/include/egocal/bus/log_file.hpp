@@ -36,11 +36,11 @@ struct LogDamage {
 };
 
 /// What the numbers of a log's events say. lcm-logger, and whatever writes through liblcm, counts up from 0:
-/// so what is missing can be counted in whatever order the rest comes, and a damaged number is told from a
+/// so what is missing can be counted in whatever order the rest comes, and a damaged number differs from a
 /// lost event.
 class EventNumbers {
  public:
-  /// An event has been read, so many damaged bytes after the one before. True: the number is not the next
+  /// An event has been read, this many damaged bytes after the one before. True: the number is not the next
   /// one.
   bool take(std::int64_t number, std::uint64_t damaged_bytes);
   /// Begins with the event of this number; what is before it is not missed.
@@ -63,9 +63,9 @@ class EventNumbers {
 };
 
 /// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs what it held: the
-/// reader goes on at the next event that makes sense (liblcm's own reader ends there, without a word). An
-/// event whose lengths lie is left out; what else is damaged inside of one only its decoder can tell. Memory
-/// is that of one event, no length field of a damaged event makes it more than 64 MiB, and the time is
+/// reader goes on at the next event that makes sense (liblcm's own reader ends there silently). An
+/// event with impossible lengths is skipped; what else is damaged inside of one only its decoder can tell.
+/// Memory is that of one event, no length field of a damaged event makes it more than 64 MiB, and the time is
 /// proportional to the file.
 class LogReader {
  public:

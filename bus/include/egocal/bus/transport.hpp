@@ -38,7 +38,7 @@ struct TransportCounts {
 /// changes it, so a simulation can put any network behind this interface.
 class Transport {
  public:
-  /// Channels that somebody wants; all others are dropped before anything is kept of them.
+  /// Channels with a subscriber; all others are dropped before anything is kept of them.
   using Wanted = std::function<bool(std::string_view channel)>;
 
   Transport() = default;

@@ -33,7 +33,7 @@ struct Certificate {
   Optimality optimality = Optimality::undecided;
   double cost = 0;
   /// Every extrinsic within the domain has a cost of at least this. A bound above zero is proven for the
-  /// given numbers, whoever proposed lambda; zero is a bound up to the competitor's own cost_rounding().
+  /// given numbers, wherever lambda comes from; zero is a bound up to the competitor's own cost_rounding().
   /// -infinity where nothing is proven.
   double lower_bound = 0;
   double gap = 0;         ///< cost - lower_bound, >= 0

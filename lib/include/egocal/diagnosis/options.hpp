@@ -89,7 +89,7 @@ struct DiagnosisOptions {
   double least_gain = 0.05;
   /// Readings of the files that are fitted in full after the first look, the most promising first.
   std::size_t followed = 3;
-  /// Two readings whose gains differ by less are told apart by the way that a vehicle travels, or not at all.
+  /// Two readings whose gains differ by less are decided by the way that a vehicle travels, or not at all.
   double alike = 0.7;
   /// An explanation that leaves more than this part of the typical motion unexplained explains nothing.
   double explains = 0.5;

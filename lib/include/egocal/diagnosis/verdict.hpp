@@ -47,7 +47,7 @@ struct Finding {
   std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
                      ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
                      ///< too_little_motion
-  bool certain = false;         ///< it fits clearly better; otherwise it cannot be told apart
+  bool certain = false;         ///< it fits clearly better; otherwise both remain possible
   std::string message;          ///< what was found, one sentence
   std::string remedy;           ///< option or action that cures it
   double improvement = 1;       ///< squared residuals as given / under this explanation

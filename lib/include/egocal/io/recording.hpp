@@ -14,14 +14,14 @@
 
 namespace egocal {
 
-/// What cannot be told from a file itself. The defaults need no setting for most files.
+/// What a file itself does not say. The defaults need no setting for most files.
 struct ReadOptions {
   std::string times_file;  ///< KITTI: one time a line [s]
   /// Names of the columns of a table, in order and separated by commas, where it has no header or one that is
   /// not understood: t x y z qw qx qy qz, or roll pitch yaw, yaw, latitude longitude height; `-` skips one.
   /// A unit may follow in brackets: t[ns], yaw[deg].
   std::string columns;
-  double rate = 0;  ///< poses without times: so many a second [Hz]; 0: 10 is assumed, and said in the notes
+  double rate = 0;  ///< poses without times: their rate [Hz]; 0: 10 is assumed and reported in the notes
 };
 
 /// One stream of a recording: a topic of a bag, one transform of a tf topic, a channel of a log, or the only

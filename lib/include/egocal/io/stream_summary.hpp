@@ -13,8 +13,8 @@ namespace egocal {
 
 /// When a step between two poses is worth mentioning. The defaults suit vehicles; they decide no answer.
 struct SummaryOptions {
-  double gap_factor = 3;   ///< a gap is longer than so many median steps; jitter of real sensors stays below
-  double least_gap = 0.2;  ///< and longer than this [s]
+  double gap_factor = 3;  ///< a gap is longer than this many median steps; jitter of real sensors stays below
+  double least_gap = 0.2;         ///< and longer than this [s]
   double largest_speed = 70;      ///< a faster step is a jump [m/s]; no road vehicle is faster
   double largest_turn_rate = 15;  ///< a faster turn is a jump [rad/s]; faster than hand-held devices turn
 };

@@ -22,7 +22,7 @@ struct TrajectoryReading {
   std::vector<std::string> notes;  ///< assumptions and repairs in words, one sentence each
 };
 
-/// Reads the trajectory `name`: FILE, or FILE:TOPIC where the file holds several. Formats are told by
+/// Reads the trajectory `name`: FILE, or FILE:TOPIC where the file holds several. Formats are recognised by
 /// content: TUM (`time tx ty tz qx qy qz qw`), KITTI (12 numbers, 3 x 4 row by row; with a file of times, or
 /// at options.rate), EuRoC csv (`time[ns], x, y, z, qw, qx, qy, qz, ...`), tables with named columns, MCAP,
 /// ROS 1 bags, rosbag2 databases; FILE:/tf:PARENT/CHILD is a chain of transforms, resolved by time. Times are

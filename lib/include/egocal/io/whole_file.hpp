@@ -10,7 +10,7 @@
 
 namespace egocal {
 
-/// A file that takes its name when it is complete and on the disk: whoever opens the name sees the old file
+/// A file that takes its name when it is complete and on the disk: a reader of the name sees the old file
 /// or the new one, after a power cut, too. Until then the content is in a temporary file beside it
 /// (FILE.PID-N.part, a new one each time), which goes when the object does. Where the name is a symbolic
 /// link, the file that it points to is replaced, and a file that is replaced hands on its permissions.

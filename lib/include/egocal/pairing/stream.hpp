@@ -26,7 +26,7 @@ struct StreamOptions {
   /// little beside the time that a drive takes.
   double reorder_window = 0.2;
   /// Judges every time stamp by its two neighbours, which delays the poses by two: for recordings, where
-  /// nobody waits. Without it a stamp that is damaged by less than largest_jump costs the poses in between.
+  /// nothing waits. Without it a stamp that is damaged by less than largest_jump costs the poses in between.
   bool look_ahead = false;
   /// Time that jumps by more is not believed until other messages confirm it [s], nor by more than
   /// jump_periods periods of the source. Longer than the gaps that a busy source leaves.

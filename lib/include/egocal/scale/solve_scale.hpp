@@ -43,7 +43,7 @@ struct ScaleSolution {
   Balance balance;   ///< in force at that scale: the q above minimises cost_matrix(at_scale(...), balance)
   double lower_bound = 0;  ///< no scale in the range and no extrinsic has a cost below it, up to rounding
   double gap = 0;          ///< cost - lower_bound, >= 0
-  double rounding = 0;     ///< costs that differ by less than this cannot be told apart
+  double rounding = 0;     ///< costs that differ by less than this are equal
   /// No scale outside of these two has as low a cost.
   double least_scale = 0, most_scale = 0;
   bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale

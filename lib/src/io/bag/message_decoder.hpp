@@ -11,7 +11,7 @@
 namespace egocal::detail {
 
 /// Reads the fields of one ROS message in order: ROS 1 serialisation (packed, little-endian) or CDR (ROS 2;
-/// aligned, either byte order, told by its first four bytes). Reading past the end gives zeros and is
+/// aligned, either byte order, recognised by its first four bytes). Reading past the end gives zeros and is
 /// remembered: check ok() after reading.
 class MessageDecoder {
  public:

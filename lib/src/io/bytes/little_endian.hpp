@@ -27,7 +27,7 @@ class LittleEndian {
   std::uint32_t u32() { return number<std::uint32_t>(); }
   std::uint64_t u64() { return number<std::uint64_t>(); }
 
-  /// A 32-bit length, then so many characters.
+  /// A 32-bit length, then that many characters.
   std::string_view text() {
     const ByteSpan from = take(u32());
     return {reinterpret_cast<const char*>(from.data()), from.size()};

@@ -22,7 +22,7 @@ struct TextLayout {
   ColumnMap columns;           ///< of formats with columns
   bool matrix = false;         ///< rows of a 3 x 4 pose matrix, after a first column where first_column is 1
   std::size_t first_column = 0;
-  std::size_t fields = 0;  ///< of a row: exactly so many, or at least where more_fields
+  std::size_t fields = 0;  ///< of a row: exactly this many, or at least where more_fields
   bool more_fields = false;
   bool times = true;   ///< the rows have times of their own
   bool index = false;  ///< the first column is the number of a frame

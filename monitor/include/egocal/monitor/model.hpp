@@ -162,7 +162,7 @@ class Model {
   Now now_;
 };
 
-/// Whether a pair's calibration stands still on somebody's wish: by the commands heard for it, or because
+/// Whether a pair's calibration was paused by a user: by the commands heard for it, or because
 /// pairing says so of all its pairs (a monitor that came later has heard no command).
 bool pair_is_paused(const Model& model, const PairState& pair);
 /// "lidar -> camera", for events and lines.
