@@ -17,6 +17,9 @@ class Calibration:
     T_b_a: NDArray[float64]
     translation: NDArray[float64]
     rotation_wxyz: NDArray[float64]
+    verdict: str
+    reason: str
+    statistics: "Statistics"
     certified: bool
     status: str
     cost: float

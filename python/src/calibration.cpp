@@ -109,6 +109,14 @@ void bind_calibration(py::module_& module) {
           },
           "(4,): unit quaternion of T_a_b, w x y z")
       .def_property_readonly(
+          "verdict", [](const Calibration& c) { return std::string(to_string(c.verdict)); },
+          "'good', 'incomplete', 'doubtful' or 'contradictory': whether the answer can be used")
+      .def_property_readonly(
+          "reason", [](const Calibration& c) { return c.reason; }, "of the verdict, one sentence")
+      .def_property_readonly(
+          "statistics", [](const Calibration& c) { return sum_blocks(c.problem.blocks); },
+          "Statistics of all motions: those of several drives of one rig add up")
+      .def_property_readonly(
           "certified", [](const Calibration& c) { return c.certificate.optimality == Optimality::certified; },
           "no extrinsic has a lower cost: optimal, which is not the same as right")
       .def_property_readonly(

@@ -47,7 +47,19 @@ void bind_statistics(py::module_& module) {
              double translation) -> Eigen::Matrix<double, 8, 8> {
             return cost_matrix(statistics, Balance{rotation, translation});
           },
-          "(8, 8): Q of (16)", "rotation"_a = 1.0, "translation"_a = 1.0);
+          "(8, 8): Q of (16)", "rotation"_a = 1.0, "translation"_a = 1.0)
+      .def(py::pickle(
+          [](const Statistics& s) {
+            return py::make_tuple(Eigen::Matrix<double, 8, 8>(s.dual_rows), s.weight, s.count);
+          },
+          [](const py::tuple& state) {
+            if (state.size() != 3) throw py::value_error("Statistics: not a pickled one");
+            Statistics statistics;
+            statistics.dual_rows = state[0].cast<Eigen::Matrix<double, 8, 8>>();
+            statistics.weight = state[1].cast<double>();
+            statistics.count = state[2].cast<std::uint64_t>();
+            return statistics;
+          }));
 
   module.def(
       "solve_dual",
