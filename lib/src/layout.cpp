@@ -6,6 +6,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/rig/consistent_set.hpp"
+#include "egocal/samples/pose_sample.hpp"
 
 #define EGOCAL_DEFINE_LAYOUT(Type) \
   template <>                      \
@@ -31,5 +32,6 @@ EGOCAL_DEFINE_LAYOUT(OnlineState)
 EGOCAL_DEFINE_LAYOUT(OnlineStep)
 EGOCAL_DEFINE_LAYOUT(StampedPose)
 EGOCAL_DEFINE_LAYOUT(RigEdge)
+EGOCAL_DEFINE_LAYOUT(PoseSample)
 
 }  // namespace egocal::detail

@@ -31,6 +31,30 @@ void read_scale(const char* option, const std::string& text, Side side, Calibrat
     throw UsageError(std::string(option) + ": expected auto or a factor above 0, got '" + text + "'");
 }
 
+/// Sets of still poses know no time, no stride and no ground.
+void read_samples(const RequestOptions& options, SolveRequest& request) {
+  if (!options.samples) {
+    if (options.eye_in_hand || options.eye_to_hand)
+      throw UsageError("--eye-in-hand, --eye-to-hand: go with --samples");
+    return;
+  }
+  if (options.eye_in_hand && options.eye_to_hand)
+    throw UsageError("--eye-in-hand: the camera is either on the hand or beside the arm");
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw UsageError(std::string(option) + ": does not go with --samples");
+  };
+  refuse(!options.source.pairs.empty(), "--pairs");
+  refuse(options.planar, "--planar");
+  refuse(!options.stride.empty(), "--stride");
+  refuse(!options.time_offset.empty(), "--time-offset");
+  refuse(!options.append.empty(), "--append");
+  refuse(options.weights != "auto", "--weights");
+  refuse(options.scale == "auto" || options.scale_b == "auto", "--scale auto");
+  refuse(options.method != "global" && options.method != "dual", "--method");
+  request.samples.emplace();
+  request.samples->eye_to_hand = options.eye_to_hand;
+}
+
 }  // namespace
 
 SolveRequest understood(const RequestOptions& options) {
@@ -95,6 +119,7 @@ SolveRequest understood(const RequestOptions& options) {
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
   if (!options.nominal.empty())
     result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
+  read_samples(options, result);
   return result;
 }
 
@@ -150,6 +175,14 @@ void add_request_options(cli::App command, RequestOptions& options) {
   command.add_option("--scale-b", options.scale_b, "the same for B; the extrinsic is in the unit of A");
   command.add_option("--append", options.append,
                      "another drive of the same sensors: a file for A and one for B; may be repeated");
+  command.add_flag(
+      "--samples", options.samples,
+      "still poses in any order, as of a robot arm, instead of streams: never interpolated; rows "
+      "belong together by nearest stamp, or by order");
+  command.add_flag("--eye-in-hand", options.eye_in_hand,
+                   "with --samples: A is the hand in the base, B the camera in the target's frame [default]");
+  command.add_flag("--eye-to-hand", options.eye_to_hand,
+                   "with --samples: the camera stands beside the arm; the answer is the camera in the base");
   command.add_option("--nominal", options.nominal, "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
   command.add_option("--truth", options.truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
 }

@@ -21,6 +21,7 @@ struct RequestOptions {
   double max_gap = 0.5, rate = 0;
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
+  bool samples = false, eye_in_hand = false, eye_to_hand = false;
   std::vector<std::string> append;  ///< further drives: files of A and B by turns
 };
 

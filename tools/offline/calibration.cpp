@@ -18,6 +18,7 @@
 #include "egocal/solvers/sqp.hpp"
 #include "offline/append.hpp"
 #include "offline/log_trajectory.hpp"
+#include "offline/samples.hpp"
 #include "offline/trajectory_source.hpp"
 
 namespace egocal::tools {
@@ -155,6 +156,13 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   append_drives(request, motions);
   SolveResult result;
   result.warnings = motions.warnings;
+  if (request.samples) {
+    answer_samples(request, motions.a, motions.b, result);
+    result.solve_us = time_of_method(Method::dual, result.calibration.problem);
+    return result;
+  }
+  if (look_like_samples(motions.a, motions.b))
+    result.warnings.push_back("these look like still poses of an arm rather than streams: try --samples");
   result.calibration = calibrate_motions(request.source, motions, options);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);

@@ -8,6 +8,7 @@
 
 #include "egocal/calibrate.hpp"
 #include "egocal/io/recording.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 
 namespace egocal::tools {
 
@@ -20,6 +21,11 @@ struct MotionSource {
   ReadOptions reading_a, reading_b;  ///< their times_file is not used
 };
 
+/// What only sets of still poses need.
+struct SamplesRequest {
+  bool eye_to_hand = false;  ///< the camera stands beside the arm: the poses of a are inverted
+};
+
 /// What `egocal solve` was asked for.
 struct SolveRequest {
   MotionSource source;
@@ -27,7 +33,8 @@ struct SolveRequest {
   CalibrationOptions calibration;   ///< its method is set from the name above
   std::vector<std::string> append;  ///< further drives of the same sensors: files of a and b by turns
   std::optional<Pose> truth;
-  bool keep_motions = false;  ///< hand back what was read, for a report
+  std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
+  bool keep_motions = false;              ///< hand back what was read, for a report
 };
 
 /// Times of one stream, for people who wonder why nothing matched.
@@ -44,6 +51,9 @@ struct SolveResult {
   std::string note;                   ///< of a baseline: why its answer is not valid
   std::optional<StreamSpan> a, b;     ///< not for a file of pairs
   double solve_us = 0;                ///< the solve alone, median of repeats [us]
+  std::optional<SampleCalibration> samples;  ///< of still poses; its calibration is the one above
+  MatchedSamples matched;                    ///< the rows that make them
+  bool eye_to_hand = false;
 
   /// Only with keep_motions.
   Trajectory trajectory_a, trajectory_b;  ///< empty for a file of pairs

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "egocal/evaluation/errors.hpp"
+#include "offline/samples.hpp"
 #include "offline/trust_report.hpp"
 
 namespace egocal::tools {
@@ -128,6 +129,7 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
                                     {"rate", result.calibration.time_offset->rate},
                                     {"rate_stddev", result.calibration.time_offset->rate_stddev},
                                     {"drifts", result.calibration.time_offset->drifts}};
+  if (result.samples) json["samples"] = samples_json(result);
   if (result.calibration.scale) json["scale"] = scale_json(result.calibration);
   if (result.calibration.scale_applied != 1) json["scale_applied"] = result.calibration.scale_applied;
   json["synchronised"] = result.calibration.counts.synchronised;
@@ -151,6 +153,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   const Calibration& calibration = result.calibration;
   const Pose T = calibration.T_a_b;
   std::string text = trust_text(calibration);
+  if (result.samples) text += samples_text(result);
   text += fmt::format("optimality    {} (method {}, {:.2f} us)\n\n",
                       optimality_text(calibration.certificate.optimality), result.method, result.solve_us);
   text += pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", T);

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "egocal/calibrate.hpp"
+#include "egocal/samples/pose_sample.hpp"
+
+namespace egocal {
+
+/// Tuning of calibrate_samples(). The study behind the numbers is tests/bench/sample_study.cpp.
+struct SampleOptions {
+  /// Find samples that contradict the others and leave them out. Fewer than least_to_judge cannot outvote a
+  /// wrong one.
+  bool robust = true;
+  std::size_t least_to_judge = 6;
+  /// A sample is wrong where noise alone would explain its residual less often than this. Real detections
+  /// have heavier tails than a normal distribution, so it is far below the usual 1e-3.
+  double wrong_probability = 1e-6;
+  /// Part of the samples that must agree before the others are judged. Up to 40 % may be wrong.
+  double least_agreeing = 0.6;
+  /// Triples of samples that the search for agreeing ones starts from. 60 draws meet a triple without a wrong
+  /// one with a probability of 1 - 1e-6 where 40 % are wrong.
+  int starts = 60;
+  /// Standard deviation of the logarithm of the ratio of the two noise variances around that of the typical
+  /// length: how far few samples may move the weights. 2: between a seventh and seven times the length.
+  double prior_log_ratio = 2;
+  Reading read_a, read_b;               ///< for poses that do not mean what their format says
+  std::optional<DualQuaternion> prior;  ///< taken where the samples show nothing
+  DiagnosisOptions diagnosis;           ///< the tolerances are those of the answer called good
+  /// The tolerance of the translation is this part of the typical distance to the target where it is smaller
+  /// than diagnosis.tolerance_translation: an arm wants less than a vehicle. A degree.
+  double tolerance_of_distance = 0.0174;
+};
+
+/// How well one sample fits: the target as this sample sees it, less the target as all see it.
+struct SampleResidual {
+  double rotation = 0;     ///< [rad]
+  double translation = 0;  ///< [m]
+  bool wrong = false;      ///< left out
+};
+
+/// Hand-eye and target pose from still poses.
+struct SampleCalibration {
+  Calibration calibration;  ///< T_a_b is the hand-eye pose (sensor b in sensor a)
+  Pose T_world_a_world_b;   ///< the target in the base (eye in hand), or in the hand (eye to hand)
+  std::vector<SampleResidual> residuals;  ///< per sample, in the order given
+  double spread_median = 0;               ///< of the target's position over the samples that count [m]
+  double spread_rms = 0;                  ///< [m]
+  double spread_largest = 0;              ///< [m]
+  double noise_rotation = 0;              ///< standard deviation of one sample, each axis [rad]
+  double noise_translation = 0;           ///< [m]
+};
+
+/// Solves a X = Y b for X = T_a_b and Y from at least 3 samples in any order; the order changes no bit of the
+/// answer. Minimises the sum over all motions between two samples of the squared differences of their
+/// targets, rotation and position each weighted by the inverse of its variance, which is maximum likelihood
+/// for independent noise of both; the minimum of the weighted cost is global, with the certificate of every
+/// other solve. The unit of length changes nothing. Throws Error where there are fewer than 3 samples.
+/// Thread-safe.
+SampleCalibration calibrate_samples(std::span<const PoseSample> samples, const SampleOptions& options = {});
+
+}  // namespace egocal

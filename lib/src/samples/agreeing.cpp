@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "samples/agreeing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "statistics/distributions.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Indices = std::vector<std::size_t>;
+
+/// Best trimmed fits that are followed until they settle, and steps of each start before.
+constexpr std::size_t most_followed = 6;
+constexpr int first_steps = 2, last_steps = 10;
+/// Rounds of a fit on the way: only the last one has to be exact.
+constexpr int rounds_on_the_way = 3;
+/// A sample that noise explains this often is taken in without a second look.
+constexpr double unremarkable = 0.01;
+
+Indices all_of(const SampleSet& set) {
+  Indices indices(set.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  return indices;
+}
+
+FitSettings settings_of(const SampleOptions& options) {
+  FitSettings settings;
+  settings.prior_log_ratio = options.prior_log_ratio;
+  return settings;
+}
+
+/// Samples trimmed to those that fit best, and what their fit is worth.
+struct Trimmed {
+  Indices chosen;
+  SampleFit fit;
+  double size = 0;  ///< logarithm of the squared residuals of rotation times those of position: has no unit
+};
+
+class Search {
+ public:
+  Search(const SampleSet& set, const SampleOptions& options) : set_(set), options_(options) {
+    const auto part =
+        static_cast<std::size_t>(std::ceil(options.least_agreeing * static_cast<double>(set.size())));
+    kept_ = std::max<std::size_t>(4, part);
+  }
+
+  Trimmed best() const {
+    std::vector<Trimmed> found;
+    for (const Indices& start : starts()) {
+      FitSettings settings = settings_of(options_);
+      // two motions say nothing of noise
+      settings.noise = SampleNoise{1, set_.length() * set_.length()};
+      settings.most_rounds = rounds_on_the_way;
+      found.push_back(concentrated(fit_samples(set_, start, settings), first_steps));
+    }
+    const auto smaller = [](const Trimmed& x, const Trimmed& y) { return x.size < y.size; };
+    std::stable_sort(found.begin(), found.end(), smaller);
+    Trimmed best = found.front();
+    for (std::size_t i = 0; i < std::min(most_followed, found.size()); ++i) {
+      Trimmed here = concentrated(found[i].fit, last_steps);
+      if (here.size < best.size) best = std::move(here);
+    }
+    return best;
+  }
+
+ private:
+  /// Triples, all of them or drawn.
+  std::vector<Indices> starts() const {
+    std::vector<Indices> starts{all_of(set_)};
+    const std::size_t n = set_.size();
+    if (n * (n - 1) * (n - 2) / 6 <= static_cast<std::size_t>(options_.starts)) {
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j)
+          for (std::size_t k = j + 1; k < n; ++k) starts.push_back({i, j, k});
+      return starts;
+    }
+    std::uint64_t drawn = 1;
+    const auto draw = [&] {
+      drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
+      return static_cast<std::size_t>((drawn >> 33) % n);
+    };
+    while (starts.size() <= static_cast<std::size_t>(options_.starts)) {
+      Indices triple{draw(), draw(), draw()};
+      std::sort(triple.begin(), triple.end());
+      if (triple[0] != triple[1] && triple[1] != triple[2]) starts.push_back(std::move(triple));
+    }
+    return starts;
+  }
+
+  /// The kept_ samples that fit best, fitted, and again, until the same ones fit best.
+  Trimmed concentrated(SampleFit fit, int steps) const {
+    Trimmed trimmed;
+    for (int step = 0; step < steps; ++step) {
+      std::vector<std::pair<double, std::size_t>> order;
+      for (std::size_t i = 0; i < set_.size(); ++i) {
+        const SquaredResidual squares = squared_residual(set_, i, fit);
+        order.emplace_back(
+            squares.rotation / fit.noise.rotation + squares.translation / fit.noise.translation, i);
+      }
+      std::sort(order.begin(), order.end());
+      Indices chosen;
+      for (std::size_t i = 0; i < kept_; ++i) chosen.push_back(order[i].second);
+      std::sort(chosen.begin(), chosen.end());
+      const bool same = chosen == trimmed.chosen;
+      if (same) break;
+      trimmed.chosen = std::move(chosen);
+      FitSettings settings = settings_of(options_);
+      settings.start = fit;
+      settings.most_rounds = rounds_on_the_way;
+      fit = fit_samples(set_, trimmed.chosen, settings);
+    }
+    SquaredResidual sum;
+    for (const std::size_t i : trimmed.chosen) {
+      const SquaredResidual squares = squared_residual(set_, i, fit);
+      sum.rotation += squares.rotation;
+      sum.translation += squares.translation;
+    }
+    constexpr double nothing = 1e-24;
+    trimmed.size = std::log(sum.rotation + nothing) +
+                   std::log(sum.translation / (set_.length() * set_.length()) + nothing);
+    trimmed.fit = std::move(fit);
+    return trimmed;
+  }
+
+  const SampleSet& set_;
+  const SampleOptions& options_;
+  std::size_t kept_ = 0;
+};
+
+Indices with(const Indices& chosen, std::size_t one) {
+  Indices more = chosen;
+  more.insert(std::lower_bound(more.begin(), more.end(), one), one);
+  return more;
+}
+
+/// Probability that noise adds as much to the cost as this sample would.
+double explained_by_noise(const SampleSet& set, const Indices& chosen, const SampleFit& fit,
+                          std::size_t one) {
+  FitSettings settings;
+  settings.start = fit;
+  settings.noise = fit.noise;
+  settings.most_rounds = rounds_on_the_way;
+  const SampleFit more = fit_samples(set, with(chosen, one), settings);
+  const double added = more.dof - fit.dof;
+  if (!(fit.cost > 0) || !(added > 0) || !(fit.dof > 0)) return 1;
+  return f_exceeded((more.cost - fit.cost) / added / (fit.cost / fit.dof), added, fit.dof);
+}
+
+}  // namespace
+
+AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options) {
+  AgreeingSamples result;
+  if (!options.robust || set.size() < options.least_to_judge) {
+    result.chosen = all_of(set);
+    result.fit = fit_samples(set, result.chosen, settings_of(options));
+    return result;
+  }
+  Trimmed trimmed = Search(set, options).best();
+  result.chosen = std::move(trimmed.chosen);
+  FitSettings settings = settings_of(options);
+  settings.start = std::move(trimmed.fit);
+  result.fit = fit_samples(set, result.chosen, settings);
+  while (result.chosen.size() < set.size()) {
+    Indices plain;
+    std::pair<double, std::size_t> best{-1, 0};
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (std::binary_search(result.chosen.begin(), result.chosen.end(), i)) continue;
+      const double probability = explained_by_noise(set, result.chosen, result.fit, i);
+      if (probability > unremarkable) plain.push_back(i);
+      if (probability > best.first) best = {probability, i};
+    }
+    if (best.first < options.wrong_probability) break;
+    if (plain.empty()) plain.push_back(best.second);
+    for (const std::size_t i : plain) result.chosen = with(result.chosen, i);
+    settings.start = result.fit;
+    result.fit = fit_samples(set, result.chosen, settings);
+  }
+  return result;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/samples/calibrate_samples.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "diagnosis/fit.hpp"
+#include "diagnosis/judge.hpp"
+#include "diagnosis/robust_fit.hpp"
+#include "diagnosis/wording.hpp"
+#include "egocal/error.hpp"
+#include "samples/agreeing.hpp"
+#include "samples/leave_one_out.hpp"
+#include "samples/readings.hpp"
+
+namespace egocal {
+
+namespace {
+
+using namespace detail;
+
+/// Motions that the fit is judged on, at most; all pairs of 100 samples.
+constexpr std::size_t most_motions = 4950;
+
+std::array<double, 16> numbers_of(const PoseSample& sample) {
+  std::array<double, 16> numbers;
+  const Vector8d a = sample.a.vec(), b = sample.b.vec();
+  std::copy(a.data(), a.data() + 8, numbers.begin());
+  std::copy(b.data(), b.data() + 8, numbers.begin() + 8);
+  return numbers;
+}
+
+/// An order that depends on the samples alone: whatever order they come in, the same sums are made.
+std::vector<std::size_t> order_of(const std::vector<PoseSample>& samples) {
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    const auto x = numbers_of(samples[i]), y = numbers_of(samples[j]);
+    return x == y ? i < j : x < y;
+  });
+  return order;
+}
+
+void require_usable(std::span<const PoseSample> samples) {
+  if (samples.size() < 3) throw Error("samples: expected at least 3, got " + std::to_string(samples.size()));
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    for (const DualQuaternion& pose : {samples[i].a, samples[i].b})
+      if (!pose.vec().allFinite() || !(std::abs(pose.real.norm() - 1) < 1e-3))
+        throw Error("sample " + std::to_string(i + 1) + ": expected finite poses with unit quaternions");
+}
+
+/// Motions between samples, nearest neighbours of the order first.
+std::vector<MotionPair> motions_between(const std::vector<PoseSample>& samples) {
+  std::vector<MotionPair> pairs;
+  for (std::size_t step = 1; step < samples.size(); ++step)
+    for (std::size_t i = 0; i + step < samples.size(); ++i) {
+      if (pairs.size() == most_motions) return pairs;
+      const PoseSample& from = samples[i];
+      const PoseSample& to = samples[i + step];
+      MotionPair pair;
+      pair.a = canonical_sign(conjugate(from.a) * to.a);
+      pair.b = canonical_sign(conjugate(from.b) * to.b);
+      pairs.push_back(pair);
+    }
+  return pairs;
+}
+
+Problem problem_of(const SampleFit& fit, const SampleOptions& options) {
+  Problem problem;
+  problem.balance = balance_of(fit.noise);
+  problem.blocks = {fit.statistics};
+  problem.prior = options.prior;
+  return problem;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Residuals of all samples, and the spread of the target over those that count.
+void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
+                    const std::vector<std::size_t>& order, SampleCalibration& result) {
+  result.residuals.resize(order.size());
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const SquaredResidual squares = squared_residual(set, i, agreeing.fit);
+    const bool counts = std::binary_search(agreeing.chosen.begin(), agreeing.chosen.end(), i);
+    result.residuals[order[i]] = {std::sqrt(squares.rotation), std::sqrt(squares.translation), !counts};
+    if (!counts) continue;
+    distances.push_back(std::sqrt(squares.translation));
+    result.spread_rms += squares.translation / static_cast<double>(agreeing.chosen.size());
+  }
+  result.spread_rms = std::sqrt(result.spread_rms);
+  result.spread_largest = *std::max_element(distances.begin(), distances.end());
+  result.spread_median = median(std::move(distances));
+}
+
+Finding wrong_samples(const std::vector<SampleResidual>& residuals) {
+  Finding finding;
+  finding.code = "wrong_samples";
+  finding.certain = true;
+  std::string rows;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!residuals[i].wrong) continue;
+    ++count;
+    if (rows.size() < 200) rows += (rows.empty() ? "" : ", ") + std::to_string(i + 1);
+  }
+  finding.message = format("%zu of %zu samples contradict the others and do not count: %s.", count,
+                           residuals.size(), rows.c_str());
+  finding.remedy = "Check these poses: a target detected wrongly, or a robot pose of another moment.";
+  return finding;
+}
+
+void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
+                   const AgreeingSamples& agreeing, const SampleOptions& options, Calibration& calibration) {
+  DiagnosisOptions tolerances = options.diagnosis;
+  tolerances.tolerance_translation =
+      std::min(tolerances.tolerance_translation, options.tolerance_of_distance * set.length());
+  const Answered answered{to_dual_quaternion(calibration.T_a_b),
+                          calibration.observability,
+                          calibration.counts,
+                          calibration.problem,
+                          1,
+                          0,
+                          Platform::arm};
+  const Motions motions = motions_of(motions_between(samples), tolerances.motions);
+  Diagnosis diagnosis;
+  diagnosis.fit = fit_at(motions, calibration.T_a_b, 0);
+  diagnosis.fit.tenths.clear();  // samples have no order in time
+  Misfit misfit;
+  misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
+  if (options.diagnosis.enabled) diagnosis.findings = find_other_readings(samples, agreeing, options);
+  judge(diagnosis, answered, misfit, tolerances);
+  calibration.verdict = diagnosis.verdict;
+  calibration.reason = std::move(diagnosis.reason);
+  calibration.fit = std::move(diagnosis.fit);
+  calibration.findings = std::move(diagnosis.findings);
+  calibration.goal = std::move(diagnosis.goal);
+}
+
+}  // namespace
+
+SampleCalibration calibrate_samples(std::span<const PoseSample> given, const SampleOptions& options) {
+  require_usable(given);
+  const std::vector<PoseSample> as_read = detail::reread(given, options.read_a, options.read_b);
+  const std::vector<std::size_t> order = order_of(as_read);
+  std::vector<PoseSample> samples;
+  for (const std::size_t i : order) samples.push_back(as_read[i]);
+  const SampleSet set(samples);
+  AgreeingSamples agreeing = find_agreeing(set, options);
+
+  SampleCalibration result;
+  Calibration& calibration = result.calibration;
+  calibration.problem = problem_of(agreeing.fit, options);
+  const Answer answer = solve(calibration.problem, Method::dual);
+  calibration.certificate = answer.certificate;
+  calibration.observability = answer.observability;
+  calibration.status = answer.status;
+  calibration.T_a_b = to_pose(answer.T_a_b);
+  calibration.T_b_a = inverse(calibration.T_a_b);
+  calibration.choice.stride = 1;
+  calibration.choice.balance = calibration.problem.balance;
+  calibration.choice.reason = "inverse variances of the residuals";
+  calibration.counts.synchronised = samples.size();
+  calibration.counts.matched = agreeing.chosen.size();
+  calibration.counts.outliers = samples.size() - agreeing.chosen.size();
+
+  // where the samples do not show a direction the answer is the one closest to the prior: so is the target
+  agreeing.fit.Y = target_at(set, agreeing.chosen, agreeing.fit, answer.T_a_b);
+  agreeing.fit.X = answer.T_a_b;
+  calibration.observability.stddev = spread_without_each(set, agreeing.chosen, agreeing.fit);
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!calibration.observability.observable[i])
+      calibration.observability.stddev[i] = std::numeric_limits<double>::infinity();
+  const Pose Y = to_pose(agreeing.fit.Y);
+  result.T_world_a_world_b = {Y.rotation, Y.translation + set.middle()};
+  result.noise_rotation = std::sqrt(agreeing.fit.noise.rotation);
+  result.noise_translation = std::sqrt(agreeing.fit.noise.translation);
+  measure_spread(set, agreeing, order, result);
+  judge_samples(samples, set, agreeing, options, calibration);
+  if (calibration.counts.outliers > 0) calibration.findings.push_back(wrong_samples(result.residuals));
+  return result;
+}
+
+}  // namespace egocal

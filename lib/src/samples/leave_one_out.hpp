@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "samples/sample_fit.hpp"
+
+namespace egocal::detail {
+
+/// Standard deviations of X in sensor a's frame (x y z roll pitch yaw, [m, rad]) from the answers without
+/// each sample in turn. With Student's factor: 1.96 of them cover 95 %. Infinite where there are fewer than 4
+/// samples.
+std::array<double, 6> spread_without_each(const SampleSet& set, const std::vector<std::size_t>& chosen,
+                                          const SampleFit& fit);
+
+}  // namespace egocal::detail

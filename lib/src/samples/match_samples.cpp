@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <numbers>
+#include <optional>
+
+#include "egocal/error.hpp"
+#include "egocal/samples/pose_sample.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Stamps belong together where they are nearer than this part of the typical distance between samples.
+constexpr double nearest_part = 0.25;
+/// Recordings with more poses are streams.
+constexpr std::size_t most_samples = 200;
+/// Still poses turn by more than this from one to the next, streams do not [rad].
+constexpr double large_turn = 8 * std::numbers::pi / 180;
+
+std::int64_t typical_period_us(const Trajectory& trajectory) {
+  std::vector<std::int64_t> periods;
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    periods.push_back(trajectory[i].time_us - trajectory[i - 1].time_us);
+  if (periods.empty()) return 0;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return *middle;
+}
+
+/// Row of the nearest stamp.
+std::size_t nearest(const Trajectory& trajectory, std::int64_t time_us) {
+  const auto next =
+      std::lower_bound(trajectory.begin(), trajectory.end(), time_us,
+                       [](const StampedPose& pose, std::int64_t t) { return pose.time_us < t; });
+  if (next == trajectory.begin()) return 0;
+  const auto at = static_cast<std::size_t>(next - trajectory.begin());
+  if (next == trajectory.end()) return at - 1;
+  return time_us - trajectory[at - 1].time_us <= next->time_us - time_us ? at - 1 : at;
+}
+
+void add(const Trajectory& a, const Trajectory& b, std::size_t i, std::size_t j, MatchedSamples& matched) {
+  matched.samples.push_back({a[i].pose, b[j].pose});
+  matched.rows_a.push_back(i);
+  matched.rows_b.push_back(j);
+}
+
+MatchedSamples by_stamp(const Trajectory& a, const Trajectory& b) {
+  MatchedSamples matched;
+  const auto limit = nearest_part * static_cast<double>(std::min(typical_period_us(a), typical_period_us(b)));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::size_t j = nearest(b, a[i].time_us);
+    if (nearest(a, b[j].time_us) != i) continue;
+    if (static_cast<double>(std::llabs(a[i].time_us - b[j].time_us)) > limit) continue;
+    add(a, b, i, j, matched);
+  }
+  return matched;
+}
+
+MatchedSamples row_by_row(const Trajectory& a, const Trajectory& b) {
+  MatchedSamples matched;
+  matched.by_stamp = false;
+  for (std::size_t i = 0; i < a.size(); ++i) add(a, b, i, i, matched);
+  return matched;
+}
+
+double median_turn(const Trajectory& trajectory) {
+  std::vector<double> turns;
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    turns.push_back(
+        2 * std::acos(std::min(1.0, std::abs(trajectory[i - 1].pose.real.dot(trajectory[i].pose.real)))));
+  const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+  std::nth_element(turns.begin(), middle, turns.end());
+  return *middle;
+}
+
+}  // namespace
+
+MatchedSamples match_samples(const Trajectory& a, const Trajectory& b) {
+  MatchedSamples matched;
+  if (!a.empty() && !b.empty()) {
+    matched = by_stamp(a, b);
+    if (matched.samples.size() < std::min(a.size(), b.size()) && a.size() == b.size())
+      matched = row_by_row(a, b);
+  }
+  if (matched.samples.size() < 3)
+    throw Error("samples: expected at least 3 rows of a and b that belong together, found " +
+                std::to_string(matched.samples.size()) + " (" + std::to_string(a.size()) + " rows of a, " +
+                std::to_string(b.size()) + " of b); give equally many rows, or stamps that agree");
+  matched.without_partner = a.size() + b.size() - 2 * matched.samples.size();
+  return matched;
+}
+
+bool look_like_samples(const Trajectory& a, const Trajectory& b) {
+  if (a.size() != b.size() || a.size() < 3 || a.size() > most_samples) return false;
+  return median_turn(a) > large_turn && median_turn(b) > large_turn;
+}
+
+}  // namespace egocal

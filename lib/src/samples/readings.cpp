@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "samples/readings.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "diagnosis/reading.hpp"
+#include "diagnosis/wording.hpp"
+#include "egocal/solvers/dual.hpp"
+#include "statistics/distributions.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Fewer samples fit many readings.
+constexpr std::size_t least_samples = 4;
+/// A reading is another one where it makes the squared residuals this many times smaller: a wrong one leaves
+/// residuals as large as the motions, a hundred times those of a right one and more.
+constexpr double least_improvement = 10;
+/// Probability of a scale other than 1 by chance.
+constexpr double scale_by_chance = 1e-6;
+/// A power of ten to this part is a unit.
+constexpr double unit_tolerance = 0.05;
+
+struct Alternative {
+  const char* code;
+  Reading a, b;
+};
+
+std::vector<Alternative> alternatives() {
+  Reading inverted, wxyz, xyzw;
+  inverted.invert = true;
+  wxyz.quaternion_order = QuaternionOrder::wxyz;
+  xyzw.quaternion_order = QuaternionOrder::xyzw;
+  return {{"inverted_a", inverted, {}},          {"inverted_b", {}, inverted},
+          {"quaternion_order_a", wxyz, {}},      {"quaternion_order_b", {}, wxyz},
+          {"quaternion_order_both", wxyz, wxyz}, {"quaternion_order_both", xyzw, xyzw}};
+}
+
+/// Squared residuals of the given reading over those of another, rotation and position alike.
+double improvement(const SampleFit& given, const SampleFit& other) {
+  return std::sqrt(given.noise.rotation / other.noise.rotation) *
+         std::sqrt(given.noise.translation / other.noise.translation);
+}
+
+PoseReading full(const Reading& reading) {
+  PoseReading result;
+  static_cast<Reading&>(result) = reading;
+  return result;
+}
+
+/// What the user has to type, given that --eye-to-hand and --invert-a do the same to a.
+void word(Finding& finding, const Alternative& other) {
+  finding = worded_reading(std::move(finding), full(other.a), full(other.b));
+  if (finding.code != "inverted_a") return;
+  finding.message = format(
+      "With the poses of a inverted the squared residuals are %.3g times smaller: they are "
+      "base-to-hand, or the camera stands beside the arm and sees the hand.",
+      finding.improvement);
+  finding.remedy =
+      "--eye-to-hand for a camera beside the arm, --eye-in-hand for one on the hand, or --invert-a.";
+}
+
+/// The factor of b's lengths that fits best, by least squares at the rotation that the rotations give.
+struct FoundScale {
+  double scale = 1;
+  double improvement = 1;  ///< of the squared residuals of positions
+  double by_chance = 1;
+  Pose X;
+};
+
+std::optional<FoundScale> find_scale(std::span<const PoseSample> samples, const AgreeingSamples& given) {
+  const auto n = static_cast<Eigen::Index>(given.chosen.size());
+  if (n < static_cast<Eigen::Index>(least_samples)) return std::nullopt;
+  // rotations alone: a tiny weight of the positions, in their own unit, keeps the solver's problem regular
+  const Rotation R_X = to_pose(solve_dual(cost_matrix(given.fit.statistics,
+                                                      {1, 1e-9 * balance_of(given.fit.noise).translation}))
+                                   .q)
+                           .rotation;
+  Eigen::MatrixXd J(3 * n, 7);
+  Eigen::VectorXd t(3 * n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const PoseSample& sample = samples[given.chosen[static_cast<std::size_t>(k)]];
+    const Pose a = to_pose(sample.a), c = to_pose(conjugate(sample.b));
+    const Eigen::Matrix3d R_a = a.rotation.toRotationMatrix();
+    // t_Y - R_a t_X - s R_a R_X t_c = t_a
+    J.block<3, 3>(3 * k, 0) = -R_a;
+    J.block<3, 3>(3 * k, 3).setIdentity();
+    J.block<3, 1>(3 * k, 6) = -(R_a * (R_X * c.translation));
+    t.segment<3>(3 * k) = a.translation;
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> with(J);
+  const Eigen::VectorXd x = with.solve(t);
+  const Eigen::VectorXd t_at_one = t - J.col(6);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> without(J.leftCols(6));
+  const double squares = (t - J * x).squaredNorm();
+  const double squares_at_one = (t_at_one - J.leftCols(6) * without.solve(t_at_one)).squaredNorm();
+  const double dof = static_cast<double>(3 * n - 7);
+  if (!(squares > 0) || with.rank() < 7 || !(x[6] > 0)) return std::nullopt;
+  return FoundScale{x[6],
+                    squares_at_one / squares,
+                    f_exceeded((squares_at_one - squares) / (squares / dof), 1, dof),
+                    {R_X, x.head<3>()}};
+}
+
+bool is_unit(double scale) {
+  const double decades = std::log10(scale);
+  return std::abs(decades) > 0.5 &&
+         std::abs(scale / std::pow(10.0, std::round(decades)) - 1) < unit_tolerance;
+}
+
+}  // namespace
+
+std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Reading& read_a,
+                               const Reading& read_b) {
+  std::vector<PoseSample> result;
+  for (const PoseSample& sample : samples)
+    result.push_back({canonical_sign(normalized(reread(sample.a, full(read_a)))),
+                      canonical_sign(normalized(reread(sample.b, full(read_b))))});
+  return result;
+}
+
+std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, const AgreeingSamples& given,
+                                         const SampleOptions& options) {
+  std::vector<Finding> findings;
+  if (given.chosen.size() < least_samples) return findings;
+  std::optional<Finding> best;
+  for (const Alternative& other : alternatives()) {
+    const std::vector<PoseSample> read = reread(samples, other.a, other.b);
+    const AgreeingSamples fit = find_agreeing(SampleSet(read), options);
+    if (fit.chosen.size() < given.chosen.size()) continue;
+    Finding finding;
+    finding.code = other.code;
+    finding.certain = true;
+    finding.improvement = improvement(given.fit, fit.fit);
+    if (finding.improvement < least_improvement || (best && finding.improvement <= best->improvement))
+      continue;
+    finding.T_a_b = to_pose(fit.fit.X);
+    word(finding, other);
+    best = std::move(finding);
+  }
+  if (best) return {*best};
+  const std::optional<FoundScale> scale = find_scale(samples, given);
+  if (scale && scale->by_chance < scale_by_chance && scale->improvement > least_improvement) {
+    Finding finding;
+    finding.code = is_unit(scale->scale) ? "units" : "scale";
+    finding.certain = true;
+    finding.improvement = scale->improvement;
+    finding.value = scale->scale;
+    finding.T_a_b = scale->X;
+    finding = worded_scale(std::move(finding));
+    finding.remedy = format("--scale-b %.6g", scale->scale);
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+}  // namespace egocal::detail

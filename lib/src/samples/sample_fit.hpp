@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// X and Y of a X = Y b from samples that are given, and the noise that is left.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "egocal/problem/problem.hpp"
+#include "egocal/samples/pose_sample.hpp"
+
+namespace egocal::detail {
+
+/// Variance of one sample, each axis.
+struct SampleNoise {
+  double rotation = 1;     ///< [rad^2]
+  double translation = 1;  ///< [m^2]
+};
+
+/// y = a X c with c = b^-1 is the target's pose as one sample sees it: linear in X. All samples should see
+/// the same one.
+struct SeenTarget {
+  Eigen::Matrix4d real = Eigen::Matrix4d::Zero();  ///< y.real = real X.real
+  Eigen::Matrix4d dual = Eigen::Matrix4d::Zero();  ///< y.dual = dual X.real + real X.dual
+};
+
+/// Samples ready to be fitted, with the origin of a's world in the middle of a's positions.
+class SampleSet {
+ public:
+  explicit SampleSet(std::span<const PoseSample> samples);
+
+  std::size_t size() const { return seen_.size(); }
+  /// That makes rotations and translations comparable: distance of the target and of the sensors from each
+  /// other [m].
+  double length() const { return length_; }
+  const Eigen::Vector3d& middle() const { return middle_; }
+  const SeenTarget& seen(std::size_t i) const { return seen_[i]; }
+  /// +1 or -1: whether the quaternions of the motion between two samples have scalars of one sign.
+  double sign(std::size_t i, std::size_t j) const;
+
+ private:
+  std::vector<PoseSample> samples_;
+  std::vector<SeenTarget> seen_;
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  double length_ = 1;
+};
+
+/// The fit of some samples.
+struct SampleFit {
+  DualQuaternion X, Y;  ///< Y: with the world of a in the middle()
+  SampleNoise noise;
+  Statistics statistics;  ///< of the weighted cost, rotation and position uncoupled; count: motions
+  double cost = 0;        ///< squared residuals over the variances
+  double dof = 0;         ///< of the cost
+};
+
+/// Residuals of one sample against a fit: squared angle [rad^2] and squared distance [m^2].
+struct SquaredResidual {
+  double rotation = 0, translation = 0;
+};
+SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const SampleFit& fit);
+
+/// The mean of the targets that the chosen samples see with this X; `fit` gives the signs.
+DualQuaternion target_at(const SampleSet& set, std::span<const std::size_t> chosen, const SampleFit& fit,
+                         const DualQuaternion& X);
+
+/// The balance of cost_matrix() for a noise.
+Balance balance_of(const SampleNoise& noise);
+
+/// How fit_samples() goes about it.
+struct FitSettings {
+  std::optional<SampleFit> start;  ///< signs of the quaternions and first guess of the target; without it the
+                                   ///< signs come from the first chosen sample
+  std::optional<SampleNoise> noise;  ///< kept where given, else estimated
+  double prior_log_ratio = 2;        ///< of SampleOptions
+  std::optional<DualQuaternion> prior;
+  /// Rounds of weights and of the target's position; both settle in three to six.
+  int most_rounds = 20;
+};
+
+/// Fits the chosen samples (indices, at least 2).
+SampleFit fit_samples(const SampleSet& set, std::span<const std::size_t> chosen, const FitSettings& settings);
+
+}  // namespace egocal::detail
