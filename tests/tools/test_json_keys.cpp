@@ -138,6 +138,8 @@ TEST_F(JsonKeys, OfSolveAreThoseOfThePage) {
   run("solve", files("scaled") + " --scale-b 4");
   for (const std::string& wrong : {drive + " --invert-b", files("bumped"), files("scaled")})
     run("solve", wrong);
+  simulate("arm", "--poses 40 --rate 1 --terrain free");
+  run("solve", files("arm") + " --samples");
   compare("solve");
 }
 

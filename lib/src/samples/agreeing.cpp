@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 
 #include "statistics/distributions.hpp"
 
@@ -139,17 +140,35 @@ Indices with(const Indices& chosen, std::size_t one) {
   return more;
 }
 
-/// Probability that noise adds as much to the cost as this sample would.
-double explained_by_noise(const SampleSet& set, const Indices& chosen, const SampleFit& fit,
-                          std::size_t one) {
+/// What a sample that does not count yet would add to the cost.
+struct Added {
+  double probability = 1;  ///< that noise adds as much
+  double squares = 0;      ///< in variances of the noise
+};
+
+Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit, std::size_t one) {
   FitSettings settings;
   settings.start = fit;
   settings.noise = fit.noise;
   settings.most_rounds = rounds_on_the_way;
   const SampleFit more = fit_samples(set, with(chosen, one), settings);
-  const double added = more.dof - fit.dof;
-  if (!(fit.cost > 0) || !(added > 0) || !(fit.dof > 0)) return 1;
-  return f_exceeded((more.cost - fit.cost) / added / (fit.cost / fit.dof), added, fit.dof);
+  const double dof = more.dof - fit.dof;
+  if (!(fit.cost > 0) || !(dof > 0) || !(fit.dof > 0)) return {};
+  const double squares = (more.cost - fit.cost) / (fit.cost / fit.dof);
+  return {f_exceeded(squares / dof, dof, fit.dof), squares};
+}
+
+/// How much larger the variance is by the median of all samples than by the chosen ones, which fit best.
+double underestimated(const SampleSet& set, const SampleFit& fit) {
+  constexpr double median_of_six = 5.348;  // chi-squared, rotation and position
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const SquaredResidual residual = squared_residual(set, i, fit);
+    squares.push_back(residual.rotation / fit.noise.rotation + residual.translation / fit.noise.translation);
+  }
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>((squares.size() - 1) / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::max(1.0, *middle / median_of_six);
 }
 
 }  // namespace
@@ -168,15 +187,16 @@ AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options
   result.fit = fit_samples(set, result.chosen, settings);
   while (result.chosen.size() < set.size()) {
     Indices plain;
-    std::pair<double, std::size_t> best{-1, 0};
+    std::optional<std::pair<Added, std::size_t>> nearest;
     for (std::size_t i = 0; i < set.size(); ++i) {
       if (std::binary_search(result.chosen.begin(), result.chosen.end(), i)) continue;
-      const double probability = explained_by_noise(set, result.chosen, result.fit, i);
-      if (probability > unremarkable) plain.push_back(i);
-      if (probability > best.first) best = {probability, i};
+      const Added added = added_by(set, result.chosen, result.fit, i);
+      if (added.probability > unremarkable) plain.push_back(i);
+      if (!nearest || added.squares < nearest->first.squares) nearest = {added, i};
     }
-    if (best.first < options.wrong_probability) break;
-    if (plain.empty()) plain.push_back(best.second);
+    const double tail = options.heaviest_tail * options.heaviest_tail * underestimated(set, result.fit);
+    if (nearest->first.probability < options.wrong_probability && nearest->first.squares > tail) break;
+    if (plain.empty()) plain.push_back(nearest->second);
     for (const std::size_t i : plain) result.chosen = with(result.chosen, i);
     settings.start = result.fit;
     result.fit = fit_samples(set, result.chosen, settings);

@@ -20,6 +20,9 @@ struct SampleOptions {
   /// A sample is wrong where noise alone would explain its residual less often than this. Real detections
   /// have heavier tails than a normal distribution, so it is far below the usual 1e-3.
   double wrong_probability = 1e-6;
+  /// Nor is a sample wrong that is nearer to the others than this many standard deviations, learnt from the
+  /// median of all: detections have heavy tails, which belong to them (8 in the real sets of the study).
+  double heaviest_tail = 8;
   /// Part of the samples that must agree before the others are judged. Up to 40 % may be wrong.
   double least_agreeing = 0.6;
   /// Triples of samples that the search for agreeing ones starts from. 60 draws meet a triple without a wrong

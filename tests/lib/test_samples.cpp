@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Hand-eye calibration from sets of still poses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "egocal/error.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
+#include "../support/arm_samples.hpp"
+#include "../support/paths.hpp"
+#include "../support/real_drives.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::ArmSamples;
+using testing::Random;
+using testing::SimulatedSamples;
+
+constexpr double degree = std::numbers::pi / 180;
+
+SimulatedSamples arm(std::size_t samples, double rotation_noise, double position_noise, std::uint64_t seed,
+                     std::size_t wrong = 0) {
+  ArmSamples what;
+  what.samples = samples;
+  what.rotation_noise = rotation_noise;
+  what.position_noise = position_noise;
+  what.wrong = wrong;
+  Random random(seed);
+  return testing::simulate_arm(what, random);
+}
+
+ExtrinsicError error_of(const SimulatedSamples& drawn, const SampleCalibration& found) {
+  return extrinsic_error(drawn.X, to_dual_quaternion(found.calibration.T_a_b));
+}
+
+std::vector<std::size_t> wrong_of(const SampleCalibration& found) {
+  std::vector<std::size_t> wrong;
+  for (std::size_t i = 0; i < found.residuals.size(); ++i)
+    if (found.residuals[i].wrong) wrong.push_back(i);
+  return wrong;
+}
+
+TEST(Samples, WithoutNoiseGiveBothPosesFromThreeOnAndHoweverManyThereAre) {
+  for (const std::size_t n : {3u, 4u, 6u, 25u}) {
+    const SimulatedSamples drawn = arm(n, 0, 0, n);
+    const SampleCalibration found = calibrate_samples(drawn.samples);
+    EXPECT_LT(error_of(drawn, found).rotation, 1e-9) << n;
+    EXPECT_LT(error_of(drawn, found).translation, 1e-9) << n;
+    const ExtrinsicError target = extrinsic_error(drawn.Y, to_dual_quaternion(found.T_world_a_world_b));
+    EXPECT_LT(target.rotation, 1e-9) << n;
+    EXPECT_LT(target.translation, 1e-9) << n;
+    EXPECT_EQ(found.calibration.certificate.optimality, Optimality::certified) << n;
+    EXPECT_LT(found.spread_largest, 1e-9) << n;
+    EXPECT_TRUE(wrong_of(found).empty()) << n;
+  }
+}
+
+TEST(Samples, TheOrderOfTheRowsChangesNoBit) {
+  for (const std::size_t wrong : {0u, 2u}) {
+    const SimulatedSamples drawn = arm(12, 0.3, 2, 5, wrong);
+    const SampleCalibration found = calibrate_samples(drawn.samples);
+    std::vector<std::size_t> order(drawn.samples.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    Random random(3);
+    for (int shuffle = 0; shuffle < 5; ++shuffle) {
+      for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
+      std::vector<PoseSample> shuffled;
+      for (const std::size_t i : order) {
+        shuffled.push_back(drawn.samples[i]);
+        if (i % 3 == 0) shuffled.back().a = -shuffled.back().a;  // q and -q are one pose
+      }
+      const SampleCalibration again = calibrate_samples(shuffled);
+      EXPECT_EQ(again.calibration.T_a_b.translation, found.calibration.T_a_b.translation);
+      EXPECT_EQ(again.calibration.T_a_b.rotation.coeffs(), found.calibration.T_a_b.rotation.coeffs());
+      EXPECT_EQ(again.calibration.observability.stddev, found.calibration.observability.stddev);
+      EXPECT_EQ(again.spread_rms, found.spread_rms);
+      for (std::size_t i = 0; i < order.size(); ++i)
+        EXPECT_EQ(again.residuals[i].wrong, found.residuals[order[i]].wrong);
+    }
+  }
+}
+
+TEST(Samples, TheUnitOfLengthChangesNothing) {
+  const SimulatedSamples drawn = arm(10, 0.3, 2, 7);
+  SampleOptions millimetres;
+  millimetres.read_a.scale = millimetres.read_b.scale = 1000;
+  const Pose m = calibrate_samples(drawn.samples).calibration.T_a_b;
+  const Pose mm = calibrate_samples(drawn.samples, millimetres).calibration.T_a_b;
+  EXPECT_LT(m.rotation.angularDistance(mm.rotation), 1e-9);
+  EXPECT_LT((1000 * m.translation - mm.translation).norm(), 1e-6);
+}
+
+TEST(Samples, MotionsOfHalfATurnCount) {
+  // a camera that is turned about its axis by half a turn between samples: the sign of these motions'
+  // quaternions is decided by noise
+  Random random(11);
+  ArmSamples what;
+  what.samples = 8;
+  what.rotation_noise = 0.1;
+  SimulatedSamples drawn = testing::simulate_arm(what, random);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Pose eye = to_pose(drawn.samples[i].b);
+    const Pose turned =
+        eye * testing::noisy({rotation_exp({0, 0, std::numbers::pi}), {0, 0, 0}}, 2e-3, 1e-3, random);
+    drawn.samples.push_back(
+        {drawn.Y * to_dual_quaternion(turned) * conjugate(drawn.X), to_dual_quaternion(turned)});
+  }
+  const SampleCalibration found = calibrate_samples(drawn.samples);
+  EXPECT_TRUE(wrong_of(found).empty());
+  EXPECT_LT(error_of(drawn, found).rotation, 0.15 * degree);
+  EXPECT_LT(error_of(drawn, found).translation, 2e-3);
+}
+
+TEST(Samples, WrongOnesAreFoundFromSixOn) {
+  for (const auto& [n, wrong] : {std::pair<std::size_t, std::size_t>{6, 1}, {10, 2}, {20, 4}, {50, 10}})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const SimulatedSamples drawn = arm(n, 0.3, 2, seed, wrong);
+      const SampleCalibration found = calibrate_samples(drawn.samples);
+      for (std::size_t i = 0; i < n; ++i)
+        EXPECT_EQ(found.residuals[i].wrong, drawn.wrong[i]) << n << " " << seed;
+      EXPECT_THAT(found.calibration.findings,
+                  ::testing::Contains(::testing::Field(&Finding::code, "wrong_samples")));
+      EXPECT_EQ(found.calibration.counts.outliers, wrong);
+    }
+}
+
+TEST(Samples, AListInTheOtherConventionIsNamed) {
+  const SimulatedSamples drawn = arm(10, 0.3, 2, 9);
+  for (const Side side : {Side::a, Side::b}) {
+    SampleOptions inverted;
+    (side == Side::a ? inverted.read_a : inverted.read_b).invert = true;
+    const SampleCalibration found = calibrate_samples(drawn.samples, inverted);
+    EXPECT_EQ(found.calibration.verdict, Verdict::contradictory);
+    ASSERT_FALSE(found.calibration.findings.empty());
+    EXPECT_EQ(found.calibration.findings.front().code, side == Side::a ? "inverted_a" : "inverted_b");
+  }
+  EXPECT_EQ(calibrate_samples(drawn.samples).calibration.verdict, Verdict::good);
+}
+
+TEST(Samples, LengthsInMillimetresAreNamed) {
+  const SimulatedSamples drawn = arm(10, 0.3, 2, 9);
+  SampleOptions options;
+  options.read_b.scale = 1000;
+  const SampleCalibration found = calibrate_samples(drawn.samples, options);
+  ASSERT_FALSE(found.calibration.findings.empty());
+  EXPECT_EQ(found.calibration.findings.front().code, "units");
+  EXPECT_NEAR(found.calibration.findings.front().value.value_or(0), 1e-3, 2e-5);
+}
+
+TEST(Samples, WithoutEnoughOrWithoutNumbersAreRefused) {
+  SimulatedSamples drawn = arm(2, 0, 0, 1);
+  EXPECT_THROW(calibrate_samples(drawn.samples), Error);
+  drawn = arm(5, 0, 0, 1);
+  drawn.samples[2].b.dual[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(calibrate_samples(drawn.samples), Error);
+}
+
+TEST(Samples, ThatNeverMoveOrNeverTurnAreNotKnown) {
+  const SimulatedSamples drawn = arm(8, 0, 0, 2);
+  std::vector<PoseSample> still(8, drawn.samples[0]);
+  EXPECT_NE(calibrate_samples(still).calibration.verdict, Verdict::good);
+  std::vector<PoseSample> sliding;
+  for (int i = 0; i < 8; ++i) {
+    const DualQuaternion slide = testing::displacement({0, 0, 0}, {0.1 * i, 0.05 * i * i, 0.03 * (i % 3)});
+    sliding.push_back(
+        {slide * drawn.samples[0].a, conjugate(drawn.Y) * slide * drawn.samples[0].a * drawn.X});
+  }
+  const SampleCalibration found = calibrate_samples(sliding);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_FALSE(found.calibration.observability.observable[static_cast<std::size_t>(i)]);
+}
+
+Trajectory at(const std::vector<double>& seconds) {
+  Trajectory trajectory;
+  for (const double t : seconds) trajectory.push_back({static_cast<std::int64_t>(1e6 * t), DualQuaternion{}});
+  return trajectory;
+}
+
+TEST(Samples, RowsBelongTogetherByNearestStampOrElseByOrder) {
+  const MatchedSamples near = match_samples(at({0, 1, 2, 3, 4}), at({0.02, 1.01, 3.03, 4.02}));
+  EXPECT_TRUE(near.by_stamp);
+  EXPECT_THAT(near.rows_a, ::testing::ElementsAre(0, 1, 3, 4));
+  EXPECT_THAT(near.rows_b, ::testing::ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(near.without_partner, 1u);
+  const MatchedSamples order = match_samples(at({0, 1, 2, 3}), at({100, 107, 109, 120}));
+  EXPECT_FALSE(order.by_stamp);
+  EXPECT_THAT(order.rows_b, ::testing::ElementsAre(0, 1, 2, 3));
+  EXPECT_THROW(match_samples(at({0, 1, 2, 3, 4}), at({100, 107, 109, 120})), Error);
+  EXPECT_THROW(match_samples({}, {}), Error);
+}
+
+class RealSamples : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!testing::have_real_drives()) GTEST_SKIP() << "no data in " << paths::data_dir();
+  }
+  static MatchedSamples read(const std::string& set) {
+    return match_samples(testing::real_trajectory("hand_eye/" + set + "/hand.tum"),
+                         testing::real_trajectory("hand_eye/" + set + "/eye.tum"));
+  }
+};
+
+TEST_F(RealSamples, OfMoveItAreWithinItsOwnTolerance) {
+  const SampleCalibration found = calibrate_samples(read("moveit50").samples);
+  const DualQuaternion accepted = to_dual_quaternion(
+      {Rotation(0.255876863, -0.766238932, -0.560571464, 0.182111404).normalized(), {0.659, -0.249, 0.830}});
+  const ExtrinsicError error = extrinsic_error(accepted, to_dual_quaternion(found.calibration.T_a_b));
+  EXPECT_LT(error.rotation, 0.32 * degree);
+  EXPECT_LT(error.translation, 1.1e-3);
+  EXPECT_EQ(found.calibration.verdict, Verdict::good);
+  EXPECT_TRUE(wrong_of(found).empty());
+}
+
+TEST_F(RealSamples, OfFsuarezHaveOneWrongPose) {
+  const SampleCalibration found = calibrate_samples(read("fsuarez6").samples);
+  EXPECT_THAT(wrong_of(found), ::testing::ElementsAre(4));
+  EXPECT_LT(found.spread_median, 8.7e-3);
+}
+
+TEST_F(RealSamples, OfVispSpreadByTwoMillimetres) {
+  const SampleCalibration found = calibrate_samples(read("visp_to-hand").samples);
+  EXPECT_LT(found.spread_median, 2.2e-3);
+  EXPECT_TRUE(wrong_of(found).empty());
+}
+
+TEST_F(RealSamples, OfAFourAxisArmDoNotShowTheHeight) {
+  const SampleCalibration found = calibrate_samples(read("scara").samples);
+  const std::array<bool, 6> expected{true, true, false, true, true, true};
+  EXPECT_EQ(found.calibration.observability.observable, expected);
+  EXPECT_NE(found.calibration.verdict, Verdict::good);
+  EXPECT_LT(found.spread_median, 5e-3);
+  EXPECT_TRUE(wrong_of(found).empty()) << "heavy tails belong to these detections";
+}
+
+TEST_F(RealSamples, OfAuboAreAllUsed) {
+  const SampleCalibration found = calibrate_samples(read("aubo32").samples);
+  EXPECT_LT(found.spread_median, 3.7e-3);
+  EXPECT_TRUE(wrong_of(found).empty());
+}
+
+}  // namespace
+}  // namespace egocal
