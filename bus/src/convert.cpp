@@ -171,8 +171,18 @@ Checked<Problem> to_problem(const problem_t& message) {
     for (int row = 0; row < 8; ++row)
       for (int column = row; column < 8; ++column)
         block.dual_rows(row, column) = block.dual_rows(column, row) = in.q[next++];
-    if (std::string reason = fault(block); !reason.empty()) return {{}, std::move(reason)};
+    // blocks may touch each other: then the last one takes off what is in two of them
+    const bool takes_off = in.weight < 0 && message.blocks.size() > 1 && &in == &message.blocks.back();
+    Statistics sum_of_squares = block;
+    if (takes_off) {
+      sum_of_squares.weight *= -1;
+      sum_of_squares.dual_rows *= -1;
+    }
+    if (std::string reason = fault(sum_of_squares); !reason.empty()) return {{}, std::move(reason)};
     problem.blocks.push_back(block);
+    if (takes_off)
+      if (std::string reason = fault(sum_blocks(problem.blocks)); !reason.empty())
+        return {{}, std::move(reason)};
   }
   if (message.has_prior) {
     const Checked<DualQuaternion> prior = to_dual_quaternion(message.prior_pos, message.prior_quat);

@@ -30,9 +30,10 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
   return result;
 }
 
-Answered answered(const Calibration& calibration) {
+/// single: motions of one stride, which the diagnosis takes apart.
+Answered answered(const Calibration& calibration, Problem single) {
   return {to_dual_quaternion(calibration.T_a_b), calibration.observability, calibration.counts,
-          calibration.problem, calibration.choice.stride};
+          std::move(single), calibration.choice.stride};
 }
 
 Calibration judged(Calibration calibration, Diagnosis diagnosis) {
@@ -157,6 +158,18 @@ std::string rejections_in_words(const PairingCounts& counts) {
   return text.empty() ? "none rejected" : text;
 }
 
+std::string motions_in_words(const Calibration& calibration) {
+  const Choice& choice = calibration.choice;
+  const auto count = static_cast<unsigned long long>(sum_blocks(calibration.problem.blocks).count);
+  char text[160];
+  if (choice.mean_stride > 0)
+    std::snprintf(text, sizeof text, "of many strides between %llu instants", count);
+  else
+    std::snprintf(text, sizeof text, "%llu pairs, stride %d, weights rotation : translation = %g : %g", count,
+                  choice.stride, choice.balance.rotation, choice.balance.translation);
+  return text + (" (" + choice.reason + ")");
+}
+
 Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const CalibrationOptions& options) {
   if (!as_read(options.read_a) || !as_read(options.read_b)) {
     CalibrationOptions rest = options;
@@ -184,7 +197,7 @@ Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const Cali
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   result.time_offset = time_offset;
   result.time_offset_applied = time_offset ? time_offset->seconds : pairing_options.time_offset;
-  const Answered what = answered(result);
+  const Answered what = answered(result, pairing.single_stride_problem());
   Diagnosis diagnosis = options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
                                                   : diagnose(what, options.diagnosis);
   return judged(std::move(result), std::move(diagnosis));
@@ -226,7 +239,7 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   Choice choice = choose_balance(problem, pairing);
   problem.balance = choice.balance;
   Calibration result = solved(std::move(problem), std::move(choice), counts, options.method);
-  return judged(result, diagnose(given, answered(result), options.diagnosis));
+  return judged(result, diagnose(given, answered(result, result.problem), options.diagnosis));
 }
 
 Calibrator::Calibrator(CalibrationOptions options)
@@ -241,7 +254,7 @@ std::optional<Calibration> Calibrator::answer() const {
   if (problem.blocks.empty()) return std::nullopt;
   Calibration result = solved(std::move(problem), pairing_.choice(), pairing_.counts(), options_.method);
   result.time_offset_applied = pairing_.time_offset().value_or(0);
-  return judged(result, diagnose(answered(result), options_.diagnosis));
+  return judged(result, diagnose(answered(result, pairing_.single_stride_problem()), options_.diagnosis));
 }
 
 }  // namespace egocal

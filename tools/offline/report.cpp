@@ -120,6 +120,9 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
   json["stride"] = result.calibration.choice.stride;
   json["weights"] = {{"rotation", result.calibration.choice.balance.rotation},
                      {"translation", result.calibration.choice.balance.translation}};
+  json["mean_stride"] = result.calibration.choice.mean_stride > 0
+                            ? result.calibration.choice.mean_stride
+                            : static_cast<double>(result.calibration.choice.stride);
   json["choice"] = result.calibration.choice.reason;
   json["time_offset_s"] = result.calibration.time_offset_applied;
   if (result.calibration.time_offset)
@@ -134,6 +137,7 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
   if (result.calibration.scale_applied != 1) json["scale_applied"] = result.calibration.scale_applied;
   json["synchronised"] = result.calibration.counts.synchronised;
   json["outliers"] = result.calibration.counts.outliers;
+  json["jumps"] = result.calibration.counts.jumps;
   json["rejected"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < result.calibration.counts.rejected.size(); ++i)
     json["rejected"][std::string(to_string(static_cast<Rejection>(i)))] =
@@ -159,11 +163,9 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   text += pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", T);
   text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a));
 
-  text +=
-      fmt::format("\nmotions       {} pairs, stride {}, weights rotation : translation = {:g} : {:g} ({})\n",
-                  sum_blocks(result.calibration.problem.blocks).count, result.calibration.choice.stride,
-                  result.calibration.choice.balance.rotation, result.calibration.choice.balance.translation,
-                  result.calibration.choice.reason);
+  text += "\nmotions       " + motions_in_words(calibration) + "\n";
+  if (calibration.counts.jumps > 0)
+    text += fmt::format("jumps         {} in the odometry, no motion spans them\n", calibration.counts.jumps);
   if (result.calibration.counts.outliers > 0)
     text += fmt::format("outliers      {} more pairs contradict these\n", result.calibration.counts.outliers);
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})

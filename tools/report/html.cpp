@@ -216,11 +216,7 @@ std::string settings(const ReportInput& input) {
   table += row("sensor a", "<code>" + escaped(input.name_a) + "</code>");
   table += row("sensor b", "<code>" + escaped(input.name_b) + "</code>");
   table += row("mode", calibration.problem.mode == Mode::planar ? "planar" : "three-dimensional");
-  table +=
-      row("motions", fmt::format("{} of stride {}, weights rotation : translation = {:g} : {:g} ({})",
-                                 sum_blocks(calibration.problem.blocks).count, calibration.choice.stride,
-                                 calibration.choice.balance.rotation, calibration.choice.balance.translation,
-                                 escaped(calibration.choice.reason)));
+  table += row("motions", escaped(motions_in_words(calibration)));
   table += row("poses", fmt::format("{} of a, {} of b, {} instants synchronised", calibration.counts.poses_a,
                                     calibration.counts.poses_b, calibration.counts.synchronised));
   table += row("not used", fmt::format("{} outliers, {}", calibration.counts.outliers,

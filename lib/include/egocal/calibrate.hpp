@@ -85,5 +85,7 @@ class Calibrator {
 
 /// The rejections of a pairing in words, for messages: "rejected: 3 gap, 1 out of order", or "none rejected".
 std::string rejections_in_words(const PairingCounts& counts);
+/// The motions that were solved for, how they are weighted, and why.
+std::string motions_in_words(const Calibration& calibration);
 
 }  // namespace egocal

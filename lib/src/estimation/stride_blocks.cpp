@@ -121,7 +121,10 @@ std::vector<Statistics> StrideBlocks::within(const StrideWeights& weights) const
 }
 
 TouchingSums::TouchingSums(const StrideBlocks& blocks)
-    : strides_(blocks.strides().size()), instants_(blocks.state().instants) {
+    : strides_(blocks.strides().size()),
+      block_length_(blocks.state().block_length),
+      instants_(blocks.state().instants),
+      left_out_(blocks.state().outlier) {
   for (std::size_t i = 0; i < strides_.size(); ++i) {
     PerStride& sums = strides_[i];
     sums.blocks.resize(blocks.blocks());
@@ -135,27 +138,18 @@ TouchingSums::TouchingSums(const StrideBlocks& blocks)
   }
 }
 
-void TouchingSums::fill(const StrideWeights& weights, Problem& problem) const {
-  std::vector<Statistics> parts(instants_.size());
-  Statistics shared;
+WeightedBlocks TouchingSums::weighted(const StrideWeights& weights) const {
+  WeightedBlocks::State sums{block_length_, std::vector<Statistics>(instants_.size()), left_out_, {}};
   for (std::size_t i = 0; i < strides_.size(); ++i) {
     const double rotation = weights.rotation[i], translation = weights.translation[i];
     if (!(rotation > 0) && !(translation > 0)) continue;
-    for (std::size_t block = 0; block < parts.size(); ++block)
-      add_weighted(parts[block], strides_[i].blocks[block], rotation, translation);
-    add_weighted(shared, strides_[i].shared, rotation, translation);
+    for (std::size_t block = 0; block < sums.blocks.size(); ++block)
+      add_weighted(sums.blocks[block], strides_[i].blocks[block], rotation, translation);
+    add_weighted(sums.shared, strides_[i].shared, rotation, translation);
   }
-  problem.balance = {0, 1};
-  problem.blocks.clear();
-  for (std::size_t block = 0; block < parts.size(); ++block) {
-    if (!(parts[block].weight > 0)) continue;
-    parts[block].count = instants_[block];
-    problem.blocks.push_back(parts[block]);
-  }
-  if (!(shared.weight > 0)) return;
-  shared.dual_rows *= -1;
-  shared.weight *= -1;
-  problem.blocks.push_back(shared);
+  for (std::size_t block = 0; block < sums.blocks.size(); ++block)
+    sums.blocks[block].count = instants_[block];
+  return WeightedBlocks(std::move(sums));
 }
 
 std::uint64_t StrideBlocks::instants_left_out() const {

@@ -18,10 +18,13 @@ const std::vector<int>& ladder() {
   static const std::vector<int> strides{1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128};
   return strides;
 }
-/// Instants whose verdicts may still change, at least and at most.
-constexpr std::uint64_t least_open = 128, most_open = 256;
-/// Instants after which the open ones are judged anew, between choices.
-constexpr std::uint64_t look_every = 64;
+/// Instants whose verdicts may still change: enough for quartiles, few enough for a look in 0.1 ms.
+constexpr std::uint64_t most_open = 192;
+/// The open instants are judged anew after a sixteenth more, within these limits: a jump spoils every motion
+/// across it, and short drives have few to spare.
+constexpr std::uint64_t look_part = 16, least_look = 16, most_look = 64;
+/// The weights are chosen anew after an eighth more instants.
+constexpr std::uint64_t choice_part = 8;
 /// Rounds of verdicts and weights that depend on each other.
 constexpr int most_rounds = 3;
 
@@ -30,16 +33,18 @@ constexpr int most_rounds = 3;
 StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& tuning)
     : StrideSums(options, tuning, StrideSumsState{}) {
   state_.committed = StrideBlocks(ladder());
-  sums_ = state_.committed;
+  state_.next_choice = options_.accumulator.first_choice;
 }
 
 StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& tuning, StrideSumsState state)
-    : options_(options), tuning_(tuning), state_(std::move(state)) {
+    : options_(options),
+      tuning_(tuning),
+      least_scalar_(std::cos(0.5 * options.accumulator.most_rotation)),
+      state_(std::move(state)) {
   if (options_.mode == Mode::planar) {
     G_a_ = plane_frame(options_.plane_a);
     G_b_ = plane_frame(options_.plane_b);
   }
-  if (!state_.committed.strides().empty()) rebuild();
 }
 
 Step StrideSums::step(const JudgedInstant& from, const JudgedInstant& to) const {
@@ -48,9 +53,7 @@ Step StrideSums::step(const JudgedInstant& from, const JudgedInstant& to) const 
   const double longest_us = options_.accumulator.stretch * static_cast<double>(to.index - from.index) *
                             static_cast<double>(state_.period_us);
   if (static_cast<double>(to.instant.time_us - from.instant.time_us) > longest_us) result.usable = false;
-  // scalar parts are cosines of half the angle
-  if (std::min(result.a.real[0], result.b.real[0]) < std::cos(0.5 * options_.accumulator.most_rotation))
-    result.usable = false;
+  if (std::min(result.a.real[0], result.b.real[0]) < least_scalar_) result.usable = false;
   if (options_.mode == Mode::planar) {
     result.a = planar_motion(result.a, G_a_);
     result.b = planar_motion(result.b, G_b_);
@@ -65,35 +68,85 @@ void StrideSums::append(JudgedInstant& judged, const JudgedInstant* before, Jump
   judged.translation_chain = before ? before->translation_chain + (jump != Jump::none ? 1 : 0) : 0;
 }
 
-/// The motions that end at the instant at this position.
-void StrideSums::add_motions(StrideBlocks& blocks, std::size_t position) const {
+/// Calls take(stride's number, first instant, last one, motions, whether they span a jump of a translation)
+/// for the motions that end at the instant at this position.
+template <typename Take>
+void StrideSums::each_motion(std::size_t position, const Take& take) const {
   const JudgedInstant& to = state_.instants[position];
-  blocks.add_instant(to.index);
+  if (to.doubtful) return;
   for (std::size_t i = 0; i < ladder().size(); ++i) {
     const auto steps = static_cast<std::size_t>(ladder()[i]);
     if (steps > position) break;
     const JudgedInstant& from = state_.instants[position - steps];
-    if (from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain) continue;
+    if (from.doubtful || from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain)
+      continue;
     const Step motion = step(from, to);
-    if (motion.usable)
-      blocks.add(i, from.index, motion.a, motion.b, from.translation_chain != to.translation_chain);
+    if (motion.usable) take(i, from.index, to.index, motion, from.translation_chain != to.translation_chain);
   }
 }
 
-void StrideSums::add(const Instant& instant) {
+void StrideSums::add_motions(StrideBlocks& blocks, std::size_t position) const {
+  blocks.add_instant(state_.instants[position].index);
+  each_motion(position,
+              [&](std::size_t stride, std::uint64_t first, std::uint64_t, const Step& motion,
+                  bool rotation_only) { blocks.add(stride, first, motion.a, motion.b, rotation_only); });
+}
+
+/// Of all motions, those of the open instants as well.
+StrideBlocks StrideSums::sums() const {
+  StrideBlocks sums = state_.committed;
+  for (std::size_t i = 0; i < state_.instants.size(); ++i)
+    if (state_.instants[i].index >= state_.first_open) add_motions(sums, i);
+  std::vector<std::uint8_t> outlier(sums.blocks(), 0);
+  const std::uint64_t length = sums.state().block_length;
+  for (std::size_t i = 0; i < state_.outlier.size(); ++i)
+    if (state_.outlier[i] != 0) outlier.at(static_cast<std::size_t>(i * state_.outlier_length / length)) = 1;
+  sums.leave_out(std::move(outlier));
+  return sums;
+}
+
+void StrideSums::weigh_newest() {
+  const std::uint64_t index = state_.instants.back().index;
+  if (!state_.weighted.has_room(index)) return weigh_all(sums());
+  const StrideWeights& weights = state_.choice->weights;
+  state_.weighted.add_instant(index);
+  each_motion(state_.instants.size() - 1, [&](std::size_t stride, std::uint64_t first, std::uint64_t last,
+                                              const Step& motion, bool rotation_only) {
+    state_.weighted.add(first, last, motion.a, motion.b,
+                        {weights.rotation[stride], weights.translation[stride]}, rotation_only);
+  });
+}
+
+void StrideSums::weigh_all(const StrideBlocks& sums) {
+  state_.weighted = in_force() ? TouchingSums(sums).weighted(state_.choice->weights) : WeightedBlocks();
+}
+
+void StrideSums::add(const Instant& instant, bool doubtful) {
   const JudgedInstant* before = state_.instants.empty() ? nullptr : &state_.instants.back();
-  JudgedInstant judged{instant, state_.next_index++, Jump::none, 0, 0};
+  JudgedInstant judged{instant, state_.next_index++, Jump::none, 0, 0, doubtful};
   append(judged, before, Jump::none);
   state_.instants.push_back(judged);
-  add_motions(sums_, state_.instants.size() - 1);
-  if (state_.choice && state_.next_index % look_every == 0 && rejudge(state_.choice->q)) {
-    // what looks like a jump may be the first motion that shows a new direction
-    rejudge(std::nullopt);
-    rebuild();
+  if (in_force()) weigh_newest();
+  if (in_force() && state_.next_index >= state_.next_look) {
+    state_.next_look = state_.next_index + std::clamp(state_.next_index / look_part, least_look, most_look);
+    if (rejudge(state_.choice->q)) {
+      // what looks like a jump may be the first motion that shows a new direction
+      rejudge(std::nullopt);
+      weigh_all(sums());
+    }
   }
-  if (state_.next_index - state_.first_open < most_open) return;
-  commit();
-  rebuild();
+  if (state_.next_index - state_.first_open > most_open) commit_oldest();
+}
+
+/// The oldest of the open instants keeps its verdict for good.
+void StrideSums::commit_oldest() {
+  const std::uint64_t first_kept = state_.instants.front().index;
+  const auto position = static_cast<std::size_t>(state_.first_open - first_kept);
+  add_motions(state_.committed, position);
+  if (state_.instants[position].jump != Jump::none) ++state_.jumps;
+  ++state_.first_open;
+  const auto longest = static_cast<std::uint64_t>(ladder().back());
+  if (first_kept + longest < state_.first_open) state_.instants.pop_front();
 }
 
 /// Verdicts on the steps to all open instants. Returns whether one changed.
@@ -116,75 +169,50 @@ bool StrideSums::rejudge(const std::optional<DualQuaternion>& q) {
   return changed;
 }
 
-/// All but the newest instants keep their verdicts for good.
-void StrideSums::commit() {
-  const std::uint64_t open = state_.next_index - state_.first_open;
-  if (open <= least_open) return;
-  const std::uint64_t first_open = state_.next_index - least_open;
-  for (std::size_t i = 0; i < state_.instants.size(); ++i) {
-    const JudgedInstant& judged = state_.instants[i];
-    if (judged.index < state_.first_open || judged.index >= first_open) continue;
-    add_motions(state_.committed, i);
-    if (judged.jump != Jump::none) ++state_.jumps;
-  }
-  state_.first_open = first_open;
-  const auto longest = static_cast<std::uint64_t>(ladder().back());
-  while (state_.instants.front().index + longest < first_open) state_.instants.pop_front();
-}
-
-/// The sums anew, from the committed ones and the open instants.
-void StrideSums::rebuild() {
-  StrideBlocks sums = state_.committed;
-  for (std::size_t i = 0; i < state_.instants.size(); ++i)
-    if (state_.instants[i].index >= state_.first_open) add_motions(sums, i);
-  sums_ = std::move(sums);
-  std::vector<std::uint8_t> outlier(sums_.blocks(), 0);
-  const std::uint64_t length = sums_.state().block_length;
-  for (std::size_t i = 0; i < state_.outlier.size(); ++i)
-    if (state_.outlier[i] != 0) outlier.at(static_cast<std::size_t>(i * state_.outlier_length / length)) = 1;
-  sums_.leave_out(std::move(outlier));
-}
-
-void StrideSums::choose() {
-  judge_open();
-  leave_out_blocks();
-  const std::optional<double> current = state_.choice ? std::optional(state_.choice->memory) : std::nullopt;
-  if (std::optional<WeightChoice> choice = choose_weights(sums_, empty_problem(), current, tuning_.weighting))
+void StrideSums::choose(const std::optional<SingleStride>& rival) {
+  state_.next_choice = state_.next_index + std::max<std::uint64_t>(1, state_.next_index / choice_part);
+  StrideBlocks all = judge_open();
+  leave_out_blocks(all);
+  if (std::optional<WeightChoice> choice =
+          choose_weights(all, empty_problem(), state_.choice, rival, tuning_.weighting))
     state_.choice = std::move(choice);
+  weigh_all(all);
 }
 
 /// Verdicts on the open instants and the weights depend on each other. Mostly there is no jump, and none by
-/// the weights without any: that is the end of it.
-void StrideSums::judge_open() {
-  const auto suggested = [&] { return residual_weights(sums_, options_.mode); };
-  const std::optional<WeightChoice> first = suggested();
+/// the weights without any: that is the end of it. Returns the sums.
+StrideBlocks StrideSums::judge_open() {
+  StrideBlocks all = sums();
+  std::optional<WeightChoice> suggested = residual_weights(all, options_.mode);
   const bool before = std::any_of(state_.instants.begin(), state_.instants.end(), [&](const auto& judged) {
     return judged.index >= state_.first_open && judged.jump != Jump::none;
   });
-  if (first && !before && !rejudge(first->q)) return;
+  if (suggested && !before && !rejudge(suggested->q)) return all;
   rejudge(std::nullopt);
-  rebuild();
+  all = sums();
   for (int round = 0; round < most_rounds; ++round) {
-    const std::optional<WeightChoice> next = suggested();
-    if (!next || !rejudge(next->q)) break;
-    rebuild();
+    suggested = residual_weights(all, options_.mode);
+    if (!suggested || !rejudge(suggested->q)) break;
+    all = sums();
   }
+  return all;
 }
 
 /// Blocks that contradict the others, by their motions within.
-void StrideSums::leave_out_blocks() {
-  sums_.leave_out(std::vector<std::uint8_t>(sums_.blocks(), 0));
-  const std::optional<WeightChoice> suggested = residual_weights(sums_, options_.mode);
+void StrideSums::leave_out_blocks(StrideBlocks& all) {
+  all.leave_out(std::vector<std::uint8_t>(all.blocks(), 0));
+  state_.outlier = all.state().outlier;
+  state_.outlier_length = all.state().block_length;
+  const std::optional<WeightChoice> suggested = residual_weights(all, options_.mode);
   if (!suggested) return;
   Problem problem = empty_problem();
   problem.balance = {0, 1};
-  const std::vector<Statistics> parts = sums_.within(suggested->weights);
+  const std::vector<Statistics> parts = all.within(suggested->weights);
   // Motions of a block share their ends: no block is long enough to have an extrinsic of its own.
-  const auto overlap = static_cast<int>(sums_.state().block_length);
+  const auto overlap = static_cast<int>(all.state().block_length);
   if (const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap))
-    sums_.leave_out({consensus->outlier.begin(), consensus->outlier.end()});
-  state_.outlier = sums_.state().outlier;
-  state_.outlier_length = sums_.state().block_length;
+    state_.outlier.assign(consensus->outlier.begin(), consensus->outlier.end());
+  all.leave_out(state_.outlier);
 }
 
 Problem StrideSums::empty_problem() const {
@@ -196,21 +224,11 @@ Problem StrideSums::empty_problem() const {
   return problem;
 }
 
-Problem StrideSums::problem() const {
-  Problem problem = empty_problem();
-  if (state_.choice) TouchingSums(sums_).fill(state_.choice->weights, problem);
-  return problem;
-}
-
-std::uint64_t StrideSums::inlier_steps() const {
-  return sums_.strides().empty() ? 0 : sums_.total(0).motions.count;
-}
-
-std::uint64_t StrideSums::outlier_steps() const {
+std::uint64_t StrideSums::jumps() const {
   std::uint64_t jumps = state_.jumps;
   for (const JudgedInstant& judged : state_.instants)
     if (judged.index >= state_.first_open && judged.jump != Jump::none) ++jumps;
-  return jumps + sums_.instants_left_out();
+  return jumps;
 }
 
 }  // namespace egocal

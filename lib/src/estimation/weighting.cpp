@@ -3,21 +3,22 @@
 #include "egocal/estimation/weighting.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <numbers>
 
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
-#include "egocal/uncertainty/leave_out.hpp"
-#include "egocal/uncertainty/observability.hpp"
-#include "online/solve_and_verify.hpp"
+#include "estimation/spread_by_poses.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal {
 
 namespace {
+
+using detail::Seen;
+using detail::spread_by_poses;
+using detail::SpreadByPoses;
+using detail::standard_error;
 
 /// Squared residuals of one motion below this are rounding [rad^2, m^2].
 constexpr double least_variance = 1e-28;
@@ -26,8 +27,8 @@ constexpr double least_variance = 1e-28;
 constexpr double most_imbalance = 1e6;
 /// Fewer motions of a stride have no variance.
 constexpr std::uint64_t least_motions = 6;
-/// Fewer blocks have no spread.
-constexpr std::size_t least_blocks = 6;
+/// Spreads below these are rounding: nothing is to be gained [rad, m].
+constexpr double least_rotation_spread = 1e-9, least_translation_spread = 1e-8;
 constexpr int rounds = 4;
 /// Grid of the ratio of a random walk's variance a step to that of the noise on poses.
 constexpr int grid = 24;
@@ -81,9 +82,7 @@ Matrix8d weighted_sum(const Ladder& ladder, const StrideWeights& weights) {
   return sum.weight > 0 ? Matrix8d(sum.dual_rows / sum.weight) : sum.dual_rows;
 }
 
-DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
-  return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
-}
+using detail::minimiser;
 
 /// Mean squared residuals of one motion of each stride at q, of the real rows and of the dual rows.
 struct Residuals {
@@ -167,7 +166,7 @@ StrideWeights balanced(const Ladder& ladder, StrideWeights shapes, const Residua
 }
 
 WeightChoice completed(const Ladder& ladder, StrideWeights weights, const DualQuaternion& q, double memory) {
-  WeightChoice choice{std::move(weights), q, memory, 1, 1, {}};
+  WeightChoice choice{std::move(weights), q, memory, 1, 1, true, {}};
   double rotation = 0, translation = 0, strides = 0;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     rotation += choice.weights.rotation[i] * ladder.turns[i];
@@ -209,63 +208,7 @@ WeightChoice with_memory(const Ladder& ladder, Mode mode, double memory, DualQua
   return completed(ladder, std::move(weights), q, memory);
 }
 
-/// Spread of the answers by leaving out blocks, over the directions that are seen.
-struct JackknifeSpread {
-  double score = 0;               ///< sum of the logarithms of rotation's and translation's
-  double rotation = 0;            ///< [rad]
-  double translation = 0;         ///< [m]
-  std::vector<double> influence;  ///< of each block on the score
-};
-
-using Seen = std::array<bool, 6>;
-
-JackknifeSpread jackknife_spread(const Problem& problem, const Seen& seen) {
-  const Matrix8d Q = cost_matrix(problem);
-  const DualQuaternion q = minimiser(Q, problem.mode);
-  const DualQuaternion T_a_b =
-      problem.mode == Mode::planar
-          ? extrinsic_from_planar(q, plane_frame(problem.plane_a), plane_frame(problem.plane_b))
-          : q;
-  const auto differences = leave_out_differences(problem, Q, T_a_b);
-  const auto blocks = static_cast<double>(differences.size());
-  Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
-  for (const auto& difference : differences) mean += difference / blocks;
-  JackknifeSpread result;
-  std::vector<std::array<double, 2>> squares;
-  std::array<double, 2> sums{};
-  for (const auto& difference : differences) {
-    squares.emplace_back();
-    for (std::size_t i = 0; i < 6; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      if (seen[i]) squares.back()[i < 3 ? 0 : 1] += std::pow(difference[k] - mean[k], 2);
-    }
-    for (const std::size_t part : {0u, 1u}) sums[part] += squares.back()[part];
-  }
-  result.translation = std::sqrt(sums[0] * (blocks - 1) / blocks);
-  result.rotation = std::sqrt(sums[1] * (blocks - 1) / blocks);
-  for (const std::size_t part : {0u, 1u}) result.score += sums[part] > 0 ? 0.5 * std::log(sums[part]) : 0;
-  for (const auto& square : squares) {
-    double influence = 0;
-    for (const std::size_t part : {0u, 1u}) influence += sums[part] > 0 ? 0.5 * square[part] / sums[part] : 0;
-    result.influence.push_back(influence);
-  }
-  return result;
-}
-
-/// Standard error of the difference of two scores.
-double standard_error(const JackknifeSpread& x, const JackknifeSpread& y) {
-  double sum = 0;
-  for (std::size_t i = 0; i < x.influence.size(); ++i) sum += std::pow(x.influence[i] - y.influence[i], 2);
-  return std::sqrt(sum);
-}
-
-Seen seen_directions(const Problem& problem) {
-  const Matrix8d Q = cost_matrix(problem);
-  const Answer answer = detail::solve_and_verify(problem, Q, Method::dual);
-  return assess_observability(problem, Q, answer.T_a_b, ErrorCorrelation::independent).observable;
-}
-
-std::string reason(const WeightChoice& choice, const JackknifeSpread& spread) {
+std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
   char text[200];
   std::snprintf(
       text, sizeof text,
@@ -275,6 +218,56 @@ std::string reason(const WeightChoice& choice, const JackknifeSpread& spread) {
   return text;
 }
 
+class Trials {
+ public:
+  Trials(const TouchingSums& sums, const Problem& problem) : sums_(sums), problem_(problem) {}
+
+  /// False where the blocks are too few for a spread.
+  bool set(const StrideWeights& weights) {
+    sums_.weighted(weights).fill(problem_);
+    return problem_.blocks.size() >= detail::least_spread_blocks;
+  }
+  Seen seen() const { return detail::seen_directions(problem_); }
+  SpreadByPoses spread(const Seen& seen) const { return spread_by_poses(problem_, seen); }
+
+ private:
+  const TouchingSums& sums_;
+  Problem problem_;
+};
+
+/// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be.
+bool agrees(const SpreadByPoses& sum, const SingleStride& rival, const Seen& seen, double sigmas) {
+  if (rival.problem.blocks.size() < detail::least_spread_blocks) return true;
+  const SpreadByPoses single = spread_by_poses(rival.problem, seen);
+  const auto difference = detail::frame_a_difference(single.T_a_b, sum.T_a_b);
+  double translation = 0, rotation = 0;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (seen[i]) (i < 3 ? translation : rotation) += std::pow(difference[static_cast<Eigen::Index>(i)], 2);
+  return std::sqrt(translation) <= sigmas * single.translation + least_translation_spread &&
+         std::sqrt(rotation) <= sigmas * single.rotation + least_rotation_spread;
+}
+
+/// Whether the sum's spread is clearly smaller than that of motions of one stride.
+bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, const StrideBlocks& blocks,
+           Trials& trials, const Seen& seen, const WeightingOptions& options) {
+  const std::vector<StrideSum>& strides = blocks.strides();
+  StrideWeights alone{std::vector<double>(strides.size(), 0.0), std::vector<double>(strides.size(), 0.0)};
+  const auto place = std::find_if(strides.begin(), strides.end(),
+                                  [&](const StrideSum& entry) { return entry.stride == rival.stride; });
+  if (place == strides.end() || !agrees(sum, rival, seen, options.agreement)) return false;
+  const auto i = static_cast<std::size_t>(place - strides.begin());
+  alone.rotation[i] = rival.balance.rotation;
+  alone.translation[i] = rival.balance.translation;
+  if (!trials.set(alone)) return false;
+  const SpreadByPoses single = trials.spread(seen);
+  if (!std::isfinite(single.score)) return true;
+  if (single.influence.size() != sum.influence.size()) return false;
+  if (single.rotation < least_rotation_spread && single.translation < least_translation_spread) return false;
+  const double gain = single.score - sum.score;
+  if (in_force) return gain > 0;
+  return gain >= std::max(options.clearly, options.single_evidence * standard_error(single, sum));
+}
+
 }  // namespace
 
 std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode) {
@@ -282,47 +275,50 @@ std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mo
 }
 
 std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Problem& problem,
-                                           std::optional<double> current, const WeightingOptions& options) {
+                                           const std::optional<WeightChoice>& current,
+                                           const std::optional<SingleStride>& rival,
+                                           const WeightingOptions& options) {
   const TouchingSums sums(blocks);
   const Ladder ladder(blocks, sums);
   std::optional<WeightChoice> best = residual_weights(ladder, problem.mode);
   if (!best) return std::nullopt;
-  Problem trial = problem;
-  sums.fill(best->weights, trial);
-  if (trial.blocks.size() < least_blocks) return std::nullopt;
-  const Problem suggested = trial;
   std::vector<WeightChoice> others;
   for (const double memory : options.memories)
     others.push_back(with_memory(ladder, problem.mode, memory, best->q));
 
   // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights
-  Seen seen = seen_directions(suggested);
-  if (!others.empty()) {
-    sums.fill(others.back().weights, trial);
-    const Seen more = seen_directions(trial);
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || more[i];
-  }
+  Trials trials(sums, problem);
+  Seen seen{};
+  if (!others.empty() && trials.set(others.back().weights)) seen = trials.seen();
+  if (!trials.set(best->weights)) return std::nullopt;
+  const Seen more = trials.seen();
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || more[i];
   if (std::none_of(seen.begin(), seen.end(), [](bool direction) { return direction; })) return std::nullopt;
 
-  const JackknifeSpread reference = jackknife_spread(suggested, seen);
-  JackknifeSpread least = reference;
+  const SpreadByPoses reference = trials.spread(seen);
+  SpreadByPoses least = reference;
+  const auto bonus = [&](const WeightChoice& choice) {
+    return current && current->memory == choice.memory ? options.hysteresis : 0;
+  };
   const bool reference_fails = !std::isfinite(reference.score);
-  double least_score = reference_fails ? std::numeric_limits<double>::infinity()
-                                       : reference.score - (current == 0 ? options.hysteresis : 0);
+  double least_score =
+      reference_fails ? std::numeric_limits<double>::infinity() : reference.score - bonus(*best);
   for (WeightChoice& choice : others) {
-    sums.fill(choice.weights, trial);
-    if (trial.blocks.size() != suggested.blocks.size()) continue;
-    JackknifeSpread here = jackknife_spread(trial, seen);
-    if (!std::isfinite(here.score)) continue;
-    const double here_score = here.score - (current == choice.memory ? options.hysteresis : 0);
-    if (here_score >= least_score) continue;
+    if (!trials.set(choice.weights)) continue;
+    SpreadByPoses here = trials.spread(seen);
+    if (!std::isfinite(here.score) || here.influence.size() != reference.influence.size()) continue;
+    const double score = here.score - bonus(choice);
+    if (score >= least_score) continue;
     if (!reference_fails && reference.score - here.score < options.evidence * standard_error(reference, here))
       continue;
     best = std::move(choice);
     least = std::move(here);
-    least_score = here_score;
+    least_score = score;
   }
   if (!std::isfinite(least.score)) return std::nullopt;
+  if (rival)
+    best->beats_single =
+        beats(least, *rival, current && current->beats_single, blocks, trials, seen, options);
   best->reason = reason(*best, least);
   return best;
 }

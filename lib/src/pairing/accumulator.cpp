@@ -17,10 +17,12 @@ Accumulator::Accumulator(const PairingOptions& options) : Accumulator(options, A
   state_.choice.balance = options_.balance.value_or(Balance{});
   state_.choice.reason = options_.stride && options_.balance ? "fixed" : "too few motions to choose yet";
   state_.next_choice = options_.accumulator.first_choice;
+  if (options_.robust && !options_.stride && !options_.balance) sums_.emplace(options_);
 }
 
 Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state)
     : options_(options), state_(std::move(state)) {
+  if (state_.sums) sums_.emplace(options_, StrideSumsOptions{}, *std::exchange(state_.sums, std::nullopt));
   if (options_.mode == Mode::planar) {
     G_a_ = plane_frame(options_.plane_a);
     G_b_ = plane_frame(options_.plane_b);
@@ -29,6 +31,7 @@ Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state)
 
 void Accumulator::begin(std::int64_t period_us) {
   state_.period_us = period_us;
+  if (sums_) sums_->begin(period_us);
   state_.strides.clear();
   if (options_.stride) {
     state_.strides.push_back({*options_.stride, {}});
@@ -43,6 +46,9 @@ void Accumulator::restart() {
   for (AccumulatorState::PerStride& entry : state_.strides) entry.statistics = {};
   state_.instants.clear();
   state_.rejections = {};
+  if (!sums_) return;
+  sums_.emplace(options_);
+  sums_->begin(state_.period_us);
 }
 
 std::vector<MotionPair> Accumulator::add(const Instant& instant) {
@@ -52,6 +58,7 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
 
   std::vector<MotionPair> pairs;
   const Problem problem = empty_problem();
+  bool doubtful = false;
   for (AccumulatorState::PerStride& entry : state_.strides) {
     const auto steps = static_cast<std::size_t>(entry.stride);
     if (state_.instants.size() <= steps) continue;
@@ -67,11 +74,17 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
       entry.statistics.add_unjudged(*pair);
     if (!chosen) continue;
     pairs.push_back(*pair);
+    doubtful = entry.statistics.disagreed();
     if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem, entry.stride);
   }
   if (instant.number >= state_.next_choice) {
     choose();
     state_.next_choice = instant.number + instant.number / 4;
+  }
+  if (sums_) {
+    sums_->add(instant, doubtful);
+    if (sums_->choice_is_due())
+      sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
   }
   return pairs;
 }
@@ -140,7 +153,28 @@ const AccumulatorState::PerStride* Accumulator::chosen() const {
   return nullptr;
 }
 
+Choice Accumulator::choice() const {
+  Choice choice = state_.choice;
+  if (!sums_ || !sums_->in_force()) return choice;
+  choice.mean_stride = sums_->choice()->mean_stride;
+  choice.reason = sums_->choice()->reason;
+  return choice;
+}
+
+AccumulatorState Accumulator::state() const {
+  AccumulatorState state = state_;
+  if (sums_) state.sums = sums_->state();
+  return state;
+}
+
 Problem Accumulator::problem() const {
+  if (!sums_ || !sums_->in_force()) return single_stride_problem();
+  Problem problem = empty_problem();
+  sums_->fill(problem);
+  return problem;
+}
+
+Problem Accumulator::single_stride_problem() const {
   Problem problem = empty_problem();
   if (const auto* entry = chosen())
     problem.blocks = independent_blocks(entry->statistics.inliers(), entry->stride);
@@ -155,6 +189,10 @@ std::uint64_t Accumulator::inlier_pairs() const {
 std::uint64_t Accumulator::outlier_pairs() const {
   const auto* entry = chosen();
   return entry ? entry->statistics.outlier_pairs() : 0;
+}
+
+std::uint64_t Accumulator::jumps() const {
+  return sums_ && sums_->in_force() ? sums_->jumps() : 0;
 }
 
 std::optional<std::int64_t> Accumulator::newest_us() const {

@@ -72,7 +72,7 @@ std::vector<MotionPair> MotionPairing::finish() {
 
 void MotionPairing::take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs) {
   const std::int64_t period_us = synchroniser_.period_us();
-  if (!instants.empty() && accumulator_.state().period_us == 0) accumulator_.begin(period_us);
+  if (!instants.empty() && !accumulator_.begun()) accumulator_.begin(period_us);
   for (const Instant& instant : instants) {
     Screened screened;
     if (options_.robust)
@@ -96,8 +96,9 @@ PairingCounts MotionPairing::counts() const {
   counts.synchronised = synchroniser_.state().synchronised;
   counts.matched = accumulator_.inlier_pairs();
   counts.outliers = accumulator_.outlier_pairs();
+  counts.jumps = accumulator_.jumps();
   for (const Rejections* stage : {&rejections_, &synchroniser_.state().rejections,
-                                  &screening_.state().rejections, &accumulator_.state().rejections})
+                                  &screening_.state().rejections, &accumulator_.rejections()})
     for (std::size_t i = 0; i < counts.rejected.size(); ++i) counts.rejected[i] += stage->by_reason[i];
   return counts;
 }

@@ -97,7 +97,8 @@ void fields(auto& archive, services::Is<RobustStatistics::State> auto& value) {
 
 /// Classes whose whole state is a struct.
 template <class T>
-concept Stateful = std::same_as<T, BlockStatistics> || std::same_as<T, RobustStatistics>;
+concept Stateful = std::same_as<T, BlockStatistics> || std::same_as<T, RobustStatistics> ||
+    std::same_as<T, StrideBlocks> || std::same_as<T, WeightedBlocks>;
 inline void fields(services::Writer& archive, const Stateful auto& value) {
   archive(value.state());
 }
@@ -129,8 +130,8 @@ void fields(auto& archive, services::Is<Rejections> auto& value) {
 }
 
 void fields(auto& archive, services::Is<Choice> auto& value) {
-  auto& [stride, balance, reason] = value;
-  archive(stride, balance, reason);
+  auto& [stride, balance, mean_stride, reason] = value;
+  archive(stride, balance, mean_stride, reason);
 }
 
 void fields(auto& archive, services::Is<TimeOffset> auto& value) {
@@ -168,9 +169,51 @@ void fields(auto& archive, services::Is<AccumulatorState::PerStride> auto& value
   archive(stride, statistics);
 }
 
+void fields(auto& archive, services::Is<StrideCell> auto& value) {
+  auto& [motions, rotations] = value;
+  archive(motions, rotations);
+}
+
+void fields(auto& archive, services::Is<StrideSum> auto& value) {
+  auto& [stride, near, far] = value;
+  archive(stride, near, far);
+}
+
+void fields(auto& archive, services::Is<StrideBlocks::State> auto& value) {
+  auto& [block_length, instants, outlier, strides] = value;
+  archive(block_length, instants, outlier, strides);
+}
+
+void fields(auto& archive, services::Is<WeightedBlocks::State> auto& value) {
+  auto& [block_length, blocks, left_out, shared] = value;
+  archive(block_length, blocks, left_out, shared);
+}
+
+void fields(auto& archive, services::Is<StrideWeights> auto& value) {
+  auto& [rotation, translation] = value;
+  archive(rotation, translation);
+}
+
+void fields(auto& archive, services::Is<WeightChoice> auto& value) {
+  auto& [weights, q, memory, mean_stride, ratio, beats_single, reason] = value;
+  archive(weights, q, memory, mean_stride, ratio, beats_single, reason);
+}
+
+void fields(auto& archive, services::Is<JudgedInstant> auto& value) {
+  auto& [instant, index, jump, rotation_chain, translation_chain, doubtful] = value;
+  archive(instant, index, jump, rotation_chain, translation_chain, doubtful);
+}
+
+void fields(auto& archive, services::Is<StrideSumsState> auto& value) {
+  auto& [committed, instants, first_open, next_index, next_look, next_choice, period_us, outlier,
+         outlier_length, choice, weighted, jumps] = value;
+  archive(committed, instants, first_open, next_index, next_look, next_choice, period_us, outlier,
+          outlier_length, choice, weighted, jumps);
+}
+
 void fields(auto& archive, services::Is<AccumulatorState> auto& value) {
-  auto& [choice, period_us, instants, strides, next_choice, rejections] = value;
-  archive(choice, period_us, instants, strides, next_choice, rejections);
+  auto& [choice, period_us, instants, strides, next_choice, sums, rejections] = value;
+  archive(choice, period_us, instants, strides, next_choice, sums, rejections);
 }
 
 void fields(auto& archive, services::Is<PairingState> auto& value) {
@@ -198,7 +241,7 @@ void fields(auto& archive, services::Is<StreamState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 8;
+constexpr int state_layout = 9;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

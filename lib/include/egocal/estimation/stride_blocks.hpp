@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "egocal/estimation/weighted_blocks.hpp"
 #include "egocal/problem/problem.hpp"
 
 namespace egocal {
@@ -86,11 +87,8 @@ class TouchingSums {
 
   /// Of one stride.
   const StrideCell& total(std::size_t stride) const { return strides_[stride].total; }
-  /// The weighted sum, in blocks. Every block holds each motion with an end in it; a last block with a
-  /// negative weight takes off what is in two of them, so the sum of the blocks is the whole, and leaving out
-  /// one of the others leaves out every motion that touches it. The blocks count instants. Balance to use:
-  /// {0, 1}.
-  void fill(const StrideWeights& weights, Problem& problem) const;
+  /// The weighted sum; blocks that are left out hold nothing.
+  WeightedBlocks weighted(const StrideWeights& weights) const;
 
  private:
   struct PerStride {
@@ -98,7 +96,9 @@ class TouchingSums {
     StrideCell shared, total;
   };
   std::vector<PerStride> strides_;
+  std::uint64_t block_length_ = 1;
   std::vector<std::uint64_t> instants_;
+  std::vector<std::uint8_t> left_out_;
 };
 
 /// weights.translation of the motions plus weights.rotation of the rotations, as one Statistics: its upper

@@ -9,6 +9,7 @@
 
 #include "egocal/estimation/jumps.hpp"
 #include "egocal/estimation/stride_blocks.hpp"
+#include "egocal/estimation/weighted_blocks.hpp"
 #include "egocal/estimation/weighting.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
@@ -22,6 +23,7 @@ struct JudgedInstant {
   Jump jump = Jump::none;               ///< of the step from the instant before
   std::uint64_t rotation_chain = 0;     ///< counts the jumps that spoil rotation
   std::uint64_t translation_chain = 0;  ///< counts all jumps
+  bool doubtful = false;                ///< no motion begins or ends here
 };
 
 /// Tuning of StrideSums.
@@ -36,17 +38,20 @@ struct StrideSumsState {
   std::deque<JudgedInstant> instants;  ///< the open ones, and before them as many as the longest motion needs
   std::uint64_t first_open = 0;        ///< index of the first instant whose verdict may change
   std::uint64_t next_index = 0;
+  std::uint64_t next_look = 0;        ///< number of instants at which the open ones are judged again
+  std::uint64_t next_choice = 0;      ///< number of instants at which the next choice is due
   std::int64_t period_us = 0;         ///< typical time between instants
   std::vector<std::uint8_t> outlier;  ///< blocks left out, of outlier_length instants each
   std::uint64_t outlier_length = 1;
   std::optional<WeightChoice> choice;
+  WeightedBlocks weighted;  ///< all motions, by the choice; while it is in force
   std::uint64_t jumps = 0;  ///< committed ones
 };
 
 /// Motions of many strides between instants, added up by weights that the residuals and the jack-knife choose
 /// (choose_weights), without motions across jumps (find_jumps) and without blocks of instants that contradict
 /// the others (find_consensus). Verdicts on the newest instants are revised as more become known. The result
-/// depends on the instants alone, not on when it is asked for.
+/// depends on the instants alone.
 class StrideSums {
  public:
   /// Uses mode, planes, prior and accumulator options; validated() ones.
@@ -55,35 +60,44 @@ class StrideSums {
 
   /// Typical time between instants [us]. To be called before the first add().
   void begin(std::int64_t period_us) { state_.period_us = period_us; }
-  /// Takes the next instant; chains must not decrease.
-  void add(const Instant& instant);
-  /// Judges the open instants anew and chooses the weights.
-  void choose();
+  /// Takes the next instant; chains must not decrease. doubtful: its motion contradicts the others, as judged
+  /// outside; it is not used.
+  void add(const Instant& instant, bool doubtful = false);
+  /// The drive has grown by an eighth since the last choice.
+  bool choice_is_due() const { return state_.next_index >= state_.next_choice; }
+  /// Judges the open instants anew and chooses the weights. rival: the best single stride.
+  void choose(const std::optional<SingleStride>& rival = {});
 
   /// Empty until a choice was made.
   const std::optional<WeightChoice>& choice() const { return state_.choice; }
-  /// At the choice in force.
-  Problem problem() const;
-  std::uint64_t inlier_steps() const;   ///< steps between neighbouring instants that count
-  std::uint64_t outlier_steps() const;  ///< that do not: jumps, and blocks that are left out
+  /// A choice was made, and its spread is clearly smaller than the rival's.
+  bool in_force() const { return state_.choice && state_.choice->beats_single; }
+  /// Sets blocks and balance of a problem, at the choice in force.
+  void fill(Problem& problem) const { state_.weighted.fill(problem); }
+  /// Steps between neighbouring instants across which an odometry jumps: no motion spans them.
+  std::uint64_t jumps() const;
   const StrideSumsState& state() const { return state_; }
 
  private:
   Problem empty_problem() const;
   void append(JudgedInstant& judged, const JudgedInstant* before, Jump jump) const;
   Step step(const JudgedInstant& from, const JudgedInstant& to) const;
+  template <typename Take>
+  void each_motion(std::size_t position, const Take& take) const;
   void add_motions(StrideBlocks& blocks, std::size_t position) const;
+  StrideBlocks sums() const;
+  void weigh_newest();
+  void weigh_all(const StrideBlocks& sums);
+  void commit_oldest();
   bool rejudge(const std::optional<DualQuaternion>& q);
-  void commit();
-  void rebuild();
-  void judge_open();
-  void leave_out_blocks();
+  StrideBlocks judge_open();
+  void leave_out_blocks(StrideBlocks& all);
 
   PairingOptions options_;
   StrideSumsOptions tuning_;
+  double least_scalar_;       ///< of a rotation that is not too large: cosine of half its angle
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
   StrideSumsState state_;
-  StrideBlocks sums_;  ///< committed ones and those of the open instants
 };
 
 }  // namespace egocal

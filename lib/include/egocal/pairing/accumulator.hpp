@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "egocal/estimation/stride_sums.hpp"
 #include "egocal/pairing/counts.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
@@ -18,8 +19,11 @@ namespace egocal {
 
 /// The setting that is in force and why.
 struct Choice {
-  int stride = 1;
-  Balance balance;
+  int stride = 1;   ///< the best single one
+  Balance balance;  ///< of that stride
+  /// The problem is a sum of motions of many strides, each weighted by its residuals. So long they are in the
+  /// mean [steps]; 0: the motions of `stride` alone.
+  double mean_stride = 0;
   std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
 };
 
@@ -31,11 +35,12 @@ struct AccumulatorState {
   };
 
   Choice choice;
-  std::int64_t period_us = 0;      ///< typical time between instants
-  std::deque<Instant> instants;    ///< the newest, as many as the longest motion needs
-  std::vector<PerStride> strides;  ///< under consideration
-  std::uint64_t next_choice = 0;   ///< number of the instant at which to choose again
-  Rejections rejections;           ///< gap, too much rotation; of motions of the chosen stride
+  std::int64_t period_us = 0;           ///< typical time between instants
+  std::deque<Instant> instants;         ///< the newest, as many as the longest motion needs
+  std::vector<PerStride> strides;       ///< under consideration
+  std::uint64_t next_choice = 0;        ///< number of the instant at which to choose again
+  std::optional<StrideSumsState> sums;  ///< where neither stride nor balance is given, and robust
+  Rejections rejections;                ///< gap, too much rotation; of motions of the chosen stride
 };
 
 /// Instants in, statistics of every stride under consideration and the choice among them out.
@@ -55,11 +60,16 @@ class Accumulator {
 
   /// What is known so far, at the choice in force.
   Problem problem() const;
-  const Choice& choice() const { return state_.choice; }
+  /// The same from the motions of the best single stride alone, in disjoint blocks.
+  Problem single_stride_problem() const;
+  Choice choice() const;
   std::uint64_t inlier_pairs() const;   ///< in the statistics of the chosen stride
   std::uint64_t outlier_pairs() const;  ///< of the chosen stride, that contradict the others; may come back
+  std::uint64_t jumps() const;  ///< steps across which an odometry jumps; 0 where it is not looked for
   std::optional<std::int64_t> newest_us() const;  ///< time of the newest instant
-  const AccumulatorState& state() const { return state_; }
+  bool begun() const { return state_.period_us != 0; }
+  const Rejections& rejections() const { return state_.rejections; }
+  AccumulatorState state() const;
 
  private:
   Problem empty_problem() const;
@@ -70,7 +80,8 @@ class Accumulator {
 
   PairingOptions options_;
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
-  AccumulatorState state_;
+  AccumulatorState state_;    ///< but for the sums
+  std::optional<StrideSums> sums_;
 };
 
 }  // namespace egocal

@@ -24,6 +24,8 @@ struct PairingCounts {
   std::uint64_t matched = 0;               ///< motion pairs in the statistics (of the chosen stride)
   std::uint64_t outliers =
       0;  ///< motion pairs (of the chosen stride) that contradict the others; may come back
+  /// Steps across which an odometry jumps, as a sum over strides finds them (Choice): no motion spans them.
+  std::uint64_t jumps = 0;
   std::array<std::uint64_t, static_cast<std::size_t>(Rejection::count_)> rejected{};
 };
 
@@ -57,7 +59,9 @@ class MotionPairing {
 
   /// What is known so far.
   Problem problem() const { return accumulator_.problem(); }
-  const Choice& choice() const { return accumulator_.choice(); }
+  /// The same from the motions of the best single stride alone, in disjoint blocks.
+  Problem single_stride_problem() const { return accumulator_.single_stride_problem(); }
+  Choice choice() const { return accumulator_.choice(); }
   PairingCounts counts() const;
   const PairingOptions& options() const { return options_; }
   PairingState state() const;

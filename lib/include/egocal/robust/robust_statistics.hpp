@@ -38,6 +38,8 @@ class RobustStatistics {
   void add_unjudged(const MotionPair& pair);
   /// Looks for the consensus now.
   void look(const Problem& problem, int overlap = 1);
+  /// The newest pair contradicts the others.
+  bool disagreed() const { return state_.in_a_row > 0; }
   /// The drive has grown by an eighth since the last look.
   bool look_is_due() const { return state_.given >= state_.next_look; }
 

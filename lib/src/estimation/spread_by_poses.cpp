@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/spread_by_poses.hpp"
+
+#include <cmath>
+
+#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/planar.hpp"
+#include "egocal/uncertainty/leave_out.hpp"
+#include "egocal/uncertainty/observability.hpp"
+#include "online/solve_and_verify.hpp"
+
+namespace egocal::detail {
+
+DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
+  return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
+}
+
+Seen seen_directions(const Problem& problem) {
+  const Matrix8d Q = cost_matrix(problem);
+  const Answer answer = solve_and_verify(problem, Q, Method::dual);
+  return assess_observability(problem, Q, answer.T_a_b, ErrorCorrelation::independent).observable;
+}
+
+SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen) {
+  const Matrix8d Q = cost_matrix(problem);
+  const DualQuaternion q = minimiser(Q, problem.mode);
+  const DualQuaternion T_a_b =
+      problem.mode == Mode::planar
+          ? extrinsic_from_planar(q, plane_frame(problem.plane_a), plane_frame(problem.plane_b))
+          : q;
+  const auto differences = leave_out_differences(problem, Q, T_a_b);
+  const auto blocks = static_cast<double>(differences.size());
+  Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const auto& difference : differences) mean += difference / blocks;
+  SpreadByPoses result;
+  result.T_a_b = T_a_b;
+  std::vector<std::array<double, 2>> squares;
+  std::array<double, 2> sums{};
+  for (const auto& difference : differences) {
+    squares.emplace_back();
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (seen[i]) squares.back()[i < 3 ? 0 : 1] += std::pow(difference[k] - mean[k], 2);
+    }
+    for (const std::size_t part : {0u, 1u}) sums[part] += squares.back()[part];
+  }
+  result.translation = std::sqrt(sums[0] * (blocks - 1) / blocks);
+  result.rotation = std::sqrt(sums[1] * (blocks - 1) / blocks);
+  for (const std::size_t part : {0u, 1u}) result.score += sums[part] > 0 ? 0.5 * std::log(sums[part]) : 0;
+  for (const auto& square : squares) {
+    double influence = 0;
+    for (const std::size_t part : {0u, 1u}) influence += sums[part] > 0 ? 0.5 * square[part] / sums[part] : 0;
+    result.influence.push_back(influence);
+  }
+  return result;
+}
+
+double standard_error(const SpreadByPoses& x, const SpreadByPoses& y) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.influence.size(); ++i) sum += std::pow(x.influence[i] - y.influence[i], 2);
+  return std::sqrt(sum);
+}
+
+}  // namespace egocal::detail

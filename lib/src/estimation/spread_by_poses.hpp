@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "egocal/problem/problem.hpp"
+
+namespace egocal::detail {
+
+/// Fewer blocks have no spread.
+constexpr std::size_t least_spread_blocks = 6;
+
+/// Directions (x y z roll pitch yaw of sensor a's frame) that the motions show.
+using Seen = std::array<bool, 6>;
+
+Seen seen_directions(const Problem& problem);
+
+/// How far the answers scatter when blocks of instants are left out, each with all motions that touch it.
+/// Over the directions that are seen.
+struct SpreadByPoses {
+  DualQuaternion T_a_b;           ///< minimiser of (18) over all
+  double score = 0;               ///< sum of the logarithms of rotation's and translation's spread
+  double rotation = 0;            ///< [rad]
+  double translation = 0;         ///< [m]
+  std::vector<double> influence;  ///< of each block on the score
+};
+
+/// problem: touching blocks, as WeightedBlocks make them. The score is not finite where a block cannot be
+/// left out.
+SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen);
+
+/// Standard error of the difference of two scores of the same blocks.
+double standard_error(const SpreadByPoses& x, const SpreadByPoses& y);
+
+/// Of (18); planar mode: T_p.
+DualQuaternion minimiser(const Matrix8d& Q, Mode mode);
+
+}  // namespace egocal::detail

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/estimation/weighted_blocks.hpp"
+
+#include "egocal/estimation/stride_blocks.hpp"
+
+namespace egocal {
+
+bool WeightedBlocks::has_room(std::uint64_t index) const {
+  return index / state_.block_length < StrideBlocks::most_blocks;
+}
+
+void WeightedBlocks::add_instant(std::uint64_t index) {
+  const auto block = static_cast<std::size_t>(index / state_.block_length);
+  while (state_.blocks.size() <= block) {
+    state_.blocks.emplace_back();
+    state_.left_out.push_back(0);
+  }
+  ++state_.blocks[block].count;
+}
+
+void WeightedBlocks::add(std::uint64_t first_index, std::uint64_t last_index, const DualQuaternion& a,
+                         const DualQuaternion& b, MotionWeights weights, bool rotation_only) {
+  if (!(weights.rotation > 0) && !(weights.translation > 0)) return;
+  const auto first = static_cast<std::size_t>(first_index / state_.block_length);
+  const auto last = static_cast<std::size_t>(last_index / state_.block_length);
+  if (state_.left_out[first] != 0 || state_.left_out[last] != 0) return;
+  StrideCell cell;
+  (rotation_only ? cell.rotations : cell.motions).add(a, b);
+  Statistics motion;
+  add_weighted(motion, cell, weights.rotation, weights.translation);
+  state_.blocks[first] += motion;
+  if (first == last) return;
+  state_.blocks[last] += motion;
+  state_.shared += motion;
+}
+
+void WeightedBlocks::fill(Problem& problem) const {
+  problem.balance = {0, 1};  // the blocks are weighted already
+  problem.blocks.clear();
+  for (const Statistics& block : state_.blocks)
+    if (block.weight > 0) problem.blocks.push_back(block);
+  if (!(state_.shared.weight > 0)) return;
+  Statistics taken_off = state_.shared;
+  taken_off.dual_rows *= -1;
+  taken_off.weight *= -1;
+  problem.blocks.push_back(taken_off);
+}
+
+}  // namespace egocal
