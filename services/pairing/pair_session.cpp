@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "egocal/bus/convert.hpp"
-#include "egocal/bus/loop.hpp"
 
 namespace egocal::services {
 
@@ -25,7 +24,6 @@ PairSession::PairSession(const bus::Rig& rig, std::size_t index)
     : index_(index),
       config_(rig.pairs[index]),
       options_(options_of(rig, index)),
-      host_(bus::host_name()),
       drive_(options_) {}
 
 void PairSession::begin(std::int64_t time_us) {
@@ -108,7 +106,6 @@ std::optional<problem_t> PairSession::message() {
   message.left_out = static_cast<std::int64_t>(counts.outliers);
   for (const std::uint64_t rejected : counts.rejected)
     message.rejected += static_cast<std::int64_t>(rejected);
-  message.host = host_;
   message.received_mono_us = fresh_ ? received_mono_us_ : 0;
   fresh_ = false;
   return message;

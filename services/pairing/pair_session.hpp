@@ -55,7 +55,7 @@ class PairSession {
 
   /// Something new is in the problem since the last message().
   bool fresh() const { return fresh_; }
-  /// The problem as it stands; empty where there is none yet.
+  /// The problem as it stands, without the sender's host; empty where there is none yet.
   std::optional<problem_t> message();
   void count(std::map<std::string, std::int64_t>& counters) const;
 
@@ -70,7 +70,6 @@ class PairSession {
   std::size_t index_;
   bus::PairConfig config_;
   PairingOptions options_;
-  std::string host_;
   MotionPairing drive_;
   PairState state_;  // without the drive's
   bool fresh_ = false;

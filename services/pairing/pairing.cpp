@@ -146,8 +146,9 @@ void Pairing::publish_new_problems() {
 }
 
 void Pairing::publish_problem(std::size_t pair) {
-  const std::optional<problem_t> message = accumulation_.pairs()[pair].message();
+  std::optional<problem_t> message = accumulation_.pairs()[pair].message();
   if (!message) return;
+  message->host = loop_.host();
   loop_.publish(channels_[pair].problem, *message);
   published_mono_us_[pair] = loop_.mono_us();
   ++sent_;

@@ -94,8 +94,8 @@ class Supervision : public ::testing::Test {
              ("egocal-up-" + std::to_string(getpid()) + "-" + std::to_string(++number));
     std::filesystem::create_directories(folder);
     options.output_dir = folder;
-    options.first_back_off = 50ms;
-    options.longest_back_off = 400ms;
+    options.restarts.first_back_off = 50ms;
+    options.restarts.longest_back_off = 400ms;
     options.settle = 100ms;
   }
   ~Supervision() override {
@@ -182,7 +182,7 @@ TEST_F(Supervision, WhatCannotWorkIsGivenUpAtOnce) {
 }
 
 TEST_F(Supervision, WhatHasWorkedIsNotGivenUpWhateverItSays) {
-  options.started_well = 100ms;
+  options.restarts.started_well = 100ms;
   // the program is replaced while it runs: for a moment it cannot be executed
   start({script("one", "echo x >>$F/starts; [ $(wc -l <$F/starts) -gt 1 ] && exit 127; sleep 0.3; exit 1")});
   EXPECT_TRUE(until([&] { return lines(path("starts")).size() >= 4; }));

@@ -27,18 +27,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int exec_failed = 127;
-constexpr int wrong_usage = 2;
-
 struct Child {
   Program program;
+  Restarts restarts;
   pid_t pid = -1;  ///< -1: not running
   Clock::time_point started{}, start_at{};
-  milliseconds back_off{0};
-  bool has_started = false;   ///< at least once
-  bool started_well = false;  ///< at least once
-  bool finished = false;      ///< ended as it should
-  std::string reported;       ///< how it ended when that was reported last,
+  bool has_started = false;  ///< at least once
+  bool finished = false;     ///< ended as it should
+  std::string reported{};    ///< how it ended when that was reported last,
   Clock::time_point reported_at{};
 };
 
@@ -71,11 +67,7 @@ std::string ending(int status) {
 class Supervisor {
  public:
   Supervisor(const std::vector<Program>& programs, const SupervisorOptions& options) : options_(options) {
-    for (const Program& program : programs) {
-      Child child;
-      child.program = program;
-      children_.push_back(child);
-    }
+    for (const Program& program : programs) children_.push_back({program, Restarts(options.restarts)});
     sigset_t mask;
     sigemptyset(&mask);
     for (const int signal : {SIGINT, SIGTERM, SIGCHLD, SIGHUP}) sigaddset(&mask, signal);
@@ -129,7 +121,10 @@ class Supervisor {
     if (output >= 0) close(output);
     child.has_started = true;
     // too many processes, or no memory, for the moment
-    if (child.pid < 0) start_again(child, std::string("fork: ") + std::strerror(reason));
+    if (child.pid < 0) {
+      child.restarts.not_started();
+      start_again(child, std::string("fork: ") + std::strerror(reason));
+    }
   }
 
   /// -1: where ours goes. A disk that has become full or a folder that is gone must not end what runs.
@@ -183,41 +178,37 @@ class Supervisor {
   }
 
   void ended(Child& child, int status) {
-    const bool well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (well && (child.program.ends_all || child.program.foreground)) {
-      child.finished = true;
-      end_at_ = Clock::now() + (child.program.foreground ? milliseconds(0) : options_.settle);
-      return;
+    const auto lived = std::chrono::duration_cast<milliseconds>(Clock::now() - child.started);
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    switch (child.restarts.ended(child.program, code, lived)) {
+      case Restarts::Next::finished:
+        child.finished = true;
+        end_at_ = Clock::now() + (child.program.foreground ? milliseconds(0) : options_.settle);
+        return;
+      case Restarts::Next::hopeless:
+        say(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
+                        options_.output_dir.empty() ? "" : ", see " + output_file(child)),
+            true);
+        failed_ = true;
+        end_all(SIGTERM, false);
+        return;
+      case Restarts::Next::again:
+        start_again(child, reason(child, status));
+        return;
     }
-    child.started_well = child.started_well || Clock::now() - child.started >= options_.started_well;
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-    // the person in front of a foreground program sees why it failed
-    const bool seen = child.program.foreground && code != 0;
-    if ((code == wrong_usage || code == exec_failed || seen) && !child.started_well) {
-      say(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
-                      options_.output_dir.empty() ? "" : ", see " + output_file(child)),
-          true);
-      failed_ = true;
-      end_all(SIGTERM, false);
-      return;
-    }
-    start_again(child, reason(child, status));
   }
 
+  /// After the pause that was decided.
   void start_again(Child& child, const std::string& reason) {
     const Clock::time_point now = Clock::now();
-    const bool soon = now - child.started < options_.started_well;
-    child.back_off = soon && child.back_off.count() > 0
-                         ? std::min(2 * child.back_off, options_.longest_back_off)
-                         : options_.first_back_off;
-    child.start_at = now + child.back_off;
-    if (child.reported == reason && child.back_off == options_.longest_back_off &&
+    child.start_at = now + child.restarts.pause();
+    if (child.reported == reason && child.restarts.pauses_longest() &&
         now - child.reported_at < options_.repeat_report)
       return;
     child.reported = reason;
     child.reported_at = now;
     say(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason,
-                    child.back_off.count()));
+                    child.restarts.pause().count()));
   }
 
   /// How it ended, and what it said last.

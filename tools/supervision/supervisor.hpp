@@ -6,24 +6,14 @@
 #include <string>
 #include <vector>
 
-namespace egocal::tools {
+#include "supervision/restarts.hpp"
 
-/// A process to be kept alive.
-struct Program {
-  std::string name;  ///< also of its output file
-  std::vector<std::string> command;
-  bool ends_all = false;  ///< when it ends with 0 the others are ended too (the player at the end of its log)
-  bool foreground = false;  ///< keeps the terminal; when it ends, all end (the monitor)
-};
+namespace egocal::tools {
 
 struct SupervisorOptions {
   std::string output_dir;  ///< NAME.out in it; empty: output goes where ours goes
   bool quiet = false;      ///< the terminal belongs to a foreground program: messages go to up.out there
-  /// Pause before a restart: doubled with each death soon after its start, up to the longest. A cause that
-  /// lasts for hours (no network, a full disk) costs one start in five seconds.
-  std::chrono::milliseconds first_back_off{200}, longest_back_off{5000};
-  /// A process that has lived this long has started well; its next death counts as a first one.
-  std::chrono::milliseconds started_well{3'000};
+  RestartOptions restarts;
   /// The same death is reported again after this time.
   std::chrono::milliseconds repeat_report{60'000};
   std::chrono::milliseconds settle{1500};    ///< after the player's end, for the last answers

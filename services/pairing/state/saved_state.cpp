@@ -53,7 +53,10 @@ void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
 }  // namespace
 
 SavedState::SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock)
-    : rig_(rig), file_(file, identity(rig), std::move(clock)) {}
+    : SavedState(open_state_medium(file), rig, std::move(clock)) {}
+
+SavedState::SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock)
+    : rig_(rig), file_(std::move(medium), identity(rig), std::move(clock)) {}
 
 Accumulation SavedState::restore() {
   Accumulation accumulation(rig_);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace egocal::services {
 /// Keeps an Accumulation on disk: a snapshot, and every input since then.
 class SavedState {
  public:
-  /// Throws Error as StateFile does.
+  /// In the file system. Throws Error as open_state_medium() does.
   SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time);
+  SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock);
 
   /// What is on disk, with all inputs applied and settled (Accumulation::settle()); a new one where there is
   /// nothing or it is refused. Takes a snapshot, so that the next restart is quick. A disk that does not take

@@ -2,21 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/state/state_file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
-#include <filesystem>
 #include <sstream>
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "egocal/io/whole_file.hpp"
 #include "pairing/state/archive.hpp"
 
 namespace egocal::services {
@@ -30,7 +22,6 @@ const std::string magic = [] {
   std::memcpy(&low, &one, 1);
   return std::string("egocal-pairing state 2") + (low ? "l" : "b") + "\n";
 }();
-constexpr int most_refused = 100;
 const std::string magic_of_any_version = "egocal-pairing state ";
 
 /// Before each part: identity, snapshot, additions.
@@ -55,60 +46,11 @@ std::span<const std::byte> as_bytes(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-void write_all(int fd, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw Error(std::strerror(errno));
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
-
 void append_part(std::vector<std::byte>& out, std::span<const std::byte> part, std::int64_t boot_us) {
   const PartHeader header = header_of(part, boot_us);
   const auto header_bytes = std::as_bytes(std::span(&header, 1));
   out.insert(out.end(), header_bytes.begin(), header_bytes.end());
   out.insert(out.end(), part.begin(), part.end());
-}
-
-/// A state of the largest rigs has some megabytes.
-constexpr std::int64_t largest_state = std::int64_t{256} << 20;
-
-/// The file, checked before its content is read: a user's own file must not be moved away because of a
-/// slip on the command line, nor a pipe be waited for. Empty: there is none.
-std::optional<std::vector<std::byte>> whole(const std::string& file, std::int64_t& time_s) {
-  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0 && errno == ENOENT) return std::nullopt;
-  const auto fail = [&](const std::string& why) {
-    if (fd >= 0) close(fd);
-    throw error_at(file, 0, "", why);
-  };
-  if (fd < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
-  struct stat status {};
-  if (fstat(fd, &status) != 0) fail(std::string("cannot be read: ") + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) fail("is not a file; expected a state of egocal-pairing, or no file");
-  time_s = status.st_mtime;
-  std::vector<std::byte> bytes;
-  const std::int64_t most = std::min<std::int64_t>(status.st_size, largest_state);
-  const auto read_up_to = [&](std::size_t size) {
-    std::size_t have = bytes.size();
-    bytes.resize(size);
-    while (have < size) {
-      const ssize_t got = ::read(fd, bytes.data() + have, size - have);
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
-      if (got == 0) break;
-      have += static_cast<std::size_t>(got);
-    }
-    bytes.resize(have);
-  };
-  read_up_to(std::min(static_cast<std::size_t>(most), magic_of_any_version.size()));
-  if (bytes.size() == magic_of_any_version.size() &&
-      std::memcmp(bytes.data(), magic_of_any_version.data(), bytes.size()) != 0)
-    fail("is not a state of egocal-pairing; expected one, or no file");
-  read_up_to(static_cast<std::size_t>(most));
-  close(fd);
-  return bytes;
 }
 
 /// The next part; empty where the bytes end before it does.
@@ -168,28 +110,19 @@ Parsed parsed(std::span<const std::byte> bytes, const std::string& identity) {
 
 }  // namespace
 
-StateFile::StateFile(const std::string& file, std::string identity, Clock clock)
-    : file_(without_links(file)), identity_(std::move(identity)), clock_(std::move(clock)), lock_(file_) {
-  remove_temporaries(file_);
-}
-
-StateFile::~StateFile() {
-  if (out_ < 0) return;
-  fsync(out_);
-  close(out_);
-}
+StateFile::StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock)
+    : medium_(std::move(medium)), identity_(std::move(identity)), clock_(std::move(clock)) {}
 
 std::optional<StateFile::Content> StateFile::read() {
-  std::int64_t time_s = 0;
-  const std::optional<std::vector<std::byte>> bytes = whole(file_, time_s);
-  if (!bytes) return std::nullopt;
+  const std::optional<StateMedium::Found> found = medium_->read(magic_of_any_version);
+  if (!found) return std::nullopt;
   try {
-    Parsed found = parsed(*bytes, identity_);
-    const std::int64_t age = age_s(found.written, clock_(), time_s, std::time(nullptr));
+    Parsed state = parsed(found->bytes, identity_);
+    const std::int64_t age = age_s(state.written, clock_(), found->written_s, found->now_s);
     if (std::abs(age) > most_age_s)
       throw Error("is stale: written " + std::to_string(age) + " s ago, expected at most " +
                   std::to_string(most_age_s));
-    return std::move(found.content);
+    return std::move(state.content);
   } catch (const Error& error) {
     refuse(error.what());
     return std::nullopt;
@@ -197,52 +130,29 @@ std::optional<StateFile::Content> StateFile::read() {
 }
 
 void StateFile::refuse(const std::string& why) {
-  // what was kept before stays, too: it may be hours of driving
-  std::string aside = file_ + ".refused";
-  std::error_code error;
-  for (int n = 2; n <= most_refused && std::filesystem::exists(aside, error); ++n)
-    aside = file_ + ".refused-" + std::to_string(n);
-  std::filesystem::rename(file_, aside, error);
-  if (error) throw error_at(file_, 0, "", why + ", and cannot be kept aside: " + error.message());
-  refused_ = file_ + ": " + why + "; starting anew, it is kept as " + aside;
+  try {
+    refused_ = medium_->name() + ": " + why + "; starting anew, it is kept as " + medium_->keep_aside();
+  } catch (const Error& error) {
+    throw error_at(medium_->name(), 0, "", why + ", and " + error.what());
+  }
 }
 
 void StateFile::snapshot(std::span<const std::byte> bytes) {
-  // the folder was there when this began: its removal was not meant for what is known here
-  std::error_code none;
-  std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
-  lock_.confirm();
-  std::vector<std::byte> parts;
+  const auto begin = as_bytes(magic);
+  std::vector<std::byte> parts(begin.begin(), begin.end());
   const BootTime now = clock_();
   append_part(parts, as_bytes(identity_), now.us);
   append_part(parts, as_bytes(now.boot), now.us);
   append_part(parts, bytes, now.us);
-  WholeFile whole(file_);
-  whole.write(magic);
-  whole.write(parts);
-  whole.commit();
-  if (out_ >= 0) close(out_);
-  out_ = whole.release_descriptor();
+  medium_->replace(parts);
   added_ = 0;
 }
 
-bool StateFile::in_place() const {
-  struct stat status {};
-  return out_ >= 0 && fstat(out_, &status) == 0 && status.st_nlink > 0;
-}
-
 void StateFile::add(std::span<const std::byte> bytes) {
-  if (out_ < 0) throw error_at(file_, 0, "", "has no snapshot to add to");
   std::vector<std::byte> part;
   part.reserve(sizeof(PartHeader) + bytes.size());
   append_part(part, bytes, clock_().us);
-  try {
-    write_all(out_, part);
-  } catch (const Error& error) {
-    // behind an unfinished part nothing may follow
-    close(std::exchange(out_, -1));
-    throw error_at(file_, 0, "", std::string("cannot be written: ") + error.what());
-  }
+  medium_->add(part);
   added_ += part.size();
 }
 

@@ -5,19 +5,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "pairing/state/state_age.hpp"
-#include "pairing/state/state_lock.hpp"
+#include "pairing/state/state_medium.hpp"
 
 namespace egocal::services {
 
 /// A file from which a process that was killed goes on: a snapshot, and behind it what came since then.
 ///
-/// A snapshot takes the place of the file in one step (WholeFile). Each addition is one write behind it; a
+/// A snapshot takes the place of the file in one step. Each addition is one write behind it; a
 /// process that is killed in the middle of one leaves an unfinished last part, which was not acknowledged to
 /// any sender and is not used. Everything else that does not fit its checksums is damage.
 class StateFile {
@@ -29,12 +30,8 @@ class StateFile {
 
   using Clock = std::function<BootTime()>;
 
-  /// Holds the file for this process alone until the end, by whatever symbolic links it was named. Throws
-  /// Error where that is not possible. identity: whose state it is, one line each.
-  StateFile(const std::string& file, std::string identity, Clock clock = boot_time);
-  ~StateFile();
-  StateFile(const StateFile&) = delete;
-  StateFile& operator=(const StateFile&) = delete;
+  /// identity: whose state it is, one line each.
+  StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock = boot_time);
 
   /// What is there to go on from; empty where there is no file or it is refused. Throws Error where the file
   /// cannot be read, or is something else than a state: that is never touched.
@@ -49,7 +46,7 @@ class StateFile {
   /// Throws Error likewise. Only after a snapshot.
   void add(std::span<const std::byte> bytes);
   /// False: the file was removed while it was in use; only a snapshot helps.
-  bool in_place() const;
+  bool in_place() const { return medium_->in_place(); }
   /// Bytes added since the snapshot.
   std::uint64_t added() const { return added_; }
 
@@ -57,10 +54,9 @@ class StateFile {
   static constexpr std::int64_t most_age_s = 3600;
 
  private:
-  std::string file_, identity_, refused_;
+  std::unique_ptr<StateMedium> medium_;
+  std::string identity_, refused_;
   Clock clock_;
-  StateLock lock_;
-  int out_ = -1;
   std::uint64_t added_ = 0;
 };
 

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pairing/state/state_medium.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <utility>
+
+#include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "pairing/state/state_lock.hpp"
+
+namespace egocal::services {
+
+namespace {
+
+constexpr int most_refused = 100;
+
+void write_all(int fd, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw Error(std::strerror(errno));
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+/// A state of the largest rigs has some megabytes.
+constexpr std::int64_t largest_state = std::int64_t{256} << 20;
+
+/// The file, checked before its content is read: somebody's own file must not be moved away because of a
+/// slip on the command line, nor a pipe be waited for. Empty: there is none.
+std::optional<StateMedium::Found> whole(const std::string& file, std::string_view begins) {
+  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0 && errno == ENOENT) return std::nullopt;
+  const auto fail = [&](const std::string& why) {
+    if (fd >= 0) close(fd);
+    throw error_at(file, 0, "", why);
+  };
+  if (fd < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
+  struct stat status {};
+  if (fstat(fd, &status) != 0) fail(std::string("cannot be read: ") + std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) fail("is not a file; expected a state of egocal-pairing, or no file");
+  StateMedium::Found found{{}, status.st_mtime, std::time(nullptr)};
+  std::vector<std::byte>& bytes = found.bytes;
+  const std::int64_t most = std::min<std::int64_t>(status.st_size, largest_state);
+  const auto read_up_to = [&](std::size_t size) {
+    std::size_t have = bytes.size();
+    bytes.resize(size);
+    while (have < size) {
+      const ssize_t got = ::read(fd, bytes.data() + have, size - have);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
+      if (got == 0) break;
+      have += static_cast<std::size_t>(got);
+    }
+    bytes.resize(have);
+  };
+  read_up_to(std::min(static_cast<std::size_t>(most), begins.size()));
+  if (bytes.size() == begins.size() && std::memcmp(bytes.data(), begins.data(), bytes.size()) != 0)
+    fail("is not a state of egocal-pairing; expected one, or no file");
+  read_up_to(static_cast<std::size_t>(most));
+  close(fd);
+  return found;
+}
+
+class StateInFileSystem final : public StateMedium {
+ public:
+  explicit StateInFileSystem(const std::string& file) : file_(without_links(file)), lock_(file_) {
+    remove_temporaries(file_);
+  }
+  ~StateInFileSystem() override {
+    if (out_ < 0) return;
+    fsync(out_);
+    close(out_);
+  }
+
+  const std::string& name() const override { return file_; }
+  std::optional<Found> read(std::string_view begins) override { return whole(file_, begins); }
+
+  void replace(std::span<const std::byte> bytes) override {
+    // the folder was there when this began: whoever removed it did not mean what is known here
+    std::error_code none;
+    std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
+    lock_.confirm();
+    WholeFile whole(file_);
+    whole.write(bytes);
+    whole.commit();
+    if (out_ >= 0) close(out_);
+    out_ = whole.release_descriptor();
+  }
+
+  void add(std::span<const std::byte> bytes) override {
+    if (out_ < 0) throw error_at(file_, 0, "", "has no snapshot to add to");
+    try {
+      write_all(out_, bytes);
+    } catch (const Error& error) {
+      // behind an unfinished part nothing may follow
+      close(std::exchange(out_, -1));
+      throw error_at(file_, 0, "", std::string("cannot be written: ") + error.what());
+    }
+  }
+
+  bool in_place() const override {
+    struct stat status {};
+    return out_ >= 0 && fstat(out_, &status) == 0 && status.st_nlink > 0;
+  }
+
+  std::string keep_aside() override {
+    // what was kept before stays, too: it may be hours of driving
+    std::string aside = file_ + ".refused";
+    std::error_code error;
+    for (int n = 2; n <= most_refused && std::filesystem::exists(aside, error); ++n)
+      aside = file_ + ".refused-" + std::to_string(n);
+    std::filesystem::rename(file_, aside, error);
+    if (error) throw Error("cannot be kept aside: " + error.message());
+    return aside;
+  }
+
+ private:
+  std::string file_;
+  StateLock lock_;
+  int out_ = -1;
+};
+
+}  // namespace
+
+std::unique_ptr<StateMedium> open_state_medium(const std::string& file) {
+  return std::make_unique<StateInFileSystem>(file);
+}
+
+}  // namespace egocal::services

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace egocal::services {
+
+/// Where a state is kept: one file, which one process holds until the end. What its bytes mean is
+/// StateFile's. A simulation can put any disk behind this interface.
+class StateMedium {
+ public:
+  struct Found {
+    std::vector<std::byte> bytes;
+    std::int64_t written_s = 0, now_s = 0;  ///< by the clock of the file system [s]
+  };
+
+  StateMedium() = default;
+  StateMedium(const StateMedium&) = delete;
+  StateMedium& operator=(const StateMedium&) = delete;
+  virtual ~StateMedium() = default;
+
+  /// For messages.
+  virtual const std::string& name() const = 0;
+  /// Empty: there is no file. Throws Error where it cannot be read, or does not begin like this: what is
+  /// something else is never touched.
+  virtual std::optional<Found> read(std::string_view begins) = 0;
+  /// In one step, after a power cut, too. Throws Error where the disk does not take it; the old content is
+  /// then still there.
+  virtual void replace(std::span<const std::byte> bytes) = 0;
+  /// Only after replace(). Throws Error likewise; a part of the bytes may have been written then, and only
+  /// another replace() helps.
+  virtual void add(std::span<const std::byte> bytes) = 0;
+  /// False: nothing has been written yet, or the file was removed since then.
+  virtual bool in_place() const = 0;
+  /// Renames the file so that it stays; its new name. Throws Error where that is not possible.
+  virtual std::string keep_aside() = 0;
+};
+
+/// In the file system, by whatever symbolic links the file is named. Throws Error where another process holds
+/// it, or it cannot be held.
+std::unique_ptr<StateMedium> open_state_medium(const std::string& file);
+
+}  // namespace egocal::services

@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/checks.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/decode.hpp"
+#include "pairing/accumulation.hpp"
+
+namespace egocal::simulation {
+
+namespace {
+
+/// After the faults, of data time; and what a process may wait before it is started again.
+constexpr std::int64_t recovery_us = 5'000'000, longest_pause_us = 5'100'000;
+/// Answers are that recent while data come.
+constexpr std::int64_t recent_us = 1'000'000;
+constexpr std::size_t most_state_bytes = std::size_t{6} << 20;
+
+std::int64_t field(bus::Bytes message, std::size_t at) {
+  std::uint64_t value = 0;
+  for (std::size_t i = at; i < at + 8 && i < message.size(); ++i)
+    value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
+  return static_cast<std::int64_t>(value);
+}
+
+bool has(const Plan& plan, std::initializer_list<IncidentKind> kinds) {
+  return std::any_of(plan.incidents.begin(), plan.incidents.end(), [&](const Incident& incident) {
+    return std::find(kinds.begin(), kinds.end(), incident.kind) != kinds.end();
+  });
+}
+
+bool same_bits(const problem_t& x, const problem_t& y) {
+  if (x.n_blocks != y.n_blocks || x.seq != y.seq || x.matched != y.matched || x.left_out != y.left_out ||
+      x.stride != y.stride || x.weight_rotation != y.weight_rotation ||
+      x.weight_translation != y.weight_translation)
+    return false;
+  for (std::size_t i = 0; i < x.blocks.size(); ++i)
+    if (x.blocks[i].count != y.blocks[i].count || x.blocks[i].weight != y.blocks[i].weight ||
+        std::memcmp(x.blocks[i].q, y.blocks[i].q, sizeof x.blocks[i].q) != 0)
+      return false;
+  return true;
+}
+
+std::string text(std::int64_t session, std::int64_t seq) {
+  return "session " + std::to_string(session - HostClock::start_of_all_us) + " us, problem " +
+         std::to_string(seq);
+}
+
+}  // namespace
+
+std::vector<problem_t> undisturbed(const Drive& drive,
+                                   const std::map<std::size_t, std::set<std::int64_t>>* times) {
+  services::Accumulation accumulation(drive.rig);
+  for (const Message& message : drive.messages) {
+    if (times) {
+      const auto channel = times->find(message.channel);
+      if (channel == times->end() || !channel->second.contains(message.time_us)) continue;
+    }
+    accumulation.apply(
+        {services::Input::Kind::message, static_cast<std::uint16_t>(message.channel), message.bytes});
+    accumulation.take_motions();
+  }
+  for (std::size_t i = 0; i < drive.rig.sensors.size(); ++i)
+    accumulation.apply({services::Input::Kind::give_up, static_cast<std::uint16_t>(i)});
+  std::vector<problem_t> problems;
+  for (services::PairSession& pair : accumulation.pairs())
+    problems.push_back(pair.message().value_or(problem_t{}));
+  return problems;
+}
+
+void Checks::fail(char check, const std::string& text) {
+  if (!violation_) violation_ = {check, surroundings_.schedule.now_us(), text};
+}
+
+bool Checks::keeps_state(const Process& process) const {
+  return !process.spec().state_file.empty() &&
+         !has(surroundings_.plan, {IncidentKind::disk_full, IncidentKind::power_cut});
+}
+
+/// No message is lost or late for long, and no process is silent while it lives.
+bool Checks::peaceful() const {
+  const NetworkFaults& network = surroundings_.plan.network;
+  return network.lost == 0 && !network.corrupts() && network.late == 0 && network.delay_us < 20'000 &&
+         network.jitter_us < 20'000 &&
+         !has(surroundings_.plan, {IncidentKind::stop, IncidentKind::away, IncidentKind::partition,
+                                   IncidentKind::clog, IncidentKind::flood, IncidentKind::power_cut});
+}
+
+void Checks::sent(const Address& from, const std::string& channel, bus::Bytes message) {
+  const Process& sender = process(from);
+  if (sender.spec().part != Part::pairing) return;
+  if (channel.starts_with(bus::problem_prefix)) return problem_sent(sender, channel, message);
+  status_t status{};
+  if (channel == bus::status_channel && bus::decode(message, status)) status_sent(sender, status);
+}
+
+void Checks::problem_sent(const Process& from, const std::string& channel, bus::Bytes message) {
+  const std::pair<std::int64_t, std::int64_t> now{field(message, 16), field(message, 24)};
+  Lineage& lineage = lineages_[from.spec().name + from.spec().state_file];
+  const auto before = lineage.problems.find(channel);
+  if (before != lineage.problems.end() && now < before->second && (keeps_state(from) || lineage.lives == 1))
+    fail('e', channel + " goes back from " + text(before->second.first, before->second.second) + " to " +
+                  text(now.first, now.second));
+  lineage.problems[channel] = now;
+  newest_problem_[channel].assign(message.begin(), message.end());
+  if (!peaceful()) return;
+  for (const auto& other : processes_)
+    if (other.get() != &from && other->runs() && other->spec().name == from.spec().name &&
+        other->started_us() < from.started_us())
+      fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
+                    " us sends problems while an older one, of " + std::to_string(other->started_us()) +
+                    " us, is running");
+}
+
+void Checks::status_sent(const Process& from, const status_t& status) {
+  Lineage& lineage = lineages_[from.spec().name + from.spec().state_file];
+  const bool promised = keeps_state(from) && player_starts_ <= 1;
+  for (const acknowledgement_t& acknowledgement : status.acknowledgements) {
+    const auto before = lineage.acknowledged.find(acknowledgement.channel);
+    if (promised && before != lineage.acknowledged.end() && acknowledgement.utime < before->second &&
+        !surroundings_.plan.network.corrupts())
+      fail('a', "what was acknowledged on " + acknowledgement.channel + " until " +
+                    std::to_string(before->second - HostClock::start_of_all_us) +
+                    " us has been forgotten: now it is acknowledged until " +
+                    std::to_string(acknowledgement.utime - HostClock::start_of_all_us) + " us");
+    lineage.acknowledged[acknowledgement.channel] = acknowledgement.utime;
+  }
+  lineage.counters.clear();
+  for (const counter_t& counter : status.counters) {
+    lineage.counters[counter.name] = counter.value;
+    if (counter.value < 0) fail('d', "the count '" + counter.name + "' is negative");
+  }
+}
+
+void Checks::received(const Address& by, std::string_view channel, bus::Bytes message) {
+  const Process& listener = process(by);
+  if (listener.spec().part != Part::pairing) return;
+  const auto& sensors = surroundings_.drive.rig.sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (channel != sensors[i].channel) continue;
+    Lineage& lineage = lineages_[listener.spec().name + listener.spec().state_file];
+    ++lineage.sensors[i].received;
+    lineage.sensors[i].numbers.insert(field(message, 8));
+    lineage.all[i].insert(field(message, 8));
+  }
+}
+
+void Checks::started(const Process& process) {
+  last_start_us_ = surroundings_.schedule.now_us();
+  if (process.spec().part == Part::player) ++player_starts_;
+  if (process.spec().part != Part::pairing) return;
+  Lineage& lineage = lineages_[process.spec().name + process.spec().state_file];
+  ++lineage.lives;
+  lineage.sensors.clear();
+  lineage.counters.clear();
+  if (keeps_state(process)) return;
+  lineage.all.clear();
+  lineage.acknowledged.clear();
+}
+
+void Checks::ended(const Process& process, const Process::Ending& ending) {
+  if (ending.exit_code > 0) fail('f', process.spec().name + " ended by itself: " + ending.error);
+  if (ending.next == tools::Restarts::Next::hopeless) fail('f', process.spec().name + " is given up");
+}
+
+std::string Checks::missing_answer() const {
+  const std::int64_t data_us = surroundings_.schedule.now_us() + HostClock::start_of_all_us;
+  const std::int64_t end_us = surroundings_.drive.messages.back().time_us;
+  const bool live = surroundings_.plan.input == Input::live;
+  for (const auto& process : processes_) {
+    if (const Watcher* watcher = process->watcher())
+      for (const monitor::PairState& pair : watcher->model().pairs()) {
+        const calibration_t* answer = pair.answer();
+        const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
+        if (!answer) return whose + "no answer";
+        if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
+        if (answer->status != 0) return whose + "an answer that is not certified";
+        if (live && answer->utime < std::min(data_us, end_us) - recent_us) return whose + "an old answer";
+        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
+        if (newest == newest_problem_.end() || answer->session != field(newest->second, 16))
+          return whose + "an answer of another session";
+      }
+    if (const Exporter* exporter = process->exporter())
+      for (const bus::PairConfig& pair : surroundings_.drive.rig.pairs) {
+        const tools::Answers::Best* best = exporter->answers().best({pair.a, pair.b});
+        const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
+        if (!best) return whose + "no answer";
+        if (!best->certified()) return whose + "an answer that is not certified";
+        if (live && best->message.utime < std::min(data_us, end_us) - recent_us)
+          return whose + "an old answer";
+        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
+        if (newest == newest_problem_.end() || best->message.session != field(newest->second, 16))
+          return whose + "an answer of another session";
+      }
+  }
+  return "";
+}
+
+void Checks::look_at_answers() {
+  const std::int64_t now = surroundings_.schedule.now_us();
+  const std::string missing = missing_answer();
+  if (missing.empty()) {
+    answers_missing_since_us_ = -1;
+    answered_until_us_ = now;
+    return;
+  }
+  if (answers_missing_since_us_ < 0) answers_missing_since_us_ = now;
+  const std::int64_t quiet_from =
+      std::max({surroundings_.plan.disturbed_us, last_start_us_, answers_missing_since_us_});
+  if (now > quiet_from + recovery_us && now < surroundings_.plan.disturbed_us + surroundings_.plan.quiet_us)
+    fail('f', "5 s after the faults are over: " + missing);
+}
+
+void Checks::finish() {
+  for (const auto& process : processes_)
+    if (!process->runs() && process->spec().supervised && process->spec().part != Part::player)
+      fail('f', process->spec().name + " is not running in the end");
+  const std::string missing = missing_answer();
+  if (!missing.empty()) fail('f', "in the end: " + missing);
+  compare_with_undisturbed();
+  check_counts();
+  check_bounds();
+}
+
+void Checks::compare_with_undisturbed() {
+  const Plan& plan = surroundings_.plan;
+  if (plan.network.corrupts() ||
+      has(plan, {IncidentKind::hostile, IncidentKind::command, IncidentKind::twin, IncidentKind::flood}))
+    return;
+  const Process* pairing = nullptr;
+  for (const auto& process : processes_)
+    if (process->spec().part == Part::pairing) pairing = process.get();
+  const Lineage& lineage = lineages_[pairing->spec().name + pairing->spec().state_file];
+  if (!keeps_state(*pairing) && (plan.input == Input::player && pairing->lives() > 1)) return;
+  const auto& times = lineage.all;
+  if (plan.input == Input::live) {
+    const auto count = [&](const std::string& name) {
+      const auto entry = lineage.counters.find(name);
+      return entry == lineage.counters.end() ? 0 : entry->second;
+    };
+    std::int64_t distinct = 0;
+    for (const auto& [channel, numbers] : times) distinct += static_cast<std::int64_t>(numbers.size());
+    // all that came is in the statistics, or it is not known what is
+    if (count("in") - count("rejected: duplicate") - count("rejected: too late") -
+            count("rejected: time or number jumps") !=
+        distinct)
+      return;
+  }
+  ++compared_;
+  const std::vector<problem_t> expected =
+      undisturbed(surroundings_.drive, plan.input == Input::live ? &times : nullptr);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const bus::PairConfig& pair = surroundings_.drive.rig.pairs[i];
+    const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
+    problem_t found{};
+    if (newest == newest_problem_.end() || !bus::decode(newest->second, found))
+      fail('b', "no problem was ever sent for " + pair.a + ", " + pair.b);
+    else if (!same_bits(found, expected[i]))
+      fail('b', "the statistics of " + pair.a + ", " + pair.b + " hold " + std::to_string(found.matched) +
+                    " of " + std::to_string(found.seq) + " motion pairs; without faults they hold " +
+                    std::to_string(expected[i].matched) + " of " + std::to_string(expected[i].seq) +
+                    " for the same messages" +
+                    (found.seq == expected[i].seq && found.matched == expected[i].matched ? ", and other bits"
+                                                                                          : ""));
+  }
+}
+
+void Checks::check_counts() {
+  const Plan& plan = surroundings_.plan;
+  if (plan.network.corrupts() || has(plan, {IncidentKind::hostile, IncidentKind::flood, IncidentKind::twin}))
+    return;
+  for (const auto& process : processes_) {
+    if (process->spec().part != Part::pairing || process->lives() != 1) continue;
+    const Lineage& lineage = lineages_[process->spec().name + process->spec().state_file];
+    std::int64_t received = 0;
+    for (const auto& [channel, sensor] : lineage.sensors) received += sensor.received;
+    const auto in = lineage.counters.find("in");
+    if (in == lineage.counters.end() || in->second != received)
+      fail('d', "pairing says that " + std::to_string(in == lineage.counters.end() ? 0 : in->second) +
+                    " messages came in; " + std::to_string(received) + " did");
+  }
+}
+
+void Checks::check_bounds() {
+  for (const auto& host : surroundings_.hosts) {
+    if (host->disk.files() > 20)
+      fail('g', host->name + " has " + std::to_string(host->disk.files()) + " files");
+    for (const auto& process : processes_)
+      if (const auto file = host->disk.find(process->spec().state_file))
+        if (file->bytes.size() > most_state_bytes)
+          fail('g', "a state file has " + std::to_string(file->bytes.size()) + " bytes");
+  }
+}
+
+}  // namespace egocal::simulation

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "egocal/problem_t.hpp"
+#include "egocal/status_t.hpp"
+#include "simulation/process.hpp"
+
+namespace egocal::simulation {
+
+/// A promise of docs/processes.md that was not kept. check: the letter of docs/simulation.md.
+struct Violation {
+  char check = '?';
+  std::int64_t at_us = 0;
+  std::string text;
+};
+
+/// Watches a life from outside: what is sent, what arrives, who lives.
+class Checks {
+ public:
+  Checks(const Surroundings& surroundings, const std::vector<std::unique_ptr<Process>>& processes)
+      : surroundings_(surroundings), processes_(processes) {}
+
+  void sent(const Address& from, const std::string& channel, bus::Bytes message);
+  void received(const Address& by, std::string_view channel, bus::Bytes message);
+  void started(const Process& process);
+  void ended(const Process& process, const Process::Ending& ending);
+  /// Ten times a second, once the faults are over.
+  void look_at_answers();
+  /// Nothing more will happen.
+  void finish();
+
+  const std::optional<Violation>& violation() const { return violation_; }
+  void fail(char check, const std::string& text);
+  /// What was compared with an undisturbed run, for the share of lives in which it could be.
+  int compared() const { return compared_; }
+
+ private:
+  struct Sensor {                    // as one life of pairing received it
+    std::set<std::int64_t> numbers;  // distinct
+    std::int64_t received = 0;
+  };
+  struct Lineage {  // a name of pairing: what one life has promised the next one keeps
+    std::map<std::string, std::pair<std::int64_t, std::int64_t>> problems;  // by channel: session, seq
+    std::map<std::string, std::int64_t> acknowledged;                       // by channel: time
+    std::map<std::string, std::int64_t> counters;                           // of the newest life
+    std::map<std::size_t, Sensor> sensors;                                  // of the newest life
+    std::map<std::size_t, std::set<std::int64_t>> all;                      // of all lives
+    std::int64_t lives = 0;
+  };
+  const Process& process(const Address& address) const {
+    return *processes_[static_cast<std::size_t>(address.process)];
+  }
+  bool keeps_state(const Process& process) const;
+  bool peaceful() const;
+  void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
+  void status_sent(const Process& from, const status_t& status);
+  std::string missing_answer() const;
+  void compare_with_undisturbed();
+  void check_counts();
+  void check_certificates();
+  void check_bounds();
+
+  const Surroundings& surroundings_;
+  const std::vector<std::unique_ptr<Process>>& processes_;
+  std::optional<Violation> violation_;
+  std::map<std::string, Lineage> lineages_;
+  std::map<std::string, std::vector<std::byte>> newest_problem_;  // by channel, of the leading pairing
+  std::int64_t player_starts_ = 0;
+  std::int64_t answered_until_us_ = -1, answers_missing_since_us_ = -1;
+  std::int64_t last_start_us_ = 0;
+  int compared_ = 0;
+};
+
+/// The statistics of a whole drive without any faults, one problem a pair of the rig.
+std::vector<problem_t> undisturbed(const Drive& drive,
+                                   const std::map<std::size_t, std::set<std::int64_t>>* numbers);
+
+}  // namespace egocal::simulation

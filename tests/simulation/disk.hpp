@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "egocal/bus/clock.hpp"
+#include "pairing/state/state_medium.hpp"
+#include "simulation/life.hpp"
+#include "support/random_motion.hpp"
+
+namespace egocal::simulation {
+
+/// The disk of a host, with a kernel in front of it: what was written but not synced is lost at a power cut,
+/// from some place on.
+class Disk {
+ public:
+  explicit Disk(const bus::Clock& clock) : clock_(clock) {}
+
+  /// Throws Error where another living process holds the file.
+  std::unique_ptr<services::StateMedium> open(const std::string& name, Life& life, std::uint64_t seed);
+
+  void set_full(bool full) { full_ = full; }
+  bool full() const { return full_; }
+  void power_cut(testing::Random& random);
+
+  struct File {
+    std::vector<std::byte> bytes;
+    std::size_t synced = 0;
+    std::int64_t written_s = 0;
+  };
+  /// Null: none.
+  std::shared_ptr<const File> find(const std::string& name) const;
+  std::size_t files() const { return files_.size(); }
+
+ private:
+  class Medium;
+  const bus::Clock& clock_;
+  std::map<std::string, std::shared_ptr<File>> files_;
+  std::map<std::string, const Life*> holders_;
+  bool full_ = false;
+};
+
+}  // namespace egocal::simulation

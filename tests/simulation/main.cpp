@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// egocal_simulation: lives of all processes in virtual time, one a seed (docs/simulation.md).
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cinttypes>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+
+#include "egocal/cli/cli.hpp"
+#include "simulation/shrink.hpp"
+
+using namespace egocal;
+using namespace egocal::simulation;
+
+namespace {
+
+struct Options {
+  std::uint64_t seed = 1, seeds = 1;
+  double minutes = 0;
+  bool twice = false, story = false, everything = false, no_shrink = false;
+};
+
+/// What services write for people belongs to nobody here, and nobody types.
+void silence_services() {
+  const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (null < 0) return;
+  dup2(null, STDERR_FILENO);
+  dup2(null, STDIN_FILENO);
+}
+
+void tell_story(const Plan& plan, bool everything) {
+  live(plan, {.tell = [](const std::string& line) { std::printf("%s\n", line.c_str()); },
+              .everything = everything});
+}
+
+void report(const Plan& plan, const Violation& violation, bool shrinks) {
+  std::printf("seed %" PRIu64 ": (%c) at %.6f s: %s\n", plan.seed, violation.check,
+              1e-6 * static_cast<double>(violation.at_us), violation.text.c_str());
+  const Plan shortest = shrinks ? shrink(plan, violation.check) : plan;
+  std::printf("\n%s\n", describe(shortest).c_str());
+  if (!shrinks) return;
+  tell_story(shortest, false);
+  const Outcome again = live(shortest);
+  if (again.violation) std::printf("=> (%c) %s\n", again.violation->check, again.violation->text.c_str());
+  std::fflush(stdout);
+}
+
+int run(const Options& options) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  std::uint64_t lives = 0, failed = 0, trace = 0;
+  double simulated_s = 0;
+  std::int64_t compared = 0, messages = 0;
+  for (std::uint64_t seed = options.seed;
+       options.minutes > 0 ? passed() < 60 * options.minutes : lives < options.seeds; ++seed, ++lives) {
+    const Plan plan = draw(seed);
+    if (options.story) {
+      std::printf("%s\n", describe(plan).c_str());
+      tell_story(plan, options.everything);
+    }
+    const Outcome outcome = live(plan);
+    std::optional<Violation> violation = outcome.violation;
+    if (options.twice && !violation && live(plan).trace != outcome.trace)
+      violation = Violation{'i', 0, "the same seed gives another trace"};
+    trace = mixed(trace, outcome.trace);
+    simulated_s += 1e-6 * static_cast<double>(outcome.simulated_us);
+    compared += outcome.compared;
+    messages += outcome.messages;
+    if (!violation) continue;
+    ++failed;
+    report(plan, *violation, !options.no_shrink);
+  }
+  std::printf("seeds %" PRIu64 " to %" PRIu64 ": %" PRIu64 " lives, %" PRIu64
+              " violations, %.0f s simulated in %.1f s (%.0f times real time), %" PRId64 " messages, %" PRId64
+              " compared with an undisturbed run, trace %016" PRIx64 "\n",
+              options.seed, options.seed + lives - 1, lives, failed, simulated_s, passed(),
+              simulated_s / passed(), messages, compared, trace);
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::Program app("egocal_simulation",
+                   "Lives of all processes in virtual time, with faults drawn from a seed.", EGOCAL_VERSION);
+  Options options;
+  app.add_option("--seed", options.seed, "the first seed").show_default();
+  app.add_option("--seeds", options.seeds, "how many").show_default();
+  app.add_option("--minutes", options.minutes, "instead of --seeds: as many as fit");
+  app.add_flag("--twice", options.twice, "live each life twice and compare the traces");
+  app.add_flag("--story", options.story, "print what happens");
+  app.add_flag("--everything", options.everything, "print each message as well");
+  app.add_flag("--no-shrink", options.no_shrink, "do not look for the simplest plan that fails");
+  if (const auto code = app.parse(argc, argv)) return *code;
+  silence_services();
+  return run(options);
+}

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What happens in one simulated life, as plain data: drawn from a seed, shrunk when it fails, printed for
+// people.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "egocal/online/answer.hpp"
+
+namespace egocal::simulation {
+
+/// Of every datagram on its way to one listener, each by itself.
+struct NetworkFaults {
+  double lost = 0;                      ///< share
+  double duplicated = 0;                ///< share; the copy takes another delay
+  double late = 0;                      ///< share that takes late_by longer: what comes after it overtakes it
+  std::int64_t late_by_us = 0;          ///< [us]
+  double truncated = 0;                 ///< share, cut at any byte
+  double flipped = 0;                   ///< share, one bit
+  std::int64_t delay_us = 0;            ///< of all [us]
+  std::int64_t jitter_us = 0;           ///< uniform, added to it: reorders what is closer together [us]
+  std::int64_t buffer_bytes = 212'992;  ///< that a listener's kernel holds; what comes then is dropped
+
+  bool harmless() const {
+    return lost == 0 && duplicated == 0 && late == 0 && truncated == 0 && flipped == 0 && jitter_us == 0;
+  }
+  bool corrupts() const { return truncated > 0 || flipped > 0; }
+};
+
+/// Clocks of one host.
+struct ClockFaults {
+  std::int64_t wall_off_us = 0;  ///< the date is wrong by this from the start [us]
+  int drift_ppm = 0;             ///< of both clocks
+};
+
+enum class IncidentKind {
+  kill,         ///< a process by SIGKILL, at its amount-th send or write from then on
+  stop,         ///< SIGSTOP, and SIGCONT after the duration
+  end,          ///< SIGTERM
+  twin,         ///< a second process of the same name, for the duration; then it ends or is killed
+  away,         ///< a host has no route for multicast
+  partition,    ///< a host and the others do not hear each other
+  clog,         ///< everything to and from a host waits until the end of the duration
+  set_date,     ///< a host's date is set by the amount [us]
+  disk_full,    ///< a host's disk takes nothing; the write at its beginning is torn
+  power_cut,    ///< a host: what was not synced is lost in part, it boots during the duration
+  old_version,  ///< a process of another version speaks for the duration
+  hostile,      ///< amount datagrams of garbage: mutated copies of what is on the bus
+  flood,        ///< amount datagrams at once on channels that others use and on invented ones
+  swap,         ///< another kind of solver takes the place of a solver, in either order
+  command,      ///< see Plan::commands
+};
+constexpr int incident_kinds = static_cast<int>(IncidentKind::command) + 1;
+const char* name(IncidentKind kind);
+
+struct Incident {
+  std::int64_t at_us = 0;  ///< from the start of the life [us]
+  IncidentKind kind = IncidentKind::kill;
+  int target = 0;                ///< a process or a host, by its number
+  std::int64_t duration_us = 0;  ///< [us]
+  std::int64_t amount = 0;       ///< see IncidentKind
+  std::string text = {};         ///< of a command: verb
+};
+
+enum class Input {
+  player,  ///< a log, sent again where pairing did not get it
+  live,    ///< one process a sensor, which sends everything once
+};
+
+/// Hosts: 0 has pairing and the input, 1 the solvers, 2 those who listen. With one host all are on 0.
+constexpr int most_hosts = 3;
+
+struct Plan {
+  std::uint64_t seed = 0;  ///< of the drive, and of everything that is drawn while the life runs
+
+  // what is simulated
+  int sensors = 2;                        ///< the first one is paired with each of the others
+  double rate_hz = 10;                    ///< of the sensors
+  std::int64_t disturbed_us = 6'000'000;  ///< of the drive, with faults
+  std::int64_t quiet_us = 6'000'000;      ///< of the drive after them
+  bool free_motion = true;                ///< else a road vehicle on rough ground
+  bool numbered = true;                   ///< odometry_t; else bot_core.pose_t
+  Input input = Input::player;
+  double speed = 1;        ///< of the player
+  bool state_file = true;  ///< pairing has one
+  int hosts = 1;
+  Method fast_method = Method::sqp, global_method = Method::dual;
+  bool global_always = false;
+
+  // what happens to it
+  NetworkFaults network;
+  ClockFaults clocks[most_hosts];
+  std::vector<Incident> incidents;
+};
+
+/// Each seed turns on its own random subset of the faults (swarm testing): what one fault hides another
+/// life shows.
+Plan draw(std::uint64_t seed);
+
+/// A fault that is on in the plan, and the plan without it.
+struct Simpler {
+  std::string removed;
+  Plan plan;
+};
+std::vector<Simpler> simpler(const Plan& plan);
+
+/// For people, one line each.
+std::string describe(const Plan& plan);
+std::string describe(const Plan& plan, const Incident& incident);
+
+}  // namespace egocal::simulation

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/process.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "pairing/pairing.hpp"
+#include "player/player.hpp"
+#include "solving/fast.hpp"
+#include "solving/global.hpp"
+
+namespace egocal::simulation {
+
+namespace {
+
+bus::Role role_of(Part part) {
+  switch (part) {
+    case Part::player:
+      return bus::Role::player;
+    case Part::pairing:
+      return bus::Role::pairing;
+    case Part::fast:
+      return bus::Role::fast;
+    case Part::global:
+      return bus::Role::global;
+    default:
+      return bus::Role::monitor;
+  }
+}
+
+/// Those that nobody hears of: they have no heartbeat.
+bool is_silent(Part part) {
+  return part == Part::odometry || part == Part::exporter;
+}
+
+}  // namespace
+
+/// One life. Members end in reverse order, as those of a main().
+struct Process::Instance {
+  Life life;
+  std::unique_ptr<bus::Loop> loop;
+  std::unique_ptr<bus::Heartbeat> heartbeat;
+  std::unique_ptr<services::Pairing> pairing;
+  std::unique_ptr<services::FastSolver> fast;
+  std::unique_ptr<services::GlobalSolver> global;
+  std::unique_ptr<services::Player> player;
+  std::unique_ptr<Odometry> odometry;
+  std::unique_ptr<Watcher> watcher;
+  std::unique_ptr<Exporter> exporter;
+};
+
+Process::Process(const Surroundings& surroundings, ProcessSpec spec, int number)
+    : surroundings_(surroundings), spec_(std::move(spec)), restarts_({}), number_(number) {}
+
+Process::~Process() {
+  if (instance_) instance_->life.end();
+}
+
+const Watcher* Process::watcher() const {
+  return instance_ ? instance_->watcher.get() : nullptr;
+}
+
+const Exporter* Process::exporter() const {
+  return instance_ ? instance_->exporter.get() : nullptr;
+}
+
+void Process::make_service() {
+  Instance& i = *instance_;
+  const bus::Rig& rig = surroundings_.drive.rig;
+  Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
+  switch (spec_.part) {
+    case Part::player: {
+      services::PlayerOptions options;
+      options.log = surroundings_.log;
+      options.speed = surroundings_.plan.speed;
+      i.player = std::make_unique<services::Player>(*i.loop, *i.heartbeat, options);
+      return;
+    }
+    case Part::odometry:
+      i.odometry =
+          std::make_unique<Odometry>(*i.loop, surroundings_.schedule, surroundings_.drive, spec_.sensor);
+      return;
+    case Part::pairing: {
+      std::unique_ptr<services::SavedState> saved;
+      if (!spec_.state_file.empty())
+        saved = std::make_unique<services::SavedState>(
+            host.disk.open(spec_.state_file, i.life, static_cast<std::uint64_t>(lives_)), rig,
+            [&host] { return host.boot_time(); });
+      i.pairing = std::make_unique<services::Pairing>(*i.loop, *i.heartbeat, rig, std::move(saved));
+      return;
+    }
+    case Part::fast:
+      i.fast = std::make_unique<services::FastSolver>(*i.loop, *i.heartbeat, rig, spec_.method);
+      return;
+    case Part::global:
+      i.global =
+          std::make_unique<services::GlobalSolver>(*i.loop, *i.heartbeat, rig, spec_.method, spec_.always);
+      return;
+    case Part::monitor:
+      i.watcher = std::make_unique<Watcher>(*i.loop, *i.heartbeat, rig);
+      return;
+    case Part::exporter:
+      i.exporter = std::make_unique<Exporter>(*i.loop, rig);
+      return;
+  }
+}
+
+std::optional<Process::Ending> Process::start() {
+  Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
+  ++lives_;
+  started_us_ = surroundings_.schedule.now_us();
+  instance_ = std::make_unique<Instance>();
+  const auto port = static_cast<std::uint64_t>(number_ * 1000 + lives_);
+  try {
+    instance_->loop = std::make_unique<bus::Loop>(
+        surroundings_.network.open({number_, spec_.host, port}, instance_->life, [this] { wake(); }),
+        host.clock, bus::LoopOptions{.handle_signals = false, .require_network = false, .host = host.name});
+    if (!is_silent(spec_.part)) {
+      const std::chrono::duration<double> timeout(surroundings_.drive.rig.heartbeat_timeout);
+      instance_->heartbeat = std::make_unique<bus::Heartbeat>(
+          *instance_->loop,
+          bus::Identity{spec_.name, role_of(spec_.part), spec_.version, static_cast<std::int32_t>(port)},
+          std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));
+    }
+    make_service();
+  } catch (const Killed&) {
+    return over(-1, "");
+  } catch (const std::exception& error) {
+    return over(1, error.what());
+  }
+  wake();
+  return std::nullopt;
+}
+
+std::optional<Process::Ending> Process::turn() {
+  bus::Loop& loop = *instance_->loop;
+  bool goes_on = true;
+  try {
+    goes_on = loop.run_once(std::chrono::nanoseconds{0});
+  } catch (const Killed&) {
+    return over(-1, "");
+  } catch (const std::exception& error) {
+    return over(1, error.what());
+  }
+  if (!goes_on) return end();
+  const std::optional<std::int64_t> due = loop.next_timer_ns();
+  const Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
+  wake_ns_ = due ? host.clock.schedule_ns(*due) : Schedule::never;
+  return std::nullopt;
+}
+
+std::optional<Process::Ending> Process::kill() {
+  if (!instance_) return std::nullopt;
+  return over(-1, "");
+}
+
+std::optional<Process::Ending> Process::end() {
+  if (!instance_) return std::nullopt;
+  try {
+    if (instance_->heartbeat) instance_->heartbeat->end();
+    instance_->pairing.reset();
+  } catch (const Killed&) {
+    return over(-1, "");
+  } catch (const std::exception& error) {
+    return over(1, error.what());
+  }
+  return over(0, "");
+}
+
+void Process::kill_at_place(std::int64_t count) {
+  if (instance_) instance_->life.kill_at_place(count);
+}
+
+Process::Ending Process::over(int exit_code, const std::string& error) {
+  instance_->life.end();
+  instance_.reset();
+  wake_ns_ = Schedule::never;
+  stopped_ = false;
+  const std::chrono::milliseconds lived((surroundings_.schedule.now_us() - started_us_) / 1000);
+  tools::Program program;
+  program.name = spec_.name;
+  program.ends_all = spec_.part == Part::player;
+  return {exit_code, error, restarts_.ended(program, exit_code, lived)};
+}
+
+}  // namespace egocal::simulation

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "simulation/network.hpp"
+#include "simulation/roles.hpp"
+#include "supervision/restarts.hpp"
+
+namespace egocal::simulation {
+
+enum class Part { player, odometry, pairing, fast, global, monitor, exporter };
+
+struct ProcessSpec {
+  std::string name;
+  Part part = Part::pairing;
+  int host = 0;
+  std::size_t sensor = 0;        ///< of odometry
+  Method method = Method::dual;  ///< of a solver
+  bool always = false;           ///< of the global solver
+  std::string version = "1.0";
+  std::string state_file = {};  ///< of pairing; empty: none
+  bool supervised = true;       ///< started again when it ends
+};
+
+/// What all processes share.
+struct Surroundings {
+  const Plan& plan;
+  const Drive& drive;
+  const std::string& log;  ///< file with the drive
+  Schedule& schedule;
+  std::vector<std::unique_ptr<Host>>& hosts;
+  Network& network;
+};
+
+/// A process with all its lives.
+class Process {
+ public:
+  struct Ending {
+    int exit_code = 0;  ///< -1: killed
+    std::string error;
+    tools::Restarts::Next next = tools::Restarts::Next::again;
+  };
+
+  Process(const Surroundings& surroundings, ProcessSpec spec, int number);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  const ProcessSpec& spec() const { return spec_; }
+  ProcessSpec& spec() { return spec_; }
+  int number() const { return number_; }
+  bool runs() const { return instance_ != nullptr; }
+  bool stopped() const { return stopped_; }
+  std::int64_t started_us() const { return started_us_; }  ///< the newest life
+  std::int64_t lives() const { return lives_; }
+  const Watcher* watcher() const;
+  const Exporter* exporter() const;
+
+  /// Of the schedule [ns]; Schedule::never: it waits for nothing.
+  std::int64_t wake_ns() const { return stopped_ ? Schedule::never : wake_ns_; }
+  void wake() { wake_ns_ = 0; }
+
+  /// Each returns how the life ended, if it did.
+  std::optional<Ending> start();
+  std::optional<Ending> turn();
+  std::optional<Ending> kill();
+  std::optional<Ending> end();
+  void kill_at_place(std::int64_t count);
+  void set_stopped(bool stopped) { stopped_ = stopped; }
+  std::chrono::milliseconds pause() const { return restarts_.pause(); }
+
+ private:
+  struct Instance;
+  Ending over(int exit_code, const std::string& error);
+  void make_service();
+
+  const Surroundings& surroundings_;
+  ProcessSpec spec_;
+  tools::Restarts restarts_;
+  int number_;
+  std::int64_t lives_ = 0, started_us_ = 0;
+  std::int64_t wake_ns_ = Schedule::never;
+  bool stopped_ = false;
+  std::unique_ptr<Instance> instance_;
+};
+
+}  // namespace egocal::simulation

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simulation/world.hpp"
+
+namespace egocal::simulation {
+
+/// The simplest plan that is found to violate the same promise: faults are switched off one by one.
+/// most_lives: that may be tried.
+Plan shrink(const Plan& plan, char check, int most_lives = 300);
+
+}  // namespace egocal::simulation

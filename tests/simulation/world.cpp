@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/world.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "support/in_memory_file.hpp"
+
+namespace egocal::simulation {
+
+namespace {
+
+/// The last answers, after the player's end: as `egocal up` waits for, and a heartbeat's timeout.
+constexpr std::int64_t settle_us = 5'000'000;
+/// Turns of processes while no time passes.
+constexpr int most_turns_at_once = 100'000;
+
+class World {
+ public:
+  World(const Plan& plan, const WorldOptions& options)
+      : plan_(plan), options_(options), drive_(make_drive(plan)), random_(plan.seed * 3 + 2) {
+    if (plan.input == Input::player) {
+      file_.set(drive_.log.data(), drive_.log.size());
+      log_ = file_.name();
+    }
+    for (int i = 0; i < plan.hosts; ++i)
+      hosts_.push_back(std::make_unique<Host>(schedule_, i, plan.clocks[i]));
+    network_ = std::make_unique<Network>(schedule_, hosts_, plan_);
+    surroundings_ =
+        std::make_unique<Surroundings>(Surroundings{plan_, drive_, log_, schedule_, hosts_, *network_});
+    checks_ = std::make_unique<Checks>(*surroundings_, processes_);
+    observe();
+    add_processes();
+    for (const Incident& incident : plan_.incidents)
+      schedule_.after_us(incident.at_us, [this, &incident] { happens(incident); });
+    schedule_.after_us(plan_.disturbed_us, [this] { calm_down(); });
+  }
+
+  Outcome run() {
+    int turns = 0;
+    std::int64_t at_ns = -1;
+    while (!checks_->violation()) {
+      Process* next = nullptr;
+      for (const auto& process : processes_)
+        if (process->runs() && (!next || process->wake_ns() < next->wake_ns())) next = process.get();
+      const std::int64_t wake_ns = next ? std::max(next->wake_ns(), schedule_.now_ns()) : Schedule::never;
+      const std::int64_t time_ns = std::min(wake_ns, schedule_.next_ns());
+      if (time_ns > 1000 * end_us()) break;
+      turns = time_ns == at_ns ? turns + 1 : 0;
+      at_ns = time_ns;
+      if (turns > most_turns_at_once) {
+        checks_->fail('g', next->spec().name + " works on and on while no time passes");
+        break;
+      }
+      schedule_.go_to(time_ns);
+      if (schedule_.next_ns() <= wake_ns)
+        schedule_.do_next();
+      else
+        ended(*next, next->turn());
+    }
+    schedule_.go_to(std::min(1000 * end_us(), Schedule::never - 1));
+    if (!checks_->violation()) checks_->finish();
+    return {checks_->violation(), trace_, schedule_.now_us(), messages_, checks_->compared()};
+  }
+
+ private:
+  /// Of the life; with a player its end is known when the player's is.
+  std::int64_t end_us() const {
+    const std::int64_t data_us = plan_.disturbed_us + plan_.quiet_us;
+    if (plan_.input == Input::live) return data_us + 2'000'000;
+    return played_us_ >= 0 ? std::max(played_us_, plan_.disturbed_us) + settle_us : 4 * data_us + 60'000'000;
+  }
+
+  void trace(std::uint64_t kind, std::uint64_t a, std::uint64_t b) {
+    trace_ = mixed(mixed(mixed(trace_ ^ kind, static_cast<std::uint64_t>(schedule_.now_ns())), a), b);
+  }
+
+  void tell(const std::string& line) const {
+    if (!options_.tell) return;
+    char time[32];
+    std::snprintf(time, sizeof time, "%12.6f s  ", 1e-6 * static_cast<double>(schedule_.now_us()));
+    options_.tell(time + line);
+  }
+
+  void observe() {
+    network_->observe({[this](const Address& from, const std::string& channel, bus::Bytes message) {
+                         ++messages_;
+                         trace(1, from.port, hash_of(message.data(), message.size()));
+                         if (options_.everything)
+                           tell(process(from.process).spec().name + " sends " +
+                                std::to_string(message.size()) + " bytes on " + channel);
+                         checks_->sent(from, channel, message);
+                       },
+                       [this](const Address& to, const Packet& packet) { trace(2, to.port, packet.hash); },
+                       [this](const Address& by, std::string_view channel, bus::Bytes message) {
+                         checks_->received(by, channel, message);
+                       }});
+  }
+
+  Process& process(int number) { return *processes_[static_cast<std::size_t>(number)]; }
+
+  Process& add(ProcessSpec spec, std::int64_t start_us) {
+    const int number = static_cast<int>(processes_.size());
+    spec.host = std::min(spec.host, plan_.hosts - 1);
+    processes_.push_back(std::make_unique<Process>(*surroundings_, std::move(spec), number));
+    schedule_.after_us(start_us, [this, number] { start(process(number)); });
+    return *processes_.back();
+  }
+
+  void add_processes() {
+    const auto soon = [this] { return static_cast<std::int64_t>(random_.below(300'000)); };
+    ProcessSpec pairing{.name = "egocal-pairing", .part = Part::pairing, .host = 0};
+    if (plan_.state_file) pairing.state_file = "pairing.state";
+    add(pairing, 0);
+    add({.name = "egocal-fast", .part = Part::fast, .host = 1, .method = plan_.fast_method}, soon());
+    add({.name = "egocal-global",
+         .part = Part::global,
+         .host = 1,
+         .method = plan_.global_method,
+         .always = plan_.global_always},
+        soon());
+    add({.name = "egocal-monitor", .part = Part::monitor, .host = 2}, soon());
+    add({.name = "egocal-export", .part = Part::exporter, .host = 2}, soon());
+    if (plan_.input == Input::player) {
+      add({.name = "egocal-player", .part = Part::player, .host = 0}, soon());
+    } else {
+      for (int i = 0; i < plan_.sensors; ++i)
+        add({.name = "odometry-" + std::to_string(i),
+             .part = Part::odometry,
+             .host = 0,
+             .sensor = static_cast<std::size_t>(i)},
+            0);
+    }
+  }
+
+  void start(Process& process) {
+    if (process.runs()) return;
+    tell(process.spec().name + " starts");
+    trace(3, static_cast<std::uint64_t>(process.number()), 0);
+    checks_->started(process);
+    ended(process, process.start());
+  }
+
+  void ended(Process& process, const std::optional<Process::Ending>& ending) {
+    if (!ending) return;
+    tell(process.spec().name + (ending->exit_code < 0
+                                    ? " is killed"
+                                    : " ends with exit code " + std::to_string(ending->exit_code) +
+                                          (ending->error.empty() ? "" : ": " + ending->error)));
+    trace(4, static_cast<std::uint64_t>(process.number()), static_cast<std::uint64_t>(ending->exit_code));
+    checks_->ended(process, *ending);
+    if (ending->next == tools::Restarts::Next::finished) {
+      played_us_ = schedule_.now_us();
+    } else if (process.spec().supervised) {
+      const int number = process.number();
+      schedule_.after_us(1000 * process.pause().count(), [this, number] { start(this->process(number)); });
+    }
+  }
+
+  void happens(const Incident& incident);
+  void calm_down();
+  void watch_answers() {
+    checks_->look_at_answers();
+    schedule_.after_us(100'000, [this] { watch_answers(); });
+  }
+
+  const Plan plan_;
+  const WorldOptions& options_;
+  Drive drive_;
+  testing::Random random_;
+  test::InMemoryFile file_;
+  std::string log_;
+  Schedule schedule_;
+  std::vector<std::unique_ptr<Host>> hosts_;
+  std::unique_ptr<Network> network_;
+  std::unique_ptr<Surroundings> surroundings_;
+  std::vector<std::unique_ptr<Process>> processes_;
+  std::unique_ptr<Checks> checks_;
+  std::uint64_t trace_ = 0;
+  std::int64_t messages_ = 0, played_us_ = -1;
+};
+
+void World::happens(const Incident& incident) {
+  if (schedule_.now_us() >= plan_.disturbed_us) return;
+  tell("-- " + describe(plan_, incident));
+  const auto later = [&](auto action) { schedule_.after_us(incident.duration_us, action); };
+  const int target = incident.target;
+  Host& host = *hosts_[static_cast<std::size_t>(target % plan_.hosts)];
+  const int host_number = target % plan_.hosts;
+  Process& victim = process(target % static_cast<int>(processes_.size()));
+  switch (incident.kind) {
+    case IncidentKind::kill:
+      if (incident.amount > 0)
+        victim.kill_at_place(incident.amount);
+      else
+        ended(victim, victim.kill());
+      return;
+    case IncidentKind::end:
+      ended(victim, victim.end());
+      return;
+    case IncidentKind::stop:
+      victim.set_stopped(true);
+      later([&victim] { victim.set_stopped(false); });
+      return;
+    case IncidentKind::away:
+      network_->set_away(host_number, true);
+      later([this, host_number] { network_->set_away(host_number, false); });
+      return;
+    case IncidentKind::partition:
+      network_->set_partition(host_number, true);
+      later([this, host_number] { network_->set_partition(host_number, false); });
+      return;
+    case IncidentKind::clog:
+      network_->set_clogged_until(host_number, schedule_.now_us() + incident.duration_us);
+      return;
+    case IncidentKind::set_date:
+      host.clock.set_date(incident.amount);
+      return;
+    case IncidentKind::disk_full:
+      host.disk.set_full(true);
+      later([&host] { host.disk.set_full(false); });
+      return;
+    default:
+      return;
+  }
+}
+
+void World::calm_down() {
+  tell("-- the faults are over");
+  NetworkFaults calm;
+  calm.delay_us = plan_.network.delay_us;
+  network_->set_faults(calm);
+  for (int i = 0; i < plan_.hosts; ++i) {
+    network_->set_away(i, false);
+    network_->set_partition(i, false);
+    network_->set_clogged_until(i, 0);
+    hosts_[static_cast<std::size_t>(i)]->disk.set_full(false);
+  }
+  for (const auto& one : processes_) {
+    one->set_stopped(false);
+    one->kill_at_place(0);
+  }
+  watch_answers();
+}
+
+}  // namespace
+
+Outcome live(const Plan& plan, const WorldOptions& options) {
+  return World(plan, options).run();
+}
+
+}  // namespace egocal::simulation

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "simulation/checks.hpp"
+#include "simulation/plan.hpp"
+
+namespace egocal::simulation {
+
+struct Outcome {
+  std::optional<Violation> violation;
+  std::uint64_t trace = 0;        ///< of everything that was sent, arrived and ended, in order
+  std::int64_t simulated_us = 0;  ///< virtual time
+  std::int64_t messages = 0;      ///< sent
+  int compared = 0;               ///< with an undisturbed run
+};
+
+struct WorldOptions {
+  /// Called with every line of the story: incidents, deaths, starts, and with everything also each message.
+  std::function<void(const std::string& line)> tell = nullptr;
+  bool everything = false;
+};
+
+/// Lives one life: all processes, network, clocks and disks in this thread, in virtual time. The same plan
+/// gives the same outcome, on any machine.
+Outcome live(const Plan& plan, const WorldOptions& options = {});
+
+}  // namespace egocal::simulation
