@@ -62,8 +62,7 @@ Drive make_drive(const Plan& plan) {
   const std::vector<Trajectory> trajectories = simulate(options);
   for (std::size_t i = 0; i < trajectories.size(); ++i)
     for (std::size_t k = 0; k < trajectories[i].size(); ++k) {
-      StampedPose pose = trajectories[i][k];
-      pose.time_us += HostClock::start_of_all_us;
+      const StampedPose& pose = trajectories[i][k];  // from HostClock::start_of_all_us on
       drive.messages.push_back({pose.time_us, i,
                                 plan.numbered
                                     ? bus::encode(bus::to_message(pose, static_cast<std::int64_t>(k)))
