@@ -51,7 +51,9 @@ void Accumulation::apply(const Input& input) {
       return take(channels_.at(input.index), input);
     case Input::Kind::give_up: {
       Channel& channel = channels_.at(input.index);
-      return route(channel, channel.stream.flush());
+      const std::vector<NumberedPose> samples = channel.stream.flush();
+      if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
+      return route(channel, samples);
     }
     case Input::Kind::patient:
     case Input::Kind::impatient:
@@ -74,7 +76,14 @@ void Accumulation::take(Channel& channel, const Input& input) {
   } else if (!odometry.pose) {
     ++rejected_[odometry.pose.reason];
   } else {
-    route(channel, channel.stream.push({*odometry.pose.value, odometry.seq, input.mono_us, false}));
+    const StreamCounts before = channel.stream.counts();
+    const std::vector<NumberedPose> samples =
+        channel.stream.push({*odometry.pose.value, odometry.seq, input.mono_us, false});
+    const StreamCounts& after = channel.stream.counts();
+    const bool known = after.duplicate != before.duplicate || after.out_of_order != before.out_of_order;
+    // one that comes again or late takes nothing back, and one that fills a gap completes those behind it
+    if (known || !samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
+    route(channel, samples);
   }
 }
 

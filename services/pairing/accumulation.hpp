@@ -34,7 +34,7 @@ struct Input {
 
 struct ChannelState {
   StreamState stream;
-  std::int64_t utime = 0;  ///< of the message taken in last, whatever became of it (time_in())
+  std::int64_t utime = 0;  ///< see complete_until(), while nothing is waited for
   std::int64_t in = 0;
   std::int64_t undecodable = 0;
 };
@@ -64,7 +64,8 @@ class Accumulation {
   std::size_t channels() const { return channels_.size(); }
   const bus::Sensor& sensor(std::size_t channel) const { return channels_[channel].sensor; }
   const Stream& stream(std::size_t channel) const { return channels_[channel].stream; }
-  /// Time of the newest message before which nothing is missing [us]; for acknowledgements.
+  /// Time of the newest message before which nothing is missing [us]; for acknowledgements. After a message
+  /// that has no place in the stream (damaged, far off) it is that one's time_in(): it need not come again.
   std::int64_t complete_until(std::size_t channel) const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 

@@ -21,10 +21,7 @@ PairingOptions options_of(const bus::Rig& rig, std::size_t index) {
 }  // namespace
 
 PairSession::PairSession(const bus::Rig& rig, std::size_t index)
-    : index_(index),
-      config_(rig.pairs[index]),
-      options_(options_of(rig, index)),
-      drive_(options_) {}
+    : index_(index), config_(rig.pairs[index]), options_(options_of(rig, index)), drive_(options_) {}
 
 void PairSession::begin(std::int64_t time_us) {
   // session numbers only grow, so that the newest problem is known by it

@@ -61,8 +61,10 @@ class World {
       else
         ended(*next, next->turn());
     }
-    schedule_.go_to(std::min(1000 * end_us(), Schedule::never - 1));
-    if (!checks_->violation()) checks_->finish();
+    if (!checks_->violation()) {
+      schedule_.go_to(1000 * end_us());
+      checks_->finish();
+    }
     return {checks_->violation(), trace_, schedule_.now_us(), messages_, checks_->compared()};
   }
 
