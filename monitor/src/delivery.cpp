@@ -15,12 +15,18 @@ void Delivery::deliver(const std::string& channel, std::span<const std::byte> by
     model_.note(Severity::warning, channel, "a message that could not be decoded: another version?", now);
     return false;
   };
+  // damaged names, or somebody else's: they must not show as another pair
+  const auto of_channel = [&](const auto& message, auto channel_of) {
+    if (channel == channel_of(message.sensor_a, message.sensor_b)) return true;
+    model_.note(Severity::warning, channel, "a message of another pair is refused", now);
+    return false;
+  };
   if (channel.starts_with(bus::problem_prefix)) {
     problem_t message{};
-    if (decoded(message)) problem(message, now);
+    if (decoded(message) && of_channel(message, bus::problem_channel)) problem(message, now);
   } else if (channel.starts_with(bus::calibration_prefix)) {
     calibration_t message{};
-    if (decoded(message)) calibration(message, now);
+    if (decoded(message) && of_channel(message, bus::calibration_channel)) calibration(message, now);
   } else if (channel == bus::status_channel) {
     status_t message{};
     if (decoded(message)) model_.on_status(message, now);

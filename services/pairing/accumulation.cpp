@@ -76,13 +76,10 @@ void Accumulation::take(Channel& channel, const Input& input) {
   } else if (!odometry.pose) {
     ++rejected_[odometry.pose.reason];
   } else {
-    const StreamCounts before = channel.stream.counts();
     const std::vector<NumberedPose> samples =
         channel.stream.push({*odometry.pose.value, odometry.seq, input.mono_us, false});
-    const StreamCounts& after = channel.stream.counts();
-    const bool known = after.duplicate != before.duplicate || after.out_of_order != before.out_of_order;
-    // one that comes again or late takes nothing back, and one that fills a gap completes those behind it
-    if (known || !samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
+    // one that fills a gap completes those behind it
+    if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
     route(channel, samples);
   }
 }

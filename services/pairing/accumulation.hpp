@@ -65,7 +65,7 @@ class Accumulation {
   const bus::Sensor& sensor(std::size_t channel) const { return channels_[channel].sensor; }
   const Stream& stream(std::size_t channel) const { return channels_[channel].stream; }
   /// Time of the newest message before which nothing is missing [us]; for acknowledgements. After a message
-  /// that has no place in the stream (damaged, far off) it is that one's time_in(): it need not come again.
+  /// that has no place in the stream (a second time, damaged) it is that one's time_in(): it is done with.
   std::int64_t complete_until(std::size_t channel) const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 

@@ -62,6 +62,7 @@ class Checks {
   bool keeps_state(const Process& process) const;
   bool peaceful() const;
   bool keeps_order() const;
+  bool forgets() const;
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
   void status_sent(const Process& from, const status_t& status);
   std::string missing_answer() const;

@@ -15,6 +15,9 @@ constexpr const char* names[incident_kinds] = {
     "kill",      "stop",      "end",         "twin",    "away",  "partition", "clog",   "set the date",
     "disk full", "power cut", "old version", "hostile", "flood", "swap",      "command"};
 
+/// Number of the first process that sends odometry.
+constexpr int first_input = 5;
+
 bool of_a_host(IncidentKind kind) {
   switch (kind) {
     case IncidentKind::away:
@@ -42,6 +45,17 @@ std::string percent(double share) {
 }
 
 }  // namespace
+
+int processes(const Plan& plan) {
+  return first_input + (plan.input == Input::player ? 1 : plan.sensors);
+}
+
+std::string process_name(const Plan& plan, int number) {
+  static const std::string fixed[first_input] = {"egocal-pairing", "egocal-fast", "egocal-global",
+                                                 "egocal-monitor", "egocal-export"};
+  if (number < first_input) return fixed[number];
+  return plan.input == Input::player ? "egocal-player" : "odometry-" + std::to_string(number - first_input);
+}
 
 const char* name(IncidentKind kind) {
   return names[static_cast<int>(kind)];
@@ -80,6 +94,8 @@ Plan draw(std::uint64_t seed) {
     network.late = random.log_uniform(0.001, 0.1);
     network.late_by_us = static_cast<std::int64_t>(random.log_uniform(1000, 1'000'000));
   }
+  // a log at full speed is over before anything late arrives: what overtakes seconds of it begins it anew
+  if (plan.input == Input::player && plan.speed == 0) network.jitter_us = 0, network.late = 0;
   if (chance(0.15)) network.truncated = random.log_uniform(0.0005, 0.05);
   if (chance(0.15)) network.flipped = random.log_uniform(0.0005, 0.05);
   if (chance(0.3))
@@ -99,7 +115,9 @@ Plan draw(std::uint64_t seed) {
       Incident incident;
       incident.kind = kind;
       incident.at_us = between(0, plan.disturbed_us);
-      incident.target = static_cast<int>(between(0, of_a_host(kind) ? plan.hosts : 8));
+      incident.target = static_cast<int>(between(0, of_a_host(kind) ? plan.hosts : processes(plan)));
+      // whoever ends the player wants no more of the log
+      if (kind == IncidentKind::end && incident.target >= first_input) incident.target = 0;
       incident.duration_us = static_cast<std::int64_t>(random.log_uniform(10'000, 5'000'000));
       if (kind == IncidentKind::kill) {
         if (chance(0.5)) incident.target = 0;  // the one with a state
@@ -156,16 +174,11 @@ std::vector<Simpler> simpler(const Plan& plan) {
 }
 
 std::string describe(const Plan& plan, const Incident& incident) {
-  static const std::string fixed[] = {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-monitor",
-                                      "egocal-export"};
   std::string text = name(incident.kind);
   if (of_a_host(incident.kind))
     text += " host-" + std::to_string(incident.target % plan.hosts);
-  else if (incident.target < 5)
-    text += " " + fixed[incident.target];
   else
-    text +=
-        plan.input == Input::player ? " egocal-player" : " odometry-" + std::to_string(incident.target - 5);
+    text += " " + process_name(plan, incident.target);
   switch (incident.kind) {
     case IncidentKind::kill:
       return text + (incident.amount == 0 ? ", idle" : ", at place " + std::to_string(incident.amount));

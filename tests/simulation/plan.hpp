@@ -97,6 +97,10 @@ struct Plan {
   std::vector<Incident> incidents;
 };
 
+/// Processes of a plan by their numbers: pairing is 0.
+int processes(const Plan& plan);
+std::string process_name(const Plan& plan, int number);
+
 /// Each seed turns on its own random subset of the faults (swarm testing): what one fault hides another
 /// life shows.
 Plan draw(std::uint64_t seed);

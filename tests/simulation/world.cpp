@@ -192,7 +192,7 @@ void World::happens(const Incident& incident) {
   const int target = incident.target;
   Host& host = *hosts_[static_cast<std::size_t>(target % plan_.hosts)];
   const int host_number = target % plan_.hosts;
-  Process& victim = process(target % static_cast<int>(processes_.size()));
+  Process& victim = process(target % processes(plan_));
   switch (incident.kind) {
     case IncidentKind::kill:
       if (incident.amount > 0)
