@@ -35,7 +35,7 @@ void write_all(int fd, std::span<const std::byte> bytes) {
 /// A state of the largest rigs has some megabytes.
 constexpr std::int64_t largest_state = std::int64_t{256} << 20;
 
-/// The file, checked before its content is read: somebody's own file must not be moved away because of a
+/// The file, checked before its content is read: a user's own file must not be moved away because of a
 /// slip on the command line, nor a pipe be waited for. Empty: there is none.
 std::optional<StateMedium::Found> whole(const std::string& file, std::string_view begins) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -86,7 +86,7 @@ class StateInFileSystem final : public StateMedium {
   std::optional<Found> read(std::string_view begins) override { return whole(file_, begins); }
 
   void replace(std::span<const std::byte> bytes) override {
-    // the folder was there when this began: whoever removed it did not mean what is known here
+    // the folder was there when this began: its removal was not meant for what is known here
     std::error_code none;
     std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
     lock_.confirm();
