@@ -66,24 +66,9 @@ Balance balance(const std::string& option, const std::string& text) {
 }
 
 GoalOptions goal(const std::string& option, const std::string& text) {
-  const UsageError wrong(option + ": expected two accuracies as 0.1deg,2cm, got '" + text + "'");
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) throw wrong;
-  const auto value = [&](const std::string& part,
-                         std::initializer_list<std::pair<const char*, double>> units) {
-    for (const auto& [unit, factor] : units) {
-      const std::string_view suffix = unit;
-      if (part.size() <= suffix.size() || !part.ends_with(suffix)) continue;
-      const std::string digits = part.substr(0, part.size() - suffix.size());
-      if (digits.find_first_not_of("0123456789.eE+- ") != std::string::npos) continue;
-      const double result = factor * number(option, digits);
-      if (!(result > 0)) throw wrong;
-      return result;
-    }
-    throw wrong;
-  };
-  return {value(text.substr(0, comma), {{"deg", std::numbers::pi / 180}, {"rad", 1}}),
-          value(text.substr(comma + 1), {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}}), std::nullopt};
+  const std::optional<GoalOptions> goal = goal_from_text(text);
+  if (!goal) throw UsageError(option + ": expected two accuracies as 0.1deg,2cm, got '" + text + "'");
+  return *goal;
 }
 
 }  // namespace egocal::tools

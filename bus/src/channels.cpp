@@ -16,4 +16,8 @@ std::string calibration_channel(const std::string& a, const std::string& b) {
   return calibration_prefix + a + "_" + b;
 }
 
+std::string verdict_channel(const std::string& a, const std::string& b) {
+  return verdict_prefix + a + "_" + b;
+}
+
 }  // namespace egocal::bus

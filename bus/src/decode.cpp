@@ -62,6 +62,10 @@ class Walk {
 };
 
 constexpr std::size_t statistics_size = 8 + 8 + 36 * 8;
+constexpr std::size_t fit_size = 8 + 8 * 8;
+/// Of a finding: what lies between its strings and behind them.
+constexpr std::size_t finding_numbers = 8 + 8 + 1 + 8 + 1 + 24 + 32;
+constexpr std::size_t least_string = 4 + 1;
 
 }  // namespace
 
@@ -132,6 +136,26 @@ bool lengths_fit(const command_t*, Bytes bytes) {
   walk.skip(8);
   for (int i = 0; i < 4; ++i) walk.string();
   walk.skip(8);
+  return walk.done();
+}
+
+bool lengths_fit(const verdict_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(4 * 8);
+  for (int i = 0; i < 5; ++i) walk.string();
+  walk.skip(24 + 32 + 2 * 8 + fit_size);
+  const std::size_t findings = walk.count(3 * least_string + 1 + finding_numbers);
+  for (std::size_t i = 0; i < findings; ++i) {
+    walk.string();
+    walk.skip(1);
+    walk.string();
+    walk.string();
+    walk.skip(finding_numbers);
+  }
+  walk.skip(2);
+  walk.string();
+  walk.skip(8);
+  walk.string();
   return walk.done();
 }
 

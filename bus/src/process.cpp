@@ -9,7 +9,8 @@ namespace egocal::bus {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> roles{"player", "pairing", "global", "fast", "monitor"};
+constexpr std::array<std::string_view, 6> roles{"player", "pairing",   "global",
+                                                "fast",   "diagnosis", "monitor"};
 constexpr std::array<std::string_view, 5> states{"waiting", "standby", "running", "paused", "ended"};
 
 template <class Enum, std::size_t n>

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -30,6 +31,8 @@ constexpr std::size_t max_dots_per_line = 1000;
 
 constexpr Range reorder_window{0, 3600};       // [s]
 constexpr Range heartbeat_timeout{1.5, 3600};  // [s]; heartbeats come once a second
+constexpr Range goal_rotation_deg{1e-6, 180};  // one standard deviation of a direction
+constexpr Range goal_translation{1e-6, 1e3};   // [m]
 
 /// One table of the file, with its name for error messages. All its methods throw Error at the line of what
 /// they refuse.
@@ -141,8 +144,8 @@ class Table {
   std::optional<Table> table(const std::string& key) const {
     const toml::node* node = table_.get(key);
     if (!node) return std::nullopt;
-    if (!node->is_table()) fail(key, "expected a section [" + key + "]");
-    return Table(*node->as_table(), key, file_);
+    if (!node->is_table()) fail(key, "expected a table");
+    return Table(*node->as_table(), name_.empty() ? key : name_ + "." + key, file_);
   }
 
  private:
@@ -175,8 +178,21 @@ Sensor read_sensor(const Table& in) {
   return sensor;
 }
 
+/// goal = "0.1deg,2cm" as --goal takes it, or { rotation_deg = 0.1, translation_m = 0.02 }.
+GoalOptions read_goal(const Table& in, const std::string& key) {
+  if (in.require(key).is_string()) {
+    const std::optional<GoalOptions> goal = goal_from_text(in.text(key));
+    if (!goal) in.fail(key, "expected two accuracies as \"0.1deg,2cm\"");
+    return *goal;
+  }
+  const std::optional<Table> table = in.table(key);
+  table->only({"rotation_deg", "translation_m"});
+  return {table->number("rotation_deg", goal_rotation_deg, "degrees") * std::numbers::pi / 180,
+          table->number("translation_m", goal_translation, "m"), std::nullopt};
+}
+
 PairConfig read_pair(const Table& in, const Rig& rig) {
-  in.only({"a", "b", "mode", "truth", "nominal", "stride", "weights", "time_offset"});
+  in.only({"a", "b", "mode", "truth", "nominal", "stride", "weights", "time_offset", "goal", "platform"});
   PairConfig pair;
   for (const std::string key : {"a", "b"}) {
     const std::string name = in.sensor_name(key);
@@ -223,6 +239,12 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
     } else {
       pair.time_offset = in.number("time_offset", limits::time_offset, "s");
     }
+  }
+  if (in.has("platform"))
+    pair.platform = platform_from_name(in.choice("platform", {"car", "handheld", "drone", "arm"}));
+  if (in.has("goal")) {
+    pair.goal = read_goal(in, "goal");
+    pair.goal->platform = pair.platform;
   }
   return pair;
 }

@@ -9,6 +9,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/verdict.hpp"
 #include "egocal/evaluation/errors.hpp"
 
 namespace egocal::bus {
@@ -88,10 +89,26 @@ command_t example() {
   return message;
 }
 
+template <>
+verdict_t example() {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::contradictory;
+  diagnosis.reason = "lengths of b times 2.7 fit";
+  diagnosis.findings.resize(2);
+  diagnosis.findings[0].code = "scale";
+  diagnosis.findings[1].code = "inverted_both";
+  diagnosis.goal.emplace().missing = {"z", "yaw"};
+  verdict_t message = to_message(diagnosis, Judged{});
+  message.sensor_a = "left";
+  message.sensor_b = "right";
+  message.sender = "egocal-diagnosis";
+  return message;
+}
+
 template <class Message>
 class EveryMessage : public testing::Test {};
 using Messages = testing::Types<odometry_t, bot_core::pose_t, motion_pair_t, problem_t, calibration_t,
-                                status_t, command_t>;
+                                status_t, command_t, verdict_t>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, RoundTrips) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 
@@ -76,6 +78,19 @@ TEST(Rig, DefaultsAreAutomatic) {
   EXPECT_EQ(rig.pairs[0].mode, Mode::spatial);
 }
 
+TEST(Rig, AGoalIsStatedAsTextOrAsNumbers) {
+  for (const std::string goal :
+       {"goal = \"0.1deg,2cm\"\n", "goal = { rotation_deg = 0.1, translation_m = 0.02 }\n"}) {
+    const Rig rig = parse_rig(sensors + pair + goal + "platform = \"drone\"\n", "my.toml");
+    ASSERT_TRUE(rig.pairs[0].goal) << goal;
+    EXPECT_NEAR(rig.pairs[0].goal->rotation, 0.1 * std::numbers::pi / 180, 1e-12);
+    EXPECT_NEAR(rig.pairs[0].goal->translation, 0.02, 1e-12);
+    EXPECT_EQ(rig.pairs[0].goal->platform, Platform::drone);
+    EXPECT_EQ(rig.pairs[0].platform, Platform::drone);
+  }
+  EXPECT_FALSE(parse_rig(sensors + pair, "my.toml").pairs[0].goal);
+}
+
 TEST(Rig, ErrorsNameFileLineAndKey) {
   const struct {
     std::string text, file_and_line, key;
@@ -91,6 +106,13 @@ TEST(Rig, ErrorsNameFileLineAndKey) {
       {sensors + pair + "weights = [0, 0]\n", "my.toml:13", "weights"},
       {sensors + pair + "weights = \"same\"\n", "my.toml:13", "weights"},
       {sensors + pair + "time_offset = \"maybe\"\n", "my.toml:13", "time_offset"},
+      {sensors + pair + "platform = \"boat\"\n", "my.toml:13", "platform"},
+      {sensors + pair + "goal = 3\n", "my.toml:13", "goal"},
+      {sensors + pair + "goal = \"0.1,2\"\n", "my.toml:13", "goal"},
+      {sensors + pair + "goal = \"0deg,2cm\"\n", "my.toml:13", "goal"},
+      {sensors + pair + "goal = { rotation_deg = 0.1 }\n", "my.toml:13", "goal.translation_m"},
+      {sensors + pair + "goal = { rotation_deg = 0.1, translation_m = -1 }\n", "my.toml:13", "translation_m"},
+      {sensors + pair + "goal = { rotation = 0.1, translation_m = 1 }\n", "my.toml:13", "rotation"},
       {sensors + pair + pair, "my.toml:15", "b"},
       {sensors + "[[pair]]\na = \"lidar\"\nb = \"radar\"\n", "my.toml:12", "b"},
       {sensors + "[[pair]]\na = \"lidar\"\nb = \"lidar\"\n", "my.toml:12", "b"},

@@ -8,6 +8,7 @@
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/bus/verdict.hpp"
 #include "require.hpp"
 
 namespace {
@@ -74,6 +75,26 @@ void enter(const command_t& message) {
   if (bus::plausible_name(message.to))
     require(bus::printable(message.to) == message.to, "a plausible name can be printed");
 }
+void enter(const verdict_t& message) {
+  const auto verdict = bus::to_verdict(message);
+  if (!verdict) {
+    fuzz::require_one_line(verdict.reason);
+    return;
+  }
+  const Diagnosis& diagnosis = verdict.value->diagnosis;
+  require(finite(verdict.value->judged.T_a_b), "the answer of a verdict is finite");
+  for (const std::string& text : {diagnosis.reason, message.goal_missing, message.next})
+    require(bus::printable(text, text.size()) == text, "texts of a verdict can be printed");
+  for (const Finding& finding : diagnosis.findings) {
+    require(bus::printable(finding.message + finding.remedy + finding.code, 5000) ==
+                finding.message + finding.remedy + finding.code,
+            "texts of a finding can be printed");
+    require(!finding.T_a_b || finite(to_dual_quaternion(*finding.T_a_b)), "answers of findings are finite");
+  }
+  require(!diagnosis.goal || diagnosis.goal->missing.size() <= 6, "there are six directions");
+  const auto again = bus::to_message(diagnosis, verdict.value->judged);
+  require(again.findings.size() == message.findings.size(), "a verdict that came in can go out");
+}
 void enter(const motion_pair_t&) {}
 
 }  // namespace
@@ -100,5 +121,6 @@ template void try_message<problem_t>(std::span<const std::uint8_t>);
 template void try_message<calibration_t>(std::span<const std::uint8_t>);
 template void try_message<status_t>(std::span<const std::uint8_t>);
 template void try_message<command_t>(std::span<const std::uint8_t>);
+template void try_message<verdict_t>(std::span<const std::uint8_t>);
 
 }  // namespace egocal::fuzz

@@ -10,6 +10,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/bus/verdict.hpp"
 #include "support/bag_writer.hpp"
 
 using namespace egocal;
@@ -59,6 +60,22 @@ calibration_t calibration() {
   answer.observability.hint = "turn";
   calibration_t message = bus::to_message(answer, problem());
   message.solver = "egocal-fast";
+  return message;
+}
+
+verdict_t verdict() {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::contradictory;
+  diagnosis.reason = "lengths of b times 2.7 fit";
+  diagnosis.findings.resize(1);
+  diagnosis.findings[0].code = "scale";
+  diagnosis.findings[0].T_a_b = to_pose(pose(1).pose);
+  diagnosis.goal.emplace().missing = {"z", "yaw"};
+  verdict_t message = bus::to_message(diagnosis, {pose(1).pose, time_us, time_us, 10});
+  message.utime = message.session = time_us;
+  message.sensor_a = "lidar";
+  message.sensor_b = "camera";
+  message.sender = "egocal-diagnosis";
   return message;
 }
 
@@ -130,6 +147,7 @@ int main(int argc, char** argv) {
   write(folder / "problem", "planar", planar);
   write(folder / "calibration", "plain", calibration());
   write(folder / "status", "plain", status());
+  write(folder / "verdict", "plain", verdict());
   command_t command{};
   command.to = "*";
   command.verb = "reset";

@@ -10,26 +10,6 @@
 
 namespace egocal {
 
-std::string_view to_string(Platform platform) {
-  switch (platform) {
-    case Platform::car:
-      return "car";
-    case Platform::handheld:
-      return "handheld";
-    case Platform::drone:
-      return "drone";
-    case Platform::arm:
-      return "arm";
-  }
-  return "unknown";
-}
-
-std::optional<Platform> platform_from_name(std::string_view text) {
-  for (const Platform platform : {Platform::car, Platform::handheld, Platform::drone, Platform::arm})
-    if (to_string(platform) == text) return platform;
-  return std::nullopt;
-}
-
 namespace detail {
 
 bool expected(const Answered& answered, std::size_t direction) {

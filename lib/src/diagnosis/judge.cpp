@@ -14,20 +14,6 @@
 
 namespace egocal {
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::good:
-      return "good";
-    case Verdict::incomplete:
-      return "incomplete";
-    case Verdict::doubtful:
-      return "doubtful";
-    case Verdict::contradictory:
-      return "contradictory";
-  }
-  return "unknown";
-}
-
 namespace detail {
 
 namespace {
@@ -135,7 +121,7 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
                100 * options.tolerance_translation, unknown.c_str());
     if (!diagnosis.goal && answered.seconds > 0) {
       const GoalOptions usable{options.tolerance_rotation / confidence,
-                               options.tolerance_translation / confidence, std::nullopt};
+                               options.tolerance_translation / confidence, options.platform};
       diagnosis.reason += " " + goal_of(answered, usable).next;
     }
   } else if (diagnosis.goal && !diagnosis.goal->reached) {

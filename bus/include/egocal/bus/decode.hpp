@@ -14,6 +14,7 @@
 #include "egocal/odometry_t.hpp"
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
+#include "egocal/verdict_t.hpp"
 
 namespace egocal::bus {
 
@@ -26,6 +27,7 @@ bool lengths_fit(const problem_t*, Bytes bytes);
 bool lengths_fit(const calibration_t*, Bytes bytes);
 bool lengths_fit(const status_t*, Bytes bytes);
 bool lengths_fit(const command_t*, Bytes bytes);
+bool lengths_fit(const verdict_t*, Bytes bytes);
 
 /// Fingerprint and lengths are those of the type.
 template <class Message>

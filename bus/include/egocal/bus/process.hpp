@@ -9,7 +9,7 @@
 
 namespace egocal::bus {
 
-enum class Role { player, pairing, global, fast, monitor };
+enum class Role { player, pairing, global, fast, diagnosis, monitor };
 
 enum class State {
   waiting,  ///< cannot work yet, or lets an older process of its name work

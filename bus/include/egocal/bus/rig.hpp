@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "egocal/diagnosis/verdict.hpp"
 #include "egocal/geometry/dual_quaternion.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/problem/cost.hpp"
@@ -33,6 +34,8 @@ struct PairConfig {
   std::optional<Balance> balance;         ///< empty: auto
   bool robust = true;                     ///< leave out what is not screw congruent or contradicts the rest
   std::optional<double> time_offset = 0;  ///< [s] added to the stamps of b; empty: auto, found and followed
+  std::optional<GoalOptions> goal;        ///< how well each direction is to be known; empty: none is stated
+  std::optional<Platform> platform;       ///< whose manoeuvres are advised; empty: as the motions look
 };
 
 struct Rig {

@@ -115,6 +115,8 @@ struct DiagnosisOptions {
   PlaneCheckOptions planes;
   MountCheckOptions mount;
   std::optional<GoalOptions> goal;
+  /// Whose manoeuvres are advised where no goal is stated; empty: as the motions look.
+  std::optional<Platform> platform;
 };
 
 }  // namespace egocal

@@ -69,6 +69,8 @@ struct GoalOptions {
   std::optional<Platform>
       platform;  ///< empty: a car where the sensors always travel the same way of their bodies
 };
+/// "0.1deg,2cm": rotation (deg or rad), translation (mm, cm or m), both above 0. Empty: not understood.
+std::optional<GoalOptions> goal_from_text(std::string_view text);
 
 /// Where the drive is on its way to the goal.
 struct Goal {

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A diagnosis on the wire and back, and what is refused on the way.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "egocal/bus/verdict.hpp"
+
+namespace egocal::bus {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr std::int64_t begin_us = 1'600'000'000'000'000;
+
+Diagnosis example() {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::contradictory;
+  diagnosis.reason = "The lengths of b are 0.37 times those of a.";
+  diagnosis.fit.rotation_median = 0.01;
+  diagnosis.fit.translation_95 = 0.3;
+  diagnosis.fit.length_ratio = 0.37;
+  Finding scale{"scale", true, "b has no scale", "--scale auto", 12.5, Pose{}, std::nullopt, 2.7};
+  Finding moved{"mount_moved", true, "it moved", "calibrate again", 3, std::nullopt, 138.25, std::nullopt};
+  diagnosis.findings = {scale, moved};
+  diagnosis.goal = Goal{false, {"z", "yaw"}, 40.0, "Take a ramp."};
+  return diagnosis;
+}
+
+verdict_t message() {
+  verdict_t message = to_message(example(), {DualQuaternion{}, begin_us, begin_us + 5, 800});
+  message.utime = message.session = begin_us;
+  message.seq = message.pairs = 900;
+  message.sensor_a = "lidar";
+  message.sensor_b = "camera";
+  message.sender = "egocal-diagnosis";
+  return message;
+}
+
+TEST(VerdictMessage, ComesBackAsItWasSent) {
+  const Checked<ReceivedVerdict> received = to_verdict(message());
+  ASSERT_TRUE(received) << received.reason;
+  const Diagnosis& diagnosis = received.value->diagnosis;
+  const Diagnosis sent = example();
+  EXPECT_EQ(diagnosis.verdict, sent.verdict);
+  EXPECT_EQ(diagnosis.reason, sent.reason);
+  EXPECT_EQ(diagnosis.fit.rotation_median, 0.01);
+  EXPECT_EQ(diagnosis.fit.translation_95, 0.3);
+  EXPECT_EQ(diagnosis.fit.length_ratio, 0.37);
+  EXPECT_EQ(received.value->judged.poses, 800);
+  ASSERT_EQ(diagnosis.findings.size(), 2u);
+  EXPECT_EQ(diagnosis.findings[0].code, "scale");
+  EXPECT_TRUE(diagnosis.findings[0].certain);
+  EXPECT_EQ(diagnosis.findings[0].value, 2.7);
+  EXPECT_TRUE(diagnosis.findings[0].T_a_b);
+  EXPECT_FALSE(diagnosis.findings[0].time);
+  EXPECT_EQ(diagnosis.findings[1].time, 138.25);
+  EXPECT_FALSE(diagnosis.findings[1].T_a_b);
+  ASSERT_TRUE(diagnosis.goal);
+  EXPECT_THAT(diagnosis.goal->missing, ElementsAre("z", "yaw"));
+  EXPECT_EQ(diagnosis.goal->seconds_left, 40.0);
+  EXPECT_EQ(diagnosis.goal->next, "Take a ramp.");
+}
+
+TEST(VerdictMessage, ANumberThatIsNoneNeverLeaves) {
+  Diagnosis diagnosis = example();
+  diagnosis.fit.length_ratio = std::numeric_limits<double>::infinity();
+  diagnosis.findings[0].improvement = std::nan("");
+  diagnosis.goal->seconds_left = std::numeric_limits<double>::infinity();
+  verdict_t sent = message();
+  const verdict_t numbers = to_message(diagnosis, {DualQuaternion{}, begin_us, begin_us, 1});
+  sent.fit = numbers.fit;
+  sent.findings = numbers.findings;
+  sent.goal_seconds_left = numbers.goal_seconds_left;
+  const Checked<ReceivedVerdict> received = to_verdict(sent);
+  ASSERT_TRUE(received) << received.reason;
+  EXPECT_FALSE(received.value->diagnosis.goal->seconds_left);
+}
+
+struct Damage {
+  const char* what;
+  void (*make)(verdict_t&);
+};
+
+TEST(VerdictMessage, IsRefusedWhereAnyFieldMakesNoSense) {
+  const Damage damages[] = {
+      {"verdict", [](verdict_t& m) { m.verdict = "excellent"; }},
+      {"name", [](verdict_t& m) { m.sensor_a = "li\x1b[31mdar"; }},
+      {"sender", [](verdict_t& m) { m.sender = ""; }},
+      {"reason", [](verdict_t& m) { m.reason = "two\nlines"; }},
+      {"long reason", [](verdict_t& m) { m.reason.assign(2000, 'x'); }},
+      {"time", [](verdict_t& m) { m.utime = -1; }},
+      {"session", [](verdict_t& m) { m.session = std::numeric_limits<std::int64_t>::max(); }},
+      {"seq", [](verdict_t& m) { m.seq = -1; }},
+      {"quaternion", [](verdict_t& m) { m.quat[0] = 5; }},
+      {"position", [](verdict_t& m) { m.pos[1] = std::nan(""); }},
+      {"fit", [](verdict_t& m) { m.fit.rotation_95 = -1; }},
+      {"fit is not finite",
+       [](verdict_t& m) { m.fit.length_ratio = std::numeric_limits<double>::infinity(); }},
+      {"code", [](verdict_t& m) { m.findings[0].code = "a b"; }},
+      {"remedy", [](verdict_t& m) { m.findings[1].remedy = "\x07"; }},
+      {"improvement", [](verdict_t& m) { m.findings[0].improvement = std::nan(""); }},
+      {"answer of a finding", [](verdict_t& m) { m.findings[0].quat[0] = 0; }},
+      {"time of a finding", [](verdict_t& m) { m.findings[1].utime = -7; }},
+      {"findings without end", [](verdict_t& m) { m.findings.resize(100, m.findings[0]); }},
+      {"direction", [](verdict_t& m) { m.goal_missing = "z up"; }},
+      {"direction twice", [](verdict_t& m) { m.goal_missing = "z z"; }},
+      {"goal reached with something missing", [](verdict_t& m) { m.goal_reached = 1; }},
+      {"good although the goal is missed", [](verdict_t& m) { m.verdict = "good"; }},
+      {"seconds left", [](verdict_t& m) { m.goal_seconds_left = std::nan(""); }},
+  };
+  for (const Damage& damage : damages) {
+    verdict_t damaged = message();
+    damage.make(damaged);
+    const Checked<ReceivedVerdict> received = to_verdict(damaged);
+    EXPECT_FALSE(received) << damage.what;
+    EXPECT_FALSE(received.reason.empty()) << damage.what;
+  }
+}
+
+}  // namespace
+}  // namespace egocal::bus
