@@ -2,34 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/accumulation.hpp"
 
-#include "egocal/bus/convert.hpp"
+#include "egocal/bus/odometry.hpp"
 
 namespace egocal::services {
-
-namespace {
-
-struct Decoded {
-  bool decoded = false;
-  bus::Checked<StampedPose> pose;
-  std::int64_t seq = -1;
-};
-
-Decoded decode_odometry(bus::OdometryType type, bus::Bytes bytes) {
-  Decoded result;
-  if (type == bus::OdometryType::pose) {
-    bot_core::pose_t message{};
-    result.decoded = bus::decode(bytes, message);
-    if (result.decoded) result.pose = bus::to_stamped_pose(message);
-  } else {
-    odometry_t message{};
-    result.decoded = bus::decode(bytes, message);
-    if (result.decoded) result.pose = bus::to_stamped_pose(message);
-    result.seq = message.seq;
-  }
-  return result;
-}
-
-}  // namespace
 
 std::int64_t time_in(bus::Bytes message) {
   if (message.size() < 16) return 0;
@@ -70,7 +45,7 @@ void Accumulation::apply(const Input& input) {
 void Accumulation::take(Channel& channel, const Input& input) {
   ++channel.state.in;
   channel.state.utime = time_in(input.bytes);
-  const Decoded odometry = decode_odometry(channel.sensor.type, input.bytes);
+  const bus::ReceivedOdometry odometry = bus::decode_odometry(channel.sensor.type, input.bytes);
   if (!odometry.decoded) {
     ++channel.state.undecodable;
   } else if (!odometry.pose) {

@@ -201,8 +201,8 @@ TEST_F(Commands, WrongUsageIsRefusedWithTwo) {
         "solve a b --stride 0", "solve a b --planar", "solve a b --truth 1,2,3",
         "solve a b --planar --plane-a 0,0,2,1 --plane-b 0,0,1,1", "simulate", "log", "up"})
     expect_refusal(egocal(arguments), 2, "egocal");
-  for (const char* name :
-       {"egocal", "egocal-player", "egocal-pairing", "egocal-fast", "egocal-global", "egocal-monitor"}) {
+  for (const char* name : {"egocal", "egocal-player", "egocal-pairing", "egocal-fast", "egocal-global",
+                           "egocal-diagnosis", "egocal-monitor"}) {
     EXPECT_EQ(program(name, "--help").code, 0) << name;
     EXPECT_THAT(program(name, "--version").out, HasSubstr("egocal")) << name;
   }

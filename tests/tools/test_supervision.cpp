@@ -364,9 +364,10 @@ class Up : public Supervision {
 TEST_F(Up, PlaysALogToItsEndAndEndsAll) {
   ChildProcess egocal = up({"--log", log, "--speed", "0", "--follow"});
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
-  for (const char* name : {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-player"})
+  for (const char* name :
+       {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-diagnosis", "egocal-player"})
     EXPECT_TRUE(std::filesystem::exists(path("out/" + std::string(name) + ".out"))) << name;
-  EXPECT_THAT(read(path("said")), HasSubstr("certified"));
+  EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven)"));
 }
 
 TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
@@ -382,7 +383,7 @@ TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
     })) << name;
     EXPECT_THAT(read(path("said")), HasSubstr(name + " ended (killed by signal 9"));
   }
-  ASSERT_TRUE(until([&] { return children(self).size() == 3; }));
+  ASSERT_TRUE(until([&] { return children(self).size() == 4; }));
   const auto all = children(self);
   egocal.signal(SIGINT);
   EXPECT_EQ(egocal.wait(30s), 0);

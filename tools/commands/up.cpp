@@ -107,9 +107,9 @@ void run(const Options& options) {
     passing.emplace(supervisor.output_dir);
     pairing = {"--state", passing->file()};
   }
-  std::vector<Program> programs = {program("egocal-pairing", pairing),
-                                   program("egocal-fast", {"--method", options.fast}),
-                                   program("egocal-global", {"--method", options.global})};
+  std::vector<Program> programs = {
+      program("egocal-pairing", pairing), program("egocal-fast", {"--method", options.fast}),
+      program("egocal-global", {"--method", options.global}), program("egocal-diagnosis", {})};
   if (options.monitor || options.follow) {
     programs.push_back(program("egocal-monitor", options.follow ? std::vector<std::string>{"--follow"}
                                                                 : std::vector<std::string>{}));

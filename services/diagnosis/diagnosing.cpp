@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/diagnosing.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/odometry.hpp"
+#include "egocal/bus/verdict.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::services {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
+constexpr int queue_capacity = 1024;
+
+double seconds(std::int64_t us) {
+  return 1e-6 * static_cast<double>(us);
+}
+
+StreamOptions stream_options(const bus::Rig& rig) {
+  StreamOptions options;
+  options.reorder_window = rig.reorder_window;
+  return options;
+}
+
+}  // namespace
+
+Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
+                       const DiagnosingOptions& options)
+    : loop_(loop), heartbeat_(heartbeat), rig_(rig), options_(options) {
+  for (const bus::Sensor& sensor : rig.sensors) sensors_.push_back({sensor, Stream(stream_options(rig)), 0});
+  for (const bus::PairConfig& pair : rig.pairs)
+    pairs_.push_back(std::make_unique<Pair>(loop, heartbeat, pair, options.sample));
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    loop_.subscribe_bytes(
+        sensors_[i].config.channel, [this, i](const bus::Arrival& arrival) { take(i, arrival); },
+        queue_capacity);
+  hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
+  heartbeat_.before_publish([this] { count(); });
+  loop_.every(100ms, [this] { look(); });
+  loop_.every(1s, [this] {
+    repeat();
+    report();
+  });
+  report();
+}
+
+void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
+  Sensor& sensor = sensors_[index];
+  ++sensor.in;
+  const bus::ReceivedOdometry odometry = bus::decode_odometry(sensor.config.type, arrival.bytes);
+  if (!odometry.decoded) return loop_.count_undecodable(arrival.channel);
+  if (!odometry.pose) return heartbeat_.reject(odometry.pose.reason);
+  for (const NumberedPose& sample : sensor.stream.push({*odometry.pose.value, odometry.seq, 0, false}))
+    for (const auto& pair : pairs_)
+      for (const Side side : {Side::a, Side::b}) {
+        if ((side == Side::a ? pair->config.a : pair->config.b) != sensor.config.name) continue;
+        if (sample.begins_anew) pair->sample.begin_anew(side);
+        if (!pair->paused) pair->sample.push(side, sample.pose);
+      }
+}
+
+void Diagnosing::take_problems() {
+  for (const auto& pair : pairs_) {
+    std::optional<ReceivedProblem> received = pair->inbox.take();
+    if (!received) continue;
+    const problem_t& message = received->message;
+    const bool same_session = pair->newest && pair->newest->message.session == message.session;
+    if (!same_session || pair->newest->message.seq != message.seq) pair->newest_mono_us = loop_.mono_us();
+    if (!same_session) {
+      // where times ran backwards the number of the session is no time, and the streams have begun anew
+      if (message.session <= message.utime) pair->sample.begin_session(message.session);
+      pair->judged_seq = -1;
+      pair->verdict.reset();
+    }
+    pair->sample.set_time_offset(message.time_offset);
+    pair->newest = std::move(received);
+  }
+}
+
+bool Diagnosing::idle(const Pair& pair) const {
+  return seconds(loop_.mono_us() - pair.newest_mono_us) >= options_.idle;
+}
+
+void Diagnosing::look() {
+  take_problems();
+  const bool early = loop_.mono_us() < not_before_mono_us_;
+  for (std::size_t n = 0; n < pairs_.size(); ++n) {
+    const std::size_t i = (turn_ + n) % pairs_.size();
+    Pair& pair = *pairs_[i];
+    if (!pair.newest || pair.newest->message.seq == pair.judged_seq || (early && !idle(pair))) continue;
+    turn_ = i + 1;
+    const std::int64_t began = loop_.mono_us();
+    judge(pair);
+    const auto took = static_cast<double>(loop_.mono_us() - began);
+    not_before_mono_us_ =
+        began + std::llround(std::max(took / options_.share, 1e6 * options_.least_distance));
+    return;  // messages have their turn
+  }
+}
+
+void Diagnosing::judge(Pair& pair) {
+  const problem_t& message = pair.newest->message;
+  const Problem& problem = pair.newest->problem;
+  pair.judged_seq = message.seq;
+  DiagnosisOptions options;
+  options.goal = pair.config.goal;
+  options.platform = pair.config.platform;
+  PairingOptions pairing = bus::drive_options(rig_, pair.config);
+  pairing.time_offset = message.time_offset;
+  const Trajectory &a = pair.sample.poses(Side::a), &b = pair.sample.poses(Side::b);
+  const std::size_t poses = std::min(a.size(), b.size());
+  try {
+    const Answer answer = solve(problem, Method::dual);
+    Answered answered;
+    answered.T_a_b = answer.T_a_b;
+    answered.observability = answer.observability;
+    answered.problem = problem;
+    answered.stride = message.stride;
+    answered.seconds = seconds(message.utime - message.session);
+    bus::Judged judged{answer.T_a_b, message.utime, message.utime, 0};
+    Diagnosis diagnosis;
+    if (poses < options_.least_poses) {
+      diagnosis = diagnose(answered, options);
+    } else {
+      diagnosis = diagnose(a, b, pairing, answered, options);
+      judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses)};
+    }
+    verdict_t verdict = bus::to_message(diagnosis, judged);
+    verdict.utime = message.utime;
+    verdict.session = message.session;
+    verdict.seq = message.seq;
+    for (const statistics_t& block : message.blocks) verdict.pairs += block.count;
+    verdict.sensor_a = pair.config.a;
+    verdict.sensor_b = pair.config.b;
+    verdict.sender = heartbeat_.identity().name;
+    loop_.publish(bus::verdict_channel(verdict.sensor_a, verdict.sensor_b), verdict);
+    ++heartbeat_.counter("out");
+    pair.verdict = std::move(verdict);
+  } catch (const std::exception& error) {
+    heartbeat_.reject("diagnosis failed");
+    heartbeat_.set_error(pair.config.a + " -> " + pair.config.b + ": " + error.what());
+  }
+}
+
+/// For listeners that came late.
+void Diagnosing::repeat() {
+  for (const auto& pair : pairs_)
+    if (pair->verdict) loop_.publish(bus::verdict_channel(pair->config.a, pair->config.b), *pair->verdict);
+}
+
+void Diagnosing::obey(Verb verb, const command_t& command) {
+  bool any = false;
+  for (const auto& pair : pairs_) {
+    const std::int64_t session = pair->newest ? pair->newest->message.session : 0;
+    if (!means(command, verb, pair->config.a, pair->config.b, session)) continue;
+    any = true;
+    // a reset begins a session with the next pose; its first problem says so
+    if (verb != Verb::reset) pair->paused = verb == Verb::pause;
+  }
+  if (!any) heartbeat_.reject(not_meant);
+  report();
+}
+
+void Diagnosing::report() {
+  const bool paused =
+      std::all_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair->paused; });
+  heartbeat_.set_state(paused ? bus::State::paused : bus::State::running);
+}
+
+void Diagnosing::count() {
+  std::int64_t in = 0;
+  StreamCounts sum;
+  for (const Sensor& sensor : sensors_) {
+    in += sensor.in;
+    sum.lost += sensor.stream.counts().lost;
+    sum.duplicate += sensor.stream.counts().duplicate;
+    sum.out_of_order += sensor.stream.counts().out_of_order;
+    sum.jump += sensor.stream.counts().jump;
+  }
+  heartbeat_.counter("poses") = in;
+  heartbeat_.counter("lost") = sum.lost;
+  heartbeat_.counter("rejected: duplicate") = sum.duplicate;
+  heartbeat_.counter("rejected: too late") = sum.out_of_order;
+  heartbeat_.counter("rejected: time or number jumps") = sum.jump;
+}
+
+}  // namespace egocal::services

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "diagnosis/drive_sample.hpp"
+#include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/pairing/stream.hpp"
+#include "program/commands.hpp"
+#include "solving/problems.hpp"
+
+namespace egocal::services {
+
+struct DiagnosingOptions {
+  /// Part of a core that diagnoses may take: the next one waits until the last one's time is this part of the
+  /// time since it began.
+  double share = 0.04;
+  double least_distance = 1;  ///< [s] between two diagnoses, however quick
+  /// A pair that has had no new problem for so long [s] is judged once without waiting: a drive has ended.
+  double idle = 0.6;
+  /// Fewer poses of a stream say nothing about a drive that began before this process did.
+  std::size_t least_poses = 30;
+  DriveSampleOptions sample;
+};
+
+/// egocal-diagnosis: from the sensors' poses and the problems to verdict_t. Judges the certified optimum of
+/// the newest problem, so it needs no solver process and believes none. What it is interrupted for is lost
+/// but for the poses since then: it judges what it has heard.
+class Diagnosing {
+ public:
+  Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
+             const DiagnosingOptions& options = {});
+  Diagnosing(const Diagnosing&) = delete;
+  Diagnosing& operator=(const Diagnosing&) = delete;
+
+ private:
+  struct Sensor {
+    bus::Sensor config;
+    Stream stream;
+    std::int64_t in = 0;
+  };
+  struct Pair {
+    Pair(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& pair,
+         const DriveSampleOptions& options)
+        : config(pair), inbox(loop, heartbeat, pair), sample(options) {}
+    bus::PairConfig config;
+    ProblemInbox inbox;
+    DriveSample sample;
+    std::optional<ReceivedProblem> newest;
+    std::int64_t newest_mono_us = 0;   ///< when its number was new
+    std::int64_t judged_seq = -1;      ///< of the newest problem's session; -1: none
+    std::optional<verdict_t> verdict;  ///< the last one, of the newest problem's session
+    bool paused = false;
+  };
+
+  void take(std::size_t sensor, const bus::Arrival& arrival);
+  void take_problems();
+  void look();
+  bool idle(const Pair& pair) const;
+  void judge(Pair& pair);
+  void repeat();
+  void obey(Verb verb, const command_t& command);
+  void report();
+  void count();
+
+  bus::Loop& loop_;
+  bus::Heartbeat& heartbeat_;
+  bus::Rig rig_;
+  DiagnosingOptions options_;
+  std::vector<Sensor> sensors_;
+  std::vector<std::unique_ptr<Pair>> pairs_;
+  std::size_t turn_ = 0;                 ///< the pair that is judged next where several wait
+  std::int64_t not_before_mono_us_ = 0;  ///< see DiagnosingOptions::share
+};
+
+}  // namespace egocal::services

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal::services {
+
+struct DriveSampleOptions {
+  /// Of each stream. A diagnosis of so many takes some 50 ms.
+  std::size_t most_poses = 1200;
+  /// Poses closer than this are skipped [us]: motions are compared over tenths of seconds and more.
+  std::int64_t least_distance_us = 45'000;
+  /// Poses are kept or dropped in stretches of this length [us], so that neighbours stay neighbours: several
+  /// motions of any stride that is of use.
+  std::int64_t stretch_us = 5'000'000;
+  /// The newest poses are kept in any case [us], so that what goes wrong now is seen now.
+  std::int64_t recent_us = 20'000'000;
+};
+
+/// The poses of one sensor pair that a diagnosis looks at: the whole session in bounded memory. When it is
+/// full every second stretch of what is older than recent_us is dropped, the same stretches of both streams.
+/// What is kept depends on the poses alone.
+class DriveSample {
+ public:
+  explicit DriveSample(const DriveSampleOptions& options = {}) : options_(options) {}
+
+  void push(Side side, const StampedPose& pose);
+  /// The stream's time ran backwards: what came before belongs to another timeline, of the other stream too
+  /// unless that one has just begun anew itself.
+  void begin_anew(Side side);
+  /// A session that began at this time: older poses are not of it.
+  void begin_session(std::int64_t time_us);
+  /// Added to the stamps of b: both streams are thinned at the same instants [s].
+  void set_time_offset(double seconds);
+
+  const Trajectory& poses(Side side) const { return side == Side::a ? a_ : b_; }
+
+ private:
+  Trajectory& of(Side side) { return side == Side::a ? a_ : b_; }
+  std::int64_t offset_of(Side side) const { return side == Side::b ? time_offset_us_ : 0; }
+  bool full() const { return a_.size() > options_.most_poses || b_.size() > options_.most_poses; }
+  void thin();
+  void thin(Side side);
+
+  DriveSampleOptions options_;
+  Trajectory a_, b_;
+  std::int64_t time_offset_us_ = 0;
+  std::optional<std::int64_t> origin_us_;  ///< the first stretch begins here and is always kept
+  int level_ = 0;                          ///< of 2^level stretches one is kept
+  std::optional<Side> begun_anew_;
+};
+
+}  // namespace egocal::services
