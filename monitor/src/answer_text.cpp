@@ -66,14 +66,93 @@ std::string verify_time(const calibration_t& answer, Charset charset) {
   return duration(static_cast<double>(answer.verify_ns) * 1e-9, charset);
 }
 
-Verdict verdict_of(const PairState& pair, Charset charset) {
+namespace {
+
+Style style_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::good:
+      return Style::good;
+    case Verdict::incomplete:
+      return Style::normal;
+    case Verdict::doubtful:
+      return Style::warning;
+    case Verdict::contradictory:
+      break;
+  }
+  return Style::bad;
+}
+
+const char* mark_of(Verdict verdict, const Symbols& s) {
+  switch (verdict) {
+    case Verdict::good:
+      return s.yes;
+    case Verdict::incomplete:
+      return s.gone;
+    case Verdict::doubtful:
+      return "?";
+    case Verdict::contradictory:
+      break;
+  }
+  return s.no;
+}
+
+std::string words(const std::vector<std::string>& directions) {
+  std::string text;
+  for (const std::string& direction : directions) text += (text.empty() ? "" : " ") + direction;
+  return text;
+}
+
+}  // namespace
+
+Label verdict_of(const PairState& pair, Charset charset) {
   const Symbols& s = symbols(charset);
   const calibration_t* answer = pair.answer();
   if (!answer) return {pair.has_problem ? "solving" : "waiting", Style::dim};
   if (!pair.shown.valid) return {std::string(s.no) + " unusable", Style::bad};
-  if (answer->status == 0) return {std::string(s.yes) + " certified", Style::good};
-  if (answer->status == 1) return {std::string(s.no) + " not best", Style::bad};
-  return {"? undecided", Style::warning};
+  if (!pair.verdict) return {"not judged yet", Style::dim};
+  const Verdict verdict = pair.verdict->diagnosis.verdict;
+  // the verdict is about the optimum; what is not proven to be the optimum does not share it
+  if (verdict <= Verdict::incomplete && answer->status != 0) return {"? not proven", Style::warning};
+  return {std::string(mark_of(verdict, s)) + " " + std::string(to_string(verdict)), style_of(verdict)};
+}
+
+Label proof_of(const calibration_t& answer) {
+  if (answer.status == 0) return {"optimal (proven)", Style::good};
+  if (answer.status == 1) return {"not optimal", Style::bad};
+  return {"optimum undecided", Style::warning};
+}
+
+std::string goal_text(const Diagnosis& diagnosis) {
+  if (!diagnosis.goal) return {};
+  const Goal& goal = *diagnosis.goal;
+  if (goal.reached) return "done";
+  std::string text = goal.missing.size() == 6 ? "collecting" : "weak: " + words(goal.missing);
+  if (goal.seconds_left && *goal.seconds_left < 1e6)
+    text += ", about " + age(std::max(1.0, *goal.seconds_left)) + " more of this";
+  else
+    text += ", more of this does not help";
+  return goal.next.empty() ? text : text + ". " + goal.next;
+}
+
+Label advice_of(const PairState& pair) {
+  if (!pair.verdict) return {"", Style::dim};
+  const Diagnosis& diagnosis = pair.verdict->diagnosis;
+  const Style style = style_of(diagnosis.verdict);
+  for (const Finding& finding : diagnosis.findings)
+    if (finding.certain) return {finding.message + " Cure: " + finding.remedy, style};
+  if (diagnosis.verdict <= Verdict::incomplete && diagnosis.goal && !diagnosis.goal->reached)
+    return {"goal " + goal_text(diagnosis), style};
+  return {(diagnosis.goal && diagnosis.goal->reached ? "goal done. " : "") + diagnosis.reason, style};
+}
+
+std::string fit_text(const PairVerdict& verdict, Charset charset) {
+  const Fit& fit = verdict.diagnosis.fit;
+  if (verdict.judged.poses == 0) return {};
+  return degrees(fit.rotation_median, charset) + ", " + centimetres(fit.translation_median, charset) + " (" +
+         number(100 * fit.translation_relative_median, 1, charset) + " % of the way) a motion of " +
+         number(fit.motion_seconds, 1, charset) + " s; 95 % below " + degrees(fit.rotation_95, charset) +
+         ", " + centimetres(fit.translation_95, charset) + "; lengths b / a " +
+         number(fit.length_ratio, 3, charset);
 }
 
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max) {

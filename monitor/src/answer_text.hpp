@@ -42,11 +42,21 @@ std::string latency(const calibration_t& answer, Charset charset);
 std::string solve_time(const calibration_t& answer, Charset charset);
 std::string verify_time(const calibration_t& answer, Charset charset);
 
-struct Verdict {
-  std::string text;  ///< with a mark, at most 12 cells
+struct Label {
+  std::string text;
   Style style;
 };
-Verdict verdict_of(const PairState& pair, Charset charset);
+/// "good", "contradictory": whether the answer can be used, with a mark, at most 15 cells. Until there is a
+/// verdict: how far the pair is.
+Label verdict_of(const PairState& pair, Charset charset);
+/// "optimal (proven)" or why not: whether another extrinsic explains the same motions better.
+Label proof_of(const calibration_t& answer);
+/// What to do about it, or why, in one line: the first finding with its cure, else the goal, else the reason.
+Label advice_of(const PairState& pair);
+/// "done", "weak: z yaw, about 2 min more; Take a ramp": empty without a goal.
+std::string goal_text(const Diagnosis& diagnosis);
+/// "0.12 deg, 1.3 cm (0.8 % of the way) a motion of 1.2 s, ..."; empty where it was not measured.
+std::string fit_text(const PairVerdict& verdict, Charset charset);
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
 /// "fast" for "egocal-fast".
 std::string short_solver(const std::string& name, std::size_t max = 12);

@@ -6,6 +6,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/bus/verdict.hpp"
 
 namespace egocal::monitor {
 
@@ -27,6 +28,9 @@ void Delivery::deliver(const std::string& channel, std::span<const std::byte> by
   } else if (channel.starts_with(bus::calibration_prefix)) {
     calibration_t message{};
     if (decoded(message) && of_channel(message, bus::calibration_channel)) calibration(message, now);
+  } else if (channel.starts_with(bus::verdict_prefix)) {
+    verdict_t message{};
+    if (decoded(message) && of_channel(message, bus::verdict_channel)) verdict(message, now);
   } else if (channel == bus::status_channel) {
     status_t message{};
     if (decoded(message)) model_.on_status(message, now);
@@ -54,6 +58,14 @@ void Delivery::calibration(calibration_t& message, Now now) {
   }
   bus::set_certificate(checked, message);
   model_.on_calibration(message, now, checked.standing == bus::Standing::verified);
+}
+
+void Delivery::verdict(const verdict_t& message, Now now) {
+  if (const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message))
+    model_.on_verdict(message, *received.value, now);
+  else
+    model_.note(Severity::warning, pair_name(message.sensor_a, message.sensor_b),
+                "a verdict of " + message.sender + " is refused: " + received.reason, now);
 }
 
 }  // namespace egocal::monitor

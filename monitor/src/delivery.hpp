@@ -24,6 +24,7 @@ class Delivery {
  private:
   void problem(const problem_t& message, Now now);
   void calibration(calibration_t& message, Now now);
+  void verdict(const verdict_t& message, Now now);
 
   Model& model_;
   bus::AnswerCheck answers_;

@@ -13,11 +13,14 @@ namespace egocal::monitor {
 void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
   const Symbols& s = symbols(charset);
   const calibration_t* answer = pair.answer();
-  const Verdict verdict = verdict_of(pair, charset);
+  const Label verdict = verdict_of(pair, charset);
   int x = pane.text(0, 0, verdict.text, verdict.style) + 1;
-  if (answer)
+  if (answer) {
+    const Label proof = proof_of(*answer);
+    x = pane.text(x, 0, proof.text, proof.style) + 1;
     pane.text(x, 0, "by " + clean(answer->solver, 16) + "  gap " + compact(answer->scaled_gap, charset),
               Style::dim);
+  }
   if (!answer || !pair.shown.valid) return;
   const std::array<double, 6> values = components(pair.shown.T_a_b);
   for (int row = 0; row < 2; ++row) {
@@ -37,7 +40,9 @@ void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
                   degrees(pair.shown.error_rotation, charset),
               Style::strong);
   } else {
-    pane.text(0, 3, clean(answer->hint, 100), Style::warning);
+    const Label advice = advice_of(pair);
+    pane.text(0, 3, clean(advice.text.empty() ? answer->hint : advice.text, 200),
+              advice.text.empty() ? Style::warning : advice.style);
   }
 }
 
@@ -104,7 +109,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
   // the transform itself where there is room: what both agree on, or not
   const bool transforms = pane.height() >= 2 + 11 + 6;
   const bool spread_rows = pair.shown.reference == ReferenceKind::none;
-  std::vector<std::string> labels{"method", "verdict", "gap",
+  std::vector<std::string> labels{"method", "optimal", "gap",
                                   spread_rows ? s.plus_minus + std::string(" t") : "error t",
                                   spread_rows ? s.plus_minus + std::string(" R") : "error R"};
   if (transforms) labels.insert(labels.end(), std::begin(kDirections), std::end(kDirections));
@@ -126,9 +131,9 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     const bool referenced = own.reference != ReferenceKind::none;
     value(clean(answer.method, 9));
     if (answer.status == 0)
-      value("certified", Style::good);
+      value("proven", Style::good);
     else
-      value(answer.status == 1 ? "not best" : "undecided", answer.status == 1 ? Style::bad : Style::warning);
+      value(answer.status == 1 ? "no" : "undecided", answer.status == 1 ? Style::bad : Style::warning);
     value(compact(answer.scaled_gap, charset));
     value(centimetres(referenced ? own.error_translation : largest(answer.stddev), charset));
     value(degrees(referenced ? own.error_rotation : largest(answer.stddev + 3), charset));

@@ -20,7 +20,7 @@ struct Text {
 };
 
 Text help(const ViewState& view, int width, int height) {
-  if (width < 66 || height < 14)
+  if (width < 66 || height < 15)
     return {"Keys",
             {"q quit         Enter detail", "n N pair       Esc   overview", "+ - zoom       e     events",
              "l   axes       x     export", "r   reset      p     pause", "spc pause view ^L    redraw"}};
@@ -32,7 +32,8 @@ Text help(const ViewState& view, int width, int height) {
            "space    pause the view only       x        export the answer",
            "r        reset the calibration     p        pause or resume it",
            "Ctrl-L   draw again                Ctrl-Z   suspend", "",
-           "certified: no transform fits the motions better, proven.",
+           "good, incomplete, doubtful, contradictory: can it be used?",
+           "optimal (proven): no other transform fits better. Not the same.",
            "gap of 1: distance to that proof, in units of its limit.",
            std::string(symbols(view.charset).plus_minus) +
                " and the bars: how well the motions show it (one sigma).",

@@ -28,6 +28,7 @@ Feed::Feed(Model& model, const FeedOptions& options)
   };
   loop_.subscribe_prefix(bus::problem_prefix, deliver, queue_capacity);
   loop_.subscribe_prefix(bus::calibration_prefix, deliver, queue_capacity);
+  loop_.subscribe_prefix(bus::verdict_prefix, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::status_channel, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::command_channel, deliver);
   const auto report = [this](const std::string& error) {

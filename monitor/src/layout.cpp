@@ -8,6 +8,7 @@ namespace egocal::monitor {
 namespace {
 
 constexpr int kSummaryRows = 4;
+constexpr int kMostVerdictRows = 4;
 
 struct Frame {
   Rect header, body, keys;
@@ -48,7 +49,7 @@ OverviewLayout layout_overview(int width, int height, int pairs, int processes) 
   const int process_rows =
       std::clamp(processes + 1, 2, std::max(2, std::min(rows / 3, rows - std::min(table_rows, rows / 2))));
   int left = rows - process_rows;
-  for (int card : {5, 4})
+  for (int card : {6, 5, 4})
     if (width >= 76 && layout.card_rows == 0 && 1 + card * pairs <= left) layout.card_rows = card;
   const int wanted = layout.card_rows > 0 ? 1 + layout.card_rows * pairs : table_rows;
   const int pair_rows = std::min(wanted, left);
@@ -67,19 +68,13 @@ std::vector<PlacedColumn> layout_pair_table(int width) {
     int rank;  // what is given room first
   };
   // from left to right
-  constexpr Wish wishes[] = {{PairColumn::name, 16, 1},
-                             {PairColumn::verdict, 11, 0},
-                             {PairColumn::error_translation, 9, 2},
-                             {PairColumn::error_rotation, 8, 3},
-                             {PairColumn::translation, 29, 7},
-                             {PairColumn::rotation, 29, 8},
-                             {PairColumn::gap, 8, 9},
-                             {PairColumn::frames, 6, 4},
-                             {PairColumn::solver, 10, 5},
-                             {PairColumn::solve, 7, 10},
-                             {PairColumn::verify, 7, 11},
-                             {PairColumn::latency, 7, 12},
-                             {PairColumn::age, 6, 6}};
+  constexpr Wish wishes[] = {{PairColumn::name, 16, 1},          {PairColumn::verdict, 15, 0},
+                             {PairColumn::proof, 7, 4},          {PairColumn::error_translation, 9, 2},
+                             {PairColumn::error_rotation, 8, 3}, {PairColumn::translation, 29, 8},
+                             {PairColumn::rotation, 29, 9},      {PairColumn::gap, 8, 10},
+                             {PairColumn::frames, 6, 5},         {PairColumn::solver, 10, 6},
+                             {PairColumn::solve, 7, 11},         {PairColumn::verify, 7, 12},
+                             {PairColumn::latency, 7, 13},       {PairColumn::age, 6, 7}};
   std::array<bool, std::size(wishes)> chosen{};
   int used = 1;  // the cursor's column
   for (int rank = 0; rank < static_cast<int>(std::size(wishes)); ++rank)
@@ -122,16 +117,19 @@ DetailLayout layout_detail(int width, int height) {
   };
 
   if (body.w >= 76 && body.h >= 18) {
-    layout.matrices = body.h >= 24;
+    const int verdict_rows = std::clamp(body.h - 18, 0, kMostVerdictRows);
+    layout.verdict = {0, body.y, body.w, verdict_rows};
+    const int top = body.y + verdict_rows, rows = body.h - verdict_rows;
+    layout.matrices = rows >= 24;
     const int direction_rows = layout.matrices ? 7 : 4;
-    const int upper = body.h - direction_rows;
+    const int upper = rows - direction_rows;
     const int side = std::clamp(body.w * 38 / 100, 30, 46);
-    place_plots({0, body.y, body.w - side, upper});
-    layout.observability = {body.w - side, body.y, side, 8};
-    layout.solvers = {body.w - side, body.y + 8, side, upper - 8};
+    place_plots({0, top, body.w - side, upper});
+    layout.observability = {body.w - side, top, side, 8};
+    layout.solvers = {body.w - side, top + 8, side, upper - 8};
     const int half = body.w / 2;
-    layout.directions[0] = {0, body.y + upper, half, direction_rows};
-    layout.directions[1] = {half, body.y + upper, body.w - half, direction_rows};
+    layout.directions[0] = {0, top + upper, half, direction_rows};
+    layout.directions[1] = {half, top + upper, body.w - half, direction_rows};
     return layout;
   }
 

@@ -8,6 +8,7 @@
 
 #include "answer_text.hpp"
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/diagnosis_json.hpp"
 #include "egocal/geometry/pose.hpp"
 
 namespace egocal::monitor {
@@ -78,6 +79,19 @@ json answer_json(const PairState& pair, const SolverTrack& solver) {
   return j;
 }
 
+/// Null where there is none.
+void verdict_into(json& p, const PairState& pair) {
+  for (const char* key : {"verdict", "reason", "fit", "findings", "goal"}) p[key] = nullptr;
+  if (!pair.verdict) return;
+  const Diagnosis& diagnosis = pair.verdict->diagnosis;
+  p["verdict"] = to_string(diagnosis.verdict);
+  p["reason"] = clean(diagnosis.reason, 400);
+  if (pair.verdict->judged.poses > 0) p["fit"] = bus::fit_json(diagnosis.fit);
+  p["findings"] = bus::findings_json(diagnosis.findings);
+  if (diagnosis.goal) p["goal"] = bus::goal_json(*diagnosis.goal);
+  p["verdict_seq"] = pair.verdict->seq;
+}
+
 }  // namespace
 
 std::string pair_lines(const Model& model, Charset charset) {
@@ -92,7 +106,9 @@ std::string pair_lines(const Model& model, Charset charset) {
           pair.has_problem ? count(pair.problem.matched) + " motions, no answer yet\n" : "no motions yet\n";
       continue;
     }
-    text += verdict_of(pair, charset).text + " by " + clean(answer->solver, 40) + " (" +
+    text += verdict_of(pair, charset).text;
+    if (const std::string advice = advice_of(pair).text; !advice.empty()) text += ": " + clean(advice, 400);
+    text += "; " + proof_of(*answer).text + " by " + clean(answer->solver, 40) + " (" +
             clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
     if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " outliers, ";
     if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
@@ -173,6 +189,7 @@ std::string json_line(const Model& model) {
     }
     p["paused"] = pair_is_paused(model, pair);
     p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
+    verdict_into(p, pair);
     p["answer"] = pair.counted_solver() ? answer_json(pair, *pair.counted_solver()) : json(nullptr);
     p["solvers"] = json::array();
     for (const SolverTrack& solver : pair.solvers) p["solvers"].push_back(answer_json(pair, solver));

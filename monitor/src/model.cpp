@@ -124,6 +124,7 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
 
 void Model::begin_session(PairState& pair, std::int64_t session) {
   pair.session = session;
+  pair.verdict.reset();
   pair.solvers.clear();
   pair.counted = -1;
   pair.shown = {};
@@ -239,22 +240,21 @@ void Model::count_answer(PairState& pair, Now now) {
       best = static_cast<int>(i);
   pair.counted = best;
   if (best >= 0) pair.shown = shown_of(pair, *pair.answer());
-  watch_verdict(pair, now);
+  watch_certificate(pair, now);
 }
 
-void Model::watch_verdict(PairState& pair, Now now) {
+void Model::watch_certificate(PairState& pair, Now now) {
   const calibration_t* answer = pair.answer();
   if (!answer) return;
   const std::string name = pair_name(pair.a, pair.b);
   if (answer->status == 0) {
-    if (!pair.certified) note(Severity::good, name, "certified globally optimal, by " + answer->solver, now);
+    if (!pair.certified) note(Severity::good, name, "optimal (proven), by " + answer->solver, now);
     pair.certified = true;
     pair.certified_mono_us = now.mono_us;
   } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > kSettle) {
     pair.certified = false;
     note(Severity::bad, name,
-         answer->status == 1 ? "certificate lost: a better answer is known"
-                             : "certificate lost: too imprecise to decide",
+         answer->status == 1 ? "proof lost: a better answer is known" : "proof lost: too imprecise to decide",
          now);
   }
 }

@@ -8,24 +8,11 @@
 
 namespace egocal::monitor {
 
-void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, bool paused,
-                    Charset charset) {
-  const Symbols& s = symbols(charset);
-  const int right = pane.width();
-  if (selected) pane.text(0, 0, s.cursor, Style::key);
-  int x = pane.text(2, 0, pair_title(pair, charset), selected ? Style::title : Style::strong);
-  const Verdict verdict = verdict_of(pair, charset);
-  x = std::max(x + 2, 27);
-  x = pane.text(x, 0, verdict.text, verdict.style) + 1;
+namespace {
+
+/// At the right edge of a card's first row: as much as there is room for behind x.
+void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool paused) {
   const calibration_t* answer = pair.answer();
-  if (answer) {
-    const SolverTrack& solver = *pair.counted_solver();
-    x = pane.text(x, 0, "by ", Style::dim);
-    x = pane.text(x, 0, clean(answer->solver, 16) + " (" + clean(answer->method, 8) + ")",
-                  solver_style(solver.role)) +
-        2;
-  }
-  // at the right edge, as much as there is room for
   const std::string frames = count(answer             ? answer->pairs
                                    : pair.has_problem ? pair.problem.matched
                                                       : 0) +
@@ -44,10 +31,83 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
     std::string text;
     for (std::size_t i = 0; i < std::size(parts); ++i)
       if (chosen >> i & 1u) text += *parts[i];
-    if (x + width_of(text) + 1 > right) continue;
-    pane.text(right - width_of(text) - 1, 0, text, pair.silent || paused ? Style::warning : Style::dim);
+    if (x + width_of(text) + 1 > pane.width()) continue;
+    pane.text(pane.width() - width_of(text) - 1, 0, text,
+              pair.silent || paused ? Style::warning : Style::dim);
     break;
   }
+}
+
+/// The proof and what it took, as many as fit, the most important first.
+void draw_proof(const Pane& pane, int y, const PairState& pair, const calibration_t& answer, bool with_error,
+                Charset charset) {
+  const Label proof = proof_of(answer);
+  int x = pane.text(4, y, proof.text, proof.style);
+  const auto item = [&](const std::string& what, const std::string& value, Style value_style) {
+    const int w = width_of(what) + (value.empty() ? 0 : 1 + width_of(value));
+    if (x + 2 + w > pane.width()) return;
+    x = pane.text(x + 2, y, what, value.empty() ? value_style : Style::dim);
+    if (!value.empty()) x = pane.text(x + 1, y, value, value_style);
+  };
+  item("by", clean(answer.solver, 16) + " (" + clean(answer.method, 8) + ")",
+       solver_style(pair.counted_solver()->role));
+  item("gap", compact(answer.scaled_gap, charset) + " of 1",
+       answer.scaled_gap <= 1 ? Style::normal : Style::warning);
+  if (with_error)
+    item(pair.shown.reference == ReferenceKind::truth ? "error" : "off nominal",
+         centimetres(pair.shown.error_translation, charset) + " " +
+             degrees(pair.shown.error_rotation, charset),
+         Style::strong);
+  const std::string missing = missing_directions(pair, answer);
+  if (!missing.empty()) item("not shown: " + missing, "", Style::warning);
+  item("solve", solve_time(answer, charset), Style::normal);
+  item("verify", verify_time(answer, charset), Style::normal);
+  item("end to end", latency(answer, charset), Style::normal);
+}
+
+void draw_transform(const Pane& pane, int y, const PairState& pair, const calibration_t& answer,
+                    Charset charset) {
+  const Symbols& s = symbols(charset);
+  const std::array<double, 6> values = components(pair.shown.T_a_b);
+  for (int row = 0; row < 2; ++row) {
+    pane.text(4, y + row, row == 0 ? "translation" : "rotation", Style::dim);
+    int x = 17;
+    for (int i = 3 * row; i < 3 * row + 3; ++i) {
+      pane.text(x, y + row, pad_left(kDirections[i], 5), Style::dim);
+      const auto d = static_cast<std::size_t>(i);
+      const bool known = shown_by_motion(answer, i) || from_ground(pair, i);
+      pane.text(x + 5, y + row, pad_left(number(values[d] * scale_of(i), 2, charset), 8),
+                known ? Style::strong : Style::bad);
+      pane.text(x + 14, y + row, pad_right(spread(pair, answer, i, 2, charset), 6),
+                known ? Style::dim : Style::bad);
+      x += 20;
+    }
+    pane.text(x, y + row, row == 0 ? "cm" : s.degree, Style::dim);
+  }
+}
+
+/// At the right edge of the transform's rows.
+void draw_error(const Pane& pane, int y, const PairState& pair, Charset charset) {
+  const char* label = pair.shown.reference == ReferenceKind::truth ? "error" : "off nominal";
+  for (int row = 0; row < 2; ++row) {
+    const std::string value = row == 0 ? centimetres(pair.shown.error_translation, charset)
+                                       : degrees(pair.shown.error_rotation, charset);
+    const int start = pane.width() - 1 - width_of(value);
+    pane.text(start - 1 - width_of(label), y + row, label, Style::dim);
+    pane.text(start, y + row, value, Style::strong);
+  }
+}
+
+}  // namespace
+
+void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, bool paused,
+                    Charset charset) {
+  if (selected) pane.text(0, 0, symbols(charset).cursor, Style::key);
+  int x = pane.text(2, 0, pair_title(pair, charset), selected ? Style::title : Style::strong);
+  const Label verdict = verdict_of(pair, charset);
+  x = pane.text(std::max(x + 2, 27), 0, verdict.text, verdict.style) + 1;
+  draw_counts(pane, pair, now, x, paused);
+  const calibration_t* answer = pair.answer();
   if (!answer) {
     const std::string text =
         pair.has_problem
@@ -60,55 +120,20 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
     pane.text(4, 1, "the answer is no transform: values that are not finite", Style::bad);
     return;
   }
-
-  const std::array<double, 6> values = components(pair.shown.T_a_b);
-  for (int row = 0; row < 2; ++row) {
-    x = pane.text(4, 1 + row, row == 0 ? "translation" : "rotation", Style::dim);
-    x = 17;
-    for (int i = 3 * row; i < 3 * row + 3; ++i) {
-      pane.text(x, 1 + row, pad_left(kDirections[i], 5), Style::dim);
-      const auto d = static_cast<std::size_t>(i);
-      const bool known = shown_by_motion(*answer, i) || from_ground(pair, i);
-      pane.text(x + 5, 1 + row, pad_left(number(values[d] * scale_of(i), 2, charset), 8),
-                known ? Style::strong : Style::bad);
-      pane.text(x + 14, 1 + row, pad_right(spread(pair, *answer, i, 2, charset), 6),
-                known ? Style::dim : Style::bad);
-      x += 20;
-    }
-    x = pane.text(x, 1 + row, row == 0 ? "cm" : s.degree, Style::dim);
+  // the advice has a row of its own where there are five
+  int y = 1;
+  if (pane.height() >= 5) {
+    const Label advice = advice_of(pair);
+    pane.text(4, y++,
+              advice.text.empty() ? "no verdict yet: is egocal-diagnosis running?"
+                                  : clean(advice.text, static_cast<std::size_t>(pane.width() - 5)),
+              advice.style);
   }
   const bool has_reference = pair.shown.reference != ReferenceKind::none;
-  if (has_reference && right >= 99) {
-    const char* label = pair.shown.reference == ReferenceKind::truth ? "error" : "off nominal";
-    for (int row = 0; row < 2; ++row) {
-      const std::string value = row == 0 ? centimetres(pair.shown.error_translation, charset)
-                                         : degrees(pair.shown.error_rotation, charset);
-      const int start = right - 1 - width_of(value);
-      pane.text(start - 1 - width_of(label), 1 + row, label, Style::dim);
-      pane.text(start, 1 + row, value, Style::strong);
-    }
-  }
-  pane.text(4, 3, "gap", Style::dim);
-  x = pane.text(17, 3, compact(answer->scaled_gap, charset),
-                answer->scaled_gap <= 1 ? Style::normal : Style::warning);
-  x = pane.text(x, 3, " of 1", Style::dim);
-  // as many as fit, the most important first
-  const auto item = [&](const std::string& what, const std::string& value, Style value_style) {
-    const int w = width_of(what) + (value.empty() ? 0 : 1 + width_of(value));
-    if (x + 3 + w > right) return;
-    x = pane.text(x + 3, 3, what, value.empty() ? value_style : Style::dim);
-    if (!value.empty()) x = pane.text(x + 1, 3, value, value_style);
-  };
-  const std::string missing = missing_directions(pair, *answer);
-  if (!missing.empty()) item("not shown: " + missing, "", Style::warning);
-  if (has_reference && right < 99)
-    item(pair.shown.reference == ReferenceKind::truth ? "error" : "off nominal",
-         centimetres(pair.shown.error_translation, charset) + " " +
-             degrees(pair.shown.error_rotation, charset),
-         Style::strong);
-  item("solve", solve_time(*answer, charset), Style::normal);
-  item("verify", verify_time(*answer, charset), Style::normal);
-  item("end to end", latency(*answer, charset), Style::normal);
+  const bool wide = pane.width() >= 99;
+  draw_proof(pane, y, pair, *answer, has_reference && !wide, charset);
+  draw_transform(pane, y + 1, pair, *answer, charset);
+  if (has_reference && wide) draw_error(pane, y + 1, pair, charset);
 }
 
 void draw_pair_table(const Pane& pane, const Model& model, int selected, bool header, Charset charset) {
@@ -132,6 +157,10 @@ void draw_pair_table(const Pane& pane, const Model& model, int selected, bool he
           break;
         case PairColumn::verdict:
           text = "verdict";
+          right_aligned = false;
+          break;
+        case PairColumn::proof:
+          text = "optimal";
           right_aligned = false;
           break;
         case PairColumn::error_translation:
@@ -197,7 +226,7 @@ void draw_pair_table(const Pane& pane, const Model& model, int selected, bool he
         continue;
       }
       if (c.column == PairColumn::verdict) {
-        const Verdict verdict = verdict_of(pair, charset);
+        const Label verdict = verdict_of(pair, charset);
         left(verdict.text, verdict.style);
         continue;
       }
@@ -227,6 +256,9 @@ void draw_pair_table(const Pane& pane, const Model& model, int selected, bool he
           right(has_reference ? degrees(pair.shown.error_rotation, charset)
                               : s.plus_minus + degrees(largest(answer->stddev + 3), charset),
                 Style::strong);
+          break;
+        case PairColumn::proof:
+          left(answer->status == 0 ? "proven" : answer->status == 1 ? "no" : "?", proof_of(*answer).style);
           break;
         case PairColumn::solver:
           left(short_solver(answer->solver), solver_style(pair.counted_solver()->role));

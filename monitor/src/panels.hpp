@@ -22,6 +22,8 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
 void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset);
 
 // detail_panels.cpp
+/// verdict_panel.cpp: verdict, findings, goal and fit, a line each.
+void draw_verdict(const Pane& pane, const PairState& pair, Charset charset);
 void draw_summary(const Pane& pane, const PairState& pair, Charset charset);
 void draw_observability(const Pane& pane, const PairState& pair, Charset charset);
 void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset charset);

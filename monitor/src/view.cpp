@@ -108,7 +108,7 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     x = pane.text(x, 0, pair_title(*pair, view.charset, pane.width() >= 60 ? 24 : 12), Style::title) + 2;
     const bool paused = pair_is_paused(model, *pair);
     if (paused) item("PAUSED ", Style::warning);
-    const Verdict verdict = verdict_of(*pair, view.charset);
+    const Label verdict = verdict_of(*pair, view.charset);
     item(verdict.text, verdict.style);
     const std::string between = std::string(" ") + s.dot + " ";
     const calibration_t* answer = pair->answer();
@@ -130,14 +130,20 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     }
   } else {
     x = pane.text(x, 0, "egocal", Style::title) + 2;
-    std::size_t certified = 0, gone = 0, paused = 0;
+    std::size_t good = 0, certified = 0, gone = 0, paused = 0;
     for (const PairState& p : model.pairs()) paused += pair_is_paused(model, p);
     for (const PairState& p : model.pairs()) certified += p.answer() && p.answer()->status == 0;
+    for (const PairState& p : model.pairs())
+      good +=
+          p.answer() && p.answer()->status == 0 && p.verdict && p.verdict->diagnosis.verdict == Verdict::good;
     for (const ProcessState& p : model.processes()) gone += !p.alive && p.state != bus::State::ended;
-    x = pane.text(x, 0,
-                  std::to_string(certified) + " of " + std::to_string(model.pairs().size()) + " certified",
-                  certified == model.pairs().size() && certified ? Style::good : Style::normal) +
+    x = pane.text(x, 0, std::to_string(good) + " of " + std::to_string(model.pairs().size()) + " good",
+                  good == model.pairs().size() && good ? Style::good : Style::normal) +
         2;
+    if (pane.width() >= 50)
+      x = pane.text(x, 0, std::to_string(certified) + " proven optimal",
+                    certified == model.pairs().size() && certified ? Style::good : Style::normal) +
+          2;
     if (gone) x = pane.text(x, 0, std::to_string(gone) + " gone", Style::bad) + 2;
     if (paused)
       x = pane.text(x, 0, paused == model.pairs().size() ? "PAUSED" : std::to_string(paused) + " PAUSED",
@@ -222,6 +228,7 @@ void draw_detail(Canvas& canvas, const Model& model, const ViewState& view) {
     Pane(canvas).text(1, layout.header.h, "no pair yet: waiting for messages", Style::dim);
     return;
   }
+  if (!layout.verdict.empty()) draw_verdict(Pane(canvas, layout.verdict), *pair, view.charset);
   if (!layout.summary.empty()) draw_summary(Pane(canvas, layout.summary), *pair, view.charset);
   for (int i = 0; i < 4; ++i)
     if (const Rect& rect = layout.plots[static_cast<std::size_t>(i)]; !rect.empty())

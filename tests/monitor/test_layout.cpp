@@ -31,8 +31,8 @@ TEST(Layout, NothingOverlapsOrLeavesTheScreenAtAnySize) {
         ASSERT_FALSE(o.pairs.empty());
       }
       const DetailLayout d = layout_detail(w, h);
-      expect_apart({d.header, d.summary, d.plots[0], d.plots[1], d.plots[2], d.plots[3], d.observability,
-                    d.solvers, d.directions[0], d.directions[1], d.keys},
+      expect_apart({d.header, d.verdict, d.summary, d.plots[0], d.plots[1], d.plots[2], d.plots[3],
+                    d.observability, d.solvers, d.directions[0], d.directions[1], d.keys},
                    w, h);
       const EventsLayout e = layout_events(w, h);
       expect_apart({e.header, e.list, e.keys}, w, h);
@@ -48,7 +48,7 @@ TEST(Layout, TheAnswerIsVisibleAt40x8AndHostileValuesNeverReachTheScreen) {
   ViewState view;
   Canvas small(40, 8);
   draw(small, model, view);
-  EXPECT_NE(small.to_text().find("certified"), std::string::npos) << small.to_text();
+  EXPECT_NE(small.to_text().find("optimal"), std::string::npos) << small.to_text();
 
   auto evil = test::calibration_at(problem, false);
   evil.sensor_a = "\x1b[2J\n" + std::string(200, 'W');

@@ -79,7 +79,7 @@ TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
   drive.global = true;
   drive.run(5);
   EXPECT_THAT(drive.texts(),
-              ElementsAre("lidar -> camera: certified globally optimal, by egocal-global",
+              ElementsAre("lidar -> camera: optimal (proven), by egocal-global",
                           "lidar -> camera: solver added: egocal-fast (sqp) answers, too",
                           "lidar -> camera: fallback: egocal-fast asked for the global solver"));
   EXPECT_FALSE(drive.pair().only_fast_since);
@@ -105,13 +105,13 @@ TEST(ModelEvents, CertificateLostAndFoundButNotForAMoment) {
   drive.run(5);
   EXPECT_THAT(drive.fresh(), IsEmpty()) << "half a second is no event";
   drive.run(20);
-  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: certificate lost: a better answer is known"));
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: proof lost: a better answer is known"));
   drive.change_answer = [](calibration_t&) {};
   drive.run(5);
-  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: certified globally optimal, by egocal-fast"));
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: optimal (proven), by egocal-fast"));
   drive.change_answer = [](calibration_t& answer) { answer.status = 2; };
   drive.run(20);
-  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: certificate lost: too imprecise to decide"));
+  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: proof lost: too imprecise to decide"));
 }
 
 TEST(ModelEvents, SolverSwapped) {
@@ -359,7 +359,7 @@ TEST(ModelAnswer, WhatIsNoTransformIsNeverCertified) {
     };
     drive.run(40);
     EXPECT_NE(drive.pair().answer()->status, 0);
-    EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("certified"))));
+    EXPECT_THAT(drive.texts(), Not(Contains(HasSubstr("proven"))));
     EXPECT_THAT(json_line(drive.model), Not(HasSubstr("\"certified\":true")));
     EXPECT_FALSE(drive.pair().only_fast_since);
     // beside an honest one it does not count
@@ -400,8 +400,9 @@ TEST(Lines, SayWhatTheScreenSays) {
   drive.run(40);
   const std::string line = pair_lines(drive.model, Charset::ascii);
   for (const char* part :
-       {"lidar -> camera: + certified by egocal-fast (sqp), 40 frames, 3 outliers, 17 rejected, x y z ", "+-",
-        " cm, roll pitch yaw ", ", error ", ", gap ", " of 1, solve 5.2 us verify 1.9 us"})
+       {"lidar -> camera: not judged yet; optimal (proven) by egocal-fast (sqp), 40 frames, 3 outliers, 17 "
+        "rejected, x y z ",
+        "+-", " cm, roll pitch yaw ", ", error ", ", gap ", " of 1, solve 5.2 us verify 1.9 us"})
     EXPECT_THAT(line, HasSubstr(part));
   const std::string json = json_line(drive.model);
   for (const char* part :

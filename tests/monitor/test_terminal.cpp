@@ -148,7 +148,7 @@ TEST_P(EveryTerminal, ShowsWhatTheViewsDrewAndIsLeftAsItWas) {
   EXPECT_FALSE(tmux.cursor_visible() && std::string(kind.term) != "vt100");  // a vt100 cannot hide it
   const std::string arrow = kind.ascii ? "lidar -> camera" : "lidar → camera";
   EXPECT_THAT(overview, HasSubstr(arrow));
-  EXPECT_THAT(overview, HasSubstr("certified"));
+  EXPECT_THAT(overview, HasSubstr("optimal (proven)"));
 
   const std::string coloured = tmux.coloured_screen();
   EXPECT_EQ(std::regex_search(coloured, std::regex("\x1b\\[[0-9;]*3[1-7]")), kind.colours);
@@ -378,9 +378,9 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
     EXPECT_THAT(read_text(tmux.folder() / file), HasSubstr("lidar")) << file;
   }
   tmux.keys("?");
-  ASSERT_TRUE(until([&] { return tmux.shows("certified: no transform fits"); }));
+  ASSERT_TRUE(until([&] { return tmux.shows("no other transform fits"); }));
   tmux.keys("q");  // closes the help, no more
-  ASSERT_TRUE(until([&] { return !tmux.shows("certified: no transform fits"); }));
+  ASSERT_TRUE(until([&] { return !tmux.shows("no other transform fits"); }));
   tmux.keys("q");
   expect_shell_is_back(tmux);
 }
@@ -427,7 +427,7 @@ TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
            tmux.shows("egocal-global");
   })) << tmux.screen();
   test::ChildProcess player = start("egocal-player", {log, "--speed", "2"});
-  ASSERT_TRUE(until([&] { return tmux.shows("✓ certified by egocal-"); })) << tmux.screen();
+  ASSERT_TRUE(until([&] { return tmux.shows("optimal (proven)"); })) << tmux.screen();
   EXPECT_TRUE(until([&] { return tmux.shows("error"); })) << "the rig knows the truth";
 
   tmux.keys("p");
@@ -443,7 +443,7 @@ TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
   tmux.keys("y");
   ASSERT_TRUE(until([&] { return tmux.shows("session reset: the calibration starts again"); }))
       << tmux.screen();
-  ASSERT_TRUE(until([&] { return tmux.shows("✓ certified by egocal-"); })) << tmux.screen();
+  ASSERT_TRUE(until([&] { return tmux.shows("optimal (proven)"); })) << tmux.screen();
 
   global.signal(SIGKILL);
   ASSERT_TRUE(until([&] { return tmux.shows("GONE") && tmux.shows("process is gone"); })) << tmux.screen();
@@ -502,7 +502,7 @@ TEST(WithoutATerminal, LinesAndObjectsForPipes) {
   const std::string log = " --log " + recording;
   const Output once = output_of(environment("xterm") + program + log + " --once 2>&1");
   EXPECT_EQ(once.status, 0);
-  EXPECT_THAT(once.text, HasSubstr("lidar -> camera: ✓ certified by egocal-fast (sqp), 200 frames"));
+  EXPECT_THAT(once.text, HasSubstr("optimal (proven) by egocal-fast (sqp), 200 frames"));
   EXPECT_THAT(once.text, HasSubstr("egocal-fast: running, pid 4711 on car"));
   EXPECT_THAT(once.text, Not(HasSubstr("\x1b")));
   const Output json = output_of(environment("xterm") + program + log + " --once --json 2>&1");

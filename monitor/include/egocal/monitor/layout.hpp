@@ -24,6 +24,7 @@ OverviewLayout layout_overview(int width, int height, int pairs, int processes);
 enum class PairColumn {
   name,
   verdict,
+  proof,
   error_translation,
   error_rotation,
   frames,
@@ -45,6 +46,7 @@ std::vector<PlacedColumn> layout_pair_table(int width);
 
 struct DetailLayout {
   Rect header;
+  Rect verdict;               ///< in words, above all the rest
   Rect summary;               ///< the answer in three lines, where there is no room for the panels below
   std::array<Rect, 4> plots;  ///< rotation error, translation error, scaled gap, execution time
   Rect observability, solvers;

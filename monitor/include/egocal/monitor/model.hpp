@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "egocal/bus/process.hpp"
+#include "egocal/bus/verdict.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/command_t.hpp"
 #include "egocal/geometry/pose.hpp"
@@ -69,6 +70,15 @@ struct Shown {
   double error_rotation = 0;     ///< [rad]
 };
 
+/// The newest verdict about a pair's session.
+struct PairVerdict {
+  Diagnosis diagnosis;
+  bus::Judged judged;
+  std::string sender;
+  std::int64_t seq = 0;  ///< of the problem that was judged
+  Now at;                ///< arrival
+};
+
 struct PairState {
   std::string a, b;
   bool has_problem = false;
@@ -76,6 +86,7 @@ struct PairState {
   Now problem_at;
   bool silent = false;
   std::int64_t session = 0;
+  std::optional<PairVerdict> verdict;
   std::vector<SolverTrack> solvers;
   int counted = -1;  ///< the solver whose answer counts (egocal::outranks); -1: no answer yet
   Shown shown;
@@ -126,6 +137,8 @@ class Model {
   /// A checked answer with the certificate that this listener computed (bus/answer_check.hpp). Not verified:
   /// its problem has not been received, and it never replaces a verified one.
   void on_calibration(const calibration_t& message, Now now, bool verified = true);
+  /// A checked verdict: of this pair's session, or it is ignored.
+  void on_verdict(const verdict_t& message, const bus::ReceivedVerdict& received, Now now);
   void on_status(const status_t& message, Now now);
   void on_command(const command_t& message, Now now);
   /// A line for the list of events from outside, e.g. captured standard error.
@@ -150,7 +163,8 @@ class Model {
   void begin_session(PairState& pair, std::int64_t session);
   Role role_of(const calibration_t& message) const;
   void count_answer(PairState& pair, Now now);
-  void watch_verdict(PairState& pair, Now now);
+  void watch_certificate(PairState& pair, Now now);
+  void watch_verdict(const PairState& pair, const PairVerdict& verdict, Now now);
 
   ModelOptions options_;
   std::vector<PairState> pairs_;

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <vector>
+
+#include "answer_text.hpp"
+#include "panels.hpp"
+
+namespace egocal::monitor {
+
+namespace {
+
+struct Line {
+  const char* label;
+  std::string text;
+  Style style;
+};
+
+/// Most important first: what is drawn where there is room for so many.
+std::vector<Line> lines_of(const PairVerdict& verdict, Charset charset) {
+  const Diagnosis& diagnosis = verdict.diagnosis;
+  std::vector<Line> lines;
+  for (const Finding& finding : diagnosis.findings)
+    if (finding.certain)
+      lines.push_back({"finding", finding.message + " Cure: " + finding.remedy, Style::warning});
+  if (diagnosis.goal)
+    lines.push_back({"goal", goal_text(diagnosis), diagnosis.goal->reached ? Style::good : Style::normal});
+  const std::string fit = fit_text(verdict, charset);
+  if (!fit.empty()) lines.push_back({"fit", fit, Style::normal});
+  for (const Finding& finding : diagnosis.findings)
+    if (!finding.certain) lines.push_back({"possible", finding.message, Style::dim});
+  return lines;
+}
+
+constexpr int kLabel = 9;
+
+}  // namespace
+
+void draw_verdict(const Pane& pane, const PairState& pair, Charset charset) {
+  const calibration_t* answer = pair.answer();
+  if (!answer) {
+    pane.text(1, 0, "no answer yet", Style::dim);
+    return;
+  }
+  const auto row = [&](int y, const char* label, const Label& what, const std::string& text, Style style) {
+    int x = pane.text(1, y, pad_right(label, kLabel), Style::dim);
+    x = pane.text(x, y, what.text, what.style) + (what.text.empty() ? 0 : 2);
+    if (x < pane.width()) pane.text(x, y, clean(text, static_cast<std::size_t>(pane.width() - x)), style);
+  };
+  row(0, "verdict", verdict_of(pair, charset),
+      pair.verdict ? pair.verdict->diagnosis.reason : "is egocal-diagnosis running?", Style::normal);
+  row(1, "proof", proof_of(*answer),
+      "by " + answer->solver + ", gap " + compact(answer->scaled_gap, charset) + " of 1", Style::dim);
+  if (!pair.verdict) return;
+  int y = 2;
+  for (const Line& line : lines_of(*pair.verdict, charset)) {
+    if (y >= pane.height()) break;
+    row(y++, line.label, {"", Style::normal}, line.text, line.style);
+  }
+}
+
+}  // namespace egocal::monitor

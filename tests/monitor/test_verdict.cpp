@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict comes first: on every screen, in lines and in JSON.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "egocal/monitor/lines.hpp"
+#include "egocal/monitor/view.hpp"
+#include "scene.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr Now kNow{1'000'000, 1'600'000'100'000'000};
+
+Diagnosis clean() {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::good;
+  diagnosis.reason = "The motions agree to 1.2 %, and all directions are known.";
+  diagnosis.fit.rotation_median = 0.002;
+  diagnosis.fit.translation_median = 0.013;
+  diagnosis.fit.motion_seconds = 1.2;
+  return diagnosis;
+}
+
+Diagnosis without_scale() {
+  Diagnosis diagnosis = clean();
+  diagnosis.verdict = Verdict::contradictory;
+  diagnosis.reason = "The lengths of b are 0.37 times those of a.";
+  diagnosis.findings.push_back(
+      {"scale", true, diagnosis.reason, "--scale-b auto", 40, std::nullopt, std::nullopt, 2.7});
+  return diagnosis;
+}
+
+class VerdictShown : public testing::Test {
+ protected:
+  VerdictShown() {
+    view.charset = Charset::unicode;
+    problem = test::problem_at("lidar", "camera", 100, 10);
+    model.on_problem(problem, kNow);
+    model.on_calibration(test::calibration_at(problem, false), kNow);
+  }
+  void judge(const Diagnosis& diagnosis, std::int64_t session = test::kBegin, std::int64_t seq = 101) {
+    verdict_t message =
+        bus::to_message(diagnosis, {DualQuaternion{}, test::kBegin, test::kBegin + 1'000'000, 100});
+    message.utime = test::kBegin + 1'000'000;
+    message.session = session;
+    message.seq = seq;
+    message.sensor_a = "lidar";
+    message.sensor_b = "camera";
+    message.sender = "egocal-diagnosis";
+    const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
+    ASSERT_TRUE(received) << received.reason;
+    model.on_verdict(message, *received.value, kNow);
+  }
+  std::string shown(Screen screen, int w, int h) {
+    view.screen = screen;
+    Canvas canvas(w, h);
+    draw(canvas, model, view);
+    return canvas.to_text();
+  }
+  std::vector<std::string> events() const {
+    std::vector<std::string> texts;
+    for (const Event& event : model.events()) texts.push_back(event.text);
+    return texts;
+  }
+
+  Model model;
+  ViewState view;
+  problem_t problem;
+};
+
+TEST_F(VerdictShown, ComesBeforeTheProof) {
+  judge(clean());
+  for (const Screen screen : {Screen::overview, Screen::detail})
+    for (const auto& [w, h] : {std::pair{80, 24}, {110, 42}, {200, 60}}) {
+      const std::string text = shown(screen, w, h);
+      const auto verdict = text.find("✓ good"), proof = text.find("optimal (proven)");
+      ASSERT_NE(verdict, std::string::npos) << w << "x" << h << "\n" << text;
+      ASSERT_NE(proof, std::string::npos) << w << "x" << h << "\n" << text;
+      EXPECT_LT(verdict, proof);
+      EXPECT_THAT(text, HasSubstr("The motions agree to 1.2 %")) << w << "x" << h;
+    }
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("1 of 1 good"));
+}
+
+TEST_F(VerdictShown, AtEverySizeThatShowsTheProof) {
+  judge(without_scale());
+  for (int w = 30; w <= 120; w += 10)
+    for (int h = 5; h <= 40; h += 5) {
+      const std::string text = shown(Screen::overview, w, h);
+      EXPECT_THAT(text, HasSubstr("contradictory")) << w << "x" << h << "\n" << text;
+    }
+}
+
+TEST_F(VerdictShown, AFindingComesWithItsCure) {
+  judge(without_scale());
+  for (const Screen screen : {Screen::overview, Screen::detail}) {
+    const std::string text = shown(screen, 110, 42);
+    EXPECT_THAT(text, HasSubstr("✗ contradictory"));
+    EXPECT_THAT(text, HasSubstr("The lengths of b are 0.37 times those of a. Cure: --scale-b auto"));
+    EXPECT_THAT(text, HasSubstr("optimal (proven)")) << "which it is all the same";
+  }
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("0 of 1 good"));
+}
+
+TEST_F(VerdictShown, TheGoalSaysWhatIsMissingForHowLongAndWhatToDrive) {
+  Diagnosis diagnosis = clean();
+  diagnosis.verdict = Verdict::incomplete;
+  diagnosis.goal = Goal{false, {"z", "yaw"}, 75.0, "Take a ramp at an angle."};
+  judge(diagnosis);
+  for (const Screen screen : {Screen::overview, Screen::detail}) {
+    const std::string text = shown(screen, 110, 42);
+    EXPECT_THAT(text, HasSubstr("weak: z yaw, about 75 s more of this. Take a ramp at an angle.")) << text;
+  }
+  diagnosis.goal->missing = {"z", "yaw", "x", "y", "roll", "pitch"};
+  diagnosis.goal->seconds_left.reset();
+  judge(diagnosis);
+  EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("collecting, more of this does not help"));
+  diagnosis.verdict = Verdict::good;
+  diagnosis.goal = Goal{true, {}, std::nullopt, ""};
+  judge(diagnosis);
+  EXPECT_THAT(shown(Screen::overview, 110, 42), HasSubstr("goal done"));
+  EXPECT_THAT(events(), Contains("the goal is reached"));
+}
+
+TEST_F(VerdictShown, IsNotThatOfAnAnswerThatIsNotProven) {
+  judge(clean());
+  calibration_t answer = test::calibration_at(test::problem_at("lidar", "camera", 101, 10), false);
+  answer.status = 1;
+  model.on_calibration(answer, kNow);
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("? not proven"));
+  EXPECT_THAT(shown(Screen::overview, 110, 30), Not(HasSubstr("✓ good")));
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("not optimal"));
+}
+
+TEST_F(VerdictShown, NeverThatOfAnotherSession) {
+  judge(without_scale(), test::kBegin - 5);
+  EXPECT_FALSE(model.pairs()[0].verdict);
+  judge(without_scale(), test::kBegin + 5);
+  EXPECT_FALSE(model.pairs()[0].verdict);
+  judge(clean());
+  ASSERT_TRUE(model.pairs()[0].verdict);
+  judge(without_scale(), test::kBegin, 50);
+  EXPECT_EQ(model.pairs()[0].verdict->diagnosis.verdict, Verdict::good) << "an older one came late";
+  problem.session += 7;
+  model.on_problem(problem, kNow);
+  EXPECT_FALSE(model.pairs()[0].verdict) << "a new session is not judged yet";
+}
+
+TEST_F(VerdictShown, ItsChangesAreEvents) {
+  judge(clean());
+  judge(clean());
+  judge(without_scale());
+  EXPECT_THAT(events(), Contains(HasSubstr("verdict: good.")).Times(1));
+  EXPECT_THAT(events(), Contains(HasSubstr("verdict: contradictory. The lengths")).Times(1));
+  Diagnosis moved = without_scale();
+  moved.findings.push_back({"mount_moved", true, "camera moved at 2:18: yaw -2.0 deg.", "reset", 3,
+                            std::nullopt, 138.0, std::nullopt});
+  judge(moved);
+  EXPECT_THAT(events(), Contains("camera moved at 2:18: yaw -2.0 deg."));
+}
+
+TEST_F(VerdictShown, InLines) {
+  EXPECT_THAT(pair_lines(model, Charset::ascii),
+              HasSubstr("lidar -> camera: not judged yet; optimal (proven)"));
+  judge(without_scale());
+  EXPECT_THAT(pair_lines(model, Charset::ascii),
+              HasSubstr("lidar -> camera: ! contradictory: The lengths of b are 0.37 times those of a. Cure: "
+                        "--scale-b auto; optimal (proven) by egocal-fast (sqp), 101 frames"));
+}
+
+TEST_F(VerdictShown, InJson) {
+  EXPECT_EQ(nlohmann::json::parse(json_line(model))["pairs"][0]["verdict"], nullptr);
+  Diagnosis diagnosis = without_scale();
+  diagnosis.goal = Goal{false, {"z"}, std::nullopt, "Take a ramp."};
+  judge(diagnosis);
+  const nlohmann::json pair = nlohmann::json::parse(json_line(model))["pairs"][0];
+  EXPECT_EQ(pair["verdict"], "contradictory");
+  EXPECT_NEAR(pair["fit"]["rotation_deg_median"].get<double>(), 0.1146, 1e-3);
+  EXPECT_EQ(pair["findings"][0]["code"], "scale");
+  EXPECT_EQ(pair["findings"][0]["certain"], true);
+  EXPECT_EQ(pair["findings"][0]["remedy"], "--scale-b auto");
+  EXPECT_EQ(pair["goal"]["reached"], false);
+  EXPECT_EQ(pair["goal"]["missing"][0], "z");
+  EXPECT_EQ(pair["goal"]["seconds_left"], nullptr);
+  EXPECT_EQ(pair["answer"]["certified"], true);
+}
+
+}  // namespace
+}  // namespace egocal::monitor
