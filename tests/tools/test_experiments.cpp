@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,13 +15,18 @@
 
 #include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
+#include "../support/scratch_folder.hpp"
 #include "egocal/error.hpp"
+#include "egocal/io/trajectory_file.hpp"
+#include "egocal/simulation/simulation.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/figure.hpp"
 #include "experiments/globality.hpp"
 #include "experiments/noise.hpp"
 #include "experiments/online.hpp"
+#include "experiments/paper.hpp"
 #include "experiments/source.hpp"
+#include "experiments/table_text.hpp"
 
 namespace egocal::tools {
 namespace {
@@ -258,6 +264,70 @@ TEST(Source, NamesTheFileThatIsMissing) {
   }
 }
 
+TEST(Source, DrivesBetweenCommasAddUp) {
+  const testing::ScratchFolder folder;
+  for (const int seed : {1, 2}) {
+    const Pose T{rotation_exp({0.3, -0.2, 2.0}), {2.5, -1.2, 0.6}};
+    SimulationOptions options;
+    options.poses = 51;
+    options.seed = static_cast<std::uint64_t>(seed);
+    options.T_vehicle_sensor = {Pose{}, T};
+    const std::vector<Trajectory> drive = simulate(options);
+    write_tum(folder.path("a" + std::to_string(seed)), drive[0]);
+    write_tum(folder.path("b" + std::to_string(seed)), drive[1]);
+  }
+  const auto names = [&](const std::string& sensor) {
+    return folder.path(sensor + "1") + "," + folder.path(sensor + "2");
+  };
+  const DataSet both = load({.file_a = names("a"), .file_b = names("b")});
+  EXPECT_EQ(both.pairs.size(), 100u);
+  // no motion leads from one drive to the next
+  const DataSet second = load({.file_a = folder.path("a2"), .file_b = folder.path("b2")});
+  ASSERT_EQ(second.pairs.size(), 50u);
+  for (std::size_t i = 0; i < 50; ++i) EXPECT_EQ(both.pairs[50 + i].begin_us, second.pairs[i].begin_us);
+  EXPECT_THROW(load({.file_a = names("a"), .file_b = folder.path("b1")}), Error);
+}
+
+TEST(TableText, IsCsvAndLatexOfTheSameNumbers) {
+  std::vector<ComparisonRow> rows = compare(random_data(egocal::testing::Motion::free, 100, 0.01), 1);
+  rows[0].verdict = "not valid, \"far\" off";
+  rows[0].error->translation = 5000;
+  EXPECT_THAT(csv(rows), HasSubstr("\"not valid, \"\"far\"\" off\""));
+  const std::string tex = latex(rows);
+  EXPECT_THAT(tex, HasSubstr("analytic [19] & 3D & $>10^5$ &"));
+  EXPECT_THAT(tex, HasSubstr("\\end{tabular}"));
+  EXPECT_THAT(tex, HasSubstr(fmt::format("global (dual) & 3D & {:.2f} &", 100 * rows[4].error->translation)));
+}
+
+TEST(Paper, OnePageHoldsEveryTableAndFigureBesideThePrintedNumbers) {
+  const testing::ScratchFolder folder;
+  const PaperOptions options{.data = "", .out = folder.path("paper"), .full = false, .repeats = 1};
+  double last = 0;
+  const auto progress = [&](const std::string&, double part) {
+    EXPECT_GE(part, last - 1e-12);
+    last = part;
+  };
+  const std::string page = content_of(reproduce_paper(options, progress));
+  EXPECT_EQ(last, 1);
+  for (const char* part : {"Table I:", "Table II:", "Fig. 3", "Fig. 4", "Fig. 5", "Fig. 6", "Section V-F",
+                           "20.76", "1900.0", "224448", "11520 certified", "simulated drives"})
+    EXPECT_THAT(page, HasSubstr(part));
+  for (const char* outside : {"src=", "href=", "<script", "@import"})
+    EXPECT_THAT(page, ::testing::Not(HasSubstr(outside)));
+  for (const char* file : {"table-1.tex", "table-2.csv", "fig-3.csv", "fig-4-translation.svg",
+                           "fig-5-path.svg", "fig-6-3d-gap.svg", "v-f-rotation.svg"})
+    EXPECT_TRUE(std::filesystem::exists(options.out + "/" + file)) << file;
+
+  // a run that was interrupted goes on: what is there stays, what is missing or of other options is made
+  // again
+  const std::string kept = options.out + "/parts/fig-4.html", lost = options.out + "/parts/fig-3.html";
+  std::ofstream(kept, std::ios::app) << "<!-- kept -->";
+  std::filesystem::remove(lost);
+  last = 0;
+  EXPECT_THAT(content_of(reproduce_paper(options, progress)), HasSubstr("<!-- kept -->"));
+  EXPECT_TRUE(std::filesystem::exists(lost));
+}
+
 /// Reads "tx ty tz qw qx qy qz", lines with # skipped.
 Pose truth_of(const std::string& file) {
   std::ifstream in(file);
@@ -294,6 +364,31 @@ TEST(Compare, RepeatsTableIIOnKitti07) {
   EXPECT_NEAR(by_name.at("global (closed form)").error->translation, 0.1434, 5e-5);
   EXPECT_THAT(by_name.at("analytic [19]").verdict, ::testing::Not("valid"));
   EXPECT_LT(by_name.at("matrix [8]").error->rotation, by_name.at("global (dual)").error->rotation);
+}
+
+TEST(Compare, GivesTheNumbersOfThePageOnThePaper) {
+  const std::string folder = paths::data_dir();
+  if (!std::filesystem::exists(folder + "/kitti_05")) GTEST_SKIP() << folder << "/kitti_05 is absent";
+  const DataSet data = load(
+      {.file_a = folder + "/kitti_05/velodyne_pylidar.tum," + folder + "/kitti_07/velodyne_pylidar.tum",
+       .file_b = folder + "/kitti_05/cam0_orbslam2.tum," + folder + "/kitti_07/cam0_orbslam2.tum",
+       .truth = truth_of(folder + "/kitti_07/truth.txt"),
+       .plane_a = validated({{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
+                             -1.779603641715662210e+00}),
+       .plane_b =
+           validated({{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
+                      -1.684677553916568593e+00})});
+  const std::string page = content_of(paths::source_dir() + "/docs/paper.md");
+  int compared = 0;
+  for (const ComparisonRow& row : compare(data, 1)) {
+    if (row.verdict != "certified" && row.verdict != "valid") continue;
+    const std::string line =
+        fmt::format("| {} | {} | {:.2f} | {:.3f} |", row.method, row.mode == Mode::planar ? "planar" : "3-D",
+                    100 * row.error->translation, row.error->rotation / degree);
+    EXPECT_THAT(page, HasSubstr(line));
+    ++compared;
+  }
+  EXPECT_GE(compared, 8);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "commands/source_options.hpp"
 #include "experiments/comparison.hpp"
+#include "experiments/table_text.hpp"
 #include "offline/provenance.hpp"
 
 namespace egocal::tools {
@@ -19,7 +20,7 @@ namespace {
 struct Options {
   Source source;
   int repeats = 10;
-  bool json = false;
+  bool json = false, csv = false, latex = false;
 };
 
 nlohmann::ordered_json row_json(const ComparisonRow& row) {
@@ -53,6 +54,10 @@ void run(const Options& options, const std::string& command_line) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
+  if (options.csv || options.latex) {
+    fmt::print("{}", options.csv ? csv(rows) : latex(rows));
+    return;
+  }
   fmt::print("{} motion pairs; times from the pairs to the answer, median of {}\n\n{}", data.pairs.size(),
              options.repeats, table(rows));
 }
@@ -67,7 +72,9 @@ void add_compare(cli::App program) {
   command.add_option("--repeats", options->repeats, "of each method, for its time")
       .show_default()
       .check(cli::Check::range(1, 100000));
-  command.add_flag("--json", options->json, "one JSON object on standard output");
+  const cli::Option json = command.add_flag("--json", options->json, "one JSON object on standard output");
+  const cli::Option csv = command.add_flag("--csv", options->csv, "the table as CSV").excludes(json);
+  command.add_flag("--latex", options->latex, "the table as LaTeX").excludes(json).excludes(csv);
   command.callback([options, command] { run(*options, command.command_line()); });
 }
 

@@ -13,6 +13,7 @@
 #include "experiments/globality.hpp"
 #include "experiments/noise.hpp"
 #include "experiments/online.hpp"
+#include "experiments/paper.hpp"
 
 namespace egocal::tools {
 
@@ -129,6 +130,27 @@ void add_globality(cli::App experiment) {
   });
 }
 
+void add_paper(cli::App experiment) {
+  const auto options = std::make_shared<PaperOptions>();
+  cli::App command = experiment.add_subcommand(
+      "paper", "every table and figure of the paper, on one page beside the printed numbers");
+  command.add_option(
+      "--data", options->data,
+      "folder with kitti_05, kitti_07, kitti_ground_planes (docs/paper.md); without it: simulated drives");
+  command
+      .add_option("--out", options->out,
+                  "folder for the page, the figures and their numbers; a run that was interrupted goes on")
+      .required();
+  command.add_flag("--paper", options->full, "Fig. 4 at the paper's size: 224,448 optimisations");
+  command.add_option("--repeats", options->repeats, "of each method, for its time")
+      .show_default()
+      .check(cli::Check::range(1, 1000));
+  command.callback([options] {
+    Progress progress;
+    fmt::print("{}\n", reproduce_paper(*options, [&](const std::string&, double part) { progress(part); }));
+  });
+}
+
 }  // namespace
 
 void add_experiment(cli::App program) {
@@ -138,6 +160,7 @@ void add_experiment(cli::App program) {
   add_noise(experiment);
   add_online(experiment);
   add_globality(experiment);
+  add_paper(experiment);
 }
 
 }  // namespace egocal::tools

@@ -10,10 +10,10 @@
 namespace egocal::tools {
 
 void add_source_options(cli::App command, Source& source) {
-  cli::Option a = command.add_option(
-      "A", source.file_a,
-      "trajectory of sensor a (TUM, KITTI or EuRoC csv); without files: a simulated drive");
-  cli::Option b = command.add_option("B", source.file_b, "trajectory of sensor b");
+  cli::Option a =
+      command.add_option("A", source.file_a,
+                         "trajectory of sensor a, or several drives A1,A2; without files: a simulated drive");
+  cli::Option b = command.add_option("B", source.file_b, "trajectory of sensor b, or B1,B2");
   a.needs(b);
   command.add_option("--times-a", source.times_a, "times of A, for a KITTI file");
   command.add_option("--times-b", source.times_b, "times of B, for a KITTI file");

@@ -96,13 +96,18 @@ std::vector<Panel> panels(const std::vector<GlobalityPoint>& points) {
       if (plot.series.empty() || plot.series.back().name != name) {
         Series series;
         series.name = name;
+        // the curves lie on each other: points on dashes on a line
+        constexpr Series::Style styles[] = {Series::Style::points, Series::Style::dashes,
+                                            Series::Style::line};
         series.colour = colours[plot.series.size() % std::size(colours)];
-        if (plot.series.size() % 2 == 1) series.style = Series::Style::dashes;
+        series.style = styles[std::min(plot.series.size(), std::size(styles) - 1)];
+        series.radius = 2;
         plot.series.push_back(series);
       }
       plot.series.back().x.push_back(point.amount);
       plot.series.back().y.push_back(point.gap_median);
     }
+    std::reverse(plot.series.begin(), plot.series.end());
     result.push_back({rotation ? "rotation" : "translation", plot});
   }
   return result;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -23,10 +24,12 @@ constexpr double degrees = 180 / std::numbers::pi;
 
 std::vector<int> sizes_of(const NoiseOptions& options) {
   std::vector<int> sizes;
-  const int smallest = std::min(10, options.most_pairs);
+  const int smallest = std::min(options.even_sizes ? 4 : 10, options.most_pairs);
   for (int i = 0; i < options.sizes; ++i) {
     const double part = options.sizes > 1 ? static_cast<double>(i) / (options.sizes - 1) : 1;
-    const double size = smallest * std::pow(static_cast<double>(options.most_pairs) / smallest, part);
+    const double size = options.even_sizes
+                            ? smallest + part * (options.most_pairs - smallest)
+                            : smallest * std::pow(static_cast<double>(options.most_pairs) / smallest, part);
     sizes.push_back(static_cast<int>(std::lround(size)));
   }
   sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
@@ -47,6 +50,7 @@ Pose sensor_pose(int index, int sensors) {
 struct Sample {
   double translation, rotation;
   bool certified;
+  double seconds;  ///< to solve and to prove
 };
 
 NoisePoint::Errors errors_of(const std::vector<double>& errors) {
@@ -124,10 +128,12 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
           for (; next < std::min(pairs.size(), static_cast<std::size_t>(size)); ++next)
             statistics.add(pairs[next]);
           const Matrix8d Q = cost_matrix(statistics);
+          const auto begin = std::chrono::steady_clock::now();
           const Solution solution = solve_dual(Q);
+          const bool certified = verify(Q, solution.q).optimality == Optimality::certified;
+          const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
           const ExtrinsicError error = extrinsic_error(truth, solution.q);
-          samples[size].push_back(
-              {error.translation, error.rotation, verify(Q, solution.q).optimality == Optimality::certified});
+          samples[size].push_back({error.translation, error.rotation, certified, time.count()});
         }
         if (progress) progress(static_cast<double>(++done) / drives);
       }
@@ -141,6 +147,7 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
         translations.push_back(run.translation);
         rotations.push_back(run.rotation);
         point.certified += run.certified;
+        point.solve_seconds += run.seconds;
         ++point.runs;
       }
       point.translation = errors_of(translations);

@@ -16,9 +16,10 @@ namespace egocal::tools {
 struct NoiseOptions {
   std::vector<double> levels = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5};  ///< relative to the mean motion
   int most_pairs = 1000;
-  int sizes = 20;   ///< between 10 and most_pairs, evenly on a logarithmic scale
-  int sensors = 8;  ///< poses of sensor b
-  int repeats = 8;  ///< runs of each
+  int sizes = 20;           ///< between 10 and most_pairs, evenly on a logarithmic scale
+  bool even_sizes = false;  ///< on a linear one instead, from 4 on: 167 of them are 4, 10, 16, ..., 1000
+  int sensors = 8;          ///< poses of sensor b
+  int repeats = 8;          ///< runs of each
   std::uint64_t seed = 1;
 };
 
@@ -31,6 +32,7 @@ struct NoisePoint {
   };
   Errors translation, rotation;
   int certified = 0, runs = 0;
+  double solve_seconds = 0;  ///< of solving and proving, all runs together
 };
 
 /// progress is called with the part that is done, 0 to 1.

@@ -124,6 +124,8 @@ std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
   }
   Plot gap = plot_of("Duality gap of the fast solution", "gap / threshold");
   gap.markers.push_back({false, 1, "verified below"});
+  gap.y.least = 0.01;
+  gap.y.most = 100;
   // a gap of zero has no place on a logarithmic axis
   const double least_gap = 1e-3;
   gap.series.push_back(series_of("", Colour::blue, Series::Style::line, [least_gap](const OnlinePoint& p) {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/source.hpp"
 
+#include <filesystem>
+#include <sstream>
+
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -25,18 +28,43 @@ DataSet simulated(const Source& source) {
   return data;
 }
 
-DataSet recorded(const Source& source) {
+/// "A1,A2" in its parts; a comma that belongs to the name of an existing file stays there.
+std::vector<std::string> drives_in(const std::string& text) {
+  if (text.find(',') == std::string::npos || std::filesystem::exists(text)) return {text};
+  std::vector<std::string> names;
+  std::istringstream parts(text);
+  for (std::string name; std::getline(parts, name, ',');) names.push_back(name);
+  return names;
+}
+
+std::vector<MotionPair> pairs_of_drive(const Source& source) {
   const Trajectory a = read_trajectory(source.file_a, source.times_a);
   const Trajectory b = read_trajectory(source.file_b, source.times_b);
   PairingOptions options;
   options.stride = source.stride;
   options.balance = Balance{};
   options.time_offset = source.time_offset;
-  DataSet data;
-  data.pairs = pair_motions(options, a, b).pairs;
-  if (data.pairs.empty())
+  std::vector<MotionPair> pairs = pair_motions(options, a, b).pairs;
+  if (pairs.empty())
     throw Error(source.file_a + ", " + source.file_b +
                 ": no motion pairs: the two do not overlap in time, or every one was rejected");
+  return pairs;
+}
+
+/// The drives one after the other: statistics add up (Table II).
+DataSet recorded(const Source& source) {
+  const std::vector<std::string> a = drives_in(source.file_a), b = drives_in(source.file_b);
+  if (a.size() != b.size())
+    throw Error("expected as many drives of A as of B, got " + std::to_string(a.size()) + " and " +
+                std::to_string(b.size()));
+  DataSet data;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    Source drive = source;
+    drive.file_a = a[i];
+    drive.file_b = b[i];
+    const std::vector<MotionPair> pairs = pairs_of_drive(drive);
+    data.pairs.insert(data.pairs.end(), pairs.begin(), pairs.end());
+  }
   return data;
 }
 

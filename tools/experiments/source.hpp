@@ -11,7 +11,8 @@
 
 namespace egocal::tools {
 
-/// Where a data set comes from: two trajectory files, or a simulated drive where there are none.
+/// Where a data set comes from: two trajectory files, several drives of one rig between commas (A1,A2 and
+/// B1,B2), or a simulated drive where there are none.
 struct Source {
   std::string file_a{}, file_b{};
   std::string times_a{}, times_b{};  ///< for KITTI files

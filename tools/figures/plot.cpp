@@ -190,8 +190,8 @@ std::string dots(const Series& series, const Plot& plot, const Frame& frame) {
   std::string out;
   for (std::size_t i = 0; i < series.x.size(); ++i)
     if (drawable(plot.x, series.x[i]) && drawable(plot.y, series.y[i]))
-      out += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='1.3' fill='{}'/>\n", frame.x(series.x[i]),
-                         frame.y(series.y[i]), hex(series.colour));
+      out += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='{:g}' fill='{}'/>\n", frame.x(series.x[i]),
+                         frame.y(series.y[i]), series.radius, hex(series.colour));
   return out;
 }
 
@@ -231,16 +231,30 @@ std::string drawn(const Marker& marker, const Frame& frame) {
            text(x + 2, top + font_size + 1, "start", marker.label);
   }
   const double y = frame.y(marker.at);
+  const double label = y - 2 - font_size > top ? y - 2 : y + font_size;
   return line(left, y, left + frame.width(), y, style) +
-         text(left + frame.width() - 2, y - 2, "end", marker.label);
+         text(left + frame.width() - 2, label, "end", marker.label);
 }
+
+constexpr double letter_width = 0.56 * font_size;  // of Helvetica, on average
 
 /// A place for the legend: its upper left corner.
 struct Place {
   double x = 0, y = 0;
 };
 
-/// The corner that hides the fewest points of the data.
+/// Whether a legend there would hide the label of a vertical marker, which is at the top.
+bool hides_a_label(const Plot& plot, const Frame& frame, const Place& corner, double width) {
+  if (corner.y > top + 2 * font_size) return false;
+  for (const Marker& marker : plot.markers) {
+    const double from = frame.x(marker.at),
+                 to = from + letter_width * static_cast<double>(marker.label.size());
+    if (marker.vertical && from < corner.x + width && to > corner.x) return true;
+  }
+  return false;
+}
+
+/// The corner that hides the fewest points of the data, and no label where that can be.
 Place emptiest_corner(const Plot& plot, const Frame& frame, double width, double height) {
   constexpr double gap = 3;
   const double far_x = left + frame.width() - width - gap, far_y = top + frame.height() - height - gap;
@@ -248,7 +262,8 @@ Place emptiest_corner(const Plot& plot, const Frame& frame, double width, double
   Place best = corners[0];
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (const Place& corner : corners) {
-    std::size_t hidden = 0;
+    constexpr std::size_t label = 20;  // as bad as hiding so many points
+    std::size_t hidden = hides_a_label(plot, frame, corner, width) ? label : 0;
     for (const Series& series : plot.series)
       for (std::size_t i = 0; i < series.x.size(); ++i) {
         if (!drawable(plot.x, series.x[i]) || !drawable(plot.y, series.y[i])) continue;
@@ -263,15 +278,14 @@ Place emptiest_corner(const Plot& plot, const Frame& frame, double width, double
 }
 
 std::string legend(const Plot& plot, const Frame& frame) {
-  constexpr double line_height = font_size + 2, sample = 14,
-                   letter = 0.56 * font_size;  // of Helvetica, on average
+  constexpr double line_height = font_size + 2, sample = 14;
   std::size_t rows = 0, longest = 0;
   for (const Series& series : plot.series) {
     rows += !series.name.empty();
     longest = std::max(longest, series.name.size());
   }
   if (rows == 0) return "";
-  const double width = sample + 8 + letter * static_cast<double>(longest);
+  const double width = sample + 8 + letter_width * static_cast<double>(longest);
   const double height = line_height * static_cast<double>(rows) + 2;
   const Place place = emptiest_corner(plot, frame, width, height);
   std::string out = fmt::format(
@@ -281,9 +295,13 @@ std::string legend(const Plot& plot, const Frame& frame) {
   for (const Series& series : plot.series) {
     if (series.name.empty()) continue;
     const char* dashes = series.style == Series::Style::dashes ? " stroke-dasharray='4 2.5'" : "";
-    out += fmt::format(
-        "<line x1='{:.2f}' y1='{:.2f}' x2='{:.2f}' y2='{:.2f}' stroke='{}' stroke-width='2'{}/>\n",
-        place.x + 2, y - 3, place.x + 2 + sample, y - 3, hex(series.colour), dashes);
+    if (series.style == Series::Style::points)
+      out += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='{:g}' fill='{}'/>\n", place.x + 2 + sample / 2,
+                         y - 3, std::max(2.0, series.radius), hex(series.colour));
+    else
+      out += fmt::format(
+          "<line x1='{:.2f}' y1='{:.2f}' x2='{:.2f}' y2='{:.2f}' stroke='{}' stroke-width='2'{}/>\n",
+          place.x + 2, y - 3, place.x + 2 + sample, y - 3, hex(series.colour), dashes);
     out += text(place.x + sample + 6, y, "start", series.name);
     y += line_height;
   }

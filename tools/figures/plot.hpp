@@ -30,6 +30,7 @@ struct Series {
   Style style = Style::line;
   Colour colour = Colour::blue;
   std::vector<double> low, high;  ///< a band around y; empty or as long as y
+  double radius = 1.3;            ///< of points [pt]
 };
 
 /// A vertical or horizontal line across the plot.
