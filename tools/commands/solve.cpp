@@ -7,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
+#include "commands/solve_rig.hpp"
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/calibration.hpp"
@@ -20,6 +21,7 @@ namespace {
 /// As typed; empty means not given.
 struct Options {
   RequestOptions request;
+  RigOptionsTyped rig;
   bool json = false;
   std::string format, out, frame_a = "a", frame_b = "b";
 };
@@ -59,6 +61,10 @@ std::string json_text(const Options& options, const SolveRequest& request, const
 }
 
 void run(const Options& options, const std::string& command_line) {
+  if (is_rig(options.rig))
+    return solve_rig_command(options.request, options.rig,
+                             {options.json, options.format, options.out, command_line});
+  if (!options.rig.from.empty()) throw cli::UsageError("--from: goes with --rig");
   const SolveRequest request = understood(options.request);
   const SolveResult result = calibrate_offline(request);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
@@ -78,9 +84,10 @@ void run(const Options& options, const std::string& command_line) {
 
 void add_solve(cli::App program) {
   const auto options = std::make_shared<Options>();
-  cli::App command =
-      program.add_subcommand("solve", "two trajectories in, the extrinsic of b in a out, with proof");
+  cli::App command = program.add_subcommand(
+      "solve", "two trajectories in, the extrinsic of b in a out, with proof; or a whole rig");
   add_request_options(command, options->request);
+  add_rig_options(command, options->rig);
   command.add_option("--format", options->format, "writes the extrinsic for another program [yaml]")
       .check(cli::Check::one_of(extrinsic_format_names()));
   command.add_option("--out", options->out,

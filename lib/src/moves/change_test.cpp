@@ -248,4 +248,16 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side) {
   return test;
 }
 
+double chance_of_change_at(Blocks blocks, std::size_t split) {
+  const Division d = divide(blocks, split);
+  const double t2 = evidence(blocks, split, d).t2 / correlation_of(d, split);
+  return hotelling_exceeded(t2, static_cast<double>(d.x1.size()), static_cast<double>(blocks.size()) - 2);
+}
+
+double chance_of_even_change(Blocks blocks) {
+  ChangeTest test;
+  test_even_change(blocks, divide(blocks, blocks.size() / 2), test);
+  return test.even_false_alarm;
+}
+
 }  // namespace egocal::detail

@@ -25,4 +25,8 @@ struct ChangeTest {
 
 ChangeTest test_change(std::span<const LinearBlock> blocks, std::size_t least_side);
 
+/// Chances of the evidence of a change before block `split`, and of an even one, where nothing changes.
+double chance_of_change_at(std::span<const LinearBlock> blocks, std::size_t split);
+double chance_of_even_change(std::span<const LinearBlock> blocks);
+
 }  // namespace egocal::detail

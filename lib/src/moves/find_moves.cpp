@@ -267,4 +267,19 @@ MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& 
   return Finder(pairs, problem, options).run();
 }
 
+double chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,
+                      const MovesOptions& options) {
+  if (pairs.size() < 2) return 1;
+  const std::size_t least = std::max(options.least_block_pairs, 3 * detail::overlap_of(pairs));
+  const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));
+  const std::size_t side = std::max<std::size_t>(1, options.least_side_blocks);
+  if (count < options.least_blocks || count < 2 * side + 1) return 1;
+  const Linearised stretch = detail::linearise(pairs, problem, count);
+  if (stretch.blocks.empty()) return 1;
+  if (kind == MoveKind::creep) return detail::chance_of_even_change(stretch.blocks);
+  std::size_t split = 0;
+  while (split < count && pairs[stretch.begin[split]].begin_us < time_us) ++split;
+  return detail::chance_of_change_at(stretch.blocks, std::clamp(split, side, count - side));
+}
+
 }  // namespace egocal

@@ -61,6 +61,17 @@ DualQuaternion motion(const Instant& begin, const Instant& end, std::size_t sens
   return canonical_sign(normalized(conjugate(begin.poses[sensor]) * end.poses[sensor]));
 }
 
+void see_from_planes(RigPair& pair, const std::vector<GroundPlane>& planes) {
+  pair.problem.mode = Mode::planar;
+  pair.problem.plane_a = planes[pair.a];
+  pair.problem.plane_b = planes[pair.b];
+  const DualQuaternion G_a = plane_frame(pair.problem.plane_a), G_b = plane_frame(pair.problem.plane_b);
+  for (MotionPair& motion : pair.pairs) {
+    motion.a = planar_motion(motion.a, G_a);
+    motion.b = planar_motion(motion.b, G_b);
+  }
+}
+
 }  // namespace
 
 std::vector<RigPair> rig_motions(std::span<const Trajectory> sensors, const RigMotionsOptions& options) {
@@ -85,6 +96,7 @@ std::vector<RigPair> rig_motions(std::span<const Trajectory> sensors, const RigM
   for (RigPair& pair : pairs) {
     std::size_t i = 0;
     std::erase_if(pair.pairs, [&](const MotionPair&) { return wrong[i++]; });
+    if (options.planes.size() == sensors.size()) see_from_planes(pair, options.planes);
   }
   return pairs;
 }

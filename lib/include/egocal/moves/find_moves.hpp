@@ -64,4 +64,9 @@ struct MovesResult {
 MovesResult find_moves(std::span<const MotionPair> pairs, const Problem& problem,
                        const MovesOptions& options = {});
 
+/// Chance of what the motions show of a change at this time, or of an even one all through them, where
+/// nothing changes; for one time that was not searched for. 1 where there are too few motions.
+double chance_of_move(std::span<const MotionPair> pairs, const Problem& problem, MoveKind kind,
+                      std::int64_t time_us, const MovesOptions& options = {});
+
 }  // namespace egocal

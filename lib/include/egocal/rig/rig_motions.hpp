@@ -14,8 +14,9 @@ namespace egocal {
 struct RigMotionsOptions {
   int stride = 1;  ///< instants of the slowest sensor in one motion
   Balance balance;
-  double max_gap = 0.5;        ///< poses further apart are not interpolated between [s]
-  ScreeningOptions screening;  ///< a motion that is not congruent in one pair is left out of all
+  double max_gap = 0.5;             ///< poses further apart are not interpolated between [s]
+  std::vector<GroundPlane> planes;  ///< one a sensor: planar mode; empty: 3-D
+  ScreeningOptions screening;       ///< a motion that is not congruent in one pair is left out of all
 };
 
 /// All pairs of a rig, with motions between the same instants for all of them: those of the slowest sensor,

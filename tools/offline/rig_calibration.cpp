@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "offline/rig_calibration.hpp"
+
+#include <algorithm>
+
+#include "arguments.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/error.hpp"
+#include "egocal/rig/rig_motions.hpp"
+#include "offline/append.hpp"
+#include "offline/log_trajectory.hpp"
+#include "offline/rig_findings.hpp"
+#include "offline/trajectory_source.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// Names and sources of the sensors of the rig that have one, and the planes of a planar rig.
+void take_from_rig(RigRequest& request, std::vector<GroundPlane>& planes) {
+  const bus::Rig rig = bus::read_rig(request.rig);
+  if (request.from.empty() == request.log.empty())
+    throw UsageError("--rig: expected --from NAME=FILE for its sensors, or --log FILE");
+  const auto take = [&](const bus::Sensor& sensor, const std::string& source) {
+    request.names.push_back(sensor.name);
+    request.sources.push_back(source);
+    if (sensor.plane) planes.push_back(*sensor.plane);
+  };
+  for (const std::string& text : request.from) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) throw UsageError("--from: expected NAME=FILE, got '" + text + "'");
+    take(bus::sensor(rig, text.substr(0, equals)), text.substr(equals + 1));
+  }
+  if (!request.log.empty())
+    for (const bus::Sensor& sensor : rig.sensors) take(sensor, sensor.channel);
+  const bool planar = !rig.pairs.empty() &&
+                      std::all_of(rig.pairs.begin(), rig.pairs.end(),
+                                  [](const bus::PairConfig& pair) { return pair.mode == Mode::planar; });
+  if (!planar || planes.size() != request.names.size()) planes.clear();
+  request.calibration.pairing.max_gap = rig.max_gap;
+}
+
+Trajectory read_one(const std::string& name, const RigRequest& request, RigReport& report) {
+  ReadOptions options;
+  options.times_file = request.times;
+  TrajectoryReading reading = read_any_trajectory(name, options);
+  for (const std::string& note : reading.notes) report.warnings.push_back(name + ": " + note);
+  return std::move(reading.trajectory);
+}
+
+std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
+  std::vector<Trajectory> trajectories;
+  for (const std::string& source : request.sources) {
+    if (request.log.empty()) {
+      trajectories.push_back(read_one(source, request, report));
+      continue;
+    }
+    LogTrajectory channel = read_log_trajectory(request.log, source);
+    if (!channel.not_used.empty()) report.warnings.push_back(channel.not_used);
+    trajectories.push_back(std::move(channel.poses));
+  }
+  if (request.append.size() % trajectories.size() != 0)
+    throw UsageError("--append: expected one file for each sensor");
+  std::vector<Trajectory*> sensors;
+  for (Trajectory& trajectory : trajectories) sensors.push_back(&trajectory);
+  for (std::size_t i = 0; i < request.append.size(); i += trajectories.size()) {
+    std::vector<Trajectory> drive;
+    for (std::size_t k = 0; k < trajectories.size(); ++k)
+      drive.push_back(read_one(request.append[i + k], request, report));
+    append_drive(sensors, std::move(drive));
+  }
+  return trajectories;
+}
+
+/// All sensors on the clock of the first one. The offsets that were added [s].
+std::vector<double> synchronise(std::vector<Trajectory>& trajectories, const RigRequest& request) {
+  std::vector<double> offsets(trajectories.size(), 0);
+  if (!request.calibration.estimate_time_offset) return offsets;
+  for (std::size_t k = 1; k < trajectories.size(); ++k) {
+    const auto offset = estimate_time_offset(trajectories[0], trajectories[k],
+                                             {.max_gap = request.calibration.pairing.max_gap});
+    if (!offset)
+      throw Error(request.names[0] + ", " + request.names[k] +
+                  ": time offset: cannot be estimated, the streams are too short or never turn");
+    trajectories[k] = on_clock_of_a(*offset, std::move(trajectories[k]));
+    offsets[k] = offset->seconds;
+  }
+  return offsets;
+}
+
+PairingOptions pairing_of(const RigRequest& request, const std::vector<GroundPlane>& planes, std::size_t a,
+                          std::size_t b) {
+  PairingOptions pairing = request.calibration.pairing;
+  pairing.time_offset = 0;
+  if (planes.empty()) return pairing;
+  pairing.mode = Mode::planar;
+  pairing.plane_a = planes[a];
+  pairing.plane_b = planes[b];
+  return pairing;
+}
+
+/// Stride and balance for all pairs: the longest stride that a pair chooses, and the balance that goes with
+/// it. What is common keeps the errors of the pairs dependent, and the loops closed.
+Choice common_choice(const std::vector<Trajectory>& trajectories, const RigRequest& request,
+                     const std::vector<GroundPlane>& planes) {
+  Choice common;
+  common.stride = 0;
+  for (std::size_t a = 0; a < trajectories.size(); ++a)
+    for (std::size_t b = a + 1; b < trajectories.size(); ++b) {
+      const PairingOptions pairing = pairing_of(request, planes, a, b);
+      const Choice choice = pair_motions(pairing, trajectories[a], trajectories[b]).drive.choice();
+      if (choice.stride > common.stride) common = choice;
+    }
+  common.reason = "common to all pairs, by the one with the longest stride: " + common.reason;
+  return common;
+}
+
+void calibrate_pairs(const std::vector<Trajectory>& trajectories, const RigRequest& request,
+                     const std::vector<GroundPlane>& planes, const std::vector<double>& offsets,
+                     const Choice& common, RigReport& report) {
+  for (std::size_t a = 0; a < trajectories.size(); ++a)
+    for (std::size_t b = a + 1; b < trajectories.size(); ++b) {
+      CalibrationOptions options = request.calibration;
+      options.estimate_time_offset = false;
+      options.pairing = pairing_of(request, planes, a, b);
+      options.pairing.stride = common.stride;
+      options.pairing.balance = common.balance;
+      try {
+        report.pairs.push_back(calibrate(trajectories[a], trajectories[b], options));
+      } catch (const Error& error) {
+        throw Error(request.names[a] + ", " + request.names[b] + ": " + error.what());
+      }
+      Calibration& calibration = report.pairs.back();
+      calibration.choice.reason = common.reason;
+      calibration.time_offset_applied = offsets[b] - offsets[a];
+      report.contradictory = report.contradictory || calibration.verdict == Verdict::contradictory;
+    }
+}
+
+}  // namespace
+
+RigReport calibrate_rig(const RigRequest& given) {
+  RigRequest request = given;
+  std::vector<GroundPlane> planes;
+  if (!request.rig.empty()) take_from_rig(request, planes);
+  if (request.sources.size() < 2) throw UsageError("solve: expected two sensors at least");
+  RigReport report;
+  report.names = request.names;
+  report.sources = request.sources;
+  std::vector<Trajectory> trajectories = read(request, report);
+  const std::vector<double> offsets = synchronise(trajectories, request);
+  const Choice common = common_choice(trajectories, request, planes);
+  calibrate_pairs(trajectories, request, planes, offsets, common, report);
+
+  RigMotionsOptions options;
+  options.stride = common.stride;
+  options.balance = common.balance;
+  options.max_gap = request.calibration.pairing.max_gap;
+  options.planes = planes;
+  options.screening = request.calibration.pairing.screening;
+  std::vector<RigPair> pairs = rig_motions(trajectories, options);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].T_a_b = to_dual_quaternion(report.pairs[i].T_a_b);
+  if (!pairs.empty() && pairs.front().pairs.empty())
+    throw Error("solve: there is no motion that all sensors were seen in: do the files overlap in time?");
+  report.solution = solve_rig(trajectories.size(), pairs);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    report.pairs[i].T_a_b = to_pose(report.solution.pairs[i].T_a_b);
+  const double begin =
+      1e-6 * static_cast<double>(pairs.front().pairs.front().begin_us - trajectories.front().front().time_us);
+  find_in_rig(pairs, begin, report);
+  return report;
+}
+
+}  // namespace egocal::tools

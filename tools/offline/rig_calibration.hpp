@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "egocal/calibrate.hpp"
+#include "egocal/rig/rig.hpp"
+#include "egocal/rig/rig_moves.hpp"
+
+namespace egocal::tools {
+
+/// Three sensors and more: as files, as channels of a log, or as the sensors of a rig file.
+struct RigRequest {
+  std::vector<std::string> names, sources;  ///< one a sensor; of a rig file empty, then taken from there
+  std::string rig;                          ///< its name
+  std::vector<std::string> from;            ///< NAME=FILE, for a rig
+  std::string log;                          ///< sources are its channels
+  std::string times;                        ///< for KITTI files
+  std::vector<std::string> append;          ///< further drives, one file a sensor by turns
+  CalibrationOptions calibration;           ///< common to all pairs
+};
+
+/// Something that is wrong with one sensor, or with one of a pair.
+struct RigFinding {
+  std::string code;                   ///< as Finding::code, without _a and _b
+  std::optional<std::size_t> sensor;  ///< the one that all pairs which show it have in common
+  std::string message, remedy;
+  std::optional<double> time;   ///< mount_moved: since the first pose of the first sensor [s]
+  std::optional<double> value;  ///< as Finding::value, of the pair that shows it best
+  std::optional<RigMove> move;  ///< mount_moved
+};
+
+struct RigReport {
+  std::vector<std::string> names, sources;
+  std::vector<Calibration> pairs;  ///< in the order of the solution's pairs
+  RigSolution solution;
+  std::vector<RigFinding> findings;
+  std::optional<std::size_t> blamed;  ///< the sensor to blame
+  bool contradictory = false;         ///< an answer that should not be used
+  std::vector<std::string> warnings;
+};
+
+/// Throws Error where a source cannot be read or a pair has no motions, UsageError where options contradict.
+RigReport calibrate_rig(const RigRequest& request);
+
+}  // namespace egocal::tools

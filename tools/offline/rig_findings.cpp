@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "offline/rig_findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace egocal::tools {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+/// Length of a part of six numbers: translation from 0, rotation from 3.
+double length(const std::array<double, 6>& x, std::size_t from) {
+  return std::hypot(x[from], x[from + 1], x[from + 2]);
+}
+
+/// "camera", or "camera or lidar" where it is one of a pair.
+std::string who(const RigReport& report, const std::optional<std::size_t>& sensor, std::size_t pair) {
+  if (sensor) return report.names[*sensor];
+  const RigPairAnswer& answer = report.solution.pairs[pair];
+  return report.names[answer.a] + " or " + report.names[answer.b];
+}
+
+RigFinding moved(const RigReport& report, const RigMove& move, double begin) {
+  RigFinding finding;
+  finding.code = "mount_moved";
+  finding.sensor = move.sensor;
+  finding.time = begin + move.time;
+  finding.move = move;
+  const std::string name = who(report, move.sensor, move.pair);
+  const std::string size = fmt::format("{:.2f} deg, {:.1f} cm", degrees * length(move.move.change, 3),
+                                       100 * length(move.move.change, 0));
+  if (move.kind == MoveKind::creep) {
+    finding.message = fmt::format("{} moves slowly from {:.1f} to {:.1f} s: {} in all.", name,
+                                  begin + move.earliest, begin + move.latest, size);
+    finding.remedy = "Fasten its mount; calibrate a shorter part of the drive.";
+  } else {
+    finding.message = fmt::format("{} moved at {:.1f} s (between {:.1f} and {:.1f} s): {}.", name,
+                                  *finding.time, begin + move.earliest, begin + move.latest, size);
+    finding.remedy = fmt::format("Calibrate the drive before and after {:.1f} s separately.", *finding.time);
+  }
+  return finding;
+}
+
+/// A finding of a pair that it is certain of, and which of its sensors it names.
+struct Witness {
+  std::size_t pair = 0;
+  std::optional<std::size_t> sensor;
+  const Finding* finding = nullptr;
+};
+
+/// Findings by code, without the _a and _b that name a sensor already.
+std::map<std::string, std::vector<Witness>> witnesses_of(const RigReport& report) {
+  std::map<std::string, std::vector<Witness>> result;
+  for (std::size_t i = 0; i < report.pairs.size(); ++i)
+    for (const Finding& finding : report.pairs[i].findings) {
+      if (!finding.certain || finding.code == "mount_moved") continue;
+      Witness witness{i, std::nullopt, &finding};
+      std::string code = finding.code;
+      const RigPairAnswer& answer = report.solution.pairs[i];
+      if (code.ends_with("_a")) witness.sensor = answer.a;
+      if (code.ends_with("_b")) witness.sensor = answer.b;
+      if (witness.sensor) code.resize(code.size() - 2);
+      result[code].push_back(witness);
+    }
+  return result;
+}
+
+/// The one sensor that every witness names or has; empty where there is none or more than one.
+std::optional<std::size_t> common_sensor(const RigReport& report, const std::vector<Witness>& witnesses) {
+  if (report.names.size() < 3) return std::nullopt;
+  std::vector<std::size_t> common;
+  for (std::size_t s = 0; s < report.names.size(); ++s)
+    if (std::all_of(witnesses.begin(), witnesses.end(), [&](const Witness& witness) {
+          const RigPairAnswer& answer = report.solution.pairs[witness.pair];
+          return witness.sensor ? *witness.sensor == s : answer.a == s || answer.b == s;
+        }))
+      common.push_back(s);
+  if (common.size() != 1) return std::nullopt;
+  return common.front();
+}
+
+std::vector<RigFinding> of_pairs(const RigReport& report) {
+  std::vector<RigFinding> findings;
+  for (const auto& [code, witnesses] : witnesses_of(report)) {
+    const Witness& best = *std::max_element(
+        witnesses.begin(), witnesses.end(),
+        [](const Witness& i, const Witness& k) { return i.finding->improvement < k.finding->improvement; });
+    RigFinding finding;
+    finding.code = code;
+    finding.sensor = common_sensor(report, witnesses);
+    finding.value = best.finding->value;
+    finding.message = fmt::format("{}: {}", who(report, finding.sensor, best.pair), best.finding->message);
+    finding.remedy = best.finding->remedy;
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+}  // namespace
+
+void find_in_rig(std::span<const RigPair> pairs, double begin, RigReport& report) {
+  std::vector<RigFinding> of_data = of_pairs(report);
+  // wrong data of one sensor change its answers all through the drive: that is no moved mount
+  if (of_data.empty())
+    for (const RigMove& move : find_rig_moves(report.names.size(), pairs))
+      report.findings.push_back(moved(report, move, begin));
+  for (RigFinding& finding : of_data) report.findings.push_back(std::move(finding));
+  for (const RigFinding& finding : report.findings)
+    if (finding.sensor && !report.blamed) report.blamed = finding.sensor;
+  const bool open = std::any_of(report.solution.loops.begin(), report.solution.loops.end(),
+                                [](const Loop& loop) { return !loop.closed; });
+  if (open && !report.blamed) report.blamed = report.solution.blamed;
+  report.contradictory = report.contradictory || open || !report.findings.empty();
+}
+
+}  // namespace egocal::tools

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "egocal/io/extrinsic_tree.hpp"
+#include "offline/rig_calibration.hpp"
+
+namespace egocal::tools {
+
+/// The keys of docs/json.md, "solve A B C".
+nlohmann::ordered_json rig_json(const RigReport& report);
+std::string rig_text(const RigReport& report);
+
+/// The consistent set as a tree with the first sensor as its root.
+ExtrinsicTree rig_tree(const RigReport& report);
+
+}  // namespace egocal::tools
