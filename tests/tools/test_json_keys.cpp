@@ -143,6 +143,24 @@ TEST_F(JsonKeys, OfSolveAreThoseOfThePage) {
   compare("solve");
 }
 
+TEST_F(JsonKeys, OfARigAreThoseOfThePage) {
+  const std::string third =
+      " --sensor lidar=1,0,1.8,1,0,0,0 --sensor camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5 "
+      "--sensor radar=2,0,0.5,1,0,0,0";
+  simulate("bumped", "--poses 800 --terrain free --noise 0.01 --bump camera=40:0,0,0,0,0,3" + third);
+  simulate("late", "--poses 800 --terrain free --noise 0.01 --clock-offset radar=0.1" + third);
+  for (const std::string name : {"bumped", "late"}) {
+    run("solve", files(name) + " " + folder.path(name) + "/radar.tum");
+    printed["solve A B C"].merge(printed["solve"]);
+    printed.erase("solve");
+  }
+  // listed once, for all commands
+  for (const std::string& key : Keys(printed["solve A B C"]))
+    if (key.rfind("files[]", 0) == 0 || key.rfind("settings", 0) == 0 || key == "notes")
+      printed["solve A B C"].erase(key);
+  compare("solve A B C");
+}
+
 TEST_F(JsonKeys, OfTheOtherCommandsAreThoseOfThePage) {
   simulate("drive", "--poses 200 --noise 0.01");
   simulate("drive.log", "--poses 200");

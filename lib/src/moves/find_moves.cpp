@@ -41,7 +41,10 @@ detail::Vector6d in_frame_a(const Parameters& x, double length, const Problem& p
 class Finder {
  public:
   Finder(Pairs pairs, const Problem& problem, const MovesOptions& options)
-      : pairs_(pairs), problem_(problem), options_(options), overlap_(detail::overlap_of(pairs)) {}
+      : pairs_(pairs),
+        problem_(detail::weighted_by_noise(pairs, problem)),
+        options_(options),
+        overlap_(detail::overlap_of(pairs)) {}
 
   MovesResult run() {
     MovesResult result;
@@ -254,7 +257,7 @@ class Finder {
   }
 
   Pairs pairs_;
-  const Problem& problem_;
+  Problem problem_;
   const MovesOptions& options_;
   std::size_t overlap_;
   std::vector<Found> found_;
@@ -274,7 +277,7 @@ double chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::i
   const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));
   const std::size_t side = std::max<std::size_t>(1, options.least_side_blocks);
   if (count < options.least_blocks || count < 2 * side + 1) return 1;
-  const Linearised stretch = detail::linearise(pairs, problem, count);
+  const Linearised stretch = detail::linearise(pairs, detail::weighted_by_noise(pairs, problem), count);
   if (stretch.blocks.empty()) return 1;
   if (kind == MoveKind::creep) return detail::chance_of_even_change(stretch.blocks);
   std::size_t split = 0;

@@ -50,6 +50,25 @@ double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Bala
          balance.translation * (a.dual - b.dual).squaredNorm();
 }
 
+Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& problem) {
+  Problem result = problem;
+  if (pairs.size() < 16) return result;
+  const std::size_t count = std::clamp<std::size_t>(pairs.size() / 16, 1, 32);
+  // once more with the better weights: the first answer may be far from where the second one is
+  for (int pass = 0; pass < 2; ++pass) {
+    const DualQuaternion q = gated_blocks(pairs, result, count).q;
+    std::vector<double> rotations, translations;
+    for (const MotionPair& pair : pairs) {
+      rotations.push_back(pair_residual(pair, q, {1, 0}));
+      translations.push_back(pair_residual(pair, q, {0, 1}));
+    }
+    const double balance = median(std::move(rotations)) / median(std::move(translations));
+    if (!(balance > 1e-12 && balance < 1e12)) return result;
+    result.balance = {1, balance};
+  }
+  return result;
+}
+
 std::size_t overlap_of(std::span<const MotionPair> pairs) {
   std::vector<double> counts;
   for (std::size_t i = 0; i < std::min<std::size_t>(pairs.size(), 200); ++i) {

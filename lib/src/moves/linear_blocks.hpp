@@ -33,6 +33,11 @@ struct Linearised {
 /// Motions of two sensors fit an extrinsic: |a q - q b|^2, weighted.
 double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Balance& balance);
 
+/// The problem with a balance by the inverse variances of both residuals. The balance that the jack-knife
+/// chooses on a drive with a moved mount hides the move; and noise in a gradient then has the shape of the
+/// curvature, as the test assumes. The given balance where there is no noise.
+Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& problem);
+
 /// Pairs that share time with the next ones: how many motions one step overlaps with.
 std::size_t overlap_of(std::span<const MotionPair> pairs);
 
