@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "egocal/robust/consensus.hpp"
+
+namespace egocal {
+
+/// One part of a drive in truncated least squares: it costs min(q'Qq, limit).
+struct TruncatedPart {
+  Matrix8d Q = Matrix8d::Zero();  ///< weighted, positive semidefinite
+  double limit = 0;               ///< > 0, in the unit of q'Qq
+};
+
+/// Tuning of prove_outliers(). The study is tests/bench/outlier_proof_study.cpp.
+struct OutlierProofOptions {
+  /// Choices are told apart by costs that differ by more than this part; less is rounding.
+  double tolerance = 1e-9;
+  /// Solves of the search through the parts that the leverages leave undecided. 200 take 2 ms.
+  std::size_t most_solves = 200;
+  /// Step of the distances that are checked, a ratio. A smaller one proves no more than one problem in a
+  /// hundred of the study more.
+  double distance_step = 1.05;
+};
+
+enum class OutlierChoice {
+  proven,      ///< no other choice of outliers has an extrinsic with a lower truncated cost
+  not_proven,  ///< nothing is known of other choices
+  not_best,    ///< another choice with a lower truncated cost is known
+};
+std::string_view to_string(OutlierChoice choice);
+
+/// What is known of a choice of outliers.
+struct OutlierProof {
+  OutlierChoice choice = OutlierChoice::not_proven;
+  double cost = 0;            ///< truncated cost of the answer
+  std::size_t undecided = 0;  ///< parts that the leverages do not decide
+  std::size_t solves = 0;     ///< of the search through them
+  std::vector<bool> better;   ///< not_best: the outliers of the better choice
+};
+
+/// Whether the minimum over the parts that are no outliers is the global minimum of sum min(q'Q_k q, limit_k)
+/// over all extrinsics q and hence over all 2^K choices of outliers. A competitor that is as good lies at a
+/// distance at which some part changes sides; leverages bound what a change can save (docs/method.md,
+/// "Outliers"). Parts that they leave undecided are searched by branch and bound. Rigorous: distances and
+/// leverages by Cholesky proofs, minima by the certificate of the dual. Not proven where some outlier would
+/// be accepted or some kept part rejected by its own limit. 3-D only. Thread-safe, deterministic.
+OutlierProof prove_outliers(std::span<const TruncatedPart> parts, const std::vector<bool>& outlier,
+                            const OutlierProofOptions& options = {});
+
+}  // namespace egocal
