@@ -198,5 +198,54 @@ TEST(Observability, IntervalsOfTwoSigmaCoverTheTruth) {
   EXPECT_LT(share, 0.98);
 }
 
+/// Drives of 100 motions with rotation noise of which the sensors share a part (one gyro): common_part is the
+/// correlation. tilt: of the ground [rad].
+Answer with_shared_noise(double common_part, double tilt, std::uint64_t seed) {
+  Random random(seed);
+  const double sigma = 2e-3;  // [rad]
+  std::vector<MotionPair> pairs;
+  for (int i = 0; i < 100; ++i) {
+    const double yaw = 0.2 * random.normal();
+    const Eigen::Vector3d ramp = random.normal3(tilt);
+    const DualQuaternion a = displacement({ramp.x(), ramp.y(), yaw}, {1 + 0.1 * random.normal(), 0, 0});
+    const DualQuaternion b = conjugate(T_a_b) * a * T_a_b;
+    const Eigen::Vector3d common = random.normal3(sigma * std::sqrt(common_part));
+    const auto measured = [&](const DualQuaternion& motion, const Eigen::Vector3d& shared) {
+      const Eigen::Vector3d own = random.normal3(sigma * std::sqrt(1 - common_part));
+      const Eigen::Vector3d shift = random.normal3(0.01);
+      return motion * displacement(shared + own, shift);
+    };
+    const DualQuaternion a_measured = measured(a, common);
+    const DualQuaternion b_measured = measured(b, to_pose(T_a_b).rotation.conjugate() * common);
+    pairs.push_back({a_measured, b_measured});
+  }
+  Problem problem = problem_of(pairs);
+  problem.balance = {1, 0.01};
+  return solve(problem, Method::dual);
+}
+
+/// Rotations cannot tell noise that the sensors share from tilt, translations can.
+TEST(Observability, SharedRotationNoiseOnFlatGroundShowsNoHeight) {
+  for (const double common_part : {0.0, 0.6, 0.9}) {
+    int called_observable = 0, level_lost = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+      const Answer answer = with_shared_noise(common_part, 0, seed);
+      called_observable += answer.observability.observable[2];
+      level_lost += !answer.observability.observable[0] || !answer.observability.observable[1];
+    }
+    EXPECT_LE(called_observable, 1) << common_part;
+    EXPECT_EQ(level_lost, 0) << common_part;
+  }
+}
+
+TEST(Observability, SharedRotationNoiseOnRampsKeepsTheHeight) {
+  for (const double common_part : {0.0, 0.6, 0.9}) {
+    int called_observable = 0;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed)
+      called_observable += with_shared_noise(common_part, 0.03, seed).observability.observable[2];
+    EXPECT_EQ(called_observable, 100) << common_part;
+  }
+}
+
 }  // namespace
 }  // namespace egocal

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "egocal/solvers/planar.hpp"
+#include "egocal/uncertainty/leave_out.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
 
@@ -22,13 +23,6 @@ using detail::Vector6d;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// A direction of x y z roll pitch yaw counts as unobservable when more than this part of it lies in
-/// directions that the motions do not show.
-constexpr double leak_allowed = 0.05;
-
-/// How many times the curvature that noise alone makes a direction needs to be called observable.
-constexpr double noise_factor = 3;
 
 struct Spectrum {
   Matrix6d vectors;  ///< columns; dt in units of length, dtheta [rad]
@@ -77,6 +71,8 @@ class Jackknife {
 
 /// Fewer blocks than this say too little about a spread.
 constexpr std::size_t least_blocks = 6;
+/// Directions with less translation in them are rotations, which need no such test.
+constexpr double most_rotation_part = 0.5;
 /// Fewer double ones are not looked at.
 constexpr std::size_t least_double_blocks = 8;
 
@@ -147,8 +143,26 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, double 
   return jackknife.variance();
 }
 
+/// Whether the translation along a direction (dt in units of length, dtheta) differs from zero by more than
+/// chance: rotation noise that the sensors share pulls it there where no motion shows it.
+bool shown_by_translations(const Vector6d& direction, const Problem& problem, const Matrix8d& Q_metres,
+                           const DualQuaternion& T_a_b, double length, double sigmas) {
+  const std::vector<Vector6d> differences = leave_out_differences(problem, Q_metres, T_a_b);
+  const auto blocks = static_cast<double>(differences.size());
+  double mean = 0, squares = 0;
+  const auto along = [&](Vector6d difference) {
+    difference.head<3>() /= length;
+    return direction.dot(difference);
+  };
+  for (const Vector6d& difference : differences) mean += along(difference) / blocks;
+  for (const Vector6d& difference : differences) squares += std::pow(along(difference) - mean, 2);
+  const double stddev = std::sqrt(squares * (blocks - 1) / blocks);
+  return std::abs(direction.head<3>().dot(to_pose(T_a_b).translation)) / length > sigmas * stddev;
+}
+
 Observability spatial_observability(const Problem& problem, const Matrix8d& Q_metres,
-                                    const DualQuaternion& T_a_b, ErrorCorrelation errors) {
+                                    const DualQuaternion& T_a_b, ErrorCorrelation errors,
+                                    const ObservabilityOptions& options) {
   Observability result;
   result.stddev.fill(infinity);
   const Statistics all = sum_blocks(problem.blocks);
@@ -158,22 +172,29 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   const Matrix86d T = detail::frame_a_basis(q);
   const Matrix6d H = T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, q)) * T;
 
-  // What is left of the curvature when noise is taken off: in the translations noise_factor times what
+  // What is left of the curvature when noise is taken off: in the translations `independent_noise` times what
   // rotation noise adds to D (a quarter, as d = t r / 2), in the rotations the fluctuation of J, whose mean
   // lambda_1 takes off already.
   const double noise = rotation_noise(Q, q);
   const double fluctuation = 4 / std::sqrt(std::max(1.0, static_cast<double>(all.count)));
   Matrix6d clean = H;
-  clean.diagonal().head<3>().array() -= 0.25 * noise * (noise_factor + fluctuation);
+  clean.diagonal().head<3>().array() -= 0.25 * noise * (options.independent_noise + fluctuation);
   clean.diagonal().tail<3>().array() -= 0.25 * fluctuation * std::max(0.0, cost(Q, q));
   const Spectrum seen = spectrum(clean);
   const double floor = 1e-12 * (H.diagonal().cwiseAbs().sum() + Q.diagonal().maxCoeff() * 1e-3);
   int hidden = 0;
   while (hidden < 6 && !(seen.curvatures[hidden] > floor)) ++hidden;
+  const double doubtful = floor + 0.25 * noise * (options.shared_noise - options.independent_noise);
+  if (errors == ErrorCorrelation::correlated && problem.blocks.size() >= least_blocks)
+    while (hidden < 6 && seen.curvatures[hidden] < doubtful &&
+           seen.vectors.col(hidden).head<3>().norm() > most_rotation_part &&
+           !shown_by_translations(seen.vectors.col(hidden), problem, Q_metres, T_a_b, length,
+                                  options.shown_sigmas))
+      ++hidden;
 
   const auto hidden_vectors = seen.vectors.leftCols(hidden);
   for (int i = 0; i < 6; ++i)
-    result.observable[static_cast<std::size_t>(i)] = hidden_vectors.row(i).norm() <= leak_allowed;
+    result.observable[static_cast<std::size_t>(i)] = hidden_vectors.row(i).norm() <= options.leak;
   int hidden_translations = 0;
   bool rotation_hidden = false;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -210,7 +231,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
 }
 
 Observability planar_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                                   ErrorCorrelation errors) {
+                                   ErrorCorrelation errors, const ObservabilityOptions& options) {
   Observability result;
   result.stddev.fill(infinity);
   const Statistics all = sum_blocks(problem.blocks);
@@ -237,15 +258,16 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   const bool yaw_seen = worst - best.cost > fluctuation * std::max(0.0, best.cost) + rounding;
   const double unit = detail::length_scale(Q);
   const bool translation_seen =
-      D_least > noise * (noise_factor + fluctuation) + rounding / (unit * unit) && D_least > 1e-28 * Q(0, 0);
+      D_least > noise * (options.independent_noise + fluctuation) + rounding / (unit * unit) &&
+      D_least > 1e-28 * Q(0, 0);
 
   // The plane's own directions in sensor a's frame; yaw turns about the normal.
   const Eigen::Vector3d normal = problem.plane_a.normal;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    result.observable[k] = translation_seen && std::abs(normal[i]) <= leak_allowed;
+    result.observable[k] = translation_seen && std::abs(normal[i]) <= options.leak;
     // a rotation axis is shown by yaw alone where it is the normal
-    result.observable[k + 3] = yaw_seen && 1 - std::abs(normal[i]) <= leak_allowed;
+    result.observable[k + 3] = yaw_seen && 1 - std::abs(normal[i]) <= options.leak;
   }
   if (!translation_seen || !yaw_seen)
     result.hint = translation_seen ? "still needed: motion" : "still needed: turns";
@@ -278,15 +300,15 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
 }  // namespace
 
 Observability assess_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                                   ErrorCorrelation errors) {
+                                   ErrorCorrelation errors, const ObservabilityOptions& options) {
   if (!Q.allFinite() || !(Q.diagonal().maxCoeff() > 0)) {
     Observability nothing;
     nothing.stddev.fill(infinity);
     nothing.hint = "still needed: motion";
     return nothing;
   }
-  return problem.mode == Mode::planar ? planar_observability(problem, Q, T_a_b, errors)
-                                      : spatial_observability(problem, Q, T_a_b, errors);
+  return problem.mode == Mode::planar ? planar_observability(problem, Q, T_a_b, errors, options)
+                                      : spatial_observability(problem, Q, T_a_b, errors, options);
 }
 
 FlatDirections flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {

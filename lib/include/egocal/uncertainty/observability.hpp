@@ -10,6 +10,23 @@ namespace egocal {
 /// single ones, and the larger spread counts: safer to report, noisier to compare settings by.
 enum class ErrorCorrelation { correlated, independent };
 
+/// When a direction counts as observable.
+struct ObservabilityOptions {
+  /// A direction of x y z roll pitch yaw is unobservable when more than this part of it lies in directions
+  /// that the motions do not show: a twentieth leaves it 99.9 % of its information.
+  double leak = 0.05;
+  /// How many times the curvature that independent rotation noise makes a translation needs. Three times is
+  /// what the noise makes along the axis that the vehicle turns about.
+  double independent_noise = 3;
+  /// The same where the sensors may share their noise (one gyro), which the rotations cannot tell from
+  /// motion. Of a correlation rho they see 1 - rho, and the curvature gets (3 + rho) / 3: 30 times covers
+  /// 0.95. Up to there the translations must show the direction. Road drives of KITTI have 37 and more.
+  double shared_noise = 30;
+  /// Shared noise pulls a translation that is not shown to zero. One that differs from zero by so many
+  /// standard deviations is shown: 1 false in 10,000.
+  double shown_sigmas = 4;
+};
+
 /// What the motions tell of each direction around the minimiser of (18), in the coordinates (t, rotation
 /// vector) of sensor a's frame.
 ///
@@ -17,10 +34,12 @@ enum class ErrorCorrelation { correlated, independent };
 /// noise of the motions alone makes: noisy rotations about one axis look like rotations about several.
 /// Standard deviation: the block jack-knife, honest in spite of correlated motions. It is a variance: a
 /// systematic error of one sensor stays. To it is added the attenuation that noisy rotations cause
-/// (docs/method.md, "Uncertainty"). Planar mode: z, roll and pitch come from the planes; they are not
-/// observable.
+/// (docs/method.md, "Uncertainty"). Errors that are compared as independent ones (settings of one drive) are
+/// not asked whether the sensors share them. Planar mode: z, roll and pitch come from the planes; they are
+/// not observable.
 Observability assess_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                                   ErrorCorrelation errors = ErrorCorrelation::correlated);
+                                   ErrorCorrelation errors = ErrorCorrelation::correlated,
+                                   const ObservabilityOptions& options = {});
 
 /// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of the
 /// directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is
