@@ -3,22 +3,28 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/io/twist_integrator.hpp"
 
 namespace egocal::tools {
 
 /// A pose message of an LCM log.
 struct LcmPose {
   bus::Checked<StampedPose> pose;
-  std::int64_t seq = -1;  ///< -1: its type has none
-  std::string type;       ///< "egocal.odometry_t"; empty: no pose message
+  std::int64_t seq = -1;         ///< -1: its type has none
+  std::string type;              ///< "egocal.odometry_t"; empty: no pose message
+  std::optional<Twist> twist{};  ///< of a message with velocities, whose pose is not known by itself
 };
 
 /// Any of the types that hold a pose, recognised by their fingerprints; a message of another type, or with
 /// values that are no pose, is refused.
 LcmPose decode_lcm_pose(bus::Bytes bytes);
+
+/// The message with its pose, where it holds velocities: integrated since the stream's first one.
+LcmPose with_integrated_pose(LcmPose message, TwistIntegrator& stream);
 
 }  // namespace egocal::tools

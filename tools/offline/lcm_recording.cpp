@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "egocal/bus/log_file.hpp"
 #include "offline/lcm_pose.hpp"
@@ -36,11 +37,12 @@ void LcmRecording::read(const std::string& topic, const TakePose& take) {
   channels_.clear();
   losses_ = {};
   bus::LogReader log(file_);
+  std::map<std::size_t, TwistIntegrator> integrators;  // by stream
   while (const auto event = log.next()) {
     const std::size_t index = stream_of(event->channel);
     ++streams_[index].messages;
     if (!topic.empty() && event->channel != topic) continue;
-    const LcmPose message = decode_lcm_pose(event->data);
+    const LcmPose message = with_integrated_pose(decode_lcm_pose(event->data), integrators[index]);
     if (message.type.empty()) continue;
     streams_[index].type = message.type;
     streams_[index].poses = true;

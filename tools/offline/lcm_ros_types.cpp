@@ -15,7 +15,7 @@ struct Type;
 using TypePointer = std::shared_ptr<const Type>;
 
 /// What a field means to us.
-enum class Role { none, seconds, nanoseconds, x, y, z, qw, qx, qy, qz };
+enum class Role { none, seconds, nanoseconds, x, y, z, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz };
 
 struct Member {
   std::string name;
@@ -96,6 +96,10 @@ std::vector<TypePointer> known_types() {
   const TypePointer transform =
       type("Transform", {nested("translation", point), nested("rotation", quaternion)});
   const TypePointer twist = type("Twist", {nested("linear", vector), nested("angular", vector)});
+  const TypePointer velocity = type("Twist", {nested("linear", type("Vector3", xyz(vx, vy, vz))),
+                                              nested("angular", type("Vector3", xyz(wx, wy, wz)))});
+  const TypePointer velocity_with =
+      type("TwistWithCovariance", {nested("twist", velocity), numbers("covariance", {}, 36)});
   const TypePointer pose_with =
       type("PoseWithCovariance", {nested("pose", pose), numbers("covariance", {}, 36)});
   const TypePointer twist_with =
@@ -118,6 +122,10 @@ std::vector<TypePointer> known_types() {
       types.push_back(
           type("geometry_msgs.TransformStamped",
                {nested("header", header), text("child_frame_id"), nested("transform", transform)}));
+      types.push_back(
+          type("geometry_msgs.TwistStamped", {nested("header", header), nested("twist", velocity)}));
+      types.push_back(type("geometry_msgs.TwistWithCovarianceStamped",
+                           {nested("header", header), nested("twist", velocity_with)}));
     }
   const TypePointer dairlib_header = type(
       "dairlib.lcmt_ros_header", {number("seq", none, "int32_t"), number("timestamp_sec", seconds, "int32_t"),
@@ -156,7 +164,10 @@ class Reader {
 void put(LcmRosPose& pose, Role role, double value) {
   if (role >= Role::x && role <= Role::z)
     pose.position[static_cast<int>(role) - static_cast<int>(Role::x)] = value;
-  if (role >= Role::qw) pose.quaternion[static_cast<int>(role) - static_cast<int>(Role::qw)] = value;
+  if (role >= Role::vx)
+    pose.twist[static_cast<int>(role) - static_cast<int>(Role::vx)] = value;
+  else if (role >= Role::qw)
+    pose.quaternion[static_cast<int>(role) - static_cast<int>(Role::qw)] = value;
 }
 
 void read(Reader& from, const Type& type, LcmRosPose& pose) {
@@ -198,6 +209,7 @@ std::optional<LcmRosPose> decode_lcm_ros_pose(bus::Bytes bytes) {
     if (candidate.fingerprint != sent) continue;
     LcmRosPose pose;
     pose.type = candidate.type->name;
+    pose.velocity = pose.type.find("Twist") != std::string::npos;
     read(from, *candidate.type, pose);
     if (from.complete()) return pose;
     return std::nullopt;

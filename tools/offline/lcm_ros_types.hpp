@@ -17,11 +17,14 @@ struct LcmRosPose {
   std::int64_t time_us = 0;   ///< stamp of the header [us]
   double position[3] = {};    ///< [m]
   double quaternion[4] = {};  ///< w x y z
+  bool velocity = false;      ///< of a TwistStamped: the twist is known instead of the pose
+  double twist[6] = {};       ///< vx vy vz [m/s], wx wy wz [rad/s]
 };
 
-/// nav_msgs.Odometry, geometry_msgs.PoseStamped, PoseWithCovarianceStamped, TransformStamped (with
-/// std_msgs.Header as in ROS 1 and ROS 2) and dairlib.lcmt_ros_odometry, recognised by their fingerprints.
-/// Empty for any other type, or where the bytes are not exactly one message.
+/// nav_msgs.Odometry, geometry_msgs.TwistStamped, TwistWithCovarianceStamped, PoseStamped,
+/// PoseWithCovarianceStamped, TransformStamped (with std_msgs.Header as in ROS 1 and ROS 2) and
+/// dairlib.lcmt_ros_odometry, recognised by their fingerprints. Empty for any other type, or where the bytes
+/// are not exactly one message.
 std::optional<LcmRosPose> decode_lcm_ros_pose(bus::Bytes bytes);
 
 }  // namespace egocal::tools

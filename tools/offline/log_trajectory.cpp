@@ -79,10 +79,11 @@ class Collector {
 LogTrajectory read_log_trajectory(const std::string& file, const std::string& channel) {
   bus::LogReader log(file);
   Collector collector;
+  TwistIntegrator integrator;
   ChannelList channels;
   while (const std::optional<bus::LogEvent> event = log.next()) {
     if (event->channel == channel)
-      collector.take(decode_lcm_pose(event->data));
+      collector.take(with_integrated_pose(decode_lcm_pose(event->data), integrator));
     else
       channels.add(event->channel);
   }

@@ -34,6 +34,7 @@ void BagRecording::read(const std::string& topic, const TakePose& take) {
   notes_.clear();
   unstamped_ = 0;
   stamps_.clear();
+  integrators_.clear();
   for (const auto& part : parts_) {
     if (read_before_) part->rewind();
     read_part(*part, topic, take);
@@ -44,6 +45,9 @@ void BagRecording::read(const std::string& topic, const TakePose& take) {
     losses_.checksum = losses_.checksum || lost.checksum;
   }
   read_before_ = true;
+  for (const auto& [stream, integrator] : integrators_)
+    notes_.push_back(streams_[stream].name +
+                     ": poses are integrated from the velocities in the frame of the sensor");
   if (unstamped_ > 0)
     notes_.push_back(std::to_string(unstamped_) +
                      " messages have no time stamp in their header: the time of recording was taken");
@@ -133,14 +137,18 @@ void BagRecording::take_message(MessageReader& part, const BagMessage& message, 
       streams_[target].parent = frame(pose.parent);
       streams_[target].child = frame(pose.child);
     }
-    const CheckedPose checked = checked_pose(pose.translation, pose.wxyz);
+    const CheckedPose checked = pose.velocity ? CheckedPose{} : checked_pose(pose.translation, pose.wxyz);
     if (!checked.reason.empty()) return refuse(checked.reason);
     if (const auto time_us = time_of(pose, message, target); !time_us)
       refuse("it has no time stamp, others of the topic do");
     else if (!plausible_relative_time(*time_us))
       refuse("its time is out of range");
-    else
+    else if (!pose.velocity)
       take(target, {*time_us, checked.pose});
+    else if (const auto integrated = integrators_[target].add({*time_us, pose.linear, pose.angular}))
+      take(target, {*time_us, *integrated});
+    else
+      refuse("a velocity that is not finite, or not later than the one before");
   });
   if (!decoded)
     refuse("the message is damaged or not a " + topic.type + " in the encoding " + topic.encoding);

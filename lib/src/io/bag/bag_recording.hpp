@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "egocal/io/recording.hpp"
+#include "egocal/io/twist_integrator.hpp"
 #include "io/bag/message_reader.hpp"
 #include "io/bag/pose_messages.hpp"
 
@@ -45,6 +46,7 @@ class BagRecording : public Recording {
   bool read_before_ = false;
   std::map<std::pair<std::string, std::string>, std::size_t> topics_;      ///< stream by topic and type
   std::map<std::pair<std::size_t, std::string>, std::size_t> transforms_;  ///< by stream of the topic, frames
+  std::map<std::size_t, TwistIntegrator> integrators_;                     ///< by stream
   std::vector<Stamps> stamps_;                                             ///< by stream
   std::uint64_t unstamped_ = 0;
 };

@@ -28,6 +28,10 @@ void read_transform_stamped(MessageDecoder& from, MessagePose& pose) {
   read_pose(from, pose);
 }
 
+bool is_twist_type(std::string_view type) {
+  return type == "geometry_msgs/TwistStamped" || type == "geometry_msgs/TwistWithCovarianceStamped";
+}
+
 }  // namespace
 
 bool is_transforms_type(std::string_view type) {
@@ -35,7 +39,7 @@ bool is_transforms_type(std::string_view type) {
 }
 
 bool is_pose_type(std::string_view type) {
-  return type == "nav_msgs/Odometry" || type == "geometry_msgs/PoseStamped" ||
+  return is_twist_type(type) || type == "nav_msgs/Odometry" || type == "geometry_msgs/PoseStamped" ||
          type == "geometry_msgs/PoseWithCovarianceStamped" || type == "geometry_msgs/TransformStamped" ||
          is_transforms_type(type);
 }
@@ -56,7 +60,12 @@ bool decode_poses(std::string_view type, std::string_view encoding, ByteSpan dat
     return true;
   }
   if (!is_pose_type(type)) return false;
-  if (type == "geometry_msgs/TransformStamped") {
+  if (is_twist_type(type)) {
+    read_header(from, pose);
+    pose.velocity = true;
+    for (int i = 0; i < 3; ++i) pose.linear[i] = from.f64();
+    for (int i = 0; i < 3; ++i) pose.angular[i] = from.f64();
+  } else if (type == "geometry_msgs/TransformStamped") {
     read_transform_stamped(from, pose);
   } else {
     read_header(from, pose);

@@ -12,15 +12,17 @@
 
 namespace egocal::detail {
 
-/// One pose of a ROS message as it was sent, not yet checked.
+/// One pose or velocity of a ROS message as it was sent, not yet checked.
 struct MessagePose {
-  std::int64_t time_ns = 0;        ///< stamp of the header [ns]; 0: the sender did not fill it in
-  std::string_view parent, child;  ///< frames; child is empty where the type has none
-  Eigen::Vector3d translation;     ///< [m]
-  Eigen::Vector4d wxyz;            ///< quaternion as sent, of any length
+  std::int64_t time_ns = 0;         ///< stamp of the header [ns]; 0: the sender did not fill it in
+  std::string_view parent, child;   ///< frames; child is empty where the type has none
+  Eigen::Vector3d translation;      ///< [m]
+  Eigen::Vector4d wxyz;             ///< quaternion as sent, of any length
+  bool velocity = false;            ///< of a TwistStamped: only the two below are known
+  Eigen::Vector3d linear, angular;  ///< in the frame of the header [m/s, rad/s]
 };
 
-/// Whether poses can be taken from messages of this type ("nav_msgs/Odometry", ROS 1 style).
+/// Whether poses can be taken, or integrated, from messages of this type ("nav_msgs/Odometry", ROS 1 style).
 bool is_pose_type(std::string_view type);
 inline constexpr std::string_view transforms_type = "tf2_msgs/TFMessage";
 /// tf2_msgs/TFMessage, or its name before 2013.

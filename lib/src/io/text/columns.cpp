@@ -95,8 +95,32 @@ Meaning meaning_of_axis(const ColumnName& name) {
   return {positions[index], in_position ? 3 : 1};
 }
 
+/// "vx", "v", "linear.x", "twist.angular.z", "yaw_rate", ...
+Meaning meaning_of_velocity(const ColumnName& name) {
+  const std::string_view last = name.words.back();
+  if (name.any_of({"covariance", "cov", "std", "sigma", "stddev", "sd", "b", "bias", "var", "error", "acc",
+                   "accel", "acceleration"}))
+    return {};
+  if (is_one_of(name.joined, {"v", "vel", "velocity", "speed"})) return {Quantity::vx, 1};
+  if (is_one_of(name.joined, {"yawrate", "turnrate", "omega"})) return {Quantity::wz, 1};
+  const char axis = last.back();
+  if (axis < 'x' || axis > 'z') return {};
+  constexpr Quantity linear[] = {Quantity::vx, Quantity::vy, Quantity::vz};
+  constexpr Quantity angular[] = {Quantity::wx, Quantity::wy, Quantity::wz};
+  const int index = axis - 'x';
+  const std::string_view stem = last.substr(0, last.size() - 1);
+  if (is_one_of(stem, {"v", "vel"}) ||
+      (stem.empty() && name.words.size() > 1 && name.any_of({"v", "vel", "velocity", "linear"})))
+    return {linear[index], 2};
+  if (is_one_of(stem, {"w", "omega", "gyro"}) ||
+      (stem.empty() && name.words.size() > 1 && name.any_of({"w", "omega", "gyro", "angular", "rate"})))
+    return {angular[index], 2};
+  return {};
+}
+
 Meaning meaning_of(const ColumnName& name) {
   if (name.words.empty()) return {};
+  if (const Meaning velocity = meaning_of_velocity(name); velocity.rank > 0) return velocity;
   // velocities, rates, biases and uncertainties are named like poses
   if (name.words.size() > 1 &&
       name.any_of({"v",     "vel",          "velocity", "linear", "angular",    "twist", "acc",
@@ -121,9 +145,9 @@ Meaning meaning_of(const ColumnName& name) {
 }  // namespace
 
 std::string_view to_string(Quantity quantity) {
-  constexpr std::string_view names[] = {"time", "seconds", "nanoseconds", "x",         "y",     "z",
-                                        "qw",   "qx",      "qy",          "qz",        "roll",  "pitch",
-                                        "yaw",  "heading", "latitude",    "longitude", "height"};
+  constexpr std::string_view names[] = {
+      "time", "seconds", "nanoseconds", "x",         "y",      "z",  "qw", "qx", "qy", "qz", "roll", "pitch",
+      "yaw",  "heading", "latitude",    "longitude", "height", "vx", "vy", "vz", "wx", "wy", "wz"};
   return names[static_cast<std::size_t>(quantity)];
 }
 
@@ -137,6 +161,7 @@ bool ColumnMap::has_quaternion() const {
 
 std::string ColumnMap::missing() const {
   std::string text;
+  if (has_twist()) return "no time";
   if (!has_position() && !has_geodetic()) text = "no position (x y z, or latitude longitude height)";
   if (!has_attitude())
     text +=
@@ -162,6 +187,11 @@ ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
     best = meaning.rank;
     map.set(meaning.quantity, i, parsed.unit);
   }
+  // poses are better than velocities, which are integrated
+  if (map.has_pose())
+    for (const Quantity quantity :
+         {Quantity::vx, Quantity::vy, Quantity::vz, Quantity::wx, Quantity::wy, Quantity::wz})
+      map.of[static_cast<std::size_t>(quantity)].reset();
   // one column of seconds or nanoseconds alone is the time
   const bool seconds = map.has(Quantity::seconds), rest = map.has(Quantity::nanoseconds);
   if (seconds != rest && !map.has(Quantity::time))

@@ -30,6 +30,12 @@ enum class Quantity {
   latitude,
   longitude,
   height,
+  vx,  ///< velocities in the frame of the sensor, for tables without poses
+  vy,
+  vz,
+  wx,
+  wy,
+  wz,
   count_
 };
 inline constexpr std::size_t quantities = static_cast<std::size_t>(Quantity::count_);
@@ -54,8 +60,11 @@ struct ColumnMap {
   bool has_quaternion() const;
   bool has_attitude() const { return has_quaternion() || has(Quantity::yaw) || has(Quantity::heading); }
   bool has_time() const { return has(Quantity::time) || has(Quantity::seconds); }
-  /// A pose can be made of it (times can be made up).
-  bool complete() const { return (has_position() || has_geodetic()) && has_attitude(); }
+  bool has_pose() const { return (has_position() || has_geodetic()) && has_attitude(); }
+  /// Velocities that are integrated to poses: speed and turning about the vertical axis at least.
+  bool has_twist() const { return has(Quantity::vx) && has(Quantity::wz); }
+  /// A pose can be made of it (times of poses can be made up).
+  bool complete() const { return has_pose() || (has_twist() && has_time()); }
   /// What is missing, in words.
   std::string missing() const;
   /// Columns that a row needs at least.

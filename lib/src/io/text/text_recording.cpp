@@ -95,7 +95,8 @@ void TextRecording::read_times() {
 
 /// Angles above a turn are degrees. All of the file counts: a drive may begin straight.
 void TextRecording::find_angle_unit() {
-  constexpr Quantity angles[] = {Quantity::roll, Quantity::pitch, Quantity::yaw, Quantity::heading};
+  constexpr Quantity angles[] = {Quantity::roll, Quantity::pitch, Quantity::yaw, Quantity::heading,
+                                 Quantity::wx,   Quantity::wy,    Quantity::wz};
   std::vector<std::size_t> unknown;
   for (const Quantity quantity : angles)
     if (layout_.columns.has(quantity) && layout_.columns[quantity].unit.empty())
@@ -127,6 +128,9 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
   losses_ = {};
   notes_ = layout_.notes;
   T_earth_origin_.reset();
+  integrator_ = {};
+  if (!layout_.matrix && !layout_.columns.has_pose())
+    notes_.push_back("poses are integrated from the velocities in the frame of the sensor");
   Rows rows(*source_, layout_);
   while (rows.next()) {
     const std::optional<StampedPose> pose = pose_of_row(rows);
@@ -178,6 +182,17 @@ std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
       if (column && rows.fields[column->index].empty()) return empty_field();
   StampedPose pose;
   pose.time_us = time_of_row(rows);
+  if (!layout_.matrix && !layout_.columns.has_pose()) {
+    const std::optional<DualQuaternion> integrated = pose_of_twist(rows, pose.time_us);
+    if (!integrated) {
+      if (losses_.refused++ == 0)
+        losses_.first_refused =
+            "line " + std::to_string(rows.lines.number()) + ": a velocity that is not later";
+      return std::nullopt;
+    }
+    pose.pose = *integrated;
+    return pose;
+  }
   pose.pose = layout_.matrix ? pose_of_matrix(rows) : pose_of_columns(rows);
   return pose;
 }
@@ -241,6 +256,16 @@ DualQuaternion TextRecording::pose_of_matrix(const Rows& rows) const {
   const CheckedPose pose = checked_pose({v[3], v[7], v[11]}, {q.w(), q.x(), q.y(), q.z()});
   if (!pose.reason.empty()) throw error_at(file_, rows.lines.number(), "", pose.reason);
   return pose.pose;
+}
+
+/// Empty: the time does not increase.
+std::optional<DualQuaternion> TextRecording::pose_of_twist(const Rows& rows, std::int64_t time_us) {
+  using enum Quantity;
+  Twist twist;
+  twist.time_us = time_us;
+  twist.linear = {value(rows, vx), value(rows, vy), value(rows, vz)};
+  twist.angular = {angle(rows, wx), angle(rows, wy), angle(rows, wz)};
+  return integrator_.add(twist);
 }
 
 DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "egocal/io/recording.hpp"
+#include "egocal/io/twist_integrator.hpp"
 #include "io/bytes/byte_source.hpp"
 #include "io/text/layout.hpp"
 
@@ -31,6 +32,7 @@ class TextRecording : public Recording {
   std::int64_t time_of_row(const Rows& rows) const;
   DualQuaternion pose_of_matrix(const Rows& rows) const;
   DualQuaternion pose_of_columns(const Rows& rows);
+  std::optional<DualQuaternion> pose_of_twist(const Rows& rows, std::int64_t time_us);
   double value(const Rows& rows, std::size_t index) const;
   double value(const Rows& rows, Quantity quantity) const;
   double angle(const Rows& rows, Quantity quantity) const;
@@ -43,6 +45,7 @@ class TextRecording : public Recording {
   double rate_ = 10;                 ///< of rows without times [Hz]
   bool degrees_ = false;             ///< angles without a unit
   bool read_before_ = false;
+  TwistIntegrator integrator_;          ///< of a table with velocities
   std::optional<Pose> T_earth_origin_;  ///< local frame of the first geodetic position
 };
 

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/io/twist_integrator.hpp"
+
+#include <cmath>
+
+namespace egocal {
+
+namespace {
+
+/// The motion of a constant twist over a time: the exponential of SE(3).
+Pose screw(const Eigen::Vector3d& way, const Eigen::Vector3d& turn) {
+  constexpr double small = 1e-6;  // [rad]: below, the next term of the series is under rounding
+  const double angle = turn.norm();
+  const double first = angle < small ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
+  const double second = angle < small ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
+  const Eigen::Vector3d across = turn.cross(way);
+  return {rotation_exp(turn), way + first * across + second * turn.cross(across)};
+}
+
+}  // namespace
+
+std::optional<DualQuaternion> TwistIntegrator::add(const Twist& twist) {
+  if (!twist.linear.allFinite() || !twist.angular.allFinite()) return std::nullopt;
+  if (last_) {
+    if (twist.time_us <= last_->time_us) return std::nullopt;
+    const double seconds = 1e-6 * static_cast<double>(twist.time_us - last_->time_us);
+    const Pose step = screw(0.5 * seconds * (last_->linear + twist.linear),
+                            0.5 * seconds * (last_->angular + twist.angular));
+    pose_ = normalized(pose_ * to_dual_quaternion(step));
+  }
+  last_ = twist;
+  return pose_;
+}
+
+}  // namespace egocal
