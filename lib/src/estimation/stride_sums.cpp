@@ -23,8 +23,9 @@ constexpr std::uint64_t most_open = 192;
 /// The open instants are judged anew after a sixteenth more, within these limits: a jump spoils every motion
 /// across it, and short drives have few to spare.
 constexpr std::uint64_t look_part = 16, least_look = 16, most_look = 64;
-/// The weights are chosen anew after an eighth more instants.
-constexpr std::uint64_t choice_part = 8;
+/// The weights are chosen anew after an eighth more instants, and after a quarter more beyond `short_drive`:
+/// a choice costs as much as a hundred instants.
+constexpr std::uint64_t short_choice_part = 8, choice_part = 4, short_drive = 128;
 /// Rounds of verdicts and weights that depend on each other.
 constexpr int most_rounds = 3;
 
@@ -170,7 +171,8 @@ bool StrideSums::rejudge(const std::optional<DualQuaternion>& q) {
 }
 
 void StrideSums::choose(const std::optional<SingleStride>& rival) {
-  state_.next_choice = state_.next_index + std::max<std::uint64_t>(1, state_.next_index / choice_part);
+  const std::uint64_t part = state_.next_index < short_drive ? short_choice_part : choice_part;
+  state_.next_choice = state_.next_index + std::max<std::uint64_t>(1, state_.next_index / part);
   StrideBlocks all = judge_open();
   leave_out_blocks(all);
   if (std::optional<WeightChoice> choice =
@@ -203,7 +205,8 @@ void StrideSums::leave_out_blocks(StrideBlocks& all) {
   all.leave_out(std::vector<std::uint8_t>(all.blocks(), 0));
   state_.outlier = all.state().outlier;
   state_.outlier_length = all.state().block_length;
-  const std::optional<WeightChoice> suggested = residual_weights(all, options_.mode);
+  const std::optional<WeightChoice> suggested =
+      state_.choice ? state_.choice : residual_weights(all, options_.mode);
   if (!suggested) return;
   Problem problem = empty_problem();
   problem.balance = {0, 1};

@@ -30,6 +30,8 @@ constexpr std::uint64_t least_motions = 6;
 /// Spreads below these are rounding: nothing is to be gained [rad, m].
 constexpr double least_rotation_spread = 1e-9, least_translation_spread = 1e-8;
 constexpr int rounds = 4;
+/// The same where a minimiser is known already.
+constexpr int later_rounds = 2;
 /// Grid of the ratio of a random walk's variance a step to that of the noise on poses.
 constexpr int grid = 24;
 constexpr double least_growth = 1e-3, most_growth = 1e3;
@@ -200,7 +202,7 @@ std::optional<WeightChoice> residual_weights(const Ladder& ladder, Mode mode) {
 WeightChoice with_memory(const Ladder& ladder, Mode mode, double memory, DualQuaternion q) {
   const double lambda = std::exp(-1 / memory);
   StrideWeights weights;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < later_rounds; ++round) {
     weights = balanced(ladder, {shape(ladder, lambda, ladder.turns), shape(ladder, lambda, ladder.motions)},
                        residuals(ladder, q));
     q = minimiser(weighted_sum(ladder, weights), mode);
