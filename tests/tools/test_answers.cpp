@@ -142,6 +142,47 @@ TEST_F(AnswersTest, OfALogIsTheSessionThatRanAtItsEnd) {
   EXPECT_TRUE(best->certified());
 }
 
+TEST_F(AnswersTest, TheVerdictOfTheSessionGoesWithTheAnswer) {
+  const std::string log = folder / "session.log";
+  const auto verdict = [&](Verdict what, std::int64_t session, std::int64_t seq) {
+    Diagnosis diagnosis;
+    diagnosis.verdict = what;
+    diagnosis.reason = "the lengths differ";
+    verdict_t message = bus::to_message(diagnosis, {DualQuaternion{}, begin_us, begin_us, 0});
+    message.utime = message.session = session;
+    message.seq = seq;
+    message.sensor_a = "left";
+    message.sensor_b = "right";
+    message.sender = "egocal-diagnosis";
+    return message;
+  };
+  const problem_t last = problem(5);
+  {
+    bus::LogWriter writer(log);
+    const auto write = [&](const std::string& channel, const auto& message) {
+      writer.write(message.utime, channel, bus::encode(message));
+    };
+    write(bus::problem_channel("left", "right"), last);
+    write(bus::calibration_channel("left", "right"), answer(last));
+    write(bus::verdict_channel("left", "right"), verdict(Verdict::good, last.session, 2));
+    write(bus::verdict_channel("left", "right"), verdict(Verdict::contradictory, last.session, 5));
+    write(bus::verdict_channel("left", "right"), verdict(Verdict::good, last.session, 3));
+    write(bus::verdict_channel("left", "right"), verdict(Verdict::good, last.session + 1, 9));
+    writer.close();
+  }
+  const Answers answers = recorded_answers(log);
+  ASSERT_NE(answers.diagnosis(pair_name), nullptr);
+  EXPECT_EQ(answers.diagnosis(pair_name)->verdict, Verdict::contradictory);
+  const std::string out = folder / "out.yaml";
+  const int status = std::system(
+      (paths::bin_dir() + "/egocal export --log " + log + " --out " + out + " 2>/dev/null").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3) << "written, but not to be used";
+  std::ifstream stream(out);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_THAT(text, HasSubstr("usable: false"));
+  EXPECT_THAT(text, HasSubstr("verdict: contradictory"));
+}
+
 TEST_F(AnswersTest, AllOfThemAreOneTree) {
   const std::string log = folder / "session.log";
   {

@@ -370,6 +370,18 @@ TEST_F(Up, PlaysALogToItsEndAndEndsAll) {
   EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven)"));
 }
 
+TEST_F(Up, AnAnswerThatShouldNotBeUsedEndsWithThree) {
+  ASSERT_EQ(ChildProcess({paths::bin_dir() + "/egocal", "simulate", "--out", log, "--rig-out", rig, "--poses",
+                          "400", "--noise", "0.001", "--terrain", "free", "--scale", "camera=2.7"})
+                .wait(60s),
+            0);
+  ChildProcess egocal = up({"--log", log, "--speed", "20"});
+  EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: contradictory: "));
+  EXPECT_THAT(read(path("said")), HasSubstr("Cure: "));
+  EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven), "));
+}
+
 TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
   ChildProcess egocal = up({});
   const pid_t self = egocal.pid();

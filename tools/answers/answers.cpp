@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
 
 namespace egocal::tools {
@@ -11,8 +12,6 @@ namespace egocal::tools {
 namespace {
 
 constexpr std::size_t most_pairs = bus::AnswerCheck::max_pairs;
-constexpr const char* problem_prefix = "EGOCAL_PROBLEM_";
-constexpr const char* calibration_prefix = "EGOCAL_CALIBRATION_";
 
 /// Of each pair the session of the last problem in a log; where it holds no problems, of the last answer. A
 /// higher session is not always a later one: two pairing processes may have sent for a moment.
@@ -20,6 +19,7 @@ class LastSessions {
  public:
   void hear(const problem_t& message) { set(problems_, message); }
   void hear(const calibration_t& message) { set(answers_, message); }
+  void hear(const verdict_t&) {}
   template <class Message>
   bool is_last(const Message& message) const {
     const PairName pair{message.sensor_a, message.sensor_b};
@@ -38,17 +38,20 @@ class LastSessions {
   Sessions problems_, answers_;
 };
 
-template <class OnProblem, class OnAnswer>
-void read(const std::string& file, OnProblem on_problem, OnAnswer on_answer) {
+/// All problems, answers and verdicts of a log, in its order.
+template <class Hear>
+void read(const std::string& file, Hear hear) {
   bus::LogReader log(file);
-  while (const std::optional<bus::LogEvent> event = log.next()) {
-    problem_t problem{};
-    calibration_t answer{};
-    if (event->channel.starts_with(problem_prefix) && bus::decode(event->data, problem))
-      on_problem(problem);
-    else if (event->channel.starts_with(calibration_prefix) && bus::decode(event->data, answer))
-      on_answer(answer);
-  }
+  const auto hear_as = [&](auto message, const bus::LogEvent& event) {
+    if (bus::decode(event.data, message)) hear(message);
+  };
+  while (const std::optional<bus::LogEvent> event = log.next())
+    if (event->channel.starts_with(bus::problem_prefix))
+      hear_as(problem_t{}, *event);
+    else if (event->channel.starts_with(bus::calibration_prefix))
+      hear_as(calibration_t{}, *event);
+    else if (event->channel.starts_with(bus::verdict_prefix))
+      hear_as(verdict_t{}, *event);
 }
 
 }  // namespace
@@ -79,6 +82,47 @@ void Answers::hear(const calibration_t& message) {
   consider(pair, {message, std::move(checked)});
 }
 
+void Answers::hear(const verdict_t& message) {
+  const PairName pair{message.sensor_a, message.sensor_b};
+  bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
+  if (!received) {
+    ++refused_[received.reason];
+    return;
+  }
+  const auto known = judgements_.find(pair);
+  if (known == judgements_.end() && judgements_.size() >= most_pairs) return;
+  if (known != judgements_.end() && known->second.session == message.session &&
+      known->second.seq > message.seq)
+    return;
+  judgements_[pair] = {message.session, message.seq, std::move(received.value->diagnosis)};
+}
+
+const Diagnosis* Answers::diagnosis(const PairName& pair) const {
+  const Best* answer = best(pair);
+  const auto entry = judgements_.find(pair);
+  return answer && entry != judgements_.end() && entry->second.session == answer->message.session
+             ? &entry->second.diagnosis
+             : nullptr;
+}
+
+bool unusable(const Diagnosis& diagnosis) {
+  return diagnosis.verdict == Verdict::contradictory || (diagnosis.goal && !diagnosis.goal->reached);
+}
+
+std::string verdict_line(const Diagnosis& diagnosis) {
+  std::string line = std::string(to_string(diagnosis.verdict)) + ": " + diagnosis.reason;
+  for (const Finding& finding : diagnosis.findings)
+    if (finding.certain)
+      line += (finding.message == diagnosis.reason ? "" : " " + finding.message) + " Cure: " + finding.remedy;
+  if (diagnosis.goal) {
+    line += diagnosis.goal->reached ? " Goal: reached." : " Goal: missing";
+    for (const std::string& direction : diagnosis.goal->missing) line += " " + direction;
+    if (!diagnosis.goal->reached) line += ".";
+    if (!diagnosis.goal->next.empty()) line += " " + diagnosis.goal->next;
+  }
+  return line;
+}
+
 void Answers::consider(const PairName& pair, Best candidate) {
   const auto entry = best_.find(pair);
   if (entry == best_.end())
@@ -95,14 +139,11 @@ const Answers::Best* Answers::best(const PairName& pair) const {
 
 Answers recorded_answers(const std::string& log) {
   LastSessions last;
-  read(
-      log, [&](const problem_t& problem) { last.hear(problem); },
-      [&](const calibration_t& answer) { last.hear(answer); });
+  read(log, [&](const auto& message) { last.hear(message); });
   Answers answers;
-  const auto hear = [&](const auto& message) {
+  read(log, [&](const auto& message) {
     if (last.is_last(message)) answers.hear(message);
-  };
-  read(log, hear, hear);
+  });
   return answers;
 }
 

@@ -8,8 +8,12 @@
 #include <utility>
 
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/bus/verdict.hpp"
 
 namespace egocal::tools {
+
+/// Exit code: an answer was given that should not be used.
+inline constexpr int not_to_be_used = 3;
 
 using PairName = std::pair<std::string, std::string>;  ///< sensors a and b
 
@@ -28,21 +32,34 @@ class Answers {
 
   void hear(const problem_t& message);
   void hear(const calibration_t& message);
+  void hear(const verdict_t& message);
 
   /// Null: none.
   const Best* best(const PairName& pair) const;
+  /// The newest verdict about the session of the answer that counts; null: none.
+  const Diagnosis* diagnosis(const PairName& pair) const;
   const std::map<PairName, Best>& all() const { return best_; }
   /// Answers that were refused, by reason.
   const std::map<std::string, std::int64_t>& refused() const { return refused_; }
 
  private:
+  struct Judgement {
+    std::int64_t session = 0, seq = 0;
+    Diagnosis diagnosis;
+  };
   void consider(const PairName& pair, Best candidate);
 
   bus::AnswerCheck check_;
   std::map<PairName, Best> best_;
   std::map<PairName, calibration_t> early_;  ///< heard before its problem
+  std::map<PairName, Judgement> judgements_;
   std::map<std::string, std::int64_t> refused_;
 };
+
+/// An answer that should not be used: the motions contradict it, or it misses the goal that the rig states.
+bool unusable(const Diagnosis& diagnosis);
+/// "contradictory: the reason. Cure: ...": verdict, reason, what cures it and how far the goal is, one line.
+std::string verdict_line(const Diagnosis& diagnosis);
 
 /// "lidar,camera", as --pair takes it.
 std::string text(const PairName& pair);

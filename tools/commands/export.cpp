@@ -13,6 +13,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/process.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
@@ -73,12 +74,23 @@ Found live(const Options& options) {
     loop.subscribe<calibration_t>(
         bus::calibration_channel(a, b),
         [&](const calibration_t& message, const bus::Arrival&) { found.answers.hear(message); });
+    loop.subscribe<verdict_t>(bus::verdict_channel(a, b), [&](const verdict_t& message, const bus::Arrival&) {
+      found.answers.hear(message);
+    });
   }
+  // verdicts are sent again every second, as heartbeats are: where nobody judges none is waited for
+  bool judged_here = false;
+  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    judged_here = judged_here || (status.role == bus::role_name(bus::Role::diagnosis) &&
+                                  status.state != bus::state_name(bus::State::ended));
+  });
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.timeout);
+  const auto heard_all = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
   const auto done = [&] {
+    const bool waits = judged_here || std::chrono::steady_clock::now() < heard_all;
     return std::all_of(found.pairs.begin(), found.pairs.end(), [&](const PairName& pair) {
       const Answers::Best* best = found.answers.best(pair);
-      return best && best->certified();
+      return best && best->certified() && (!waits || found.answers.diagnosis(pair));
     });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
@@ -86,7 +98,7 @@ Found live(const Options& options) {
   return found;
 }
 
-NamedExtrinsic named(const PairName& pair, const Answers::Best& best) {
+NamedExtrinsic named(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis) {
   const Answer& answer = best.checked.answer;
   if (best.checked.standing == bus::Standing::unverified)
     fmt::print(stderr,
@@ -94,8 +106,13 @@ NamedExtrinsic named(const PairName& pair, const Answers::Best& best) {
                text(pair));
   else if (!best.certified())
     fmt::print(stderr, "egocal: warning: {}: this answer is not certified\n", text(pair));
-  return {pair.first,       pair.second,        to_pose(answer.T_a_b),
-          best.certified(), best.message.pairs, answer.observability.stddev};
+  if (diagnosis && diagnosis->verdict != Verdict::good)
+    fmt::print(stderr, "egocal: {}: {}\n", text(pair), verdict_line(*diagnosis));
+  NamedExtrinsic extrinsic{pair.first,       pair.second,        to_pose(answer.T_a_b),
+                           best.certified(), best.message.pairs, answer.observability.stddev};
+  extrinsic.usable = !diagnosis || diagnosis->verdict != Verdict::contradictory;
+  if (diagnosis) extrinsic.verdict = to_string(diagnosis->verdict);
+  return extrinsic;
 }
 
 /// One extrinsic, or all of a rig as a tree.
@@ -116,10 +133,13 @@ void run(const Options& options) {
   for (const auto& [reason, count] : found.answers.refused())
     fmt::print(stderr, "egocal: warning: {} answers were refused: {}\n", count, reason);
   std::vector<NamedExtrinsic> extrinsics;
+  bool refused = false;
   for (const PairName& pair : found.pairs)
-    if (const Answers::Best* best = found.answers.best(pair))
-      extrinsics.push_back(named(pair, *best));
-    else if (options.all)
+    if (const Answers::Best* best = found.answers.best(pair)) {
+      const Diagnosis* diagnosis = found.answers.diagnosis(pair);
+      refused = refused || (diagnosis && unusable(*diagnosis));
+      extrinsics.push_back(named(pair, *best, diagnosis));
+    } else if (options.all)
       fmt::print(stderr, "egocal: warning: there is no answer for the pair {}\n", text(pair));
     else
       throw Error("export: there is no answer for the pair " + text(pair));
@@ -128,6 +148,7 @@ void run(const Options& options) {
     fmt::print("{}", content);
   else
     write_whole_file(options.out, content);
+  if (refused) throw cli::Exit{not_to_be_used};
 }
 
 }  // namespace

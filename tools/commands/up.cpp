@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "answers/answers.hpp"
 #include "commands/commands.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
@@ -129,9 +130,13 @@ void run(const Options& options) {
                  passing->file());
     throw cli::Exit{1};
   }
-  if (witness && !witness->heard())
+  if (!witness) return;
+  const Outcome outcome = witness->outcome();
+  if (!outcome.answered)
     throw Error("up: nothing was calibrated: no solver answered; see " +
                 (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
+  fmt::print("{}", outcome.text);
+  if (outcome.unusable) throw cli::Exit{not_to_be_used};
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,7 +11,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <utility>
 
+#include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
@@ -37,17 +38,55 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 
 namespace {
 
+std::string line_of(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis) {
+  const Pose T = to_pose(best.checked.answer.T_a_b);
+  const Eigen::Quaterniond& q = T.rotation;
+  return fmt::format(
+      "{} -> {}: {}\n  {}, {} motion pairs; translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} "
+      "{:.5f} "
+      "{:.5f} {:.5f}\n",
+      pair.first, pair.second, diagnosis ? verdict_line(*diagnosis) : "not judged",
+      best.certified() ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
+      T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+/// What the parent reads: a character each for answered and unusable, then the text.
+std::string report(const bus::Rig& rig, const Answers& answers) {
+  Outcome outcome;
+  for (const bus::PairConfig& config : rig.pairs) {
+    const PairName pair{config.a, config.b};
+    const Answers::Best* best = answers.best(pair);
+    if (!best) continue;
+    const Diagnosis* diagnosis = answers.diagnosis(pair);
+    outcome.answered = true;
+    outcome.unusable = outcome.unusable || (diagnosis && unusable(*diagnosis));
+    outcome.text += line_of(pair, *best, diagnosis);
+  }
+  return std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text;
+}
+
+void write_all(int out, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = write(out, text.data() + done, text.size() - done);
+    if (n < 0 && errno != EINTR) return;
+    if (n > 0) done += static_cast<std::size_t>(n);
+  }
+}
+
 [[noreturn]] void listen(const bus::Rig& rig, const std::string& url, int out) {
   try {
     bus::Loop loop(url, {.require_network = false});
-    for (const bus::PairConfig& pair : rig.pairs)
-      loop.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b),
-                                    [&](const calibration_t& message, const bus::Arrival&) {
-                                      if (bus::to_answer(message) && write(out, "x", 1) == 1) loop.stop();
-                                    });
+    Answers answers;
+    const auto hear = [&](const auto& message, const bus::Arrival&) { answers.hear(message); };
+    for (const bus::PairConfig& pair : rig.pairs) {
+      loop.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b), hear);
+      loop.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b), hear);
+      loop.subscribe<verdict_t>(bus::verdict_channel(pair.a, pair.b), hear);
+    }
     loop.run();
+    write_all(out, report(rig, answers));
   } catch (const std::exception&) {
-    // not heard, then
+    // nothing was heard, then
   }
   _exit(0);
 }
@@ -56,13 +95,14 @@ namespace {
 
 AnswerWitness::AnswerWitness(const bus::Rig& rig, const std::string& url) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw Error(std::string("pipe: ") + std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) throw Error(std::string("pipe: ") + std::strerror(errno));
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(0);
     setpgid(0, 0);  // a Ctrl-C is not for it
+    close(ends[0]);
     listen(rig, url, ends[1]);
   }
   close(ends[1]);
@@ -73,15 +113,33 @@ AnswerWitness::AnswerWitness(const bus::Rig& rig, const std::string& url) {
 }
 
 AnswerWitness::~AnswerWitness() {
-  kill(pid_, SIGTERM);
-  while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  end();
   close(pipe_);
 }
 
-bool AnswerWitness::heard() const {
-  pollfd pipe{pipe_, POLLIN, 0};
-  return poll(&pipe, 1, 0) > 0 && (pipe.revents & POLLIN) != 0;
+void AnswerWitness::end() {
+  if (pid_ < 0) return;
+  kill(pid_, SIGTERM);
+  // what it still writes must not block it
+  const pid_t pid = std::exchange(pid_, -1);
+  char rest[4096];
+  while (read(pipe_, rest, sizeof rest) > 0) {
+  }
+  while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+Outcome AnswerWitness::outcome() {
+  kill(pid_, SIGTERM);
+  std::string text;
+  char part[4096];
+  for (ssize_t n = 1; n > 0 || (n < 0 && errno == EINTR);) {
+    n = read(pipe_, part, sizeof part);
+    if (n > 0) text.append(part, static_cast<std::size_t>(n));
+  }
+  end();
+  if (text.size() < 2) return {};
+  return {text[0] == '1', text[1] == '1', text.substr(2)};
 }
 
 }  // namespace egocal::tools

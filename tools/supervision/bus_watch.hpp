@@ -15,7 +15,14 @@ namespace egocal::tools {
 /// A pairing process that is heard on the bus within this time, for people: "egocal-pairing (pid 7 on car)".
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
 
-/// Whether any solver answered while this object lived: a process of its own that listens, so that the
+/// What was calibrated while somebody watched.
+struct Outcome {
+  bool answered = false;  ///< any solver, for any pair
+  bool unusable = false;  ///< some pair's motions contradict each other, or miss the goal
+  std::string text;       ///< a line for each pair that was answered: verdict, proof and transform
+};
+
+/// Listens to the answers and verdicts of a rig while this object lives: a process of its own, so that the
 /// supervisor has no threads. Ends with us.
 class AnswerWitness {
  public:
@@ -24,9 +31,12 @@ class AnswerWitness {
   AnswerWitness(const AnswerWitness&) = delete;
   AnswerWitness& operator=(const AnswerWitness&) = delete;
 
-  bool heard() const;
+  /// Stops listening. Once.
+  Outcome outcome();
 
  private:
+  void end();
+
   pid_t pid_ = -1;
   int pipe_ = -1;
 };

@@ -46,6 +46,7 @@ std::string json_text(const ExtrinsicWords& words) {
             ",\n";
   text += std::string("  \"certified\": ") + (words.extrinsic.certified ? "true" : "false") + ",\n";
   text += std::string("  \"usable\": ") + (words.extrinsic.usable ? "true" : "false") + ",\n";
+  if (!words.extrinsic.verdict.empty()) text += "  \"verdict\": \"" + words.extrinsic.verdict + "\",\n";
   return text + "  \"pairs\": " + std::to_string(words.extrinsic.pairs) + "\n}\n";
 }
 

@@ -21,6 +21,7 @@ std::string yaml_text(const ExtrinsicWords& words) {
   }
   text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
   text += std::string("usable: ") + (words.extrinsic.usable ? "true" : "false") + "\n";
+  if (!words.extrinsic.verdict.empty()) text += "verdict: " + words.extrinsic.verdict + "\n";
   return text + "pairs: " + std::to_string(words.extrinsic.pairs) + "\n";
 }
 
