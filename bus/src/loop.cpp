@@ -156,6 +156,10 @@ void Loop::subscribe_prefix(const std::string& prefix, Handler handler, int queu
   impl_->queue.subscribe(prefix, true, std::move(handler), queue_capacity);
 }
 
+void Loop::subscribe_others(Handler handler, std::function<bool()> wanted, int queue_capacity) {
+  impl_->queue.subscribe_others(std::move(handler), std::move(wanted), queue_capacity);
+}
+
 void Loop::count_undecodable(const std::string& channel) {
   const bool known = undecodable_.size() < max_undecodable || undecodable_.contains(channel);
   ++undecodable_[known ? channel : "other"];

@@ -26,18 +26,30 @@ void MessageQueue::subscribe(const std::string& channel, bool prefix, Loop::Hand
     by_name_[channel].push_back(&subscriber);
 }
 
-bool MessageQueue::wanted(std::string_view channel) const {
+void MessageQueue::subscribe_others(Loop::Handler handler, std::function<bool()> wanted, int capacity) {
+  others_ = &subscribers_.emplace_back();
+  others_->handler = std::move(handler);
+  others_->capacity = capacity;
+  others_wanted_ = std::move(wanted);
+}
+
+bool MessageQueue::named(std::string_view channel) const {
   return by_name_.contains(channel) ||
          std::any_of(by_prefix_.begin(), by_prefix_.end(),
                      [&](const auto& entry) { return channel.starts_with(entry.first); });
 }
 
 void MessageQueue::fill(Transport& transport) {
-  const Transport::Wanted is_wanted = [this](std::string_view channel) { return wanted(channel); };
+  const bool others = others_ && others_wanted_();
+  const Transport::Wanted is_wanted = [&](std::string_view channel) { return others || named(channel); };
   Received message;
   for (int i = 0; i < fill_at_once && transport.receive(is_wanted, message); ++i) {
-    if (const auto named = by_name_.find(message.channel); named != by_name_.end())
-      for (Subscriber* subscriber : named->second) put(*subscriber, message);
+    if (others && !named(message.channel)) {
+      put(*others_, message);
+      continue;
+    }
+    if (const auto entry = by_name_.find(message.channel); entry != by_name_.end())
+      for (Subscriber* subscriber : entry->second) put(*subscriber, message);
     for (const auto& [prefix, subscriber] : by_prefix_)
       if (message.channel.starts_with(prefix)) put(*subscriber, message);
   }

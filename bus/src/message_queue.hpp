@@ -20,6 +20,9 @@ class MessageQueue {
  public:
   void subscribe(const std::string& channel, bool prefix, Loop::Handler handler, int capacity);
 
+  /// What no other subscription takes, while wanted() says so.
+  void subscribe_others(Loop::Handler handler, std::function<bool()> wanted, int capacity);
+
   /// Takes what the transport has, up to some hundred messages.
   void fill(Transport& transport);
   bool empty() const { return waiting_.empty(); }
@@ -41,12 +44,14 @@ class MessageQueue {
     std::int64_t mono_us;
   };
 
-  bool wanted(std::string_view channel) const;
+  bool named(std::string_view channel) const;
   void put(Subscriber& subscriber, const Received& message);
 
   std::deque<Subscriber> subscribers_;  // addresses stay valid
   std::map<std::string, std::vector<Subscriber*>, std::less<>> by_name_;
   std::vector<std::pair<std::string, Subscriber*>> by_prefix_;
+  Subscriber* others_ = nullptr;
+  std::function<bool()> others_wanted_;
   std::deque<Waiting> waiting_;
   std::size_t bytes_ = 0;
   std::int64_t dropped_ = 0;

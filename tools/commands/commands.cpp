@@ -4,6 +4,7 @@
 
 #include "commands/compare.hpp"
 #include "commands/experiment.hpp"
+#include "commands/listen.hpp"
 
 namespace egocal::tools {
 
@@ -16,6 +17,7 @@ void add_commands(cli::App program) {
   add_align(program);
   add_log(program);
   add_up(program);
+  add_listen(program);
   add_tell(program);
   add_export(program);
   add_compare(program);

@@ -70,6 +70,10 @@ class Loop {
   /// The same for every channel whose name begins so. All of them share one queue.
   void subscribe_prefix(const std::string& prefix, Handler handler, int queue_capacity = 256);
 
+  /// Calls the handler for every message of a channel that nothing else here subscribes to, while wanted()
+  /// says so; it is asked before anything of a message is kept. Once.
+  void subscribe_others(Handler handler, std::function<bool()> wanted, int queue_capacity = 256);
+
   /// subscribe_bytes, decoded. What cannot be decoded is counted in undecodable() and not handed on.
   template <class Message>
   void subscribe(const std::string& channel, std::function<void(const Message&, const Arrival&)> handler,

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What arrives on the sensors' channels, for people who start a rig for the first time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "egocal/bus/bytes.hpp"
+#include "egocal/bus/rig.hpp"
+
+namespace egocal::bus {
+
+/// Messages of one kind that cannot be used.
+struct Refusal {
+  std::string reason;  ///< as in the counters: "time out of range"
+  std::string cure;    ///< with the value that was seen: "times 1.49e18 us: nanoseconds? Send microseconds."
+  std::int64_t count = 0;
+};
+
+/// One channel as it is heard.
+struct HeardStream {
+  std::string channel;
+  std::string type;  ///< "egocal.odometry_t", "bot_core.pose_t", another type of ours, or "unknown type"
+  bool is_odometry = false;
+  std::int64_t messages = 0;
+  double rate = 0;  ///< over the last two to four seconds [1/s]
+  std::int64_t last_mono_us = 0;
+  std::vector<Refusal> refusals;  ///< in the order in which they were first seen
+};
+
+/// One sensor of the rig.
+struct SensorStream {
+  Sensor sensor;
+  std::optional<HeardStream> heard;  ///< empty: nothing yet
+};
+
+/// What is to be said of a stream, one line for people.
+struct StreamLine {
+  enum class Severity { good, warning, bad } severity = Severity::good;
+  std::string text;
+};
+
+/// Watches the channels of a rig, and others that carry odometry where a sensor is missed. Bounded in memory
+/// whatever arrives. Times are those of the loop's clock [us].
+class StreamWatch {
+ public:
+  explicit StreamWatch(const std::vector<Sensor>& sensors);
+
+  /// A message of any channel. Returns a refusal that is the first of its kind on a sensor's channel.
+  std::optional<Refusal> hear(const std::string& channel, Bytes bytes, std::int64_t mono_us);
+
+  const std::vector<SensorStream>& sensors() const { return sensors_; }
+  /// Channels that no sensor of the rig names, by name. At most most_others.
+  const std::map<std::string, HeardStream>& others() const { return others_; }
+  /// Some sensor has not been heard for silent_us: what others send is worth a look.
+  bool misses_any(std::int64_t mono_us) const;
+
+  static constexpr std::size_t most_others = 64;
+  static constexpr std::size_t most_refusals = 16;  ///< kinds, of one channel
+  static constexpr std::int64_t silent_us = 2'000'000;
+
+ private:
+  struct Counting {
+    std::int64_t window_begin_us = 0, in_window = 0;
+    std::int64_t first_time_us = 0, first_mono_us = 0, last_time_us = -1;
+    std::int64_t at_same_time = 0;
+  };
+  static void count(HeardStream& stream, Counting& counting, std::int64_t mono_us);
+  std::optional<Refusal> examine(HeardStream& stream, Counting& counting, OdometryType type, Bytes bytes,
+                                 std::int64_t mono_us);
+
+  std::vector<SensorStream> sensors_;
+  std::vector<Counting> counting_;  ///< of the sensors
+  std::map<std::string, HeardStream> others_;
+  std::map<std::string, Counting> others_counting_;
+};
+
+/// Name of the type of an encoded message, by its fingerprint.
+std::string type_name(Bytes bytes);
+
+/// What to do about messages that were refused for a reason of convert.hpp, with the message's own values.
+std::string cure_of(const std::string& reason, OdometryType type, Bytes bytes);
+/// What to do about poses and motions that pairing rejects, by the name in its counters; empty: nothing is
+/// known.
+std::string cure_of_rejection(const std::string& reason);
+
+/// A line for each sensor, and one for each kind of refusal below it.
+std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono_us);
+
+}  // namespace egocal::bus

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstdio>
+
+#include "egocal/bus/plausible.hpp"
+#include "egocal/bus/stream_watch.hpp"
+
+namespace egocal::bus {
+
+namespace {
+
+using Severity = StreamLine::Severity;
+
+constexpr std::size_t most_named = 3;  ///< channels that were heard instead
+
+std::string rate_text(double rate) {
+  char text[40];
+  std::snprintf(text, sizeof text, rate < 9.95 ? "%.1f Hz" : "%.0f Hz", rate);
+  return text;
+}
+
+std::string expected_type(const Sensor& sensor) {
+  return sensor.type == OdometryType::pose ? "bot_core.pose_t" : "egocal.odometry_t";
+}
+
+std::string described(const HeardStream& stream) {
+  return printable(stream.channel, 63) + " (" + stream.type +
+         (stream.rate > 0 ? ", " + rate_text(stream.rate) : "") + ")";
+}
+
+/// Channels with odometry first: they are what a misspelt name would have been.
+std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
+  std::vector<const HeardStream*> streams;
+  for (const auto& [channel, stream] : watch.others())
+    if (mono_us - stream.last_mono_us <= StreamWatch::silent_us) streams.push_back(&stream);
+  std::stable_sort(streams.begin(), streams.end(), [](const HeardStream* x, const HeardStream* y) {
+    return x->is_odometry && !y->is_odometry;
+  });
+  std::string text;
+  for (std::size_t i = 0; i < streams.size() && i < most_named; ++i)
+    text += (i ? ", " : "") + described(*streams[i]);
+  if (streams.size() > most_named) text += " and " + std::to_string(streams.size() - most_named) + " more";
+  return text;
+}
+
+StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::int64_t mono_us) {
+  const Sensor& sensor = stream.sensor;
+  const std::string begin = sensor.name + ": " + printable(sensor.channel, 63) + ", ";
+  const bool silent = !stream.heard || mono_us - stream.heard->last_mono_us > StreamWatch::silent_us;
+  if (silent) {
+    std::string text =
+        begin + (stream.heard ? "silent for " +
+                                    std::to_string((mono_us - stream.heard->last_mono_us) / 1'000'000) + " s"
+                              : "nothing heard (expected " + expected_type(sensor) + ")");
+    const std::string instead = heard_instead(watch, mono_us);
+    return {Severity::bad,
+            text + (instead.empty() ? "; no other channel carries anything" : "; heard instead: " + instead)};
+  }
+  std::int64_t refused = 0;
+  for (const Refusal& refusal : stream.heard->refusals) refused += refusal.count;
+  std::string text =
+      begin + stream.heard->type + ", " +
+      (stream.heard->rate > 0 ? rate_text(stream.heard->rate) : std::string("rate not known yet")) + ", " +
+      std::to_string(stream.heard->messages) + " messages";
+  if (refused > 0) text += ", " + std::to_string(refused) + " of them with faults";
+  return {refused > 0 ? Severity::warning : Severity::good, text};
+}
+
+}  // namespace
+
+std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono_us) {
+  std::vector<StreamLine> lines;
+  for (const SensorStream& stream : watch.sensors()) {
+    lines.push_back(line_of(stream, watch, mono_us));
+    if (!stream.heard) continue;
+    for (const Refusal& refusal : stream.heard->refusals)
+      lines.push_back({Severity::warning,
+                       "  " + std::to_string(refusal.count) + " x " + refusal.reason + ": " + refusal.cure});
+  }
+  if (watch.sensors().empty())
+    for (const auto& [channel, stream] : watch.others())
+      lines.push_back({stream.is_odometry ? Severity::good : Severity::warning,
+                       described(stream) + ", " + std::to_string(stream.messages) + " messages"});
+  return lines;
+}
+
+}  // namespace egocal::bus

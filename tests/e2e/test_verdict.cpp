@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict over real LCM: pairing and diagnosis as processes, `egocal listen` beside them.
+#include <csignal>
+
+#include "egocal/bus/verdict.hpp"
+#include "processes.hpp"
+#include "support/mistakes.hpp"
+
+namespace egocal {
+namespace {
+
+using namespace std::chrono_literals;
+using test::bin;
+using test::ChildProcess;
+using test::drive;
+using test::events;
+using test::Processes;
+using ::testing::HasSubstr;
+
+class LiveVerdict : public Processes {
+ protected:
+  LiveVerdict() {
+    loop->subscribe<verdict_t>(bus::verdict_channel("left", "right"),
+                               [this](const verdict_t& message, const bus::Arrival&) {
+                                 EXPECT_TRUE(bus::to_verdict(message)) << bus::to_verdict(message).reason;
+                                 verdict = message;
+                               });
+  }
+  bool judged() {
+    return until([&] { return verdict && problem && verdict->seq == problem->seq; }, 15s);
+  }
+  std::string listened(const std::string& arguments, int expected) {
+    const std::string out = folder / "listened";
+    ChildProcess listen({"/bin/sh", "-c", bin + "/egocal listen --lcm-url '" + url + "' " + arguments}, out);
+    // what it listens to
+    const auto sent = events(drive(600));
+    std::size_t next = 0;
+    int code = -1;
+    for (int i = 0; i < 400 && code < 0; ++i) {
+      for (int k = 0; k < 2 && next < sent.size(); ++k, ++next)
+        loop->publish(channel(sent[next].side), bus::to_message(sent[next].pose, sent[next].seq));
+      loop->run_once(0ms);
+      code = listen.wait(20ms);
+    }
+    EXPECT_EQ(code, expected);
+    std::ifstream in(out);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  std::optional<verdict_t> verdict;
+};
+
+TEST_F(LiveVerdict, NamesAMistakeAndOutlivesAKill) {
+  start("egocal-pairing");
+  start("egocal-diagnosis");
+  std::vector<Trajectory> trajectories = drive(300);
+  trajectories[1] = testing::lengthened(trajectories[1], 0.37);
+  play(events(trajectories));
+  ASSERT_TRUE(judged());
+  EXPECT_EQ(verdict->verdict, "contradictory") << verdict->reason;
+  ASSERT_GT(verdict->n_findings, 0);
+  EXPECT_EQ(verdict->findings[0].code, "scale");
+  EXPECT_EQ(verdict->session, problem->session);
+  EXPECT_EQ(counter("egocal-diagnosis", "lost"), 0);
+
+  processes.at("egocal-diagnosis").signal(SIGKILL);
+  processes.erase("egocal-diagnosis");
+  verdict.reset();
+  start("egocal-diagnosis");
+  ASSERT_TRUE(judged()) << "it judges again, by what pairing still knows";
+  EXPECT_EQ(verdict->fit.poses, 0) << "it has heard no pose itself";
+}
+
+TEST_F(LiveVerdict, ListenSaysWhatIsHeardAndWhatIsMissed) {
+  EXPECT_THAT(listened(rig_file + " --seconds 4", 0), HasSubstr("left: ODO_LEFT, egocal.odometry_t, "));
+  const std::string other = folder / "other.toml";
+  std::ifstream in(rig_file);
+  std::string rig{std::istreambuf_iterator<char>(in), {}};
+  rig.replace(rig.find("ODO_RIGHT"), 9, "ODO_WRONG");
+  std::ofstream(other) << rig;
+  const std::string said = listened(other + " --seconds 4", 1);
+  EXPECT_THAT(said, HasSubstr("right: ODO_WRONG, nothing heard (expected egocal.odometry_t); heard instead: "
+                              "ODO_RIGHT (egocal.odometry_t, "));
+}
+
+}  // namespace
+}  // namespace egocal
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  if (!testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
+  return RUN_ALL_TESTS();
+}
