@@ -20,7 +20,7 @@ struct Text {
 };
 
 Text help(const ViewState& view, int width, int height) {
-  if (width < 66 || height < 15)
+  if (width < 66 || height < 16)
     return {"Keys",
             {"q quit         Enter detail", "n N pair       Esc   overview", "+ - zoom       e     events",
              "l   axes       x     export", "r   reset      p     pause", "spc pause view ^L    redraw"}};
@@ -30,7 +30,7 @@ Text help(const ViewState& view, int width, int height) {
            "n N      next, previous pair       e        events",
            "+ -      zoom the time             l        log or linear axes",
            "space    pause the view only       x        export the answer",
-           "r        reset the calibration     p        pause or resume it",
+           "r        reset the calibration     p        pause or resume it", "s        the sensors' streams",
            "Ctrl-L   draw again                Ctrl-Z   suspend", "",
            "good, incomplete, doubtful, contradictory: can it be used?",
            "optimal (proven): no other transform fits better. Not the same.",

@@ -20,6 +20,7 @@ std::chrono::nanoseconds nanoseconds(double seconds) {
 Feed::Feed(Model& model, const FeedOptions& options)
     : model_(model),
       delivery_(model),
+      streams_(options.sensors),
       loop_(options.url, {.handle_signals = false, .require_network = false}),
       heartbeat_(loop_, {"egocal-monitor", bus::Role::monitor, options.version},
                  nanoseconds(options.heartbeat_timeout)) {
@@ -31,6 +32,7 @@ Feed::Feed(Model& model, const FeedOptions& options)
   loop_.subscribe_prefix(bus::verdict_prefix, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::status_channel, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::command_channel, deliver);
+  if (!options.sensors.empty()) watch_streams();
   const auto report = [this](const std::string& error) {
     if (error.empty())
       model_.note(Severity::good, "network", "the network is back", now());
@@ -40,6 +42,20 @@ Feed::Feed(Model& model, const FeedOptions& options)
   if (!loop_.network_error().empty()) report(loop_.network_error());
   loop_.on_network(report);
   heartbeat_.set_state(bus::State::running);
+}
+
+/// Only the sensors' own channels, unless one of them is missed: then whatever else is on the bus.
+void Feed::watch_streams() {
+  const auto hear = [this](const bus::Arrival& arrival) {
+    if (const std::optional<bus::Refusal> first =
+            streams_.hear(arrival.channel, arrival.bytes, arrival.mono_us))
+      model_.note(Severity::warning, arrival.channel, first->reason + ": " + first->cure, now());
+  };
+  for (const bus::SensorStream& stream : streams_.sensors())
+    loop_.subscribe_bytes(stream.sensor.channel, hear, queue_capacity);
+  loop_.subscribe_others(hear, [this] { return streams_.misses_any(loop_.mono_us()); });
+  loop_.every(std::chrono::milliseconds(500),
+              [this] { model_.set_streams(bus::stream_lines(streams_, loop_.mono_us())); });
 }
 
 void Feed::watch(const std::vector<int>& fds) {

@@ -9,6 +9,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/stream_watch.hpp"
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
@@ -16,7 +17,8 @@ namespace egocal::monitor {
 struct FeedOptions {
   std::string url;
   std::string version;
-  double heartbeat_timeout = 3;  ///< [s]
+  double heartbeat_timeout = 3;      ///< [s]
+  std::vector<bus::Sensor> sensors;  ///< of the rig; empty: no rig is known, and streams are not watched
 };
 
 /// The monitor on the bus: the loop and the heartbeat of every process, and the channels of all pairs.
@@ -39,8 +41,11 @@ class Feed {
   const std::string& network_error() const { return loop_.network_error(); }
 
  private:
+  void watch_streams();
+
   Model& model_;
   Delivery delivery_;
+  bus::StreamWatch streams_;
   bus::Loop loop_;
   bus::Heartbeat heartbeat_;
 };

@@ -27,7 +27,7 @@ Frame frame_of(int width, int height) {
 
 }  // namespace
 
-OverviewLayout layout_overview(int width, int height, int pairs, int processes) {
+OverviewLayout layout_overview(int width, int height, int pairs, int processes, int streams) {
   const Frame frame = frame_of(width, height);
   OverviewLayout layout;
   layout.header = frame.header;
@@ -48,15 +48,21 @@ OverviewLayout layout_overview(int width, int height, int pairs, int processes) 
   const int table_rows = 2 + pairs;
   const int process_rows =
       std::clamp(processes + 1, 2, std::max(2, std::min(rows / 3, rows - std::min(table_rows, rows / 2))));
-  int left = rows - process_rows;
+  // and what is wrong with the streams before the events
+  const int stream_rows =
+      streams > 0 ? std::min(streams + 1, std::max(0, rows - process_rows - std::max(table_rows, rows / 3)))
+                  : 0;
+  int left = rows - process_rows - (stream_rows >= 2 ? stream_rows : 0);
   for (int card : {6, 5, 4})
     if (width >= 76 && layout.card_rows == 0 && 1 + card * pairs <= left) layout.card_rows = card;
   const int wanted = layout.card_rows > 0 ? 1 + layout.card_rows * pairs : table_rows;
   const int pair_rows = std::min(wanted, left);
   left -= pair_rows;
   const int event_rows = left >= 2 ? left : 0;
-  layout.pairs = {0, frame.body.y, width, rows - process_rows - event_rows};
-  layout.processes = {0, layout.pairs.y + layout.pairs.h, width, process_rows};
+  const int shown_streams = stream_rows >= 2 ? stream_rows : 0;
+  layout.pairs = {0, frame.body.y, width, rows - process_rows - event_rows - shown_streams};
+  layout.streams = {0, layout.pairs.y + layout.pairs.h, width, shown_streams};
+  layout.processes = {0, layout.streams.y + shown_streams, width, process_rows};
   layout.events = {0, layout.processes.y + process_rows, width, event_rows};
   return layout;
 }

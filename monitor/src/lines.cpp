@@ -145,6 +145,8 @@ std::string pair_lines(const Model& model, Charset charset) {
 
 std::string text_lines(const Model& model, Charset charset) {
   std::string text = pair_lines(model, charset);
+  for (const bus::StreamLine& line : model.streams())
+    if (line.severity != bus::StreamLine::Severity::good) text += "stream " + clean(line.text, 400) + "\n";
   for (const ProcessState& process : model.processes()) {
     const status_t& status = process.status;
     text += clean(status.name, 40) + ": " +
@@ -210,6 +212,10 @@ std::string json_line(const Model& model) {
                               {"rejected", process.rejected},
                               {"last_error", clean(status.last_error, 200)}});
   }
+  j["streams"] = json::array();
+  for (const bus::StreamLine& line : model.streams())
+    j["streams"].push_back(
+        {{"ok", line.severity == bus::StreamLine::Severity::good}, {"text", clean(line.text, 400)}});
   j["events"] = json::array();
   const auto& events = model.events();
   const std::size_t first = events.size() > 20 ? events.size() - 20 : 0;

@@ -337,7 +337,10 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
     values[translation_error] = std::max({message.stddev[0], message.stddev[1], message.stddev[2]});
     values[rotation_error] = std::max({message.stddev[3], message.stddev[4], message.stddev[5]});
   }
-  values[scaled_gap] = message.scaled_gap;
+  // where the fast process solved globally itself, its own solution is not known
+  const bool own_solution =
+      track->role != Role::fast || (message.method != "dual" && message.method != "sdp");
+  values[scaled_gap] = own_solution ? message.scaled_gap : kNaN;
   values[execution_time] =
       (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
   if (time >= 0 && time < kLongest) track->history.add(time, values);
@@ -399,6 +402,7 @@ void Model::on_status(const status_t& message, Now now) {
   process->state = state;
   process->status.last_error = error;
 
+  watch_rejections(*process, message, now);
   process->in = process->out = process->lost = process->rejected = 0;
   for (const counter_t& counter : message.counters) {
     // a hostile count must not overflow the sums

@@ -21,6 +21,10 @@ void draw_pair_table(const Pane& pane, const Model& model, int selected, bool he
 void draw_processes(const Pane& pane, const Model& model, bool title, Charset charset);
 void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset);
 
+/// stream_panel.cpp: the sensors' streams; all: with what the processes reject, and why.
+void draw_streams(const Pane& pane, const Model& model, int scroll, bool all, Charset charset);
+int stream_line_count(const Model& model);
+
 // detail_panels.cpp
 /// verdict_panel.cpp: verdict, findings, goal and fit, a line each.
 void draw_verdict(const Pane& pane, const PairState& pair, Charset charset);

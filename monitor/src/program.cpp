@@ -49,10 +49,11 @@ int utc_offset_s() {
 // Messages from the bus or from a log, behind one face.
 class Source {
  public:
-  Source(Model& model, const ProgramOptions& options, const std::string& url) {
+  Source(Model& model, const ProgramOptions& options, const std::string& url,
+         const std::vector<bus::Sensor>& sensors) {
     if (options.log.empty()) {
-      feed_ =
-          std::make_unique<Feed>(model, FeedOptions{url, options.version, model.options().heartbeat_timeout});
+      feed_ = std::make_unique<Feed>(
+          model, FeedOptions{url, options.version, model.options().heartbeat_timeout, sensors});
       name_ = url.substr(0, url.find('?'));
     } else {
       recording_ = std::make_unique<Recording>(model, options.log, options.speed);
@@ -328,7 +329,7 @@ int run(const ProgramOptions& options) {
   Model model(model_options);
   if (rig)
     for (const bus::PairConfig& pair : rig->pairs) model.expect_pair(pair.a, pair.b);
-  Source source(model, options, url);
+  Source source(model, options, url, rig ? rig->sensors : std::vector<bus::Sensor>());
 
   const bool utf8 = std::string_view(nl_langinfo(CODESET)) == "UTF-8";
   const Charset charset = utf8 && !options.ascii ? Charset::unicode : Charset::ascii;

@@ -168,14 +168,16 @@ void draw_keys(const Pane& pane, const ViewState& view) {
   std::vector<Hint> hints;
   switch (view.screen) {
     case Screen::overview:
-      hints = {{"q", "quit"},           {"?", "help"},   {"Enter", "detail"}, {"e", "events"},
-               {"space", "pause view"}, {"x", "export"}, {"r", "reset"},      {"p", "pause calibration"}};
+      hints = {{"q", "quit"},   {"?", "help"},    {"Enter", "detail"},
+               {"e", "events"}, {"s", "streams"}, {"space", "pause view"},
+               {"x", "export"}, {"r", "reset"},   {"p", "pause calibration"}};
       break;
     case Screen::detail:
       hints = {{"q", "quit"},           {"?", "help"},   {"Esc", "back"}, {"+-", "zoom"}, {"l", "log/linear"},
                {"space", "pause view"}, {"x", "export"}, {"r", "reset"},  {"p", "pause"}, {"n", "next pair"}};
       break;
     case Screen::events:
+    case Screen::streams:
       hints = {{"q", "quit"}, {"?", "help"}, {"Esc", "back"}, {"up/down", "scroll"}, {"space", "pause view"}};
       break;
   }
@@ -188,10 +190,19 @@ void draw_keys(const Pane& pane, const ViewState& view) {
   }
 }
 
+/// On the overview only what is not as it should be; all of it has a screen of its own.
+int streams_to_say(const Model& model) {
+  const auto& lines = model.streams();
+  const bool well = std::all_of(lines.begin(), lines.end(), [](const bus::StreamLine& line) {
+    return line.severity == bus::StreamLine::Severity::good;
+  });
+  return well ? 0 : static_cast<int>(lines.size());
+}
+
 void draw_overview(Canvas& canvas, const Model& model, const ViewState& view) {
   const OverviewLayout layout =
       layout_overview(canvas.width(), canvas.height(), static_cast<int>(model.pairs().size()),
-                      static_cast<int>(model.processes().size()));
+                      static_cast<int>(model.processes().size()), streams_to_say(model));
   draw_header(Pane(canvas, layout.header), model, view);
   const Pane pairs(canvas, layout.pairs);
   const int top = layout.titles ? 1 : 0;
@@ -208,6 +219,7 @@ void draw_overview(Canvas& canvas, const Model& model, const ViewState& view) {
   if (!layout.summary.empty())
     if (const PairState* pair = selected_pair(model, view))
       draw_summary(Pane(canvas, layout.summary), *pair, view.charset);
+  if (!layout.streams.empty()) draw_streams(Pane(canvas, layout.streams), model, 0, false, view.charset);
   if (!layout.processes.empty())
     draw_processes(Pane(canvas, layout.processes), model, layout.titles, view.charset);
   if (!layout.events.empty()) {
@@ -260,6 +272,13 @@ void draw_event_screen(Canvas& canvas, const Model& model, const ViewState& view
               view.charset);
 }
 
+void draw_stream_screen(Canvas& canvas, const Model& model, const ViewState& view) {
+  const EventsLayout layout = layout_events(canvas.width(), canvas.height());
+  draw_header(Pane(canvas, layout.header), model, view);
+  draw_keys(Pane(canvas, layout.keys), view);
+  draw_streams(Pane(canvas, layout.list), model, view.scroll, true, view.charset);
+}
+
 }  // namespace
 
 Action press(ViewState& view, const Model& model, KeyPress key) {
@@ -270,9 +289,13 @@ Action press(ViewState& view, const Model& model, KeyPress key) {
   const auto select = [&](int index) { view.selected = pairs ? std::clamp(index, 0, pairs - 1) : 0; };
   const int page = event_rows(layout_events(80, view.height).list.h);
   const auto scroll = [&](int lines) {
-    view.scroll = std::clamp(view.scroll + lines, 0, std::max(0, events - page));
+    // the newest event is at the bottom, the first stream at the top
+    if (view.screen == Screen::streams)
+      view.scroll = std::clamp(view.scroll - lines, 0, std::max(0, stream_line_count(model) - page));
+    else
+      view.scroll = std::clamp(view.scroll + lines, 0, std::max(0, events - page));
   };
-  const bool list = view.screen == Screen::events;
+  const bool list = view.screen == Screen::events || view.screen == Screen::streams;
   switch (key.key) {
     case Key::up:
       list ? scroll(1) : select(view.selected - 1);
@@ -342,6 +365,11 @@ Action press(ViewState& view, const Model& model, KeyPress key) {
       view.screen = Screen::events;
       view.scroll = 0;
       break;
+    case '4':
+    case 's':
+      view.screen = Screen::streams;
+      view.scroll = 0;
+      break;
     case '+':
     case '=':
       zoom(view, model, 1);
@@ -384,6 +412,9 @@ void draw(Canvas& canvas, const Model& model, const ViewState& view) {
     case Screen::events:
       draw_event_screen(canvas, model, view);
       break;
+    case Screen::streams:
+      draw_stream_screen(canvas, model, view);
+      break;
   }
   draw_dialog(canvas, selected_pair(model, view), view);
 }
@@ -397,6 +428,10 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
   extrinsic.T_parent_child = pair.shown.T_a_b;
   extrinsic.certified = answer->status == 0;
   extrinsic.pairs = answer->pairs;
+  if (pair.verdict) {
+    extrinsic.verdict = to_string(pair.verdict->diagnosis.verdict);
+    extrinsic.usable = pair.verdict->diagnosis.verdict != Verdict::contradictory;
+  }
   extrinsic.stddev.emplace();
   std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());
   return extrinsic;

@@ -14,11 +14,13 @@ namespace egocal::monitor {
 
 struct OverviewLayout {
   Rect header, pairs, processes, events, keys;
+  Rect streams;         ///< empty where there is nothing to say of them
   Rect summary;         ///< of the chosen pair, where there is no room for processes and events
   bool titles = false;  ///< the first row of pairs, processes and events is a title
   int card_rows = 0;    ///< rows of one pair's card; 0: a table, one row a pair
 };
-OverviewLayout layout_overview(int width, int height, int pairs, int processes);
+/// streams: lines to be said of the sensors' streams.
+OverviewLayout layout_overview(int width, int height, int pairs, int processes, int streams = 0);
 
 /// The table of pairs: which columns fit.
 enum class PairColumn {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "egocal/bus/process.hpp"
+#include "egocal/bus/stream_watch.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/command_t.hpp"
@@ -121,6 +122,7 @@ struct ProcessState {
   bool alive = true;
   double rate_in = 0, rate_out = 0;  ///< [1/s]; negative: unknown
   std::int64_t in = 0, out = 0, lost = 0, rejected = 0;
+  std::vector<bus::Refusal> rejections;  ///< by reason, with its cure where one is known; at most 64
   std::int64_t rate_mono_us = 0, rate_in_count = 0, rate_out_count = 0;
 };
 
@@ -141,6 +143,9 @@ class Model {
   void on_verdict(const verdict_t& message, const bus::ReceivedVerdict& received, Now now);
   void on_status(const status_t& message, Now now);
   void on_command(const command_t& message, Now now);
+  /// What is to be said of the sensors' streams now.
+  void set_streams(std::vector<bus::StreamLine> lines) { streams_ = std::move(lines); }
+
   /// A line for the list of events from outside, e.g. captured standard error.
   void note(Severity severity, const std::string& subject, const std::string& text, Now now);
   /// Lets time pass: finds out who has gone silent. To be called a few times a second.
@@ -148,6 +153,8 @@ class Model {
 
   const std::vector<PairState>& pairs() const { return pairs_; }
   const std::vector<ProcessState>& processes() const { return processes_; }
+  /// A line for each sensor and for each kind of fault in what it sends; empty: nobody watches them.
+  const std::vector<bus::StreamLine>& streams() const { return streams_; }
   const std::deque<Event>& events() const { return events_; }  ///< oldest first
   std::int64_t events_seen() const { return events_seen_; }    ///< ever, also those that are no longer kept
   std::int64_t ignored() const { return ignored_; }
@@ -163,12 +170,14 @@ class Model {
   void begin_session(PairState& pair, std::int64_t session);
   Role role_of(const calibration_t& message) const;
   void count_answer(PairState& pair, Now now);
+  void watch_rejections(ProcessState& process, const status_t& message, Now now);
   void watch_certificate(PairState& pair, Now now);
   void watch_verdict(const PairState& pair, const PairVerdict& verdict, Now now);
 
   ModelOptions options_;
   std::vector<PairState> pairs_;
   std::vector<ProcessState> processes_;
+  std::vector<bus::StreamLine> streams_;
   std::deque<Event> events_;
   std::int64_t ignored_ = 0;
   std::int64_t events_seen_ = 0;

@@ -11,7 +11,7 @@
 
 namespace egocal::monitor {
 
-enum class Screen { overview, detail, events };
+enum class Screen { overview, detail, events, streams };
 enum class Dialog { none, help, reset, pause, resume, export_format };
 
 /// What the person at the keyboard has chosen.
