@@ -57,6 +57,8 @@ TEST(Twist, WhatIsNotLaterOrNotFiniteIsRefusedAndLosesNothing) {
   EXPECT_FALSE(integrator.add({1'000'000, {1, 0, 0}, zero}));
   EXPECT_FALSE(integrator.add({500'000, {1, 0, 0}, zero}));
   EXPECT_FALSE(integrator.add({1'500'000, {std::nan(""), 0, 0}, zero}));
+  EXPECT_FALSE(integrator.add({1'600'000, {1e300, 0, 0}, {0, 1e300, 0}}));
+  EXPECT_FALSE(integrator.add({1'600'000, {1e12, 0, 0}, zero}));
   EXPECT_NEAR(to_pose(*integrator.add({2'000'000, {1, 0, 0}, zero})).translation.x(), 1, 1e-12);
 }
 

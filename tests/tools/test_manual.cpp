@@ -92,8 +92,8 @@ TEST_F(Manual, AnotherShellIsWrongUsage) {
 }
 
 TEST_F(Manual, EveryProgramHasOne) {
-  for (const char* program :
-       {"egocal-fast", "egocal-global", "egocal-monitor", "egocal-pairing", "egocal-player"}) {
+  for (const char* program : {"egocal-diagnosis", "egocal-fast", "egocal-global", "egocal-monitor",
+                              "egocal-pairing", "egocal-player"}) {
     ASSERT_EQ(run(paths::bin_dir() + "/" + program + " --manual " + folder.path("") + " 1"), 0) << program;
     EXPECT_THAT(read(std::string(program) + ".1"), HasSubstr("\\-\\-rig\\fR")) << program;
   }

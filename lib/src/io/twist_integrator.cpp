@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "egocal/limits.hpp"
+
 namespace egocal {
 
 namespace {
@@ -27,7 +29,15 @@ std::optional<DualQuaternion> TwistIntegrator::add(const Twist& twist) {
     const double seconds = 1e-6 * static_cast<double>(twist.time_us - last_->time_us);
     const Pose step = screw(0.5 * seconds * (last_->linear + twist.linear),
                             0.5 * seconds * (last_->angular + twist.angular));
-    pose_ = normalized(pose_ * to_dual_quaternion(step));
+    // a damaged velocity may be finite, and its way not
+    const Eigen::Vector4d q(step.rotation.w(), step.rotation.x(), step.rotation.y(), step.rotation.z());
+    const Eigen::Vector3d way = step.translation;
+    if (!q.allFinite() || !way.allFinite() || !plausible_distance(way.cwiseAbs().maxCoeff()))
+      return std::nullopt;
+    const DualQuaternion next = normalized(pose_ * to_dual_quaternion(step));
+    const Eigen::Vector3d place = to_pose(next).translation;
+    if (!plausible_distance(place.cwiseAbs().maxCoeff())) return std::nullopt;
+    pose_ = next;
   }
   last_ = twist;
   return pose_;

@@ -24,7 +24,8 @@ struct Twist {
 /// time.
 class TwistIntegrator {
  public:
-  /// The pose at the time of the sample; empty where it is not later than the one before, or not finite.
+  /// The pose at the time of the sample; empty where it is not later than the one before, not finite, or so
+  /// fast that its pose is none.
   std::optional<DualQuaternion> add(const Twist& twist);
 
  private:
