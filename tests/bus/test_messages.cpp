@@ -197,6 +197,25 @@ TEST(Problem, RoundTripsToTheBit) {
   EXPECT_LT(extrinsic_error(*problem.prior, *back.value->prior).translation, 1e-14);
 }
 
+/// Blocks may touch each other: then the last one takes off what is in two of them, and nothing else may.
+TEST(Problem, OnlyTheLastBlockTakesOffWhatOthersShare) {
+  const auto with_taken_off = [](std::size_t at, double part) {
+    Problem problem = example_problem();
+    Statistics& block = problem.blocks.at(at);
+    block = problem.blocks.front();
+    block.dual_rows *= -part;
+    block.weight *= -part;
+    problem_t message = to_message(problem);
+    message.sensor_a = "a";
+    message.sensor_b = "b";
+    return to_problem(message);
+  };
+  EXPECT_TRUE(with_taken_off(2, 0.5));
+  EXPECT_FALSE(with_taken_off(1, 0.5));
+  EXPECT_FALSE(with_taken_off(2, 1e6));
+  EXPECT_EQ(with_taken_off(2, 0.5).value->blocks.back().weight, -0.5 * example_problem().blocks[0].weight);
+}
+
 TEST(Problem, OutOfRangeIsRefused) {
   const auto refused = [](auto change) {
     problem_t message = example_message();

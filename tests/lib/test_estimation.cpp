@@ -8,6 +8,7 @@
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
+#include "diagnosis/stability.hpp"
 #include "egocal/estimation/stride_sums.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -105,6 +106,21 @@ TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   const Statistics all = sum_blocks(problem.blocks);
   EXPECT_NEAR(all.weight, expected.weight, 1e-9 * expected.weight);
   EXPECT_LT((all.dual_rows - expected.dual_rows).norm(), 1e-9 * expected.dual_rows.norm());
+}
+
+/// Whether a fifth of the drive can be left out is asked of touching blocks as of disjoint ones.
+TEST(Estimation, TouchingBlocksAreAsStableAsTheDriveIs) {
+  const testing::Streams s = with_pose_noise(free_drive(2), 0.005, 0.05, 2);
+  const MotionPairing drive = paired({}, s.a, s.b);
+  const auto spread = [](const Problem& problem) {
+    return detail::spread_without_fifths(problem, solve(problem, Method::dual).T_a_b);
+  };
+  const auto touching = spread(drive.problem()), disjoint = spread(drive.single_stride_problem());
+  ASSERT_GT(drive.choice().mean_stride, 0);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_GT(touching[i], 0) << i;
+    EXPECT_LT(touching[i], 4 * disjoint[i]) << i;
+  }
 }
 
 /// Continuing from the state gives the same bits, and what is kept up to date motion by motion is the sum of

@@ -7,20 +7,37 @@
 
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
+#include "egocal/uncertainty/leave_out.hpp"
 #include "uncertainty/frame_a.hpp"
+#include "uncertainty/takes_off.hpp"
 
 namespace egocal::detail {
 
-std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQuaternion& T_a_b) {
-  constexpr std::size_t parts = 5;
-  std::array<double, 6> spread{};
+namespace {
+
+constexpr std::size_t parts = 5;
+
+/// What blocks that touch each other share is not known pair by pair: what each of a fifth changes is added up,
+/// less what is counted more than once on average.
+std::vector<Vector6d> without_touching_parts(const Problem& problem, const DualQuaternion& T_a_b) {
+  const std::vector<Vector6d> each = leave_out_differences(problem, cost_matrix(problem), T_a_b);
+  const double whole = sum_blocks(problem.blocks).weight;
+  const double times_counted = (whole - problem.blocks.back().weight) / whole;
+  std::vector<Vector6d> answers;
+  for (std::size_t part = 0; part < parts; ++part) {
+    answers.emplace_back(Vector6d::Zero());
+    for (std::size_t i = part * each.size() / parts; i < (part + 1) * each.size() / parts; ++i)
+      answers.back() += each[i] / times_counted;
+  }
+  return answers;
+}
+
+std::vector<Vector6d> without_parts(const Problem& problem, const DualQuaternion& T_a_b) {
   const std::size_t n = problem.blocks.size();
-  if (n < 2 * parts) return spread;
   const bool planar = problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(problem.plane_a) : DualQuaternion{};
   const DualQuaternion G_b = planar ? plane_frame(problem.plane_b) : DualQuaternion{};
   std::vector<Vector6d> answers;
-  Vector6d mean = Vector6d::Zero();
   for (std::size_t part = 0; part < parts; ++part) {
     Statistics rest;
     for (std::size_t i = 0; i < n; ++i)
@@ -28,10 +45,22 @@ std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQu
     const Matrix8d Q = cost_matrix(rest, problem.balance);
     const DualQuaternion T = planar ? extrinsic_from_planar(solve_planar(Q).q, G_a, G_b) : solve_dual(Q).q;
     answers.push_back(frame_a_difference(T_a_b, T));
-    mean += answers.back() / parts;
   }
+  return answers;
+}
+
+}  // namespace
+
+std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQuaternion& T_a_b) {
+  std::array<double, 6> spread{};
+  if (problem.blocks.size() < 2 * parts) return spread;
+  const std::vector<Vector6d> answers = takes_off(problem.blocks.back())
+                                            ? without_touching_parts(problem, T_a_b)
+                                            : without_parts(problem, T_a_b);
+  Vector6d mean = Vector6d::Zero();
+  for (const Vector6d& answer : answers) mean += answer / static_cast<double>(parts);
   for (std::size_t i = 0; i < 6; ++i) {
-    const int k = static_cast<int>(i);
+    const auto k = static_cast<Eigen::Index>(i);
     double sum = 0;
     for (const Vector6d& answer : answers) sum += (answer[k] - mean[k]) * (answer[k] - mean[k]);
     spread[i] = std::sqrt(sum * (parts - 1) / parts);
