@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A scale that changes along the drive is found, with its extrinsic; one that does not is left alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "../support/real_drives.hpp"
+#include "../support/simulated_drive.hpp"
+#include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/scale/estimate_scale.hpp"
+#include "egocal/scale/scale_course.hpp"
+
+namespace egocal {
+namespace {
+
+SimulationOptions drive(std::uint64_t seed, Terrain terrain = Terrain::rough, int poses = 1801) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.seed = seed;
+  options.poses = poses;
+  options.relative_noise = 0.01;
+  options.T_vehicle_sensor = {testing::T_vehicle_a, testing::T_vehicle_b};
+  options.faults.resize(2);
+  return options;
+}
+
+ScaleCourse course_of(const Trajectory& a, const Trajectory& b) {
+  return find_scale_course(a, b, {}, estimate_scale(a, b), Side::a);
+}
+
+/// From this time on [s] the steps are shorter by the factor, as after a loop closure of a monocular SLAM.
+Trajectory stepped(const Trajectory& trajectory, double time, double factor) {
+  ScaleCourse course;
+  const std::int64_t begin = trajectory.front().time_us, at = begin + std::llround(1e6 * time);
+  course.segments = {{begin, at, 1, 1, 0}, {at, trajectory.back().time_us, 1 / factor, 1 / factor, 0}};
+  return scaled(trajectory, course);
+}
+
+TEST(ScaleCourse, AStepIsFoundWithItsTimeAndBothScales) {
+  int found = 0, drives = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    for (const Terrain terrain : {Terrain::rough, Terrain::free})
+      for (const double factor : {1.08, 0.7}) {
+        ++drives;
+        const SimulationOptions options = drive(seed, terrain);
+        const auto sensors = simulate(options);
+        const Trajectory a = stepped(sensors[0], 100, factor);
+        const ScaleCourse course = course_of(a, sensors[1]);
+        if (course.segments.size() != 2) continue;
+        ++found;
+        EXPECT_NEAR(1e-6 * static_cast<double>(course.segments[1].begin_us - a.front().time_us), 100, 3);
+        EXPECT_NEAR(course.segments[0].begin_scale, 1, 0.005);
+        EXPECT_NEAR(course.segments[1].begin_scale, factor, 0.005 * factor);
+      }
+  EXPECT_EQ(found, drives);
+}
+
+TEST(ScaleCourse, AnEvenDriftIsFollowed) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    SimulationOptions options = drive(7, terrain);
+    options.faults[0].scale = 3;
+    options.faults[0].scale_drift = 0.2 / 180;  // 20 % in the three minutes
+    const auto sensors = simulate(options);
+    const ScaleCourse course = course_of(sensors[0], sensors[1]);
+    ASSERT_TRUE(course.changes());
+    for (const double time : {10.0, 90.0, 170.0})
+      EXPECT_NEAR(course.at(sensors[0].front().time_us + std::llround(1e6 * time)) /
+                      (3 * std::exp(options.faults[0].scale_drift * time)),
+                  1, 0.015)
+          << time;
+  }
+}
+
+TEST(ScaleCourse, AScaleThatStaysIsLeftAlone) {
+  for (std::uint64_t seed = 20; seed < 30; ++seed) {
+    SimulationOptions options = drive(seed, seed % 2 ? Terrain::rough : Terrain::free, 1201);
+    options.random_walk = seed % 3 == 1;
+    options.heavy_tails = seed % 3 == 2;
+    options.faults[0].scale = 0.37;
+    const auto sensors = simulate(options);
+    EXPECT_FALSE(course_of(sensors[0], sensors[1]).changes()) << seed;
+  }
+}
+
+TEST(ScaleCourse, NoRealDriveWithAKnownScaleChanges) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives at " << paths::data_dir();
+  for (const std::string drive : {"kitti_05", "kitti_07"})
+    EXPECT_FALSE(course_of(testing::real_trajectory(drive + "/cam0_orbslam2.tum"),
+                           testing::real_trajectory(drive + "/velodyne_pylidar.tum"))
+                     .changes())
+        << drive;
+}
+
+TEST(ScaleCourse, TooShortADriveHasOneScale) {
+  const auto sensors = simulate(drive(1, Terrain::free, 60));
+  const ScaleCourse course = course_of(sensors[0], sensors[1]);
+  EXPECT_EQ(course.segments.size(), 1u);
+  EXPECT_FALSE(course.changes());
+}
+
+}  // namespace
+}  // namespace egocal
