@@ -136,6 +136,9 @@ TEST_F(JsonKeys, OfSolveAreThoseOfThePage) {
   run("solve", drive + " --stride 2 --weights 1:0.1 --time-offset auto");
   run("solve", files("scaled") + " --scale-b auto");
   run("solve", files("scaled") + " --scale-b 4");
+  simulate("drifting",
+           "--poses 1200 --terrain free --noise 0.01 --scale camera=4 --scale-drift camera=0.002");
+  run("solve", files("drifting") + " --scale-b auto");
   for (const std::string& wrong : {drive + " --invert-b", files("bumped"), files("scaled")})
     run("solve", wrong);
   simulate("arm", "--poses 40 --rate 1 --terrain free");

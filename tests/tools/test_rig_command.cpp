@@ -207,6 +207,27 @@ TEST_F(Command, TheScaleOfACameraIsFound) {
   }
 }
 
+TEST_F(Command, AScaleThatDriftsIsFollowed) {
+  const std::string drive = folder.path("drifting");
+  ASSERT_EQ(
+      run("simulate --terrain free --noise 0.01 --poses 1200 --scale camera=4 --scale-drift camera=0.002 "
+          "--out " +
+          drive)
+          .code,
+      0);
+  const Result result = run("solve --json --scale auto " + drive + "/camera.tum " + drive +
+                            "/lidar.tum --truth 0.2,-0.3,-0.5,0.5,0.5,-0.5,0.5");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const json object = result.object();
+  const json& segments = object["scale"]["segments"];
+  ASSERT_FALSE(segments.empty());
+  EXPECT_NEAR(segments.front()["begin_scale"].get<double>(), 4, 0.06);
+  EXPECT_NEAR(segments.back()["end_scale"].get<double>(), 4 * std::exp(0.24), 0.08);
+  EXPECT_LT(object["error_rotation_deg"], 0.2);
+  EXPECT_LT(object["error_translation_m"], 0.05);
+  EXPECT_TRUE(object["certified"]);
+}
+
 TEST_F(Command, TheScaleOfTwoDrivesIsOne) {
   std::string drives[2];
   for (int i = 0; i < 2; ++i) {

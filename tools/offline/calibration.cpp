@@ -144,6 +144,28 @@ void answer_by_baseline(const std::string& method, const std::vector<MotionPair>
   result.solve_us = median_us([&] { run(); });
 }
 
+/// Where the scale that was estimated changes along the drive: one extrinsic for all of its segments.
+void follow_scale(Motions& motions, CalibrationOptions options, SolveResult& result) {
+  Calibration& calibration = result.calibration;
+  if (!calibration.scale || motions.a.empty()) return;
+  Trajectory a = reread(motions.a, options.read_a), b = reread(motions.b, options.read_b);
+  if (calibration.time_offset) b = on_clock_of_a(*calibration.time_offset, std::move(b));
+  const Side side = options.scale_side;
+  const ScaleCourse course = find_scale_course(a, b, options.pairing, *calibration.scale, side);
+  if (!course.changes()) return;
+  (side == Side::a ? a : b) = scaled(side == Side::a ? a : b, course);
+  options.read_a = options.read_b = {};
+  options.estimate_scale = options.estimate_time_offset = false;
+  options.scale = 1;
+  Calibration followed = calibrate(a, b, options);
+  followed.scale = calibration.scale;
+  followed.scale_applied = calibration.scale_applied;
+  followed.time_offset = calibration.time_offset;
+  followed.time_offset_applied = calibration.time_offset_applied;
+  calibration = std::move(followed);
+  result.course = course;
+}
+
 }  // namespace
 
 SolveResult calibrate_offline(const SolveRequest& request) {
@@ -164,6 +186,7 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   if (look_like_samples(motions.a, motions.b))
     result.warnings.push_back("these look like still poses of an arm rather than streams: try --samples");
   result.calibration = calibrate_motions(request.source, motions, options);
+  follow_scale(motions, options, result);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);
   if (request.keep_motions) {

@@ -9,6 +9,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/io/recording.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "egocal/scale/scale_course.hpp"
 
 namespace egocal::tools {
 
@@ -50,6 +51,7 @@ struct SolveResult {
   std::vector<std::string> warnings;  ///< one line each: what the source holds and the answer does not use
   std::string note;                   ///< of a baseline: why its answer is not valid
   std::optional<StreamSpan> a, b;     ///< not for a file of pairs
+  std::optional<ScaleCourse> course;  ///< where the estimated scale changes along the drive
   double solve_us = 0;                ///< the solve alone, median of repeats [us]
   std::optional<SampleCalibration> samples;  ///< of still poses; its calibration is the one above
   MatchedSamples matched;                    ///< the rows that make them

@@ -61,8 +61,38 @@ nlohmann::ordered_json matrix_json(const Pose& T) {
   return rows;
 }
 
-nlohmann::ordered_json scale_json(const Calibration& calibration) {
-  const ScaleSolution& scale = *calibration.scale;
+nlohmann::ordered_json segments_json(const SolveResult& result) {
+  nlohmann::ordered_json segments = nlohmann::ordered_json::array();
+  if (!result.course || !result.a) return segments;
+  const auto seconds = [&](std::int64_t time_us) {
+    return 1e-6 * static_cast<double>(time_us) - result.a->first;
+  };
+  for (const ScaleSegment& segment : result.course->segments)
+    segments.push_back({{"begin_s", seconds(segment.begin_us)},
+                        {"end_s", seconds(segment.end_us)},
+                        {"begin_scale", segment.begin_scale},
+                        {"end_scale", segment.end_scale},
+                        {"stddev", segment.stddev}});
+  return segments;
+}
+
+std::string segments_text(const SolveResult& result) {
+  std::string text;
+  if (!result.course || !result.a) return text;
+  for (const ScaleSegment& segment : result.course->segments) {
+    const double begin = 1e-6 * static_cast<double>(segment.begin_us) - result.a->first;
+    const double end = 1e-6 * static_cast<double>(segment.end_us) - result.a->first;
+    text += segment.begin_scale == segment.end_scale
+                ? fmt::format("  from {:.1f} to {:.1f} s   {:.6g} +- {:.2g}\n", begin, end,
+                              segment.begin_scale, segment.stddev)
+                : fmt::format("  from {:.1f} to {:.1f} s   drifts from {:.6g} to {:.6g} (+- {:.2g})\n", begin,
+                              end, segment.begin_scale, segment.end_scale, segment.stddev);
+  }
+  return "scale         changes along the drive; the extrinsic is one for all of it\n" + text;
+}
+
+nlohmann::ordered_json scale_json(const SolveResult& result) {
+  const ScaleSolution& scale = *result.calibration.scale;
   return {{"value", scale.scale},
           {"stddev", scale.stddev},
           {"observable", scale.observable},
@@ -72,7 +102,8 @@ nlohmann::ordered_json scale_json(const Calibration& calibration) {
           {"gap", scale.gap},
           {"attenuation", scale.attenuation},
           {"observability", scale.observability},
-          {"solves", scale.solves}};
+          {"solves", scale.solves},
+          {"segments", segments_json(result)}};
 }
 
 std::string scale_text(const Calibration& calibration) {
@@ -133,7 +164,7 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
                                     {"rate_stddev", result.calibration.time_offset->rate_stddev},
                                     {"drifts", result.calibration.time_offset->drifts}};
   if (result.samples) json["samples"] = samples_json(result);
-  if (result.calibration.scale) json["scale"] = scale_json(result.calibration);
+  if (result.calibration.scale) json["scale"] = scale_json(result);
   if (result.calibration.scale_applied != 1) json["scale_applied"] = result.calibration.scale_applied;
   json["synchronised"] = result.calibration.counts.synchronised;
   json["outliers"] = result.calibration.counts.outliers;
@@ -181,6 +212,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
                                     to_string(static_cast<Rejection>(i))));
   if (!pairing.empty()) text += fmt::format("pairing       {}\n", fmt::join(pairing, ", "));
   text += scale_text(result.calibration);
+  text += segments_text(result);
   if (result.calibration.time_offset)
     text += fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
                         result.calibration.time_offset->seconds, result.calibration.time_offset->stddev,
