@@ -8,6 +8,7 @@
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
 #include "egocal/pairing/congruence.hpp"
+#include "egocal/pairing/outlier_choice.hpp"
 #include "egocal/pairing/selection.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 #include "egocal/scale/estimate_scale.hpp"
@@ -195,6 +196,7 @@ Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const Cali
     throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
                 rejections_in_words(pairing.counts()));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
+  if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;
   result.time_offset_applied = time_offset ? time_offset->seconds : pairing_options.time_offset;
   const Answered what = answered(result, pairing.single_stride_problem());
@@ -239,6 +241,7 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   Choice choice = choose_balance(problem, pairing);
   problem.balance = choice.balance;
   Calibration result = solved(std::move(problem), std::move(choice), counts, options.method);
+  if (pairing.robust) result.outliers = prove_outliers(result.problem, statistics);
   return judged(result, diagnose(given, answered(result, result.problem), options.diagnosis));
 }
 

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "egocal/certificate/certificate.hpp"
-#include "egocal/online/answer.hpp"
-#include "egocal/problem/cost.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 
 namespace egocal::python {
 
@@ -53,32 +51,33 @@ py::object calibrate_hand_eye(const py::sequence& R_gripper2base, const py::sequ
   if (gripper.size() != target.size())
     throw py::value_error("as many poses of the gripper as of the target are expected");
   if (gripper.size() < 3) throw py::value_error("at least three poses are expected");
-  Answer answer;
+  SampleCalibration found;
   {
     const py::gil_scoped_release release;
-    // every motion between two samples: the camera moves by target2cam_i target2cam_j^-1
-    Problem problem;
-    for (std::size_t i = 0; i < gripper.size(); ++i) {
-      Statistics block;
-      for (std::size_t j = i + 1; j < gripper.size(); ++j)
-        block.add(canonical_sign(to_dual_quaternion(inverse(gripper[i]) * gripper[j])),
-                  canonical_sign(to_dual_quaternion(target[i] * inverse(target[j]))));
-      if (block.count > 0) problem.blocks.push_back(block);
-    }
-    answer = solve(problem, Method::dual);
+    std::vector<PoseSample> samples;
+    for (std::size_t i = 0; i < gripper.size(); ++i)
+      samples.push_back({to_dual_quaternion(gripper[i]), to_dual_quaternion(inverse(target[i]))});
+    found = calibrate_samples(samples);
   }
-  const Pose X = egocal::to_pose(answer.T_a_b);
+  const Calibration& calibration = found.calibration;
+  const Pose& X = calibration.T_a_b;
   const Eigen::Matrix3d R = X.rotation.toRotationMatrix();
   const Eigen::Vector3d t = X.translation;
   if (!details) return py::make_tuple(R, t);
-  const bool observable =
-      answer.observability.observable == std::array<bool, 6>{true, true, true, true, true, true};
+  const Observability& observability = calibration.observability;
+  const bool all = observability.observable == std::array<bool, 6>{true, true, true, true, true, true};
+  std::vector<std::size_t> wrong;
+  for (std::size_t i = 0; i < found.residuals.size(); ++i)
+    if (found.residuals[i].wrong) wrong.push_back(i);
   return py::make_tuple(
       R, t,
-      py::dict("certified"_a = answer.certificate.optimality == Optimality::certified,
-               "observable"_a = answer.observability.observable, "all_observable"_a = observable,
-               "stddev"_a = Eigen::Matrix<double, 6, 1>(answer.observability.stddev.data()),
-               "hint"_a = answer.observability.hint));
+      py::dict("verdict"_a = std::string(to_string(calibration.verdict)), "reason"_a = calibration.reason,
+               "certified"_a = calibration.certificate.optimality == Optimality::certified,
+               "observable"_a = observability.observable, "all_observable"_a = all,
+               "stddev"_a = Eigen::Matrix<double, 6, 1>(observability.stddev.data()),
+               "hint"_a = observability.hint, "wrong"_a = wrong, "spread"_a = found.spread_median,
+               "R_target2base"_a = Eigen::Matrix3d(found.T_world_a_world_b.rotation.toRotationMatrix()),
+               "t_target2base"_a = Eigen::Vector3d(found.T_world_a_world_b.translation)));
 }
 
 }  // namespace
@@ -88,8 +87,10 @@ void bind_hand_eye(py::module_& module) {
              R"(Pose of a camera in the gripper that carries it, from n still poses in any order.
 
 The arguments are those of cv2.calibrateHandEye: sequences of n rotations ((3, 3), or rotation vectors) and of n
-translations. Returns (R_cam2gripper (3, 3), t_cam2gripper (3,)); with details=True also a dict of certified,
-observable (six booleans), all_observable, stddev [m, rad] and hint. Where the motions do not show a direction
+translations. Returns (R_cam2gripper (3, 3), t_cam2gripper (3,)); with details=True also a dict of verdict,
+reason, certified, observable (six booleans), all_observable, stddev [m, rad], hint, wrong (indices of poses that
+contradict the others and do not count), spread (median distance of the target over the poses [m]),
+R_target2base and t_target2base. For a camera beside the arm pass base2gripper instead. Where the motions do not show a direction
 the answer there is not a measurement: look at all_observable.)",
              "R_gripper2base"_a, "t_gripper2base"_a, "R_target2cam"_a, "t_target2cam"_a, py::kw_only(),
              "details"_a = false);

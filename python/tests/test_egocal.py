@@ -122,6 +122,20 @@ def test_hand_eye_has_opencvs_signature(n):
     assert np.allclose(R, X[:3, :3], atol=1e-9) and np.allclose(t, X[:3, 3], atol=1e-9)
 
 
+def test_hand_eye_finds_the_wrong_pose_and_the_target():
+    rng = np.random.default_rng(11)
+    X, target = random_pose(rng), random_pose(rng)
+    gripper = [random_pose(rng) for _ in range(10)]
+    seen = [np.linalg.inv(G @ X) @ target for G in gripper]
+    seen[3] = seen[3] @ random_pose(rng)
+    R, t, details = egocal.calibrate_hand_eye([G[:3, :3] for G in gripper], [G[:3, 3] for G in gripper],
+                                              [S[:3, :3] for S in seen], [S[:3, 3] for S in seen], details=True)
+    assert details["wrong"] == [3] and details["spread"] < 1e-9
+    assert np.allclose(R, X[:3, :3], atol=1e-9) and np.allclose(t, X[:3, 3], atol=1e-9)
+    assert np.allclose(details["R_target2base"], target[:3, :3], atol=1e-9)
+    assert np.allclose(details["t_target2base"], target[:3, 3], atol=1e-9)
+
+
 def test_hand_eye_never_hides_what_it_cannot_know():
     """Poses that all turn about one axis leave a direction open; the answer is finite and says so."""
     rng = np.random.default_rng(5)

@@ -167,6 +167,10 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
   if (result.calibration.scale) json["scale"] = scale_json(result);
   if (result.calibration.scale_applied != 1) json["scale_applied"] = result.calibration.scale_applied;
   json["synchronised"] = result.calibration.counts.synchronised;
+  if (result.calibration.outliers)
+    json["outlier_choice"] = {{"status", to_string(result.calibration.outliers->choice)},
+                              {"undecided", result.calibration.outliers->undecided},
+                              {"solves", result.calibration.outliers->solves}};
   json["outliers"] = result.calibration.counts.outliers;
   json["jumps"] = result.calibration.counts.jumps;
   json["rejected"] = nlohmann::ordered_json::object();
@@ -199,6 +203,11 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
     text += fmt::format("jumps         {} in the odometry, no motion spans them\n", calibration.counts.jumps);
   if (result.calibration.counts.outliers > 0)
     text += fmt::format("outliers      {} more pairs contradict these\n", result.calibration.counts.outliers);
+  if (calibration.outliers && calibration.outliers->choice == OutlierChoice::proven)
+    text += "outliers      proven: no other choice of them has an extrinsic that fits better\n";
+  else if (calibration.outliers)
+    text += fmt::format("outliers      not proven: {} parts of the drive could change sides\n",
+                        calibration.outliers->undecided);
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
     if (stream)
       text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,

@@ -13,6 +13,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
+#include "egocal/robust/outlier_proof.hpp"
 #include "egocal/scale/solve_scale.hpp"
 
 namespace egocal {
@@ -43,6 +44,7 @@ struct Calibration {
   SolverStatus status{};                  ///< of the solver
   Choice choice;                          ///< stride and weights in force, and why
   PairingCounts counts;                   ///< poses, instants, inliers, outliers, rejections by reason
+  std::optional<OutlierProof> outliers;   ///< of the choice of outliers, where there was one
   std::optional<TimeOffset> time_offset;  ///< the estimate, where one was asked for
   double time_offset_applied = 0;         ///< added to the stamps of b [s]
   std::optional<ScaleSolution> scale;     ///< the estimate, where one was asked for

@@ -38,7 +38,10 @@ class Search {
   Search(std::span<const TruncatedPart> parts, const std::vector<bool>& outlier,
          const std::vector<std::size_t>& undecided, double cost, const OutlierProofOptions& options)
       : parts_(parts), outlier_(outlier), undecided_(undecided), cost_(cost), options_(options) {
-    for (const std::size_t k : undecided_) outlier_[k] = true;
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      all_ += parts_[k].Q;
+      if (outlier_[k]) left_out_ += parts_[k].Q;
+    }
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       if (std::binary_search(undecided_.begin(), undecided_.end(), k)) continue;
       if (outlier_[k])
@@ -49,6 +52,11 @@ class Search {
   }
 
   ChoiceSearch run() {
+    // what was left out may be the better choice: a search in order would find that late
+    for (const Matrix8d& Q : {all_, left_out_}) {
+      ++result_.solves;
+      if (cheaper(minimum_of(Q).q)) return result_;
+    }
     result_.complete = excluded(Q_, limits_, 0);
     return result_;
   }
@@ -85,7 +93,8 @@ class Search {
   std::vector<std::size_t> undecided_;
   double cost_;
   OutlierProofOptions options_;
-  Matrix8d Q_ = Matrix8d::Zero();
+  Matrix8d all_ = Matrix8d::Zero(), left_out_ = Matrix8d::Zero();
+  Matrix8d Q_ = Matrix8d::Zero();  ///< of the parts that are kept in any case
   double limits_ = 0;
   ChoiceSearch result_;
 };

@@ -7,6 +7,7 @@
 
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
+#include "robust/residual_limit.hpp"
 
 namespace egocal {
 
@@ -356,6 +357,11 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   }
   if (search.motion_of(factors) < majority * search.motion()) return std::nullopt;
   return search.consensus(std::move(best), scale, std::move(factors));
+}
+
+double detail::residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale) {
+  const double size = squared_size(cost_matrix(part, balance));
+  return limit(part.count) * std::max(scale.absolute, size * std::max(scale.relative, least_relative));
 }
 
 double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement) {

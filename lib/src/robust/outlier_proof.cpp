@@ -7,6 +7,7 @@
 
 #include "robust/choice_search.hpp"
 #include "robust/leverage.hpp"
+#include "robust/residual_limit.hpp"
 
 namespace egocal {
 
@@ -60,6 +61,34 @@ OutlierProof prove_outliers(std::span<const TruncatedPart> parts, const std::vec
     proof.choice = OutlierChoice::proven;
   }
   return proof;
+}
+
+std::optional<OutlierProof> prove_outliers(const Problem& problem, std::span<const Statistics> parts,
+                                           const std::vector<bool>& outlier, int overlap,
+                                           const OutlierProofOptions& options) {
+  if (problem.mode == Mode::planar || parts.size() != outlier.size()) return std::nullopt;
+  const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap);
+  if (!consensus) return std::nullopt;
+  std::vector<TruncatedPart> truncated;
+  for (const Statistics& part : parts)
+    truncated.push_back({part.weight * cost_matrix(part, problem.balance),
+                         part.weight * residual_limit(part, problem.balance, consensus->agreement.scale)});
+  return prove_outliers(truncated, outlier, options);
+}
+
+std::optional<OutlierProof> prove_outliers(const Problem& problem, const RobustStatistics& statistics,
+                                           int overlap, const OutlierProofOptions& options) {
+  std::vector<Statistics> parts;
+  std::vector<bool> outlier;
+  for (const BlockStatistics::Block& block : statistics.state().blocks.state().blocks) {
+    parts.push_back(block.statistics);
+    outlier.push_back(block.outlier);
+  }
+  for (const MotionPair& pair : statistics.state().waiting) {
+    parts.emplace_back().add(pair);
+    outlier.push_back(true);
+  }
+  return prove_outliers(problem, parts, outlier, overlap, options);
 }
 
 }  // namespace egocal

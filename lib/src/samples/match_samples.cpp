@@ -20,6 +20,9 @@ constexpr double nearest_part = 0.25;
 constexpr std::size_t most_samples = 200;
 /// Still poses turn by more than this from one to the next, streams do not [rad].
 constexpr double large_turn = 8 * std::numbers::pi / 180;
+/// In a stream neighbours are much more alike than poses far apart; still poses come in any order, or at best
+/// in a scan. Drives of a pose a second have a tenth, sets of arms 0.4 and more.
+constexpr double unlike_a_stream = 0.3;
 
 std::int64_t typical_period_us(const Trajectory& trajectory) {
   std::vector<std::int64_t> periods;
@@ -67,14 +70,20 @@ MatchedSamples row_by_row(const Trajectory& a, const Trajectory& b) {
   return matched;
 }
 
-double median_turn(const Trajectory& trajectory) {
+/// Between poses so many rows apart [rad].
+double median_turn(const Trajectory& trajectory, std::size_t apart) {
   std::vector<double> turns;
-  for (std::size_t i = 1; i < trajectory.size(); ++i)
+  for (std::size_t i = apart; i < trajectory.size(); ++i)
     turns.push_back(
-        2 * std::acos(std::min(1.0, std::abs(trajectory[i - 1].pose.real.dot(trajectory[i].pose.real)))));
+        2 * std::acos(std::min(1.0, std::abs(trajectory[i - apart].pose.real.dot(trajectory[i].pose.real)))));
   const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
   std::nth_element(turns.begin(), middle, turns.end());
   return *middle;
+}
+
+bool turns_like_samples(const Trajectory& trajectory) {
+  const double near = median_turn(trajectory, 1), far = median_turn(trajectory, trajectory.size() / 2);
+  return near > large_turn && near > unlike_a_stream * far;
 }
 
 }  // namespace
@@ -96,7 +105,7 @@ MatchedSamples match_samples(const Trajectory& a, const Trajectory& b) {
 
 bool look_like_samples(const Trajectory& a, const Trajectory& b) {
   if (a.size() != b.size() || a.size() < 3 || a.size() > most_samples) return false;
-  return median_turn(a) > large_turn && median_turn(b) > large_turn;
+  return turns_like_samples(a) && turns_like_samples(b);
 }
 
 }  // namespace egocal

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "egocal/robust/consensus.hpp"
+#include "egocal/robust/robust_statistics.hpp"
 
 namespace egocal {
 
@@ -52,5 +54,16 @@ struct OutlierProof {
 /// be accepted or some kept part rejected by its own limit. 3-D only. Thread-safe, deterministic.
 OutlierProof prove_outliers(std::span<const TruncatedPart> parts, const std::vector<bool>& outlier,
                             const OutlierProofOptions& options = {});
+
+/// The same for parts of a drive, as find_consensus() judges them: at the limits that it sets. problem: mode
+/// and balance. Not proven where the choice is not the consensus, or leaves out runs for another reason than
+/// their residual. Empty where there are too few parts to judge, and in planar mode.
+std::optional<OutlierProof> prove_outliers(const Problem& problem, std::span<const Statistics> parts,
+                                           const std::vector<bool>& outlier, int overlap = 1,
+                                           const OutlierProofOptions& options = {});
+
+/// The same for what was left out of motions of one stride: blocks and single motions.
+std::optional<OutlierProof> prove_outliers(const Problem& problem, const RobustStatistics& statistics,
+                                           int overlap = 1, const OutlierProofOptions& options = {});
 
 }  // namespace egocal

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/robust/consensus.hpp"
+
+namespace egocal::detail {
+
+/// The mean squared residual (16) above which find_consensus() leaves a part out.
+double residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale);
+
+}  // namespace egocal::detail

@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Errors on all data sets and on simulated drives, beside equal weights and published numbers: the tables of
+// docs/accuracy.md. `scripts/benchmark` runs it.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include "egocal/calibrate.hpp"
+#include "egocal/cli/cli.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
+#include "markdown_tables.hpp"
+#include "support/real_drives.hpp"
+
+namespace {
+
+using namespace egocal;
+using bench::Table;
+using testing::Streams;
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::string error_text(double rotation, double translation, const char* length, double unit) {
+  return text("%.3f deg, ", rotation * degrees) + text("%.2f ", translation * unit) + length;
+}
+
+DualQuaternion answer_to(const Streams& streams, bool equal_weights) {
+  CalibrationOptions options;
+  options.pairing = streams.options;
+  options.diagnosis.enabled = false;
+  if (equal_weights) {
+    options.pairing.balance = Balance{};
+    options.pairing.robust = false;
+    options.pairing.stride = 1;
+  }
+  return to_dual_quaternion(calibrate(streams.a, streams.b, options).T_a_b);
+}
+
+ExtrinsicError error_of(const Streams& streams, bool equal_weights) {
+  return extrinsic_error(streams.T, answer_to(streams, equal_weights));
+}
+
+/// How far three answers are from closing the loop of the three Tango devices.
+ExtrinsicError loop_of_tango(bool equal_weights) {
+  const auto answer = [&](const char* a, const char* b) {
+    Streams streams;
+    streams.a = testing::real_trajectory(std::string("eth_tango_easy/") + a + ".tum");
+    streams.b = testing::real_trajectory(std::string("eth_tango_easy/") + b + ".tum");
+    return answer_to(streams, equal_weights);
+  };
+  return extrinsic_error(answer("caligula", "nero"), answer("caligula", "mars") * answer("mars", "nero"));
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return (values[(n - 1) / 2] + values[n / 2]) / 2;
+}
+
+struct Medians {
+  double rotation, translation, worst_rotation;
+};
+
+Medians medians_of(const std::vector<Streams>& drives, bool equal_weights) {
+  std::vector<double> rotation, translation;
+  for (const Streams& streams : drives) {
+    const ExtrinsicError error = error_of(streams, equal_weights);
+    rotation.push_back(error.rotation);
+    translation.push_back(error.translation);
+  }
+  return {median(rotation), median(translation), *std::max_element(rotation.begin(), rotation.end())};
+}
+
+/// Errors of (32).
+Table real_drives() {
+  Table table{"real", {{"drive", "equal weights, stride 1", "defaults"}}};
+  const auto row = [&](const char* name, const ExtrinsicError& equal, const ExtrinsicError& ours) {
+    table.rows.push_back({name, error_text(equal.rotation, equal.translation, "cm", 100),
+                          error_text(ours.rotation, ours.translation, "cm", 100)});
+  };
+  const auto add = [&](const char* name, const Streams& streams) {
+    row(name, error_of(streams, true), error_of(streams, false));
+  };
+  add("KITTI 07, pyLiDAR and ORB-SLAM2, 3-D", testing::kitti("07"));
+  add("KITTI 05, the same", testing::kitti("05"));
+  add("KITTI 07, A-LOAM", testing::kitti("07", "velodyne_aloam"));
+  add("KITTI 05, A-LOAM", testing::kitti("05", "velodyne_aloam"));
+  add("KITTI 07, planar", testing::planar(testing::kitti("07")));
+  add("KITTI 05, planar", testing::planar(testing::kitti("05")));
+  add("KITTI raw 0930_27, asynchronous stamps, planar", testing::planar(testing::kitti_asynchronous()));
+  add("KITTI raw 0930_27, asynchronous stamps, 3-D", testing::kitti_asynchronous());
+  add("EuRoC V2_01, 200 Hz against 20 Hz", testing::euroc());
+  add("robot arm (against the reference estimate)", testing::robot_arm());
+  row("Tango, three devices, loop", loop_of_tango(true), loop_of_tango(false));
+  return table;
+}
+
+Streams tampere_run(const std::filesystem::path& folder) {
+  Streams streams;
+  streams.a = read_trajectory((folder / "a.tum").string());
+  streams.b = read_trajectory((folder / "b.tum").string());
+  std::ifstream truth(folder / "truth.txt");
+  while (truth.peek() == '#') truth.ignore(1000, '\n');
+  double t[3] = {}, q[4] = {};
+  for (double& value : t) truth >> value;
+  for (double& value : q) truth >> value;
+  streams.T = to_dual_quaternion({Rotation(q[0], q[1], q[2], q[3]).normalized(), {t[0], t[1], t[2]}});
+  return streams;
+}
+
+/// Medians of 13 runs a level, beside the best of all 36 configurations that were published.
+Table tampere() {
+  Table table{"tampere", {{"level", "equal weights, stride 1", "defaults", "worst run", "published"}}};
+  struct Level {
+    const char *name, *folder, *published;
+  };
+  for (const Level& level : {Level{"noise on poses .002", "noise/noise_0.002000", "0.1195 deg, 1.7 mm"},
+                             Level{"noise on poses .010", "noise/noise_0.010000", "0.584 deg, 12.3 mm"},
+                             Level{"drift .05", "drift/drift_0.050000", "9.1 mm"},
+                             Level{"4 outliers", "outliers/outliers_4", "0.287 deg, 10.7 mm"},
+                             Level{"10 outliers", "outliers/outliers_10", "0.287 deg, 10.7 mm"},
+                             Level{"mixture", "mixture", "0.606 deg, 14.6 mm"}}) {
+    std::vector<std::filesystem::path> folders;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(paths::data_dir() + "/tampere/" + level.folder))
+      folders.push_back(entry.path());
+    std::sort(folders.begin(), folders.end());
+    std::vector<Streams> runs;
+    for (const std::filesystem::path& folder : folders) runs.push_back(tampere_run(folder));
+    const Medians equal = medians_of(runs, true), ours = medians_of(runs, false);
+    table.rows.push_back({level.name, error_text(equal.rotation, equal.translation, "mm", 1000),
+                          error_text(ours.rotation, ours.translation, "mm", 1000),
+                          text("%.3f deg", ours.worst_rotation * degrees), level.published});
+  }
+  return table;
+}
+
+/// Spread of the target; beside it the best of OpenCV's five methods (4.6.0) on the same samples.
+Table hand_eye() {
+  Table table{"hand-eye", {{"set", "samples", "wrong", "spread of the target", "best of OpenCV's methods"}}};
+  for (const auto& [name, published] : {std::pair{"moveit50", "not measured"},
+                                        {"fsuarez6", "56 mm"},
+                                        {"visp_to-hand", "2.3 mm"},
+                                        {"aubo32", "3.7 mm"},
+                                        {"scara", "fail"}}) {
+    const auto read = [&](const char* file) {
+      return testing::real_trajectory(std::string("hand_eye/") + name + "/" + file);
+    };
+    const SampleCalibration found =
+        calibrate_samples(match_samples(read("hand.tum"), read("eye.tum")).samples);
+    table.rows.push_back({name, std::to_string(found.residuals.size()),
+                          std::to_string(found.calibration.counts.outliers),
+                          text("%.1f mm", 1e3 * found.spread_median), published});
+  }
+  return table;
+}
+
+/// The last columns: Giamou et al. (8), and maximum likelihood with the noise known (test_efficiency).
+Table simulated() {
+  Table table{
+      "simulated",
+      {{"drive", "equal weights, stride 1", "defaults", "worst", "matrix [8]", "maximum likelihood"}}};
+  const auto add = [&](const char* name, Terrain terrain, int poses, std::uint64_t first, const char* matrix,
+                       const char* limit) {
+    std::vector<Streams> drives;
+    for (std::uint64_t seed = first; seed < first + 20; ++seed) {
+      SimulationOptions options;
+      options.terrain = terrain;
+      options.relative_noise = 0.01;
+      options.seed = seed;
+      options.poses = poses;
+      drives.push_back(testing::simulated_drive(options));
+    }
+    const Medians equal = medians_of(drives, true), ours = medians_of(drives, false);
+    table.rows.push_back({name, text("%.3f deg", equal.rotation * degrees),
+                          text("%.3f deg", ours.rotation * degrees),
+                          text("%.3f deg", ours.worst_rotation * degrees), matrix, limit});
+  };
+  add("road, 1000 motions", Terrain::rough, 1001, 1, "0.223 deg", "0.036 deg");
+  add("the same, seeds 101 to 120", Terrain::rough, 1001, 101, "", "0.033 deg");
+  add("six degrees of freedom, 200 motions", Terrain::free, 201, 1, "0.096 deg", "0.077 deg");
+  add("the same, seeds 101 to 120", Terrain::free, 201, 101, "", "0.087 deg");
+  return table;
+}
+
+struct Part {
+  const char* name;
+  std::function<Table()> make;
+  bool needs_data;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string only, check, write;
+  double tolerance = 0.03;
+  egocal::cli::Program app("accuracy_benchmark", "Errors on all data sets: the tables of docs/accuracy.md");
+  app.add_option("--only", only, "one table: real, tampere, hand-eye or simulated");
+  app.add_option("--check", check, "a page: exit 1 where its tables differ");
+  app.add_option("--tolerance", tolerance, "of --check, relative").show_default();
+  app.add_option("--write", write, "a page: put the tables in their places");
+  if (const auto code = app.parse(argc, argv)) return *code;
+
+  const auto content = [](const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::stringstream all;
+    all << stream.rdbuf();
+    return all.str();
+  };
+  int result = 0;
+  std::string page = write.empty() ? "" : content(write);
+  const std::string checked = check.empty() ? "" : content(check);
+  for (const Part& part : {Part{"real", real_drives, true}, Part{"tampere", tampere, true},
+                           Part{"hand-eye", hand_eye, true}, Part{"simulated", simulated, false}}) {
+    if (!only.empty() && only != part.name) continue;
+    if (part.needs_data && !testing::have_real_drives()) {
+      std::printf("%s: the data in %s are not here\n", part.name, paths::data_dir().c_str());
+      continue;
+    }
+    const Table table = part.make();
+    std::printf("%s\n%s\n", part.name, bench::markdown(table).c_str());
+    std::fflush(stdout);
+    if (!write.empty()) page = bench::with_table(page, table);
+    if (check.empty()) continue;
+    for (const std::string& difference : bench::differences(checked, table, tolerance)) {
+      std::printf("%s\n", difference.c_str());
+      result = 1;
+    }
+  }
+  if (!write.empty()) write_whole_file(write, page);
+  return result;
+}

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables that a program makes, inside a page that people write.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace egocal::bench {
+
+struct Table {
+  std::string name;                            ///< of its place: <!-- begin NAME --> ... <!-- end NAME -->
+  std::vector<std::vector<std::string>> rows;  ///< cells; the first row is the heading
+};
+
+std::string markdown(const Table& table);
+
+/// The page with the table in its place. Throws std::runtime_error where the page has no such place.
+std::string with_table(const std::string& page, const Table& table);
+
+/// What is different between the page and the table, one line each; empty where they agree. Words must be
+/// equal; numbers may differ by `relative`, or by one in their last place.
+std::vector<std::string> differences(const std::string& page, const Table& table, double relative);
+
+}  // namespace egocal::bench
