@@ -65,6 +65,8 @@ void add_noise(cli::App experiment) {
   command.add_option("--repeats", options->noise.repeats, "runs of each")
       .show_default()
       .check(cli::Check::range(1, 1000));
+  command.add_flag("--mixed", options->noise.mixed,
+                   "a number of pairs is a sample of the whole drive, not its beginning");
   command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
   command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {

@@ -47,6 +47,18 @@ Pose sensor_pose(int index, int sensors) {
   return {rotation_exp(turn), distance * direction};
 }
 
+/// Exchanges the motions at random; the same seed gives the same order on every machine (splitmix64,
+/// Fisher-Yates).
+void mix(std::vector<MotionPair>& pairs, std::uint64_t seed) {
+  const auto next = [&seed] {
+    std::uint64_t z = seed += 0x9e3779b97f4a7c15;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+    z = (z ^ z >> 27) * 0x94d049bb133111eb;
+    return z ^ z >> 31;
+  };
+  for (std::size_t i = pairs.size(); i > 1; --i) std::swap(pairs[i - 1], pairs[next() % i]);
+}
+
 struct Sample {
   double translation, rotation;
   bool certified;
@@ -79,7 +91,7 @@ Plot error_plot(const std::vector<NoisePoint>& points, const std::string& title,
                                 Colour::orange, Colour::purple,    Colour::black};
   Plot plot;
   plot.title = title;
-  plot.x = {"motion pairs", AxisScale::logarithmic, {}, {}};
+  plot.x = {"motion pairs", AxisScale::logarithmic, 1.0, {}};  // room for the legend beside the curves
   plot.y = {unit, AxisScale::logarithmic, {}, {}};
   for (const NoisePoint& point : points) {
     const std::string name = fmt::format("{:g} %", 100 * point.level);
@@ -120,7 +132,8 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
         simulation.relative_noise = level;
         simulation.seed = options.seed + static_cast<std::uint64_t>(1000 * sensor + repeat);
         const std::vector<Trajectory> trajectories = simulate(simulation);
-        const std::vector<MotionPair> pairs = motions(trajectories[0], trajectories[1]);
+        std::vector<MotionPair> pairs = motions(trajectories[0], trajectories[1]);
+        if (options.mixed) mix(pairs, simulation.seed);
         // one pass: the statistics of every size are those of the one before and more
         Statistics statistics;
         std::size_t next = 0;

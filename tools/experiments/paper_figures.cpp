@@ -107,6 +107,7 @@ std::string figure_3_part(const PaperOptions& options, const PaperData&, const P
 std::string figure_4_part(const PaperOptions& options, const PaperData&, const PartProgress& progress) {
   NoiseOptions noise;
   noise.even_sizes = true;
+  noise.mixed = true;
   noise.sensors = options.full ? paper::sensor_pairs : 4;
   noise.sizes = options.full ? paper::sizes : 60;
   noise.repeats = options.full ? paper::runs : 8;
