@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// `egocal solve --samples`: the program itself on still poses.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "egocal/io/trajectory_file.hpp"
+#include "support/arm_samples.hpp"
+#include "support/paths.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace egocal {
+namespace {
+
+std::string content_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+class SamplesCommand : public ::testing::Test {
+ protected:
+  struct Result {
+    int code = -1;
+    std::string out, error;
+  };
+  Result solve(const std::string& arguments) {
+    const std::string out = folder.path("out"), error = folder.path("err");
+    const std::string command = paths::bin_dir() + "/egocal solve " + folder.path("hand.tum") + " " +
+                                folder.path("eye.tum") + " " + arguments + " >" + out + " 2>" + error;
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(error)};
+  }
+  /// Twelve samples, one of them wrong; the eye's stamps a little late. to_hand: the camera beside the arm.
+  testing::SimulatedSamples write(bool to_hand) {
+    testing::Random random(4);
+    testing::ArmSamples what;
+    what.samples = 12;
+    what.wrong = 1;
+    testing::SimulatedSamples drawn = testing::simulate_arm(what, random);
+    Trajectory hand, eye;
+    for (std::size_t i = 0; i < drawn.samples.size(); ++i) {
+      const auto time = static_cast<std::int64_t>(3'000'000 * i);
+      const DualQuaternion& a = drawn.samples[i].a;
+      hand.push_back({time, to_hand ? conjugate(a) : a});
+      eye.push_back({time + 20'000, drawn.samples[i].b});
+    }
+    write_tum(folder.path("hand.tum"), hand);
+    write_tum(folder.path("eye.tum"), eye);
+    return drawn;
+  }
+
+  testing::ScratchFolder folder;
+};
+
+TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
+  for (const bool to_hand : {false, true}) {
+    const testing::SimulatedSamples drawn = write(to_hand);
+    const Result result =
+        solve(std::string("--samples --json ") + (to_hand ? "--eye-to-hand" : "--eye-in-hand"));
+    ASSERT_EQ(result.code, 0) << result.error;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["verdict"], "good") << json["reason"];
+    EXPECT_EQ(json["samples"]["wrong"], nlohmann::json::array({1}));
+    EXPECT_EQ(json["samples"]["setup"], to_hand ? "eye_to_hand" : "eye_in_hand");
+    const Pose X = to_pose(drawn.X), Y = to_pose(drawn.Y);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(json["translation"][i].get<double>(), X.translation[i], 5e-3);
+      EXPECT_NEAR(json["samples"]["target"]["translation"][i].get<double>(), Y.translation[i], 5e-3);
+    }
+    EXPECT_LT(json["samples"]["spread_mm"]["median"].get<double>(), 3);
+  }
+}
+
+TEST_F(SamplesCommand, IsOfferedWhereFilesLookLikeSamples) {
+  write(false);
+  const Result result = solve("--max-gap 10");
+  EXPECT_NE(result.error.find("--samples"), std::string::npos) << result.error;
+}
+
+TEST_F(SamplesCommand, RefusesWhatOnlyStreamsHave) {
+  write(false);
+  for (const char* option :
+       {"--samples --stride 2", "--samples --time-offset auto", "--samples --weights equal",
+        "--samples --method local", "--samples --eye-in-hand --eye-to-hand", "--eye-to-hand",
+        "--samples --scale-b auto"}) {
+    const Result result = solve(option);
+    EXPECT_EQ(result.code, 2) << option;
+    EXPECT_TRUE(result.out.empty()) << option;
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1)
+        << option << ": " << result.error;
+  }
+}
+
+}  // namespace
+}  // namespace egocal
