@@ -2,11 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/odometry.hpp"
 
+#include "egocal/limits.hpp"
+
 namespace egocal::bus {
 
-ReceivedOdometry decode_odometry(OdometryType type, Bytes bytes) {
+namespace {
+
+/// The pose with its position multiplied, if that is still one that a sensor can have.
+void apply_scale(double scale, Checked<StampedPose>& received) {
+  if (scale == 1 || !received) return;
+  Pose pose = to_pose(received.value->pose);
+  pose.translation *= scale;
+  if (plausible_distance(pose.translation.x()) && plausible_distance(pose.translation.y()) &&
+      plausible_distance(pose.translation.z()))
+    received.value->pose = to_dual_quaternion(pose);
+  else
+    received = {{}, "position out of range"};
+}
+
+}  // namespace
+
+ReceivedOdometry decode_odometry(const Sensor& sensor, Bytes bytes) {
   ReceivedOdometry result;
-  if (type == OdometryType::pose) {
+  if (sensor.type == OdometryType::pose) {
     bot_core::pose_t message{};
     result.decoded = decode(bytes, message);
     if (result.decoded) result.pose = to_stamped_pose(message);
@@ -16,6 +34,7 @@ ReceivedOdometry decode_odometry(OdometryType type, Bytes bytes) {
     if (result.decoded) result.pose = to_stamped_pose(message);
     result.seq = message.seq;
   }
+  apply_scale(sensor.scale, result.pose);
   return result;
 }
 

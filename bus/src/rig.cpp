@@ -31,6 +31,7 @@ constexpr std::size_t max_dots_per_line = 1000;
 
 constexpr Range reorder_window{0, 3600};       // [s]
 constexpr Range heartbeat_timeout{1.5, 3600};  // [s]; heartbeats come once a second
+constexpr Range sensor_scale{1e-9, 1e9};
 constexpr Range goal_rotation_deg{1e-6, 180};  // one standard deviation of a direction
 constexpr Range goal_translation{1e-6, 1e3};   // [m]
 
@@ -155,7 +156,7 @@ class Table {
 };
 
 Sensor read_sensor(const Table& in) {
-  in.only({"name", "channel", "type", "plane"});
+  in.only({"name", "channel", "type", "plane", "scale"});
   Sensor sensor;
   sensor.name = in.sensor_name("name");
   sensor.channel = in.text("channel");
@@ -167,6 +168,7 @@ Sensor read_sensor(const Table& in) {
     in.fail("channel", "expected the name of one channel, not a pattern");
   if (in.has("type") && in.choice("type", {"egocal.odometry_t", "bot_core.pose_t"}) == "bot_core.pose_t")
     sensor.type = OdometryType::pose;
+  if (in.has("scale")) sensor.scale = in.number("scale", sensor_scale, "");
   if (in.has("plane")) {
     const std::vector<double> v = in.numbers("plane", 4, "[nx, ny, nz, d]");
     try {
@@ -192,7 +194,8 @@ GoalOptions read_goal(const Table& in, const std::string& key) {
 }
 
 PairConfig read_pair(const Table& in, const Rig& rig) {
-  in.only({"a", "b", "mode", "truth", "nominal", "stride", "weights", "time_offset", "goal", "platform"});
+  in.only({"a", "b", "mode", "truth", "nominal", "stride", "weights", "time_offset", "goal", "platform",
+           "on_move"});
   PairConfig pair;
   for (const std::string key : {"a", "b"}) {
     const std::string name = in.sensor_name(key);
@@ -240,6 +243,8 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
       pair.time_offset = in.number("time_offset", limits::time_offset, "s");
     }
   }
+  if (in.has("on_move") && in.choice("on_move", {"report", "restart"}) == "restart")
+    pair.on_move = OnMove::restart;
   if (in.has("platform"))
     pair.platform = platform_from_name(in.choice("platform", {"car", "handheld", "drone", "arm"}));
   if (in.has("goal")) {

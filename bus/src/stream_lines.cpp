@@ -49,13 +49,15 @@ StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::in
   const std::string begin = sensor.name + ": " + printable(sensor.channel, 63) + ", ";
   const bool silent = !stream.heard || mono_us - stream.heard->last_mono_us > StreamWatch::silent_us;
   if (silent) {
-    std::string text =
-        begin + (stream.heard ? "silent for " +
-                                    std::to_string((mono_us - stream.heard->last_mono_us) / 1'000'000) + " s"
-                              : "nothing heard (expected " + expected_type(sensor) + ")");
     const std::string instead = heard_instead(watch, mono_us);
-    return {Severity::bad,
-            text + (instead.empty() ? "; no other channel carries anything" : "; heard instead: " + instead)};
+    const std::string text =
+        stream.heard
+            ? "silent for " + std::to_string((mono_us - stream.heard->last_mono_us) / 1'000'000) + " s"
+            : std::string("nothing heard");
+    return {Severity::bad, begin + text + "; " +
+                               (instead.empty() ? "no other channel carries anything (expected " +
+                                                      expected_type(sensor) + ")"
+                                                : "heard instead: " + instead)};
   }
   std::int64_t refused = 0;
   for (const Refusal& refusal : stream.heard->refusals) refused += refusal.count;

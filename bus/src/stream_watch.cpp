@@ -63,11 +63,12 @@ void StreamWatch::count(HeardStream& stream, Counting& counting, std::int64_t mo
   counting.in_window = 1;
 }
 
-std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& counting, OdometryType type,
+std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& counting, const Sensor& sensor,
                                             Bytes bytes, std::int64_t mono_us) {
-  const ReceivedOdometry odometry = decode_odometry(type, bytes);
-  if (!odometry.decoded) return add(stream, "not decodable", cure_of("not decodable", type, bytes));
-  if (!odometry.pose) return add(stream, odometry.pose.reason, cure_of(odometry.pose.reason, type, bytes));
+  const ReceivedOdometry odometry = decode_odometry(sensor, bytes);
+  if (!odometry.decoded) return add(stream, "not decodable", cure_of("not decodable", sensor.type, bytes));
+  if (!odometry.pose)
+    return add(stream, odometry.pose.reason, cure_of(odometry.pose.reason, sensor.type, bytes));
   const std::int64_t time = odometry.pose.value->time_us;
   counting.at_same_time = time == counting.last_time_us ? counting.at_same_time + 1 : 0;
   counting.last_time_us = time;
@@ -99,7 +100,7 @@ std::optional<Refusal> StreamWatch::hear(const std::string& channel, Bytes bytes
     if (!stream.heard) stream.heard.emplace().channel = channel;
     count(*stream.heard, counting_[i], mono_us);
     stream.heard->type = type_name(bytes);
-    return examine(*stream.heard, counting_[i], stream.sensor.type, bytes, mono_us);
+    return examine(*stream.heard, counting_[i], stream.sensor, bytes, mono_us);
   }
   if (channel.starts_with("EGOCAL_")) return std::nullopt;
   const auto entry = others_.find(channel);

@@ -254,6 +254,10 @@ void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewSt
     return x.style == Style::global && y.style != Style::global;
   });
   plot.mark = pair.only_fast_since;
+  if (pair.verdict)
+    for (const Finding& finding : pair.verdict->diagnosis.findings)
+      if (finding.code == "mount_moved" && finding.time)
+        plot.moves.push_back(seconds(pair.session, pair.verdict->judged.begin_us) + *finding.time);
   if (plot.curve == execution_time && plot.mark) plot.mark_label = "fast alone";
   draw_plot(pane, plot, view.charset);
 }

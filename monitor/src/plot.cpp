@@ -155,6 +155,11 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
     if (!plot.mark_label.empty() && width_of(plot.title) + width_of(meaning) + 4 <= pane.width())
       pane.text(pane.width() - width_of(meaning) - 1, 0, meaning, Style::global);
   }
+  for (const double move : plot.moves)
+    if (span > 0 && move >= plot.begin && move <= plot.end) {
+      const int x = static_cast<int>((move - plot.begin) / span * (w - 1));
+      for (int y = 0; y < h; ++y) field.text(x, y, charset == Charset::unicode ? "┃" : "|", Style::bad);
+    }
   if (nothing || !(span > 0)) return;
 
   Dots dots(w, h, charset);

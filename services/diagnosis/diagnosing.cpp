@@ -8,6 +8,7 @@
 #include <exception>
 #include <utility>
 
+#include "diagnosis/remedies.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/odometry.hpp"
 #include "egocal/bus/verdict.hpp"
@@ -57,7 +58,7 @@ Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
 void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
   Sensor& sensor = sensors_[index];
   ++sensor.in;
-  const bus::ReceivedOdometry odometry = bus::decode_odometry(sensor.config.type, arrival.bytes);
+  const bus::ReceivedOdometry odometry = bus::decode_odometry(sensor.config, arrival.bytes);
   if (!odometry.decoded) return loop_.count_undecodable(arrival.channel);
   if (!odometry.pose) return heartbeat_.reject(odometry.pose.reason);
   for (const NumberedPose& sample : sensor.stream.push({*odometry.pose.value, odometry.seq, 0, false}))
@@ -135,6 +136,7 @@ void Diagnosing::judge(Pair& pair) {
       diagnosis = diagnose(a, b, pairing, answered, options);
       judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses)};
     }
+    word_remedies(rig_, pair.config, diagnosis.findings);
     verdict_t verdict = bus::to_message(diagnosis, judged);
     verdict.utime = message.utime;
     verdict.session = message.session;
@@ -146,10 +148,30 @@ void Diagnosing::judge(Pair& pair) {
     loop_.publish(bus::verdict_channel(verdict.sensor_a, verdict.sensor_b), verdict);
     ++heartbeat_.counter("out");
     pair.verdict = std::move(verdict);
+    if (pair.config.on_move == bus::OnMove::restart) restart_after_move(pair, diagnosis);
   } catch (const std::exception& error) {
     heartbeat_.reject("diagnosis failed");
     heartbeat_.set_error(pair.config.a + " -> " + pair.config.b + ": " + error.what());
   }
+}
+
+/// The motions of both mounts have no common answer. Once a session: the next one begins without them.
+void Diagnosing::restart_after_move(Pair& pair, const Diagnosis& diagnosis) {
+  const std::int64_t session = pair.newest->message.session;
+  const bool moved =
+      std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                  [](const Finding& finding) { return finding.code == "mount_moved" && finding.certain; });
+  if (!moved || pair.restarted_session == session) return;
+  pair.restarted_session = session;
+  command_t command{};
+  command.utime = loop_.wall_us();
+  command.to = "*";
+  command.verb = "reset";
+  command.sensor_a = pair.config.a;
+  command.sensor_b = pair.config.b;
+  command.session = session;
+  loop_.publish(bus::command_channel, command);
+  ++heartbeat_.counter("restarts after a move");
 }
 
 /// For listeners that came late.

@@ -52,9 +52,10 @@ class Diagnosing {
     ProblemInbox inbox;
     DriveSample sample;
     std::optional<ReceivedProblem> newest;
-    std::int64_t newest_mono_us = 0;   ///< when its number was new
-    std::int64_t judged_seq = -1;      ///< of the newest problem's session; -1: none
-    std::optional<verdict_t> verdict;  ///< the last one, of the newest problem's session
+    std::int64_t newest_mono_us = 0;      ///< when its number was new
+    std::int64_t judged_seq = -1;         ///< of the newest problem's session; -1: none
+    std::optional<verdict_t> verdict;     ///< the last one, of the newest problem's session
+    std::int64_t restarted_session = -1;  ///< for which a reset was sent
     bool paused = false;
   };
 
@@ -63,6 +64,7 @@ class Diagnosing {
   void look();
   bool idle(const Pair& pair) const;
   void judge(Pair& pair);
+  void restart_after_move(Pair& pair, const Diagnosis& diagnosis);
   void repeat();
   void obey(Verb verb, const command_t& command);
   void report();

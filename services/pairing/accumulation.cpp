@@ -45,7 +45,7 @@ void Accumulation::apply(const Input& input) {
 void Accumulation::take(Channel& channel, const Input& input) {
   ++channel.state.in;
   channel.state.utime = time_in(input.bytes);
-  const bus::ReceivedOdometry odometry = bus::decode_odometry(channel.sensor.type, input.bytes);
+  const bus::ReceivedOdometry odometry = bus::decode_odometry(channel.sensor, input.bytes);
   if (!odometry.decoded) {
     ++channel.state.undecodable;
   } else if (!odometry.pose) {

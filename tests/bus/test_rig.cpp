@@ -78,6 +78,18 @@ TEST(Rig, DefaultsAreAutomatic) {
   EXPECT_EQ(rig.pairs[0].mode, Mode::spatial);
 }
 
+TEST(Rig, ScaleAndWhatFollowsAMove) {
+  const Rig rig = parse_rig(
+      "[[sensor]]\nname = \"lidar\"\nchannel = \"L\"\n[[sensor]]\nname = \"camera\"\nchannel = "
+      "\"C\"\nscale = 2.7\n" +
+          pair + "on_move = \"restart\"\n",
+      "my.toml");
+  EXPECT_EQ(rig.sensors[0].scale, 1);
+  EXPECT_EQ(rig.sensors[1].scale, 2.7);
+  EXPECT_EQ(rig.pairs[0].on_move, OnMove::restart);
+  EXPECT_EQ(parse_rig(sensors + pair, "my.toml").pairs[0].on_move, OnMove::report);
+}
+
 TEST(Rig, AGoalIsStatedAsTextOrAsNumbers) {
   for (const std::string goal :
        {"goal = \"0.1deg,2cm\"\n", "goal = { rotation_deg = 0.1, translation_m = 0.02 }\n"}) {
@@ -107,6 +119,8 @@ TEST(Rig, ErrorsNameFileLineAndKey) {
       {sensors + pair + "weights = \"same\"\n", "my.toml:13", "weights"},
       {sensors + pair + "time_offset = \"maybe\"\n", "my.toml:13", "time_offset"},
       {sensors + pair + "platform = \"boat\"\n", "my.toml:13", "platform"},
+      {sensors + pair + "on_move = \"stop\"\n", "my.toml:13", "on_move"},
+      {"[[sensor]]\nname = \"a\"\nchannel = \"c\"\nscale = 0\n", "my.toml:4", "scale"},
       {sensors + pair + "goal = 3\n", "my.toml:13", "goal"},
       {sensors + pair + "goal = \"0.1,2\"\n", "my.toml:13", "goal"},
       {sensors + pair + "goal = \"0deg,2cm\"\n", "my.toml:13", "goal"},

@@ -166,6 +166,10 @@ TEST_F(VerdictShown, ItsChangesAreEvents) {
                             std::nullopt, 138.0, std::nullopt});
   judge(moved);
   EXPECT_THAT(events(), Contains("camera moved at 2:18: yaw -2.0 deg."));
+  moved.findings.back().time = 10.05;
+  judge(moved);
+  model.on_calibration(test::calibration_at(test::problem_at("lidar", "camera", 102, 10), false), kNow);
+  EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("┃")) << "a mark on the curves";
 }
 
 TEST_F(VerdictShown, InLines) {

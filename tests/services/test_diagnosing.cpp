@@ -69,17 +69,31 @@ class DiagnosisService : public ::testing::Test {
       }
       pass(100ms);
       if ((i % 40 != 39 && i + 1 != end) || problems == 0) continue;
-      problem_t message = bus::to_message(pairing.problem());
-      message.session = session;
-      message.utime = streams.a[i].time_us;
-      message.seq = problems;
-      message.sensor_a = "left";
-      message.sensor_b = "right";
-      message.stride = pairing.choice().stride;
-      observer.publish(bus::problem_channel("left", "right"), message);
+      publish(pairing, session, streams.a[i].time_us, problems);
     }
     pass(2s);
     problems = 0;
+  }
+
+  /// The problem that pairing makes of poses [begin, end).
+  void send_problem(const testing::Streams& streams, std::size_t begin, std::size_t end) {
+    MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
+    std::int64_t pairs = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      for (const Side side : {Side::a, Side::b})
+        pairs += static_cast<std::int64_t>(
+            pairing.push(side, (side == Side::a ? streams.a : streams.b)[i]).size());
+    publish(pairing, streams.a[begin].time_us, streams.a[end - 1].time_us, pairs);
+  }
+  void publish(const MotionPairing& pairing, std::int64_t session, std::int64_t utime, std::int64_t number) {
+    problem_t message = bus::to_message(pairing.problem());
+    message.session = session;
+    message.utime = utime;
+    message.seq = number;
+    message.sensor_a = "left";
+    message.sensor_b = "right";
+    message.stride = pairing.choice().stride;
+    observer.publish(bus::problem_channel("left", "right"), message);
   }
 
   void tell(const std::string& verb) {
@@ -130,7 +144,67 @@ TEST_F(DiagnosisService, NamesAMistakeAndItsCure) {
   ASSERT_GT(last.n_findings, 0);
   EXPECT_EQ(last.findings[0].code, "scale");
   EXPECT_NEAR(last.findings[0].value, 1 / 0.37, 0.05);
-  EXPECT_FALSE(last.findings[0].remedy.empty());
+  EXPECT_EQ(last.findings[0].remedy.rfind("In the rig file: scale = 2.7", 0), 0u) << last.findings[0].remedy;
+}
+
+TEST_F(DiagnosisService, TheScaleOfTheRigCuresAMissingOne) {
+  testing::Streams streams = drive(400);
+  streams.b = testing::lengthened(streams.b, 0.37);
+  rig.sensors[1].scale = 1 / 0.37;
+  // the problem as pairing makes it with the same scale
+  testing::Streams scaled = streams;
+  scaled.b = testing::lengthened(streams.b, 1 / 0.37);
+  start();
+  for (std::size_t i = 0; i < 400; ++i) {
+    observer.publish("ODO_LEFT", bus::to_message(streams.a[i], static_cast<std::int64_t>(i)));
+    observer.publish("ODO_RIGHT", bus::to_message(streams.b[i], static_cast<std::int64_t>(i)));
+    pass(1ms);
+  }
+  send_problem(scaled, 0, 400);
+  pass(2s);
+  ASSERT_FALSE(verdicts.empty());
+  EXPECT_EQ(verdicts.back().verdict, "good") << verdicts.back().reason;
+}
+
+class AfterAMove : public DiagnosisService {
+ protected:
+  AfterAMove() {
+    observer.subscribe<command_t>(
+        bus::command_channel,
+        [this](const command_t& message, const bus::Arrival&) { commands.push_back(message); });
+    const Pose bump{rotation_exp({0, 0, 5 * std::numbers::pi / 180}), {0.05, 0, 0}};
+    streams.b = testing::knocked(streams.b, 0.5, bump);
+  }
+  /// Where the finding is that names it.
+  void expect_move() const {
+    ASSERT_FALSE(verdicts.empty());
+    const std::vector<finding_t>& findings = verdicts.back().findings;
+    const auto moved = std::find_if(findings.begin(), findings.end(),
+                                    [](const finding_t& finding) { return finding.code == "mount_moved"; });
+    ASSERT_NE(moved, findings.end()) << verdicts.back().reason;
+    EXPECT_NEAR(static_cast<double>(moved->utime - streams.a[400].time_us), 0, 5e6);
+  }
+
+  testing::Streams streams = drive(800);
+  std::vector<command_t> commands;
+};
+
+TEST_F(AfterAMove, ItIsReported) {
+  start();
+  play(streams, 0, 800);
+  expect_move();
+  EXPECT_TRUE(commands.empty());
+}
+
+TEST_F(AfterAMove, TheCalibrationStartsAgainWhereTheRigSaysSo) {
+  rig.pairs[0].on_move = bus::OnMove::restart;
+  start();
+  play(streams, 0, 800);
+  expect_move();
+  ASSERT_EQ(commands.size(), 1u) << "once a session";
+  EXPECT_EQ(commands[0].verb, "reset");
+  EXPECT_EQ(commands[0].sensor_a, "left");
+  EXPECT_EQ(commands[0].session, streams.a[0].time_us);
 }
 
 TEST_F(DiagnosisService, TellsTheGoalFromWhatIsMissing) {

@@ -22,10 +22,10 @@ std::string identity(const bus::Rig& rig) {
   std::string text = "egocal-pairing " EGOCAL_VERSION ", layout " + std::to_string(state_layout) + "\n";
   char line[300];
   for (const bus::Sensor& sensor : rig.sensors) {
-    std::snprintf(line, sizeof line, "sensor %s on %s, %s, reorder_window %g\n", sensor.name.c_str(),
-                  sensor.channel.c_str(),
+    std::snprintf(line, sizeof line, "sensor %s on %s, %s, scale %.17g, reorder_window %g\n",
+                  sensor.name.c_str(), sensor.channel.c_str(),
                   sensor.type == bus::OdometryType::pose ? "bot_core.pose_t" : "egocal.odometry_t",
-                  rig.reorder_window);
+                  sensor.scale, rig.reorder_window);
     text += line;
   }
   for (const bus::PairConfig& pair : rig.pairs) {

@@ -16,6 +16,7 @@ struct ReceivedOdometry {
   std::int64_t seq = -1;  ///< -1: not counted
 };
 
-ReceivedOdometry decode_odometry(OdometryType type, Bytes bytes);
+/// With the scale of the sensor applied.
+ReceivedOdometry decode_odometry(const Sensor& sensor, Bytes bytes);
 
 }  // namespace egocal::bus

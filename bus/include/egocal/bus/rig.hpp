@@ -21,7 +21,14 @@ struct Sensor {
   std::string name;     ///< letters, digits, _ and -; part of channel names
   std::string channel;  ///< of its odometry
   OdometryType type = OdometryType::odometry;
-  std::optional<GroundPlane> plane;
+  std::optional<GroundPlane> plane{};
+  double scale = 1;  ///< its lengths are multiplied by it, > 0: a camera without scale, another unit
+};
+
+/// What follows where the mount is found to have moved during a session.
+enum class OnMove {
+  report,   ///< it is reported, and the answer is still that of the whole session
+  restart,  ///< the calibration of the pair starts again by itself
 };
 
 /// Rotation and translation balance and stride: fixed, or chosen by the jack-knife.
@@ -35,7 +42,8 @@ struct PairConfig {
   bool robust = true;                     ///< leave out what is not screw congruent or contradicts the rest
   std::optional<double> time_offset = 0;  ///< [s] added to the stamps of b; empty: auto, found and followed
   std::optional<GoalOptions> goal;        ///< how well each direction is to be known; empty: none is stated
-  std::optional<Platform> platform;       ///< whose manoeuvres are advised; empty: as the motions look
+  OnMove on_move = OnMove::report;
+  std::optional<Platform> platform;  ///< whose manoeuvres are advised; empty: as the motions look
 };
 
 struct Rig {

@@ -71,7 +71,7 @@ class StreamWatch {
     std::int64_t at_same_time = 0;
   };
   static void count(HeardStream& stream, Counting& counting, std::int64_t mono_us);
-  std::optional<Refusal> examine(HeardStream& stream, Counting& counting, OdometryType type, Bytes bytes,
+  std::optional<Refusal> examine(HeardStream& stream, Counting& counting, const Sensor& sensor, Bytes bytes,
                                  std::int64_t mono_us);
 
   std::vector<SensorStream> sensors_;

@@ -26,6 +26,7 @@ struct Plot {
   std::optional<double> threshold;  ///< in the unit shown; a line across
   std::optional<double> mark;       ///< [s]; a line down
   std::string mark_label;           ///< what it means; beside the title, where there is room
+  std::vector<double> moves;  ///< [s]; when the mount moved: a line down each, in the colour of what is bad
   std::vector<PlotSeries> series;
 };
 

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/remedies.hpp"
+
+#include <cstdio>
+
+namespace egocal::services {
+
+namespace {
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return text;
+}
+
+/// Of the two sensors one has the wrong unit; which one, the motions do not say.
+std::string scale_remedy(const bus::Rig& rig, const bus::PairConfig& pair, double factor) {
+  return "In the rig file: scale = " + number(factor * bus::sensor(rig, pair.b).scale) + " for " + pair.b +
+         ", or scale = " + number(bus::sensor(rig, pair.a).scale / factor) + " for " + pair.a +
+         " if that one is not in metres.";
+}
+
+std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Finding& finding) {
+  const std::string& code = finding.code;
+  const std::string both = pair.a + " and " + pair.b;
+  const auto one = [&] { return code.ends_with("_a") ? pair.a : code.ends_with("_b") ? pair.b : both; };
+  if ((code == "scale" || code == "units") && finding.value && *finding.value > 0)
+    return scale_remedy(rig, pair, *finding.value);
+  if (code == "clock_offset") return "In the rig file: time_offset = \"auto\" for this pair.";
+  if (code == "clock_drift")
+    return "Synchronise the clocks; until then time_offset = \"auto\" in the rig file follows them.";
+  if (code.starts_with("inverted_"))
+    return finding.certain ? "The odometry of " + one() +
+                                 " has to send the inverse: poses of the sensor in its start frame."
+                           : "Make sure that the odometry sends poses of the sensor in its start frame.";
+  if (code.starts_with("quaternion_order_"))
+    return "The odometry of " + one() + " has to fill quat in the order w x y z.";
+  if (code == "mount_moved")
+    return pair.on_move == bus::OnMove::restart
+               ? "The calibration starts again by itself."
+               : "Reset the pair (key r in the monitor), or set on_move = \"restart\" in the rig file.";
+  return finding.remedy;
+}
+
+}  // namespace
+
+void word_remedies(const bus::Rig& rig, const bus::PairConfig& pair, std::vector<Finding>& findings) {
+  for (Finding& finding : findings) finding.remedy = remedy_of(rig, pair, finding);
+}
+
+}  // namespace egocal::services
