@@ -13,6 +13,7 @@
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/online/answer.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "egocal/solvers/planar.hpp"
 #include "egocal/version.hpp"
