@@ -3,6 +3,7 @@
 // How soon a moved mount is found, and how often a still one is called moved (docs/moves.md). Drives end a
 // given time after a bump of half a degree and 3 cm about random axes; still ones last ten minutes, with
 // white, heavy-tailed and wandering noise. Exit code 1 where a still mount raises an alarm.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -26,6 +27,7 @@ struct Options {
   int drives = 500;
   double before = 120, after = 15;  // [s]
   double hours = 100;
+  MovesOptions moves;
   std::uint64_t seed = 1;
 };
 
@@ -43,16 +45,20 @@ SimulationOptions drive(Random& random, double seconds, int noise) {
   return options;
 }
 
-/// As egocal does it: with the stride and the balance that the drive chooses.
-MovesResult moves_of(const SimulationOptions& options) {
+/// As egocal does it: with single steps and with the stride that the drive chooses.
+MovesResult moves_of(const SimulationOptions& options, const MovesOptions& moves) {
   const std::vector<Trajectory> sensors = simulate(options);
   PairingOptions pairing;
   const Choice choice = pair_motions(pairing, sensors[0], sensors[1]).drive.choice();
-  pairing.stride = choice.stride;
   pairing.balance = choice.balance;
   Problem problem;
   problem.balance = choice.balance;
-  return find_moves(pair_motions(pairing, sensors[0], sensors[1]).pairs, problem);
+  std::vector<std::vector<MotionPair>> strides;
+  for (const int stride : {1, choice.stride}) {
+    pairing.stride = stride;
+    strides.push_back(pair_motions(pairing, sensors[0], sensors[1]).pairs);
+  }
+  return find_moves_of_strides(strides, problem, moves);
 }
 
 /// The share of bumps that are found, and the mean error of their time.
@@ -66,7 +72,7 @@ void find_bumps(const Options& options, Random& random) {
                            options.before,
                            {rotation_exp(0.5 * degrees * random.direction()), 0.03 * random.direction()}};
     simulation.faults[1].mount_changes = {bump};
-    const MovesResult result = moves_of(simulation);
+    const MovesResult result = moves_of(simulation, options.moves);
     bool here = false;
     for (const Move& move : result.moves) {
       const bool right = std::abs(move.time - options.before) < options.after;
@@ -89,7 +95,7 @@ int count_alarms(const Options& options, Random& random) {
     const int drives = static_cast<int>(std::ceil(options.hours * 3600 / seconds / 3));
     int here = 0;
     for (int k = 0; k < drives; ++k)
-      here += static_cast<int>(moves_of(drive(random, seconds, noise)).moves.size());
+      here += static_cast<int>(moves_of(drive(random, seconds, noise), options.moves).moves.size());
     std::printf("still mounts, %s noise: %d alarms in %.1f hours\n", noises[noise], here,
                 drives * seconds / 3600);
     std::fflush(stdout);
@@ -110,8 +116,12 @@ int main(int argc, char** argv) {
       .show_default();
   app.add_option("--before", options.before, "time before the bump [s]").show_default();
   app.add_option("--hours", options.hours, "of driving with a still mount").show_default();
+  int blocks = static_cast<int>(options.moves.most_blocks);
+  app.add_option("--blocks", blocks, "at most, that a drive is divided into").show_default();
+  app.add_option("--chance", options.moves.false_alarms, "of a false alarm in a drive").show_default();
   app.add_option("--seed", options.seed, "of the drives").show_default();
   if (const auto code = app.parse(argc, argv)) return *code;
+  options.moves.most_blocks = static_cast<std::size_t>(std::max(1, blocks));
   Random random(options.seed);
   if (options.drives > 0) find_bumps(options, random);
   return count_alarms(options, random) > 0 ? 1 : 0;

@@ -42,14 +42,18 @@ MountChange bump(double time, std::uint64_t seed, double size = 1) {
 MovesResult moves_of(const Trajectory& a, const Trajectory& b, PairingOptions pairing = {},
                      const MovesOptions& options = {}) {
   const Choice choice = pair_motions(pairing, a, b).drive.choice();
-  pairing.stride = choice.stride;
   pairing.balance = choice.balance;
   Problem problem;
   problem.mode = pairing.mode;
   problem.plane_a = pairing.plane_a;
   problem.plane_b = pairing.plane_b;
   problem.balance = choice.balance;
-  return find_moves(pair_motions(pairing, a, b).pairs, problem, options);
+  std::vector<std::vector<MotionPair>> strides;
+  for (const int stride : {1, choice.stride}) {
+    pairing.stride = stride;
+    strides.push_back(pair_motions(pairing, a, b).pairs);
+  }
+  return find_moves_of_strides(strides, problem, options);
 }
 
 MovesResult moves_of(const SimulationOptions& options) {

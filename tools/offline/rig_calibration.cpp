@@ -168,7 +168,9 @@ RigReport calibrate_rig(const RigRequest& given) {
     report.pairs[i].T_a_b = to_pose(report.solution.pairs[i].T_a_b);
   const double begin =
       1e-6 * static_cast<double>(pairs.front().pairs.front().begin_us - trajectories.front().front().time_us);
-  find_in_rig(pairs, begin, report);
+  options.stride = 1;
+  find_in_rig(pairs, common.stride > 1 ? rig_motions(trajectories, options) : std::vector<RigPair>{}, begin,
+              report);
   return report;
 }
 

@@ -103,13 +103,28 @@ std::vector<RigFinding> of_pairs(const RigReport& report) {
   return findings;
 }
 
+/// Of both, what is the least likely by chance.
+std::vector<RigMove> moves_of(std::size_t sensors, std::span<const RigPair> pairs,
+                              std::span<const RigPair> single_steps) {
+  const auto chance = [](const std::vector<RigMove>& moves) {
+    double least = 1;
+    for (const RigMove& move : moves) least = std::min(least, move.move.false_alarm);
+    return least;
+  };
+  std::vector<RigMove> moves = find_rig_moves(sensors, pairs);
+  if (single_steps.empty()) return moves;
+  std::vector<RigMove> others = find_rig_moves(sensors, single_steps);
+  return chance(others) < chance(moves) ? others : moves;
+}
+
 }  // namespace
 
-void find_in_rig(std::span<const RigPair> pairs, double begin, RigReport& report) {
+void find_in_rig(std::span<const RigPair> pairs, std::span<const RigPair> single_steps, double begin,
+                 RigReport& report) {
   std::vector<RigFinding> of_data = of_pairs(report);
   // wrong data of one sensor change its answers all through the drive: that is no moved mount
   if (of_data.empty())
-    for (const RigMove& move : find_rig_moves(report.names.size(), pairs))
+    for (const RigMove& move : moves_of(report.names.size(), pairs, single_steps))
       report.findings.push_back(moved(report, move, begin));
   for (RigFinding& finding : of_data) report.findings.push_back(std::move(finding));
   for (const RigFinding& finding : report.findings)

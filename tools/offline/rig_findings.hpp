@@ -9,7 +9,9 @@
 namespace egocal::tools {
 
 /// Sets findings and the sensor to blame from what the pairs found, the moves of the mounts and the noise.
-/// begin: of the first motion, since the first pose of the first sensor [s].
-void find_in_rig(std::span<const RigPair> pairs, double begin, RigReport& report);
+/// single_steps: the shortest motions, where the pairs have longer ones; moves are looked for in both. begin:
+/// of the first motion, since the first pose of the first sensor [s].
+void find_in_rig(std::span<const RigPair> pairs, std::span<const RigPair> single_steps, double begin,
+                 RigReport& report);
 
 }  // namespace egocal::tools

@@ -17,9 +17,7 @@ namespace {
 /// Motion pairs of the stride that was answered with, of all instants; in planar mode as seen from the
 /// planes.
 std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered,
-                                 const MountCheckOptions& options) {
-  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * options.blocks));
-  const std::size_t steps = std::min(longest, static_cast<std::size_t>(std::max(1, answered.stride)));
+                                 const MountCheckOptions& options, std::size_t steps) {
   const bool planar = answered.problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(answered.problem.plane_a) : DualQuaternion{};
   const DualQuaternion G_b = planar ? plane_frame(answered.problem.plane_b) : DualQuaternion{};
@@ -43,6 +41,17 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   return pairs;
 }
 
+/// The shortest motions that a long drive is looked at with, and those of the stride that was answered with.
+std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const Answered& answered,
+                                                const MountCheckOptions& options) {
+  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * options.blocks));
+  const std::size_t steps = std::min(longest, static_cast<std::size_t>(std::max(1, answered.stride)));
+  const std::size_t shortest = std::clamp<std::size_t>(instants.time.size() / options.most_motions, 1, steps);
+  std::vector<std::vector<MotionPair>> strides = {pairs_of(instants, answered, options, shortest)};
+  if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, steps));
+  return strides;
+}
+
 double length(const Move& move, std::size_t first) {
   double sum = 0;
   for (std::size_t i = first; i < first + 3; ++i)
@@ -54,11 +63,12 @@ double length(const Move& move, std::size_t first) {
 
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
                                  const MountCheckOptions& options) {
-  const std::vector<MotionPair> pairs = pairs_of(instants, answered, options);
+  const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options);
+  const MovesResult result = find_moves_of_strides(strides, answered.problem);
   std::vector<Finding> findings;
-  if (pairs.empty()) return findings;
-  const double begin = 1e-6 * static_cast<double>(pairs.front().begin_us);
-  for (const Move& move : find_moves(pairs, answered.problem).moves) {
+  if (result.moves.empty()) return findings;
+  const double begin = 1e-6 * static_cast<double>(strides[result.stride].front().begin_us);
+  for (const Move& move : result.moves) {
     Finding finding;
     finding.code = "mount_moved";
     finding.certain = true;

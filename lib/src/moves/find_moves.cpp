@@ -270,6 +270,25 @@ MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& 
   return Finder(pairs, problem, options).run();
 }
 
+MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strides, const Problem& problem,
+                                  const MovesOptions& given) {
+  MovesOptions options = given;
+  options.false_alarms /= static_cast<double>(std::max<std::size_t>(1, strides.size()));
+  MovesResult best;
+  double least = 1;
+  for (std::size_t i = 0; i < strides.size(); ++i) {
+    MovesResult result = find_moves(strides[i], problem, options);
+    double chance = 1;
+    for (const Move& move : result.moves) chance = std::min(chance, move.false_alarm);
+    const bool first = !best.tested && result.tested;
+    if (!first && !(chance < least)) continue;
+    least = chance;
+    best = std::move(result);
+    best.stride = i;
+  }
+  return best;
+}
+
 double chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,
                       const MovesOptions& options) {
   if (pairs.size() < 2) return 1;

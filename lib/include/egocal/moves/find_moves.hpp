@@ -54,6 +54,7 @@ struct Move {
 struct MovesResult {
   bool tested = false;      ///< false: too few motion pairs, nothing is known
   std::vector<Move> moves;  ///< in the order of time
+  std::size_t stride = 0;   ///< of find_moves_of_strides(): index of the motions that show most
 };
 
 /// Whether and when the mount between two sensors moved. pairs: consecutive motion pairs of one drive, in the
@@ -63,6 +64,12 @@ struct MovesResult {
 /// weight. Deterministic. Throws nothing; without motion nothing is found.
 MovesResult find_moves(std::span<const MotionPair> pairs, const Problem& problem,
                        const MovesOptions& options = {});
+
+/// The same with the motions of one drive in several strides: noise that grows with time is told apart best
+/// by short ones, noise that does not by long ones. The stride whose strongest change is the least likely by
+/// chance answers; the rate of false alarms is shared.
+MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strides, const Problem& problem,
+                                  const MovesOptions& options = {});
 
 /// Chance of what the motions show of a change at this time, or of an even one all through them, where
 /// nothing changes; for one time that was not searched for. 1 where there are too few motions.
