@@ -72,7 +72,7 @@ PaperData simulated() {
   Source source;
   source.noise = 0.02;
   source.poses = 1101;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{2}}) {
     source.seed = seed;
     const DataSet drive = load(source);
     data.table_2.pairs.insert(data.table_2.pairs.end(), drive.pairs.begin(), drive.pairs.end());
