@@ -93,6 +93,18 @@ TEST(Stream, AGapInTheLogIsNoNewTimeline) {
               ElementsAre(5000, 5001, 5002));
 }
 
+TEST(Stream, WhatIsMissingInAGapOfTimeIsCounted) {
+  Stream stream;
+  feed(stream, {sample(0, 0), sample(17, 17), sample(18, 18), sample(19, 19)});
+  EXPECT_EQ(stream.counts().lost, 16) << "before a period is known";
+  feed(stream, {sample(100, 100), sample(101, 101), sample(102, 102)});
+  EXPECT_EQ(stream.counts().lost, 16 + 80);
+  feed(stream, {sample(5000, 5000), sample(5001, 5001), sample(5002, 5002)});
+  EXPECT_EQ(stream.counts().lost, 16 + 80 + 4897);
+  feed(stream, {sample(5100, 900'000), sample(5101, 900'001), sample(5102, 900'002)});
+  EXPECT_EQ(stream.counts().lost, 16 + 80 + 4897) << "another numbering";
+}
+
 TEST(Stream, ASourceThatCountsAnewGoesOn) {
   Stream stream;
   for (int i = 0; i < 2000; ++i) stream.push(sample(i, i));

@@ -19,6 +19,8 @@ constexpr std::int64_t recovery_us = 5'000'000, longest_pause_us = 5'100'000;
 constexpr std::int64_t recent_us = 1'000'000;
 /// StreamOptions::largest_jump.
 constexpr std::int64_t largest_jump_us = 1'000'000;
+/// After this time a command has been obeyed, and what was on its way has arrived.
+constexpr std::int64_t heard_us = 200'000;
 constexpr std::size_t most_state_bytes = std::size_t{6} << 20;
 
 std::int64_t field(bus::Bytes message, std::size_t at) {
@@ -31,6 +33,15 @@ std::int64_t field(bus::Bytes message, std::size_t at) {
 bool has(const Plan& plan, std::initializer_list<IncidentKind> kinds) {
   return std::any_of(plan.incidents.begin(), plan.incidents.end(), [&](const Incident& incident) {
     return std::find(kinds.begin(), kinds.end(), incident.kind) != kinds.end();
+  });
+}
+
+/// Numbers between the first that came and the last, of which no message came.
+std::int64_t missing(const Drive& drive, std::size_t channel, std::int64_t first_us,
+                     const std::set<std::int64_t>& times) {
+  return std::count_if(drive.messages.begin(), drive.messages.end(), [&](const Message& message) {
+    return message.channel == channel && message.time_us > first_us && message.time_us < *times.rbegin() &&
+           !times.contains(message.time_us);
   });
 }
 
@@ -89,10 +100,16 @@ bool Checks::keeps_state(const Process& process) const {
          !has(surroundings_.plan, {IncidentKind::disk_full, IncidentKind::power_cut});
 }
 
+/// Wrong values may look right: what is in the statistics is not known then.
+bool Checks::corrupts() const {
+  const NetworkFaults& network = surroundings_.plan.network;
+  return network.truncated > 0 || network.flipped > 0 || has(surroundings_.plan, {IncidentKind::hostile});
+}
+
 /// No message is lost or late for long, and no process is silent while it lives.
 bool Checks::peaceful() const {
   const NetworkFaults& network = surroundings_.plan.network;
-  return network.lost == 0 && !network.corrupts() && network.late == 0 && network.delay_us < 20'000 &&
+  return network.lost == 0 && !corrupts() && network.late == 0 && network.delay_us < 20'000 &&
          network.jitter_us < 20'000 &&
          !has(surroundings_.plan, {IncidentKind::stop, IncidentKind::away, IncidentKind::partition,
                                    IncidentKind::clog, IncidentKind::flood, IncidentKind::power_cut});
@@ -134,12 +151,46 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
   lineage.problems[channel] = now;
   newest_problem_[channel].assign(message.begin(), message.end());
   if (!peaceful()) return;
+  check_wishes(from, channel, now.first, now.second);
   for (const auto& other : processes_)
     if (other.get() != &from && other->runs() && other->spec().name == from.spec().name &&
         other->started_us() < from.started_us())
       fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
                     " us sends problems while an older one, of " + std::to_string(other->started_us()) +
                     " us, is running");
+}
+
+void Checks::commanded(const std::string& verb, const std::string& a, const std::string& b) {
+  const std::int64_t now = surroundings_.schedule.now_us();
+  for (const bus::PairConfig& pair : surroundings_.drive.rig.pairs) {
+    if (!a.empty() && (pair.a != a || pair.b != b)) continue;
+    Wish& wish = wishes_[bus::problem_channel(pair.a, pair.b)];
+    if (verb == "reset") wish.reset_us = now;
+    if (verb == "pause" && wish.paused_us < 0) wish.paused_us = now;
+    if (verb == "resume") wish.paused_us = wish.paused_seq = -1;
+  }
+}
+
+/// A new session begins where it was asked for or the log begins anew, and nowhere else.
+void Checks::check_wishes(const Process& from, const std::string& channel, std::int64_t session,
+                          std::int64_t seq) {
+  const Plan& plan = surroundings_.plan;
+  const bool one_state = from.lives() == 1 || keeps_state(from);
+  if (!one_state || player_starts_ > 1 || !keeps_order() || has(plan, {IncidentKind::twin})) return;
+  const std::int64_t now = surroundings_.schedule.now_us();
+  Wish& wish = wishes_[channel];
+  const auto before = sessions_.find(channel);
+  const bool anew = before != sessions_.end() && before->second != session;
+  if (anew && wish.reset_us < 0) fail('e', "a session of " + channel + " begins anew without a reason");
+  if (anew || before == sessions_.end()) wish.reset_us = -1;
+  sessions_[channel] = session;
+  // a process that was not there when the command came knows nothing of it
+  if (from.lives() > 1) return;
+  if (wish.reset_us >= 0 && now > wish.reset_us + heard_us && wish.paused_us < 0 && !anew)
+    fail('h', channel + " goes on in its session after a reset");
+  if (wish.paused_us < 0 || now < wish.paused_us + heard_us) return;
+  if (wish.paused_seq >= 0 && seq > wish.paused_seq) fail('h', channel + " goes on although it is paused");
+  wish.paused_seq = seq;
 }
 
 void Checks::status_sent(const Process& from, const status_t& status) {
@@ -171,7 +222,7 @@ void Checks::received(const Address& by, std::string_view channel, bus::Bytes me
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     if (channel != sensors[i].channel) continue;
     Lineage& lineage = lineages_[listener.spec().name + listener.spec().state_file];
-    ++lineage.sensors[i].received;
+    if (lineage.sensors[i].received++ == 0) lineage.sensors[i].first = field(message, 8);
     lineage.sensors[i].numbers.insert(field(message, 8));
     lineage.all[i].insert(field(message, 8));
   }
@@ -230,7 +281,8 @@ std::string Checks::missing_answer() const {
 
 void Checks::look_at_answers() {
   const std::int64_t now = surroundings_.schedule.now_us();
-  if (surroundings_.plan.input == Input::player && forgets()) return;
+  // a damaged message that looks right may name a session of the future
+  if (corrupts() || (surroundings_.plan.input == Input::player && forgets())) return;
   const std::string missing = missing_answer();
   if (missing.empty()) {
     answers_missing_since_us_ = -1;
@@ -246,10 +298,12 @@ void Checks::look_at_answers() {
 
 void Checks::finish() {
   for (const auto& process : processes_)
-    if (!process->runs() && process->spec().supervised && process->spec().part != Part::player)
+    if (!process->runs() && !process->retired() && process->spec().supervised &&
+        process->spec().part != Part::player)
       fail('f', process->spec().name + " is not running in the end");
   // pairing that was killed behind the end of the log without a state has nothing to send again
-  const bool forgot = surroundings_.plan.input == Input::player && forgets();
+  const bool forgot = corrupts() || (surroundings_.plan.input == Input::player &&
+                                     (forgets() || has(surroundings_.plan, {IncidentKind::command})));
   if (const std::string missing = missing_answer(); !missing.empty() && !forgot)
     fail('f', "in the end: " + missing);
   compare_with_undisturbed();
@@ -259,12 +313,10 @@ void Checks::finish() {
 
 void Checks::compare_with_undisturbed() {
   const Plan& plan = surroundings_.plan;
-  if (plan.network.corrupts() ||
+  if (corrupts() ||
       has(plan, {IncidentKind::hostile, IncidentKind::command, IncidentKind::twin, IncidentKind::flood}))
     return;
-  const Process* pairing = nullptr;
-  for (const auto& process : processes_)
-    if (process->spec().part == Part::pairing) pairing = process.get();
+  const Process* const pairing = processes_.front().get();
   const Lineage& lineage = lineages_[pairing->spec().name + pairing->spec().state_file];
   const auto& times = lineage.all;
   const auto count = [&](const std::string& name) {
@@ -309,8 +361,7 @@ void Checks::compare_with_undisturbed() {
 
 void Checks::check_counts() {
   const Plan& plan = surroundings_.plan;
-  if (plan.network.corrupts() || has(plan, {IncidentKind::hostile, IncidentKind::flood, IncidentKind::twin}))
-    return;
+  if (corrupts() || has(plan, {IncidentKind::hostile, IncidentKind::flood, IncidentKind::twin})) return;
   for (const auto& process : processes_) {
     if (process->spec().part != Part::pairing || process->lives() != 1) continue;
     const Lineage& lineage = lineages_[process->spec().name + process->spec().state_file];
@@ -320,6 +371,16 @@ void Checks::check_counts() {
     if (in == lineage.counters.end() || in->second != received)
       fail('d', "pairing says that " + std::to_string(in == lineage.counters.end() ? 0 : in->second) +
                     " messages came in; " + std::to_string(received) + " did");
+    if (!plan.numbered || player_starts_ > 1 || !keeps_order()) continue;
+    std::int64_t lost = 0, held_back = 0;
+    for (const auto& [channel, sensor] : lineage.sensors)
+      lost += missing(surroundings_.drive, channel, sensor.first, sensor.numbers);
+    for (const auto& [name, value] : lineage.counters)
+      if (name.starts_with("held back")) held_back += value;
+    const auto shown = lineage.counters.find("lost");
+    if (held_back == 0 && shown != lineage.counters.end() && shown->second != lost)
+      fail('d', "pairing says that " + std::to_string(shown->second) + " messages were lost; " +
+                    std::to_string(lost) + " were" + counts_of(lineage.counters));
   }
 }
 

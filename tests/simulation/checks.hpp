@@ -33,6 +33,8 @@ class Checks {
   void received(const Address& by, std::string_view channel, bus::Bytes message);
   void started(const Process& process);
   void ended(const Process& process, const Process::Ending& ending);
+  /// A person's wish to pairing; no names: for all pairs.
+  void commanded(const std::string& verb, const std::string& a, const std::string& b);
   /// Ten times a second, once the faults are over.
   void look_at_answers();
   /// Nothing more will happen.
@@ -46,7 +48,12 @@ class Checks {
  private:
   struct Sensor {                    // as one life of pairing received it
     std::set<std::int64_t> numbers;  // distinct
-    std::int64_t received = 0;
+    std::int64_t received = 0, first = 0;
+  };
+  struct Wish {                    // about a pair, by its channel of problems
+    std::int64_t reset_us = -1;    // a reset was sent; -1: none since the newest session began
+    std::int64_t paused_us = -1;   // a pause; -1: it runs
+    std::int64_t paused_seq = -1;  // the newest problem some time after the pause
   };
   struct Lineage {  // a name of pairing: what one life has promised the next one keeps
     std::map<std::string, std::pair<std::int64_t, std::int64_t>> problems;  // by channel: session, seq
@@ -63,6 +70,8 @@ class Checks {
   bool peaceful() const;
   bool keeps_order() const;
   bool forgets() const;
+  bool corrupts() const;
+  void check_wishes(const Process& from, const std::string& channel, std::int64_t session, std::int64_t seq);
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
   void status_sent(const Process& from, const status_t& status);
   std::string missing_answer() const;
@@ -76,6 +85,8 @@ class Checks {
   std::optional<Violation> violation_;
   std::map<std::string, Lineage> lineages_;
   std::map<std::string, std::vector<std::byte>> newest_problem_;  // by channel, of the leading pairing
+  std::map<std::string, Wish> wishes_;
+  std::map<std::string, std::int64_t> sessions_;  // newest by channel
   std::int64_t player_starts_ = 0;
   std::int64_t answered_until_us_ = -1, answers_missing_since_us_ = -1;
   std::int64_t last_start_us_ = 0;

@@ -55,6 +55,7 @@ struct Host {
   HostClock clock;
   Disk disk;
   int boots = 1;
+  bool down = false;  ///< without power
 };
 
 }  // namespace egocal::simulation

@@ -2,16 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // egocal_simulation: lives of all processes in virtual time, one a seed (docs/simulation.md).
 #include <fcntl.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cinttypes>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
+#include <fstream>
 #include <iostream>
-#include <limits>
+#include <string>
+#include <vector>
 
 #include "egocal/cli/cli.hpp"
+#include "egocal/error.hpp"
 #include "simulation/shrink.hpp"
 
 using namespace egocal;
@@ -22,7 +28,8 @@ namespace {
 struct Options {
   std::uint64_t seed = 1, seeds = 1;
   double minutes = 0;
-  bool twice = false, story = false, everything = false, no_shrink = false;
+  bool twice = false, story = false, everything = false, no_shrink = false, until_failure = false;
+  std::string corpus;
 };
 
 /// What services write for people belongs to nobody here, and nobody types.
@@ -31,6 +38,26 @@ void silence_services() {
   if (null < 0) return;
   dup2(null, STDERR_FILENO);
   dup2(null, STDIN_FILENO);
+}
+
+/// A life takes milliseconds: one that takes this long of processor time never
+/// ends [s].
+constexpr int longest_life_s = 20;
+
+char hang_text[80];
+
+/// The code of the processes cannot be interrupted: the seed is named and
+/// everything ends.
+void on_hang(int) {
+  if (write(STDOUT_FILENO, hang_text, std::strlen(hang_text)) < 0) _exit(2);
+  _exit(1);
+}
+
+void watch(std::uint64_t seed) {
+  std::snprintf(hang_text, sizeof hang_text, "seed %" PRIu64 ": (g) the life hangs\n", seed);
+  std::signal(SIGPROF, on_hang);
+  const itimerval limit{{0, 0}, {longest_life_s, 0}};
+  setitimer(ITIMER_PROF, &limit, nullptr);
 }
 
 void tell_story(const Plan& plan, bool everything) {
@@ -50,21 +77,36 @@ void report(const Plan& plan, const Violation& violation, bool shrinks) {
   std::fflush(stdout);
 }
 
+/// One seed a line; what follows it is for people.
+std::vector<std::uint64_t> seeds_of(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw error_at(file, 0, "", "cannot be opened");
+  std::vector<std::uint64_t> seeds;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty() && line[0] != '#') seeds.push_back(std::stoull(line));
+  return seeds;
+}
+
 int run(const Options& options) {
   using Clock = std::chrono::steady_clock;
   const std::clock_t cpu_begin = std::clock();
   const Clock::time_point begin = Clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  constexpr std::uint64_t report_every = 10'000;  // seeds: a run that was ended goes on behind them
   std::uint64_t lives = 0, failed = 0, trace = 0;
   double simulated_s = 0;
   std::int64_t compared = 0, messages = 0;
-  for (std::uint64_t seed = options.seed;
-       options.minutes > 0 ? passed() < 60 * options.minutes : lives < options.seeds; ++seed, ++lives) {
+  const std::vector<std::uint64_t> corpus =
+      options.corpus.empty() ? std::vector<std::uint64_t>{} : seeds_of(options.corpus);
+  const std::uint64_t count = options.corpus.empty() ? options.seeds : corpus.size();
+  for (; options.minutes > 0 ? passed() < 60 * options.minutes : lives < count; ++lives) {
+    const std::uint64_t seed = options.corpus.empty() ? options.seed + lives : corpus[lives];
     const Plan plan = draw(seed);
     if (options.story) {
       std::printf("%s\n", describe(plan).c_str());
       tell_story(plan, options.everything);
     }
+    watch(seed);
     const Outcome outcome = live(plan);
     std::optional<Violation> violation = outcome.violation;
     if (options.twice && !violation && live(plan).trace != outcome.trace)
@@ -73,9 +115,21 @@ int run(const Options& options) {
     simulated_s += 1e-6 * static_cast<double>(outcome.simulated_us);
     compared += outcome.compared;
     messages += outcome.messages;
+    if ((lives + 1) % report_every == 0) {
+      std::printf("until seed %" PRIu64 ": %" PRIu64 " violations, trace %016" PRIx64 "\n", seed, failed,
+                  trace);
+      std::fflush(stdout);
+    }
     if (!violation) continue;
     ++failed;
+    const itimerval none{};
+    setitimer(ITIMER_PROF, &none, nullptr);
     report(plan, *violation, !options.no_shrink);
+    std::fflush(stdout);
+    if (options.until_failure) {
+      ++lives;
+      break;
+    }
   }
   const double cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
   std::printf("seeds %" PRIu64 " to %" PRIu64 ": %" PRIu64 " lives, %" PRIu64
@@ -95,11 +149,18 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "the first seed").show_default();
   app.add_option("--seeds", options.seeds, "how many").show_default();
   app.add_option("--minutes", options.minutes, "instead of --seeds: as many as fit");
+  app.add_option("--corpus", options.corpus, "file with the seeds, one a line");
   app.add_flag("--twice", options.twice, "live each life twice and compare the traces");
   app.add_flag("--story", options.story, "print what happens");
   app.add_flag("--everything", options.everything, "print each message as well");
   app.add_flag("--no-shrink", options.no_shrink, "do not look for the simplest plan that fails");
+  app.add_flag("--until-failure", options.until_failure, "end with the first violation");
   if (const auto code = app.parse(argc, argv)) return *code;
-  silence_services();
-  return run(options);
+  try {
+    silence_services();
+    return run(options);
+  } catch (const Error& error) {
+    std::printf("egocal_simulation: %s\n", error.what());
+    return 1;
+  }
 }

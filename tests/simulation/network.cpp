@@ -152,6 +152,17 @@ void Network::inject(Packet packet) {
   spread(std::make_shared<Packet>(std::move(packet)), 0);
 }
 
+void Network::send_from_outside(const std::string& channel, bus::Bytes message) {
+  bus::for_each_datagram(channel, message, 0, [&](const bus::Datagram& part) {
+    Packet packet;
+    packet.channel = channel;
+    packet.datagram.assign(part.header().begin(), part.header().end());
+    packet.datagram.insert(packet.datagram.end(), part.payload.begin(), part.payload.end());
+    inject(std::move(packet));
+    return true;
+  });
+}
+
 PacketPtr Network::recent(testing::Random& random) const {
   return recent_.empty() ? nullptr : recent_[random.below(recent_.size())];
 }

@@ -49,8 +49,10 @@ class Network {
   void set_clogged_until(int host, std::int64_t until_us) {
     links_[static_cast<std::size_t>(host)].clogged_until_us = until_us;
   }
-  /// A datagram from nobody.
+  /// A datagram as it is, from an unknown sender.
   void inject(Packet packet);
+  /// A message of a tool that does nothing else, which all get.
+  void send_from_outside(const std::string& channel, bus::Bytes message);
   /// Some datagram that was sent lately; null: none was.
   PacketPtr recent(testing::Random& random) const;
 

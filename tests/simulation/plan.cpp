@@ -96,8 +96,8 @@ Plan draw(std::uint64_t seed) {
   }
   // a log at full speed is over before anything late arrives: what overtakes seconds of it begins it anew
   if (plan.input == Input::player && plan.speed == 0) network.jitter_us = 0, network.late = 0;
-  if (chance(0.15)) network.truncated = random.log_uniform(0.0005, 0.05);
-  if (chance(0.15)) network.flipped = random.log_uniform(0.0005, 0.05);
+  if (chance(0.07)) network.truncated = random.log_uniform(0.0005, 0.05);
+  if (chance(0.07)) network.flipped = random.log_uniform(0.0005, 0.05);
   if (chance(0.3))
     for (ClockFaults& clock : plan.clocks) {
       clock.wall_off_us = chance(0.5) ? between(-10'000'000, 10'000'000) : 0;
@@ -105,11 +105,16 @@ Plan draw(std::uint64_t seed) {
     }
 
   // which kinds there are in this life, and how often each
-  const IncidentKind kinds[] = {IncidentKind::kill,     IncidentKind::stop,      IncidentKind::end,
-                                IncidentKind::away,     IncidentKind::partition, IncidentKind::clog,
-                                IncidentKind::set_date, IncidentKind::disk_full};
+  const IncidentKind kinds[] = {IncidentKind::kill,      IncidentKind::stop,        IncidentKind::end,
+                                IncidentKind::away,      IncidentKind::partition,   IncidentKind::clog,
+                                IncidentKind::set_date,  IncidentKind::disk_full,   IncidentKind::twin,
+                                IncidentKind::power_cut, IncidentKind::old_version, IncidentKind::hostile,
+                                IncidentKind::flood,     IncidentKind::swap,        IncidentKind::command};
   for (const IncidentKind kind : kinds) {
-    if (!chance(0.25)) continue;
+    // in few lives: little is promised then
+    const bool alters = kind == IncidentKind::hostile || kind == IncidentKind::flood ||
+                        kind == IncidentKind::command || kind == IncidentKind::power_cut;
+    if (!chance(alters ? 0.06 : 0.2)) continue;
     const std::int64_t count = between(1, 4);
     for (std::int64_t i = 0; i < count; ++i) {
       Incident incident;
@@ -126,6 +131,15 @@ Plan draw(std::uint64_t seed) {
       if (kind == IncidentKind::set_date)
         incident.amount =
             chance(0.5) ? between(-5'000'000, 5'000'000) : between(-86'400'000'000, 86'400'000'000);
+      if (kind == IncidentKind::twin) incident.target = chance(0.6) ? 0 : static_cast<int>(between(1, 3));
+      if (kind == IncidentKind::swap) incident.target = static_cast<int>(between(1, 3));
+      if (kind == IncidentKind::twin || kind == IncidentKind::swap) incident.amount = between(0, 2);
+      if (kind == IncidentKind::hostile || kind == IncidentKind::flood)
+        incident.amount = static_cast<std::int64_t>(random.log_uniform(1, 1000));
+      if (kind == IncidentKind::command) {
+        incident.text = chance(0.5) ? "reset" : chance(0.5) ? "pause" : "resume";
+        incident.amount = between(0, plan.sensors);
+      }
       plan.incidents.push_back(incident);
     }
   }
@@ -175,6 +189,12 @@ std::vector<Simpler> simpler(const Plan& plan) {
 
 std::string describe(const Plan& plan, const Incident& incident) {
   std::string text = name(incident.kind);
+  if (incident.kind == IncidentKind::command)
+    return text + " " + incident.text +
+           (incident.amount == 0 ? " for all pairs" : " for pair " + std::to_string(incident.amount));
+  if (incident.kind == IncidentKind::hostile || incident.kind == IncidentKind::flood ||
+      incident.kind == IncidentKind::old_version)
+    return text + ", " + std::to_string(incident.amount) + " datagrams, " + seconds(incident.duration_us);
   if (of_a_host(incident.kind))
     text += " host-" + std::to_string(incident.target % plan.hosts);
   else
@@ -184,6 +204,10 @@ std::string describe(const Plan& plan, const Incident& incident) {
       return text + (incident.amount == 0 ? ", idle" : ", at place " + std::to_string(incident.amount));
     case IncidentKind::end:
       return text;
+    case IncidentKind::swap:
+      return text + (incident.amount == 1 ? ", the new one first" : ", the old one ends first");
+    case IncidentKind::twin:
+      return text + " for " + seconds(incident.duration_us) + (incident.amount == 1 ? ", then killed" : "");
     case IncidentKind::set_date:
       return text + " by " + seconds(incident.amount);
     default:

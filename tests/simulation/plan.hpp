@@ -48,11 +48,11 @@ enum class IncidentKind {
   set_date,     ///< a host's date is set by the amount [us]
   disk_full,    ///< a host's disk takes nothing; the write at its beginning is torn
   power_cut,    ///< a host: what was not synced is lost in part, it boots during the duration
-  old_version,  ///< a process of another version speaks for the duration
-  hostile,      ///< amount datagrams of garbage: mutated copies of what is on the bus
-  flood,        ///< amount datagrams at once on channels that others use and on invented ones
-  swap,         ///< another kind of solver takes the place of a solver, in either order
-  command,      ///< see Plan::commands
+  old_version,  ///< a process of another version joins for the duration
+  hostile,      ///< amount damaged copies of datagrams that are on the bus, during the duration
+  flood,        ///< amount copies of one datagram at once
+  swap,     ///< a solver of another method takes the place of one, started before (amount 1) or after its end
+  command,  ///< a verb for pairing, of pair number amount (0: all pairs)
 };
 constexpr int incident_kinds = static_cast<int>(IncidentKind::command) + 1;
 const char* name(IncidentKind kind);
@@ -63,7 +63,7 @@ struct Incident {
   int target = 0;                ///< a process or a host, by its number
   std::int64_t duration_us = 0;  ///< [us]
   std::int64_t amount = 0;       ///< see IncidentKind
-  std::string text = {};         ///< of a command: verb
+  std::string text = {};         ///< of a command: its verb
 };
 
 enum class Input {

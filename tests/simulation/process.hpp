@@ -72,6 +72,9 @@ class Process {
   std::optional<Ending> end();
   void kill_at_place(std::int64_t count);
   void set_stopped(bool stopped) { stopped_ = stopped; }
+  /// It is not started again.
+  void retire() { retired_ = true; }
+  bool retired() const { return retired_; }
   std::chrono::milliseconds pause() const { return restarts_.pause(); }
 
  private:
@@ -85,7 +88,7 @@ class Process {
   int number_;
   std::int64_t lives_ = 0, started_us_ = 0;
   std::int64_t wake_ns_ = Schedule::never;
-  bool stopped_ = false;
+  bool stopped_ = false, retired_ = false;
   std::unique_ptr<Instance> instance_;
 };
 

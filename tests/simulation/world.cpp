@@ -7,6 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/decode.hpp"
 #include "support/in_memory_file.hpp"
 
 namespace egocal::simulation {
@@ -139,7 +141,12 @@ class World {
   }
 
   void start(Process& process) {
-    if (process.runs()) return;
+    if (process.runs() || process.retired()) return;
+    if (hosts_[static_cast<std::size_t>(process.spec().host)]->down) {
+      const int number = process.number();
+      schedule_.after_us(50'000, [this, number] { start(this->process(number)); });
+      return;
+    }
     tell(process.spec().name + " starts");
     trace(3, static_cast<std::uint64_t>(process.number()), 0);
     checks_->started(process);
@@ -163,6 +170,12 @@ class World {
   }
 
   void happens(const Incident& incident);
+  void add_twin(const Process& of, const Incident& incident);
+  void swap(Process& old, const Incident& incident);
+  void cut_power(int host, std::int64_t duration_us);
+  void damage_something();
+  void flood(std::int64_t count);
+  void command(const std::string& verb, std::int64_t pair);
   void calm_down();
   void watch_answers() {
     checks_->look_at_answers();
@@ -225,9 +238,101 @@ void World::happens(const Incident& incident) {
       host.disk.set_full(true);
       later([&host] { host.disk.set_full(false); });
       return;
-    default:
+    case IncidentKind::twin:
+      return add_twin(victim, incident);
+    case IncidentKind::power_cut:
+      return cut_power(host_number, incident.duration_us);
+    case IncidentKind::old_version: {
+      ProcessSpec old{.name = "egocal-old", .part = Part::monitor, .host = host_number, .version = "0.0.1"};
+      old.supervised = false;
+      Process& process = add(old, 0);
+      later([this, &process] { ended(process, process.end()); });
       return;
+    }
+    case IncidentKind::hostile:
+      for (std::int64_t i = 0; i < incident.amount; ++i)
+        schedule_.after_us(
+            static_cast<std::int64_t>(random_.below(static_cast<std::uint64_t>(incident.duration_us) + 1)),
+            [this] { damage_something(); });
+      return;
+    case IncidentKind::flood:
+      return flood(incident.amount);
+    case IncidentKind::swap:
+      return swap(victim, incident);
+    case IncidentKind::command:
+      return command(incident.text, incident.amount);
   }
+}
+
+/// Started by hand: ends by itself, and is not started again.
+void World::add_twin(const Process& of, const Incident& incident) {
+  ProcessSpec spec = of.spec();
+  spec.supervised = false;
+  if (!spec.state_file.empty()) spec.state_file = "twin-" + std::to_string(processes_.size()) + ".state";
+  spec.host = static_cast<int>(random_.below(static_cast<std::uint64_t>(plan_.hosts)));
+  Process& twin = add(spec, 0);
+  const bool killed = incident.amount == 1;
+  schedule_.after_us(incident.duration_us,
+                     [this, &twin, killed] { ended(twin, killed ? twin.kill() : twin.end()); });
+}
+
+void World::swap(Process& old, const Incident& incident) {
+  if (old.retired()) return;
+  ProcessSpec spec = old.spec();
+  spec.name += "-" + std::to_string(processes_.size());
+  if (spec.part == Part::fast)
+    spec.method = spec.method == Method::sqp ? Method::slsqp : Method::sqp;
+  else
+    spec.method = spec.method == Method::dual ? Method::sdp : Method::dual;
+  const std::int64_t distance_us = std::min<std::int64_t>(incident.duration_us, 1'000'000);
+  add(spec, incident.amount == 1 ? 0 : distance_us);
+  old.retire();
+  schedule_.after_us(incident.amount == 1 ? distance_us : 0, [this, &old] { ended(old, old.end()); });
+}
+
+void World::cut_power(int number, std::int64_t duration_us) {
+  Host& host = *hosts_[static_cast<std::size_t>(number)];
+  if (host.down) return;
+  host.down = true;
+  for (std::size_t i = 0; i < processes_.size(); ++i)
+    if (processes_[i]->spec().host == number) ended(*processes_[i], processes_[i]->kill());
+  host.disk.power_cut(random_);
+  schedule_.after_us(duration_us, [&host] {
+    host.down = false;
+    ++host.boots;
+    host.clock.boot();
+  });
+}
+
+void World::damage_something() {
+  const PacketPtr original = network_->recent(random_);
+  if (!original) return;
+  Packet packet = *original;
+  const std::uint64_t changes = 1 + random_.below(8);
+  if (random_.below(4) == 0) packet.datagram.resize(random_.below(packet.datagram.size() + 64));
+  for (std::uint64_t i = 0; i < changes && !packet.datagram.empty(); ++i)
+    packet.datagram[random_.below(packet.datagram.size())] = std::byte(random_.below(256));
+  network_->inject(std::move(packet));
+}
+
+void World::flood(std::int64_t count) {
+  const PacketPtr original = network_->recent(random_);
+  if (!original) return;
+  for (std::int64_t i = 0; i < count; ++i) network_->inject(*original);
+}
+
+void World::command(const std::string& verb, std::int64_t pair) {
+  command_t message{};
+  message.utime = HostClock::start_of_all_us + schedule_.now_us();
+  message.to = "egocal-pairing";
+  message.verb = verb;
+  if (pair > 0) {
+    const bus::PairConfig& config = drive_.rig.pairs[static_cast<std::size_t>(pair - 1)];
+    message.sensor_a = config.a;
+    message.sensor_b = config.b;
+  }
+  checks_->commanded(verb, message.sensor_a, message.sensor_b);
+  network_->send_from_outside(bus::command_channel, bus::encode(message));
 }
 
 void World::calm_down() {
@@ -244,7 +349,11 @@ void World::calm_down() {
   for (const auto& one : processes_) {
     one->set_stopped(false);
     one->kill_at_place(0);
+    if (!one->spec().supervised) ended(*one, one->end());
   }
+  if (std::any_of(plan_.incidents.begin(), plan_.incidents.end(),
+                  [](const Incident& incident) { return incident.kind == IncidentKind::command; }))
+    command("resume", 0);
   watch_answers();
 }
 

@@ -47,6 +47,15 @@ std::int64_t newest_time(const std::map<std::int64_t, NumberedPose>& samples) {
   return newest;
 }
 
+/// After a gap in time: whether the numbers in between are of messages that were lost. Where they are many
+/// more than the time allows, the sender has begun to count elsewhere.
+bool lost_between(const StreamState& state, const NumberedPose& next, const StreamOptions& options) {
+  if (next.seq < 0 || !state.next_seq || next.seq < *state.next_seq) return false;
+  const std::int64_t ahead = next.seq - *state.next_seq, gap_us = next.pose.time_us - *state.newest_us;
+  return ahead <= options.most_missing ||
+         (state.period_us > 0 && ahead / options.jump_periods <= gap_us / state.period_us);
+}
+
 }  // namespace
 
 Stream::Stream(const StreamOptions& options) : options_(options) {
@@ -179,7 +188,7 @@ std::vector<NumberedPose> Stream::take_candidates() {
     state_.lost.clear();
     state_.candidates.front().begins_anew = true;
   }
-  state_.next_seq.reset();
+  if (backwards || !lost_between(state_, state_.candidates.front(), options_)) state_.next_seq.reset();
   for (NumberedPose& sample : std::exchange(state_.candidates, {})) {
     if (state_.next_seq && sample.seq > *state_.next_seq) give_up_until(sample.seq);
     if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
