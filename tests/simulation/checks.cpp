@@ -19,6 +19,8 @@ constexpr std::int64_t recovery_us = 5'000'000, longest_pause_us = 5'100'000;
 constexpr std::int64_t recent_us = 1'000'000;
 /// StreamOptions::largest_jump.
 constexpr std::int64_t largest_jump_us = 1'000'000;
+/// Messages of a sensor that pairing knows again.
+constexpr double remembered = 64;
 /// After this time a command has been obeyed, and what was on its way has arrived.
 constexpr std::int64_t heard_us = 200'000;
 constexpr std::size_t most_state_bytes = std::size_t{6} << 20;
@@ -230,7 +232,14 @@ void Checks::received(const Address& by, std::string_view channel, bus::Bytes me
 
 void Checks::started(const Process& process) {
   last_start_us_ = surroundings_.schedule.now_us();
-  if (process.spec().part == Part::player) ++player_starts_;
+  if (process.spec().part == Part::player && ++player_starts_ == 2) {
+    const auto& acknowledged =
+        lineages_[processes_.front()->spec().name + processes_.front()->spec().state_file].acknowledged;
+    const double known_us = 1e6 * remembered / surroundings_.plan.rate_hz + 2 * largest_jump_us;
+    if (!acknowledged.empty() &&
+        static_cast<double>(acknowledged.begin()->second - HostClock::start_of_all_us) > known_us)
+      for (const auto& [channel, problem] : newest_problem_) begun_before_[channel] = field(problem, 16);
+  }
   if (process.spec().part != Part::pairing) return;
   Lineage& lineage = lineages_[process.spec().name + process.spec().state_file];
   ++lineage.lives;
@@ -340,6 +349,10 @@ void Checks::compare_with_undisturbed() {
   // else what is in the statistics is known where it is all that came, each in its place
   if (!all_promised && (used != distinct || player_starts_ > 1 || !plan.numbered || !keeps_order())) return;
   if (plan.input == Input::player && forgets()) return;
+  if (all_promised)
+    for (const auto& [channel, session] : begun_before_)
+      if (field(newest_problem_[channel], 16) <= session)
+        fail('e', "the log was begun anew, and " + channel + " goes on in its session");
   ++compared_;
   const std::vector<problem_t> expected = undisturbed(surroundings_.drive, all_promised ? nullptr : &times);
   for (std::size_t i = 0; i < expected.size(); ++i) {

@@ -3,6 +3,7 @@
 #include "answers/answers.hpp"
 
 #include <optional>
+#include <tuple>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
@@ -12,6 +13,8 @@ namespace egocal::tools {
 namespace {
 
 constexpr std::size_t most_pairs = bus::AnswerCheck::max_pairs;
+/// Problems in a row that are older than the newest one before they are believed: one may be late.
+constexpr int confirmations = 3;
 
 /// Of each pair the session of the last problem in a log; where it holds no problems, of the last answer. A
 /// higher session is not always a later one: two pairing processes may have sent for a moment.
@@ -62,6 +65,7 @@ std::string text(const PairName& pair) {
 
 void Answers::hear(const problem_t& message) {
   if (!check_.take(message).empty()) return;
+  note(message);
   const auto early = early_.find({message.sensor_a, message.sensor_b});
   if (early == early_.end() || early->second.session != message.session || early->second.seq != message.seq)
     return;
@@ -123,12 +127,32 @@ std::string verdict_line(const Diagnosis& diagnosis) {
   return line;
 }
 
+void Answers::note(const problem_t& message) {
+  const PairName pair{message.sensor_a, message.sensor_b};
+  if (newest_.size() >= most_pairs && !newest_.contains(pair)) return;
+  Newest& newest = newest_[pair];
+  const bool older = std::tie(message.session, message.seq) < std::tie(newest.session, newest.seq);
+  newest.older_in_a_row = older ? newest.older_in_a_row + 1 : 0;
+  if (older && newest.older_in_a_row < confirmations) return;
+  newest = {message.session, message.seq, 0};
+}
+
+/// Of a problem that is no longer the newest although it has the higher number.
+bool Answers::is_ahead(const PairName& pair, const calibration_t& message) const {
+  const auto newest = newest_.find(pair);
+  return newest != newest_.end() &&
+         std::tie(message.session, message.seq) > std::tie(newest->second.session, newest->second.seq);
+}
+
 void Answers::consider(const PairName& pair, Best candidate) {
   const auto entry = best_.find(pair);
   if (entry == best_.end())
     best_.emplace(pair, std::move(candidate));
-  else if (bus::outranks(rank_of(candidate.checked, candidate.message),
-                         rank_of(entry->second.checked, entry->second.message)))
+  else if (is_ahead(pair, candidate.message) != is_ahead(pair, entry->second.message)) {
+    if (is_ahead(pair, entry->second.message) && candidate.checked.standing == bus::Standing::verified)
+      entry->second = std::move(candidate);
+  } else if (bus::outranks(rank_of(candidate.checked, candidate.message),
+                           rank_of(entry->second.checked, entry->second.message)))
     entry->second = std::move(candidate);
 }
 

@@ -47,9 +47,18 @@ class Answers {
     std::int64_t session = 0, seq = 0;
     Diagnosis diagnosis;
   };
+  /// The newest problem of a pair. Numbers may go back: another pairing process took over for a while, or the
+  /// disk had no room for the newest session. Problems that arrive again and again are believed then.
+  struct Newest {
+    std::int64_t session = 0, seq = 0;
+    int older_in_a_row = 0;
+  };
+  void note(const problem_t& message);
+  bool is_ahead(const PairName& pair, const calibration_t& message) const;
   void consider(const PairName& pair, Best candidate);
 
   bus::AnswerCheck check_;
+  std::map<PairName, Newest> newest_;
   std::map<PairName, Best> best_;
   std::map<PairName, calibration_t> early_;  ///< heard before its problem
   std::map<PairName, Judgement> judgements_;
