@@ -97,6 +97,23 @@ TEST_F(AnswersTest, OneHeardBeforeItsProblemIsVerifiedWhenThatComes) {
   EXPECT_TRUE(answers.best(pair_name)->certified());
 }
 
+/// A second pairing process took over for a while, or the disk had no room for the newest session.
+TEST_F(AnswersTest, FollowProblemsWhoseNumbersGoBackForGood) {
+  Answers answers;
+  const auto come = [&](std::int64_t seq, std::int64_t session) {
+    const problem_t to = problem(seq, session);
+    answers.hear(to);
+    answers.hear(answer(to));
+    return answers.best(pair_name)->message.session;
+  };
+  EXPECT_EQ(come(50, begin_us + 1'000'000), begin_us + 1'000'000);
+  EXPECT_EQ(come(10, begin_us), begin_us + 1'000'000) << "one that is late";
+  EXPECT_EQ(come(51, begin_us + 1'000'000), begin_us + 1'000'000);
+  for (std::int64_t seq = 11; seq <= 13; ++seq) come(seq, begin_us);
+  EXPECT_EQ(answers.best(pair_name)->message.session, begin_us);
+  EXPECT_EQ(answers.best(pair_name)->message.seq, 13);
+}
+
 TEST_F(AnswersTest, ForgedOnesCountForNothing) {
   const problem_t to = problem(10);
   Answers answers;
