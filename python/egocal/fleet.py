@@ -5,7 +5,6 @@
     python3 -m egocal.fleet drives.csv --out answers.csv --pooled rigs.csv [--scheduler tcp://head:8786]
 """
 import argparse
-import collections
 import csv
 import math
 import sys
@@ -88,17 +87,22 @@ def _quaternion(R):
     return (-1 if w < 0 else 1) * np.array([w, x, y, z])
 
 
-def _answer(statistics, weights):
-    Q = statistics.cost_matrix(*weights)
+def _information(row):
+    """(8, 8): the cost matrix of a drive over the variance of its residuals. Drives choose their own strides and weights, so their statistics are of
+    different scale; over the variance they are comparable, and add up.
+    """
+    Q = row["statistics"].cost_matrix(row["weight_rotation"], row["weight_translation"])
+    residual = egocal.verify(Q, egocal.solve_dual(Q))["cost"]
+    least = 1e-12 * np.trace(Q)  # drives without noise
+    return row["pairs"] / max(residual, least) * Q
+
+
+def _answer(parts):
+    """The extrinsic of the summed cost, and whether it is proven optimal."""
+    Q = sum(parts) / len(parts)
+    Q = Q * (8 / np.trace(Q))  # of the size of one drive's
     T = egocal.solve_dual(Q)
     return T, egocal.verify(Q, T)["certified"]
-
-
-def _sum(parts):
-    total = egocal.Statistics()
-    for part in parts:
-        total += part
-    return total
 
 
 def _spread(T, others):
@@ -111,8 +115,8 @@ def _spread(T, others):
 def pool(answers):
     """One row a rig from the rows of solve(): the extrinsic of all its drives together, with proof.
 
-    Drives with an error, or whose motions contradict each other, are not used, and counted. The weights of rotation and translation are those that most drives
-    of the rig chose. Standard deviations are the jack-knife over drives; they are empty for fewer than five.
+    Drives with an error, or whose motions contradict each other, are not used, and counted. Each drive counts by its motions over the variance of their
+    residuals. Standard deviations are the jack-knife over drives; they are empty for fewer than five.
     """
     rigs = {}
     for row in answers:
@@ -124,15 +128,12 @@ def pool(answers):
         pooled.append(result)
         if not used:
             continue
-        choices = collections.Counter((row["weight_rotation"], row["weight_translation"]) for row in used)
-        weights = choices.most_common(1)[0][0]
-        parts = [row["statistics"] for row in used]
-        total = _sum(parts)
-        T, certified = _answer(total, weights)
-        result.update(certified=certified, pairs=len(total), weight_rotation=weights[0], weight_translation=weights[1])
+        parts = [_information(row) for row in used]
+        T, certified = _answer(parts)
+        result.update(certified=certified, pairs=sum(row["pairs"] for row in used))
         result.update(zip(POSE, (*T[:3, 3].tolist(), *_quaternion(T[:3, :3]).tolist())))
         if len(used) >= LEAST_DRIVES:
-            without = [_answer(_sum(parts[:i] + parts[i + 1:]), weights)[0] for i in range(len(parts))]
+            without = [_answer(parts[:i] + parts[i + 1:])[0] for i in range(len(parts))]
             result.update(zip((f"stddev_{name}" for name in DIRECTIONS), _spread(T, without).tolist()))
     return pooled
 
