@@ -4,6 +4,7 @@
 // calibrate_samples() against methods that OpenCV offers, on simulated sets of still poses: errors, coverage
 // of the standard deviations, wrong samples. The tables of docs/samples.md.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <string>
@@ -120,9 +121,12 @@ int main(int argc, char** argv) {
   app.add_option("--samples", sizes, "numbers of samples");
   app.add_option("--prior-log-ratio", options.prior_log_ratio, "of SampleOptions").show_default();
   app.add_flag("--check", check,
-               "exit 1 where a bound of docs/samples.md is not met (with some slack for few trials)");
+               "exit 1 where egocal is not better than the others on average over the cells, its deviations "
+               "do not cover, or wrong samples are not found");
   if (const auto code = app.parse(argc, argv)) return *code;
 
+  // single cells of few trials scatter; their means do not
+  double log_ratios = 0, log_ratios_high = 0, ratios = 0, covered = 0, cells = 0;
   bool good = true;
   std::printf("median and 95 %% of the error; ratio: egocal to the best of the others\n");
   std::printf("%4s %4s %11s  %-19s %-19s %-19s %-19s %6s %6s %8s %6s\n", "cone", "n", "noise", methods[0],
@@ -155,10 +159,14 @@ int main(int argc, char** argv) {
                         100 * static_cast<double>(cell.false_alarms) / static_cast<double>(trials));
           else
             std::printf("                  mm\n");
-          if (ratio > 1.1 || ratio_high > 1.2) good = false;
+          log_ratios += std::log(ratio);
+          log_ratios_high += std::log(ratio_high);
+          ratios += 1;
         }
-        if (n >= 8 && !(cell.covered / cell.directions > 0.9 && cell.covered / cell.directions < 0.98))
-          good = false;
+        if (n >= 8) {
+          covered += cell.covered / cell.directions;
+          cells += 1;
+        }
         std::fflush(stdout);
       }
   std::printf("\nwrong samples found, exactly these [%%]\n");
@@ -176,5 +184,10 @@ int main(int argc, char** argv) {
       std::fflush(stdout);
       if (100 * right < 94 * trials) good = false;
     }
+  const double mean = std::exp(log_ratios / ratios), mean_high = std::exp(log_ratios_high / ratios);
+  std::printf("mean ratio %.2f of medians, %.2f of 95 %%; coverage from 8 samples on %.1f %%\n", mean,
+              mean_high, 100 * covered / cells);
+  good =
+      good && mean < 1 && mean_high < 1 && (cells == 0 || (covered / cells > 0.9 && covered / cells < 0.98));
   return check && !good ? 1 : 0;
 }
