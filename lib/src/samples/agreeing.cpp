@@ -153,8 +153,10 @@ Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit
   settings.most_rounds = rounds_on_the_way;
   const SampleFit more = fit_samples(set, with(chosen, one), settings);
   const double dof = more.dof - fit.dof;
-  if (!(fit.cost > 0) || !(dof > 0) || !(fit.dof > 0)) return {};
-  const double squares = (more.cost - fit.cost) / (fit.cost / fit.dof);
+  if (!(dof > 0) || !(fit.dof > 0)) return {};
+  // the noise of exact samples is that of rounding (SampleFit::noise), whatever is left of them
+  constexpr double least_variance = 1e-3;
+  const double squares = (more.cost - fit.cost) / std::max(fit.cost / fit.dof, least_variance);
   return {f_exceeded(squares / dof, dof, fit.dof), squares};
 }
 

@@ -118,6 +118,28 @@ SampleNoise noise_from(const SumOfSquares& squares, double length, double prior_
   return noise;
 }
 
+/// From the residuals themselves: of exact samples the quadratic forms hold nothing but rounding of either
+/// sign.
+SumOfSquares squares_about_mean(const SampleSet& set, std::span<const std::size_t> chosen,
+                                const std::vector<double>& signs, const Eigen::Vector3d& origin,
+                                const DualQuaternion& X) {
+  std::vector<DualQuaternion> seen;
+  QuaternionVector mean_real = QuaternionVector::Zero(), mean_dual = QuaternionVector::Zero();
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const DualQuaternion y = shifted(target_seen(set.seen(chosen[k]), X), -origin);
+    seen.emplace_back(signs[k] * y.real, signs[k] * y.dual);
+    mean_real += seen.back().real / static_cast<double>(chosen.size());
+    mean_dual += seen.back().dual / static_cast<double>(chosen.size());
+  }
+  SumOfSquares squares;
+  for (const DualQuaternion& y : seen) {
+    // half an angle, and half a distance
+    squares.rotation += 4 * (y.real - mean_real).squaredNorm();
+    squares.translation += 4 * (y.dual - mean_dual).squaredNorm();
+  }
+  return squares;
+}
+
 std::vector<double> first_signs(const SampleSet& set, std::span<const std::size_t> chosen) {
   std::vector<double> signs;
   for (const std::size_t i : chosen) signs.push_back(set.sign(chosen[0], i));
@@ -207,11 +229,7 @@ SampleFit fit_samples(const SampleSet& set, std::span<const std::size_t> chosen,
     const Statistics statistics = centred(set, chosen, signs, origin);
     const DualQuaternion X = minimiser(statistics, fit.noise, settings.prior);
     const DualQuaternion Y = mean_target(set, chosen, signs, X);
-    const Vector8d v = X.vec();
-    // |y.real - mean| is half an angle, |y.dual - mean| half a distance
-    SumOfSquares squares;
-    squares.rotation = 4 * X.real.dot(statistics.dual_rows.bottomRightCorner<4, 4>() * X.real);
-    squares.translation = 4 * v.dot(statistics.dual_rows * v);
+    SumOfSquares squares = squares_about_mean(set, chosen, signs, origin, X);
     const Determined parts = determined(statistics, fit.noise, length, X);
     squares.dof_rotation = 3 * (n - 1) - parts.by_rotations;
     squares.dof_translation = 3 * (n - 1) - parts.by_positions;
