@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "egocal/diagnosis/reading.hpp"
 #include "egocal/diagnosis/options.hpp"
+#include "egocal/diagnosis/reading.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t parts = 5;
 
-/// What blocks that touch each other share is not known pair by pair: what each of a fifth changes is added up,
-/// less what is counted more than once on average.
+/// What blocks that touch each other share is not known pair by pair: what each of a fifth changes is added
+/// up, less what is counted more than once on average.
 std::vector<Vector6d> without_touching_parts(const Problem& problem, const DualQuaternion& T_a_b) {
   const std::vector<Vector6d> each = leave_out_differences(problem, cost_matrix(problem), T_a_b);
   const double whole = sum_blocks(problem.blocks).weight;

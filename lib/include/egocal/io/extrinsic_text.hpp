@@ -19,7 +19,7 @@ struct NamedExtrinsic {
   bool certified = false;                       ///< globally optimal, proven
   long long pairs = 0;                          ///< motion pairs behind it
   std::optional<std::array<double, 6>> stddev;  ///< x y z [m] roll pitch yaw [rad] in the parent's frame
-  bool usable = true;   ///< false: optimal, but the motions contradict each other; every format says so
+  bool usable = true;     ///< false: optimal, but the motions contradict each other; every format says so
   std::string verdict{};  ///< good, incomplete, doubtful, contradictory; empty: it was not judged
 };
 
