@@ -395,7 +395,7 @@ TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
     })) << name;
     EXPECT_THAT(read(path("said")), HasSubstr(name + " ended (killed by signal 9"));
   }
-  ASSERT_TRUE(until([&] { return children(self).size() == 4; }));
+  ASSERT_TRUE(until([&] { return children(self).size() == 5; }));
   const auto all = children(self);
   egocal.signal(SIGINT);
   EXPECT_EQ(egocal.wait(30s), 0);
@@ -482,7 +482,7 @@ TEST_F(Up, TheirProcessesCanBeTold) {
 TEST_F(Up, LeavesNoOrphans) {
   ChildProcess egocal = up({"--log", log});
   const pid_t self = egocal.pid();
-  ASSERT_TRUE(until([&] { return children(self).size() == 4; }));
+  ASSERT_TRUE(until([&] { return children(self).size() == 5; }));
   const auto all = children(self);
   egocal.signal(SIGKILL);
   for (const auto& [id, name] : all) EXPECT_TRUE(until([id = id] { return !runs(id); })) << name;
