@@ -108,6 +108,7 @@ std::string pair_lines(const Model& model, Charset charset) {
     }
     text += verdict_of(pair, charset).text;
     if (const std::string advice = advice_of(pair).text; !advice.empty()) text += ": " + clean(advice, 400);
+    if (text.ends_with('.')) text.pop_back();
     text += "; " + proof_of(*answer).text + " by " + clean(answer->solver, 40) + " (" +
             clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
     if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " outliers, ";
