@@ -286,6 +286,18 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
     best = std::move(result);
     best.stride = i;
   }
+  // a mount that moved shows in motions of every length; errors of one length only are those of an odometry
+  std::erase_if(best.moves, [&](const Move& move) {
+    const std::int64_t time_us =
+        strides[best.stride].front().begin_us + static_cast<std::int64_t>(1e6 * move.time);
+    for (std::size_t i = 0; i < strides.size(); ++i) {
+      if (i == best.stride) continue;
+      const double chance = chance_of_move(strides[i], problem, move.kind, time_us, given);
+      const bool tested = chance < 1;
+      if (tested && chance > given.confirmation) return true;
+    }
+    return false;
+  });
   return best;
 }
 

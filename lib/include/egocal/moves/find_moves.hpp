@@ -30,6 +30,9 @@ struct MovesOptions {
   std::size_t least_block_pairs = 8;  ///< pairs of one block, and at least three motions that share no time
   std::size_t least_side_blocks = 2;  ///< blocks before and after a change
   std::size_t most_moves = 16;        ///< a limit on time
+  /// Chance of what the motions of the other strides show at the time of a move, at most. EuRoC's drone at
+  /// rest before its landing looks moved to single steps alone (tests/lib/test_moves.cpp).
+  double confirmation = 1e-2;
 };
 
 enum class MoveKind {
