@@ -41,11 +41,13 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   return pairs;
 }
 
-/// The shortest motions that a long drive is looked at with, and those of the stride that was answered with.
+/// The shortest motions that a long drive is looked at with, and longer ones that must confirm what they
+/// show.
 std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const Answered& answered,
                                                 const MountCheckOptions& options) {
   const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * options.blocks));
-  const std::size_t steps = std::min(longest, static_cast<std::size_t>(std::max(1, answered.stride)));
+  const std::size_t steps = std::min(
+      longest, std::max(options.least_stride, static_cast<std::size_t>(std::max(1, answered.stride))));
   const std::size_t shortest = std::clamp<std::size_t>(instants.time.size() / options.most_motions, 1, steps);
   std::vector<std::vector<MotionPair>> strides = {pairs_of(instants, answered, options, shortest)};
   if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, steps));

@@ -67,6 +67,9 @@ struct PlaneCheckOptions {
 
 /// Search for a mounting that moved.
 struct MountCheckOptions {
+  /// Instants that the longer motions span, at least, where the answer used shorter ones: single steps alone
+  /// mistake an odometry at rest for a mount that moved (EuRoC, 8 of its steps are 0.4 s).
+  std::size_t least_stride = 8;
   std::size_t blocks = 32;  ///< of three motions each that share no time: enough to know their scatter
   std::size_t most_motions = 20000;  ///< of long drives: overlapping motions say little that is new
 };
