@@ -135,7 +135,7 @@ struct TimeOffsetSearch::Impl {
     lags.reset();
     // a drift smears the correlation of a long drive: its liveliest part shows the offset there
     const bool smeared = !searched_part && found.value < 0.7 && b.angles.size() > 2 * points(part_length);
-    if (!best.value || found.value > best.value) best = found;
+    if (best.value == 0 || found.value > best.value) best = found;
     if (!smeared) return track();
     searched_part = true;
     lags.emplace(a.angles, liveliest_part(b.angles, points(part_length)), points(options.least_overlap));
