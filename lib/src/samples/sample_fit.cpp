@@ -127,7 +127,7 @@ SumOfSquares squares_about_mean(const SampleSet& set, std::span<const std::size_
   QuaternionVector mean_real = QuaternionVector::Zero(), mean_dual = QuaternionVector::Zero();
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const DualQuaternion y = shifted(target_seen(set.seen(chosen[k]), X), -origin);
-    seen.emplace_back(signs[k] * y.real, signs[k] * y.dual);
+    seen.push_back({signs[k] * y.real, signs[k] * y.dual});
     mean_real += seen.back().real / static_cast<double>(chosen.size());
     mean_dual += seen.back().dual / static_cast<double>(chosen.size());
   }
