@@ -395,7 +395,7 @@ TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
     })) << name;
     EXPECT_THAT(read(path("said")), HasSubstr(name + " ended (killed by signal 9"));
   }
-  ASSERT_TRUE(until([&] { return children(self).size() == 5; }));
+  ASSERT_TRUE(until([&] { return children(self).size() == 4; }));
   const auto all = children(self);
   egocal.signal(SIGINT);
   EXPECT_EQ(egocal.wait(30s), 0);

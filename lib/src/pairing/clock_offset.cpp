@@ -31,6 +31,8 @@ Trajectory part(const ClockState::Stream& stream, std::int64_t begin, std::int64
 
 }  // namespace
 
+ClockFollower::ClockFollower(const PairingOptions& options) : ClockFollower(options, ClockState{}) {}
+
 ClockFollower::ClockFollower(const PairingOptions& options, ClockState state)
     : options_(options.clock), max_gap_(options.max_gap), state_(std::move(state)) {
   if (state_.next_us == 0) state_.next_us = us(options_.first + options_.phase * options_.delay);

@@ -38,6 +38,8 @@ bool grossly_different(const Instant& from, const Instant& to, double period_us,
 
 }  // namespace
 
+Screening::Screening(const ScreeningOptions& options) : Screening(options, ScreeningState{}) {}
+
 Screening::Screening(const ScreeningOptions& options, ScreeningState state)
     : options_(options), state_(std::move(state)) {}
 

@@ -27,6 +27,8 @@ std::int64_t median_period(const std::deque<StampedPose>& poses, std::size_t cou
 
 }  // namespace
 
+Synchroniser::Synchroniser(const PairingOptions& options) : Synchroniser(options, SynchroniserState{}) {}
+
 Synchroniser::Synchroniser(const PairingOptions& options, SynchroniserState state)
     : options_(options.synchroniser),
       max_gap_us_(static_cast<std::int64_t>(options.max_gap * 1e6)),

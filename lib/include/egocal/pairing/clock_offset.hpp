@@ -47,7 +47,8 @@ struct ReleasedPose {
 class ClockFollower {
  public:
   /// Uses max_gap and the options of its own stage.
-  explicit ClockFollower(const PairingOptions& options, ClockState state = {});
+  explicit ClockFollower(const PairingOptions& options);
+  ClockFollower(const PairingOptions& options, ClockState state);
   ClockFollower(const ClockFollower& other);
   ClockFollower& operator=(const ClockFollower& other);
   ClockFollower(ClockFollower&&) noexcept = default;

@@ -40,7 +40,8 @@ struct Screened {
 /// motion across it.
 class Screening {
  public:
-  explicit Screening(const ScreeningOptions& options, ScreeningState state = {});
+  explicit Screening(const ScreeningOptions& options);
+  Screening(const ScreeningOptions& options, ScreeningState state);
 
   /// Takes the next instant, with the chain it has for its clocks. period_us: typical time between instants.
   Screened push(const Instant& instant, std::int64_t period_us);

@@ -32,7 +32,8 @@ struct SynchroniserState {
 class Synchroniser {
  public:
   /// Uses max_gap and the options of its own stage.
-  explicit Synchroniser(const PairingOptions& options, SynchroniserState state = {});
+  explicit Synchroniser(const PairingOptions& options);
+  Synchroniser(const PairingOptions& options, SynchroniserState state);
 
   /// Takes the next pose of one stream: unit, on the common clock. Returns the instants that it completed.
   std::vector<Instant> push(Side side, const StampedPose& pose);
