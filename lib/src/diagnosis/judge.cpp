@@ -20,8 +20,10 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
-/// 95 % of a normal distribution.
-constexpr double confidence = 1.96;
+/// 95 % of a normal distribution, on one side.
+constexpr double confidence_one_sided = 1.645;
+/// 95 % of the length of three equal, independent components.
+constexpr double length_of_three = 2.79;
 
 /// How far another answer is, as a part of the tolerance, in the directions that are known.
 double shift(const Finding& finding, const Answered& answered, const DiagnosisOptions& options) {
@@ -36,17 +38,44 @@ double shift(const Finding& finding, const Answered& answered, const DiagnosisOp
                   std::sqrt(translation) / options.tolerance_translation);
 }
 
+/// Length that a vector keeps below in 95 % of all cases where its components scatter independently with
+/// these standard deviations: a chi-square of as many degrees of freedom as the variances are equal, by
+/// Wilson and Hilferty. 1.94 of one component, 2.79 of three equal ones.
+double length_95(const std::array<double, 3>& stddev) {
+  double sum = 0, sum_of_squares = 0;
+  for (const double s : stddev) {
+    sum += s * s;
+    sum_of_squares += s * s * s * s;
+  }
+  if (!(sum_of_squares > 0)) return 0;
+  const double part = 2 * sum_of_squares / (9 * sum * sum);
+  return std::sqrt(sum * std::pow(1 - part + confidence_one_sided * std::sqrt(part), 3));
+}
+
+/// Directions that must be known better before the answer as a whole keeps within the tolerance: the worst
+/// ones, until the rest would.
 std::string unknown_directions(const Answered& answered, const DiagnosisOptions& options) {
   const std::array<double, 6> unstable = spread_without_fifths(answered.problem, answered.T_a_b);
-  std::string text;
-  for (std::size_t i = 0; i < 6; ++i) {
-    if (!expected(answered, i)) continue;
-    const double tolerance = i < 3 ? options.tolerance_translation : options.tolerance_rotation;
-    const double stddev = std::max(answered.observability.stddev[i], unstable[i]);
-    if (answered.observability.observable[i] && confidence * stddev <= tolerance) continue;
-    text += text.empty() ? "" : ", ";
-    text += directions[i];
+  std::array<bool, 6> unknown{};
+  for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {
+    const double tolerance = first == 0 ? options.tolerance_translation : options.tolerance_rotation;
+    std::array<double, 3> stddev{};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (expected(answered, first + i))
+        stddev[i] = answered.observability.observable[first + i]
+                        ? std::max(answered.observability.stddev[first + i], unstable[first + i])
+                        : INFINITY;
+    for (std::size_t known = 3; known > 0; --known) {
+      const auto worst = std::max_element(stddev.begin(), stddev.end());
+      if (std::isfinite(*worst) && length_95(stddev) <= tolerance) break;
+      if (*worst == 0) break;
+      unknown[first + static_cast<std::size_t>(worst - stddev.begin())] = true;
+      *worst = 0;
+    }
   }
+  std::string text;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (unknown[i]) text += (text.empty() ? "" : ", ") + std::string(directions[i]);
   return text;
 }
 
@@ -120,8 +149,8 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
         format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,
                100 * options.tolerance_translation, unknown.c_str());
     if (!diagnosis.goal && answered.seconds > 0) {
-      const GoalOptions usable{options.tolerance_rotation / confidence,
-                               options.tolerance_translation / confidence, options.platform};
+      const GoalOptions usable{options.tolerance_rotation / length_of_three,
+                               options.tolerance_translation / length_of_three, options.platform};
       diagnosis.reason += " " + goal_of(answered, usable).next;
     }
   } else if (diagnosis.goal && !diagnosis.goal->reached) {

@@ -77,9 +77,9 @@ struct MountCheckOptions {
 /// When an answer counts as known or as wrong.
 struct DiagnosisOptions {
   bool enabled = true;  ///< of calibrate(): without it the verdict knows of no other explanation
-  /// An answer is not called good where a direction may be off by more than this (1.96 standard deviations),
-  /// and is called contradictory where a better explanation has an answer further away [rad, m]. What users
-  /// of vehicles call wrong; an arm wants less.
+  /// An answer is not called good where its rotation or its translation as a whole may be off by more than
+  /// this (95 %), and is called contradictory where a better explanation has an answer further away [rad, m].
+  /// What users of vehicles call wrong; an arm wants less.
   double tolerance_rotation = 0.017453292519943295;
   double tolerance_translation = 0.6;
   /// Signed-rank test of an explanation against the streams as given, over up to 64 blocks of the drive. 3.5
