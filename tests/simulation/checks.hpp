@@ -12,6 +12,8 @@
 
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
+#include "simulation/certificates.hpp"
+#include "simulation/commands.hpp"
 #include "simulation/process.hpp"
 
 namespace egocal::simulation {
@@ -33,8 +35,10 @@ class Checks {
   void received(const Address& by, std::string_view channel, bus::Bytes message);
   void started(const Process& process);
   void ended(const Process& process, const Process::Ending& ending);
-  /// A person's wish to pairing; no names: for all pairs.
-  void commanded(const std::string& verb, const std::string& a, const std::string& b);
+  /// A person's wish; no names: for all pairs.
+  void commanded(const std::string& to, const std::string& verb, const std::string& a, const std::string& b);
+  /// After each turn of a process.
+  void look_at_memory(const Process& process);
   /// Ten times a second, once the faults are over.
   void look_at_answers();
   /// Nothing more will happen.
@@ -44,16 +48,17 @@ class Checks {
   void fail(char check, const std::string& text);
   /// What was compared with an undisturbed run, for the share of lives in which it could be.
   int compared() const { return compared_; }
+  /// Certificates that were compared with arithmetic of 113 bits.
+  std::int64_t certificates() const { return certificates_.checked(); }
+  /// Verdicts `good` that were compared with the truth.
+  std::int64_t judged_good() const { return judged_good_; }
+  /// Of any process at any time [bytes].
+  std::size_t most_memory() const { return most_memory_; }
 
  private:
   struct Sensor {                    // as one life of pairing received it
     std::set<std::int64_t> numbers;  // distinct
     std::int64_t received = 0, first = 0;
-  };
-  struct Wish {                    // about a pair, by its channel of problems
-    std::int64_t reset_us = -1;    // a reset was sent; -1: none since the newest session began
-    std::int64_t paused_us = -1;   // a pause; -1: it runs
-    std::int64_t paused_seq = -1;  // the newest problem some time after the pause
   };
   struct Lineage {  // a name of pairing: what one life has promised the next one keeps
     std::map<std::string, std::pair<std::int64_t, std::int64_t>> problems;  // by channel: session, seq
@@ -74,9 +79,12 @@ class Checks {
   void check_wishes(const Process& from, const std::string& channel, std::int64_t session, std::int64_t seq);
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
   void status_sent(const Process& from, const status_t& status);
+  void answer_sent(const Process& from, const std::string& channel, bus::Bytes message);
+  void verdict_sent(const Process& from, bus::Bytes message);
   std::string missing_answer() const;
   void compare_with_undisturbed();
   void check_counts();
+  void check_losses();
   void check_certificates();
   void check_bounds();
 
@@ -85,7 +93,11 @@ class Checks {
   std::optional<Violation> violation_;
   std::map<std::string, Lineage> lineages_;
   std::map<std::string, std::vector<std::byte>> newest_problem_;  // by channel, of the leading pairing
-  std::map<std::string, Wish> wishes_;
+  Commands commands_;
+  Certificates certificates_;
+  std::map<std::uint64_t, std::map<std::string, std::int64_t>> counters_;  // newest of each life, by its port
+  std::size_t most_memory_ = 0;
+  std::int64_t judged_good_ = 0;
   std::map<std::string, std::int64_t> sessions_;  // newest by channel
   std::int64_t player_starts_ = 0;
   std::map<std::string, std::int64_t>

@@ -29,7 +29,7 @@ class Disk::Medium final : public services::StateMedium {
 
   void replace(std::span<const std::byte> bytes) override {
     if (life_.over()) return;
-    if (life_.ends_here()) throw Killed();
+    if (life_.ends_here()) return life_.stop();
     refuse_where_full();
     open_ = std::make_shared<File>();
     open_->bytes.assign(bytes.begin(), bytes.end());
@@ -45,7 +45,7 @@ class Disk::Medium final : public services::StateMedium {
     if (torn) bytes = bytes.first(random_.below(bytes.size() + 1));
     open_->bytes.insert(open_->bytes.end(), bytes.begin(), bytes.end());
     open_->written_s = disk_.clock_.wall_us() / 1'000'000;
-    if (killed) throw Killed();
+    if (killed) return life_.stop();
     if (torn) {
       open_.reset();
       refuse_where_full();

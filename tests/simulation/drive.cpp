@@ -8,6 +8,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "simulation/host.hpp"
+#include "support/mistakes.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::simulation {
@@ -36,8 +37,26 @@ bus::Rig make_rig(const Plan& plan) {
   for (int i = 0; i < plan.sensors; ++i)
     text += "[[sensor]]\nname = \"s" + std::to_string(i) + "\"\nchannel = \"ODOMETRY_" + std::to_string(i) +
             "\"\ntype = \"" + (plan.numbered ? "egocal.odometry_t" : "bot_core.pose_t") + "\"\n";
-  for (int i = 1; i < plan.sensors; ++i) text += "[[pair]]\na = \"s0\"\nb = \"s" + std::to_string(i) + "\"\n";
+  const std::string settings = plan.estimation == Estimation::plain    ? "weights = \"equal\"\n"
+                               : plan.estimation == Estimation::robust ? "stride = 1\nweights = [1, 0.1]\n"
+                                                                       : "";
+  for (int i = 1; i < plan.sensors; ++i)
+    text += "[[pair]]\na = \"s0\"\nb = \"s" + std::to_string(i) + "\"\n" + settings;
   return bus::parse_rig(text, "rig.toml");
+}
+
+/// What a person did to the streams of the first pair.
+void make_mistake(int number, std::vector<Trajectory>& trajectories, std::vector<DualQuaternion>& truth) {
+  const testing::Mistake mistake = testing::mistakes()[static_cast<std::size_t>(number)];
+  testing::Streams streams;
+  streams.a = std::move(trajectories[0]);
+  streams.b = std::move(trajectories[1]);
+  const Trajectory before = streams.b;
+  mistake.make(streams);
+  if (mistake.code == "mount_moved")
+    truth.push_back(truth.front() * (conjugate(before.back().pose) * streams.b.back().pose));
+  trajectories[0] = std::move(streams.a);
+  trajectories[1] = std::move(streams.b);
 }
 
 }  // namespace
@@ -59,7 +78,10 @@ Drive make_drive(const Plan& plan) {
     SensorFaults& faults = options.faults.emplace_back();
     faults.phase = random.uniform(0, 0.5 / plan.rate_hz);
   }
-  const std::vector<Trajectory> trajectories = simulate(options);
+  std::vector<Trajectory> trajectories = simulate(options);
+  for (std::size_t i = 1; i < trajectories.size(); ++i)
+    drive.truth.push_back({to_dual_quaternion(true_extrinsic(options, 0, i))});
+  if (plan.mistake > 0) make_mistake(plan.mistake, trajectories, drive.truth.front());
   for (std::size_t i = 0; i < trajectories.size(); ++i)
     for (std::size_t k = 0; k < trajectories[i].size(); ++k) {
       const StampedPose& pose = trajectories[i][k];  // from HostClock::start_of_all_us on

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egocal/bus/rig.hpp"
+#include "egocal/geometry/dual_quaternion.hpp"
 #include "simulation/plan.hpp"
 
 namespace egocal::simulation {
@@ -23,6 +24,8 @@ struct Drive {
   bus::Rig rig;
   std::vector<Message> messages;  ///< of all sensors, by time
   std::vector<std::byte> log;     ///< the same as an LCM log
+  /// T_a_b of the rig's pairs; two where the mount moves.
+  std::vector<std::vector<DualQuaternion>> truth;
 };
 Drive make_drive(const Plan& plan);
 

@@ -16,15 +16,22 @@ class Life {
   void end() { over_ = true; }
   /// Kills at the count-th place from now on, 1 at the next one.
   void kill_at_place(std::int64_t count) { places_left_ = count; }
-  /// Whether this is the place. The caller does what a killed process would have done of it, and throws.
+  /// Whether this is the place. The caller does what a killed process would have done of it, and calls
+  /// stop().
   bool ends_here() {
     if (over_ || places_left_ <= 0 || --places_left_ > 0) return false;
     over_ = true;
     return true;
   }
+  /// The process goes through its destructors, which cannot throw: it runs on, and nothing of it has an
+  /// effect.
+  void begin_to_end() { ending_ = true; }
+  void stop() const {
+    if (!ending_) throw Killed();
+  }
 
  private:
-  bool over_ = false;
+  bool over_ = false, ending_ = false;
   std::int64_t places_left_ = 0;  ///< 0: it is not to be killed
 };
 

@@ -5,6 +5,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cinttypes>
 #include <csignal>
@@ -95,7 +96,8 @@ int run(const Options& options) {
   constexpr std::uint64_t report_every = 10'000;  // seeds: a run that was ended goes on behind them
   std::uint64_t lives = 0, failed = 0, trace = 0;
   double simulated_s = 0;
-  std::int64_t compared = 0, messages = 0;
+  std::int64_t compared = 0, messages = 0, certificates = 0, good = 0;
+  std::size_t memory = 0;
   const std::vector<std::uint64_t> corpus =
       options.corpus.empty() ? std::vector<std::uint64_t>{} : seeds_of(options.corpus);
   const std::uint64_t count = options.corpus.empty() ? options.seeds : corpus.size();
@@ -115,6 +117,9 @@ int run(const Options& options) {
     simulated_s += 1e-6 * static_cast<double>(outcome.simulated_us);
     compared += outcome.compared;
     messages += outcome.messages;
+    certificates += outcome.certificates;
+    good += outcome.judged_good;
+    memory = std::max(memory, outcome.most_memory);
     if ((lives + 1) % report_every == 0) {
       std::printf("until seed %" PRIu64 ": %" PRIu64 " violations, trace %016" PRIx64 "\n", seed, failed,
                   trace);
@@ -134,9 +139,11 @@ int run(const Options& options) {
   const double cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
   std::printf("seeds %" PRIu64 " to %" PRIu64 ": %" PRIu64 " lives, %" PRIu64
               " violations, %.0f s simulated in %.1f s of processor time (%.0f times real time), %" PRId64
-              " messages, %" PRId64 " compared with an undisturbed run, trace %016" PRIx64 "\n",
+              " messages, %" PRId64 " compared with an undisturbed run, %" PRId64
+              " certificates by 113 bits, %" PRId64
+              " verdicts 'good', at most %zu kB a process, trace %016" PRIx64 "\n",
               options.seed, options.seed + lives - 1, lives, failed, simulated_s, cpu_s, simulated_s / cpu_s,
-              messages, compared, trace);
+              messages, compared, certificates, good, memory / 1024, trace);
   return failed > 0 ? 1 : 0;
 }
 

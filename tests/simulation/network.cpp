@@ -8,6 +8,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/decode.hpp"
+#include "simulation/allocations.hpp"
 
 namespace egocal::simulation {
 
@@ -58,7 +59,10 @@ class Network::End final : public bus::Transport {
 
   bus::SendStatus send(std::string_view channel, bus::Bytes bytes) override {
     if (life_.over()) return bus::SendStatus::no_network;
-    if (life_.ends_here()) throw Killed();
+    if (life_.ends_here()) {
+      life_.stop();
+      return bus::SendStatus::no_network;
+    }
     if (!bus::fits_datagrams(channel, bytes)) return bus::SendStatus::too_large;
     return network_.send(inbox_->address, channel, bytes, number_++);
   }
@@ -77,6 +81,7 @@ class Network::End final : public bus::Transport {
                                           static_cast<std::uint64_t>(current_.packet->sender), remembered);
       if (!found) continue;
       message = {found->channel, found->bytes, current_.mono_us};
+      const MemoryOwner owner(0);
       if (network_.observer_.received)
         network_.observer_.received(inbox_->address, found->channel, found->bytes);
       return true;
@@ -124,7 +129,11 @@ std::unique_ptr<bus::Transport> Network::open(const Address& address, Life& life
 
 bus::SendStatus Network::send(const Address& from, std::string_view channel, bus::Bytes bytes,
                               std::uint32_t number) {
-  if (links_[static_cast<std::size_t>(from.host)].away) return bus::SendStatus::no_network;
+  const MemoryOwner owner(0);
+  if (links_[static_cast<std::size_t>(from.host)].away) {
+    ++losses_[from.port].not_sent;
+    return bus::SendStatus::no_network;
+  }
   std::vector<std::byte> cleaned;
   if (channel.starts_with(bus::calibration_prefix)) bytes = cleaned = without_timings(bytes);
   const std::string name(channel);
@@ -214,6 +223,7 @@ void Network::deliver(const PacketPtr& original, int from_host, const std::weak_
     if (!inbox) return;
     if (inbox->bytes + packet->datagram.size() > buffer) {
       ++inbox->overflow;
+      ++losses_[inbox->address.port].overflow;
       return;
     }
     inbox->bytes += packet->datagram.size();

@@ -53,6 +53,15 @@ class Network {
   void inject(Packet packet);
   /// A message of a tool that does nothing else, which all get.
   void send_from_outside(const std::string& channel, bus::Bytes message);
+  /// What faults took from one life of a process, by its port.
+  struct Losses {
+    std::int64_t not_sent = 0;  ///< messages: its host was away
+    std::int64_t overflow = 0;  ///< datagrams that found its receive buffer full
+  };
+  Losses losses(std::uint64_t port) const {
+    const auto entry = losses_.find(port);
+    return entry == losses_.end() ? Losses{} : entry->second;
+  }
   /// Some datagram that was sent lately; null: none was.
   PacketPtr recent(testing::Random& random) const;
 
@@ -75,6 +84,7 @@ class Network {
   std::vector<std::weak_ptr<struct Inbox>> inboxes_;
   Observer observer_;
   std::deque<PacketPtr> recent_;
+  std::map<std::uint64_t, Losses> losses_;
 };
 
 }  // namespace egocal::simulation

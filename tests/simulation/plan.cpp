@@ -5,18 +5,26 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "support/mistakes.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::simulation {
 
 namespace {
 
+using testing::Random;
+
 constexpr const char* names[incident_kinds] = {
     "kill",      "stop",      "end",         "twin",    "away",  "partition", "clog",   "set the date",
     "disk full", "power cut", "old version", "hostile", "flood", "swap",      "command"};
 
+constexpr const char* estimations[] = {"plain", "robust", "automatic"};
+
 /// Number of the first process that sends odometry.
 constexpr int first_input = 5;
+
+/// testing::mistakes(), without the one at 0 that is none and the last one that is a short drive.
+const int most_mistakes = static_cast<int>(testing::mistakes().size()) - 2;
 
 bool of_a_host(IncidentKind kind) {
   switch (kind) {
@@ -47,13 +55,14 @@ std::string percent(double share) {
 }  // namespace
 
 int processes(const Plan& plan) {
-  return first_input + (plan.input == Input::player ? 1 : plan.sensors);
+  return first_input + (plan.input == Input::player ? 1 : plan.sensors) + (plan.diagnosed ? 1 : 0);
 }
 
 std::string process_name(const Plan& plan, int number) {
   static const std::string fixed[first_input] = {"egocal-pairing", "egocal-fast", "egocal-global",
                                                  "egocal-monitor", "egocal-export"};
   if (number < first_input) return fixed[number];
+  if (plan.diagnosed && number == processes(plan) - 1) return "egocal-diagnosis";
   return plan.input == Input::player ? "egocal-player" : "odometry-" + std::to_string(number - first_input);
 }
 
@@ -61,91 +70,152 @@ const char* name(IncidentKind kind) {
   return names[static_cast<int>(kind)];
 }
 
-Plan draw(std::uint64_t seed) {
-  testing::Random random(seed);
-  random.bits();
-  const auto chance = [&](double share) { return random.uniform() < share; };
-  const auto between = [&](std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(high - low)));
-  };
-  Plan plan;
-  plan.seed = seed;
-  plan.sensors = chance(0.6) ? 2 : chance(0.7) ? 3 : static_cast<int>(between(4, 6));
-  const double rates[] = {5, 10, 10, 20};
-  plan.rate_hz = rates[random.below(4)];
-  plan.disturbed_us = between(3'000'000, 8'000'000);
-  plan.quiet_us = 6'000'000;
-  plan.free_motion = chance(0.7);
-  plan.numbered = chance(0.8);
-  plan.input = chance(0.5) ? Input::player : Input::live;
-  plan.speed = chance(0.7) ? 1 : chance(0.5) ? 3 : 0;
-  plan.state_file = chance(0.8);
-  plan.hosts = chance(0.5) ? 1 : static_cast<int>(between(2, most_hosts + 1));
-  plan.fast_method = chance(0.8) ? Method::sqp : Method::slsqp;
-  plan.global_method = chance(0.9) ? Method::dual : Method::sdp;
-  plan.global_always = chance(0.2);
+namespace {
 
-  NetworkFaults& network = plan.network;
-  network.delay_us = chance(0.5) ? 0 : between(10, 2000);
-  if (chance(0.3)) network.lost = random.log_uniform(0.001, 0.3);
-  if (chance(0.3)) network.duplicated = random.log_uniform(0.001, 0.3);
-  if (chance(0.3)) network.jitter_us = static_cast<std::int64_t>(random.log_uniform(10, 200'000));
-  if (chance(0.2)) {
-    network.late = random.log_uniform(0.001, 0.1);
-    network.late_by_us = static_cast<std::int64_t>(random.log_uniform(1000, 1'000'000));
+/// Short and cheap in most lives: what a life finds are orders of events, and those cost nothing. Some lives
+/// have all that costs.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {
+    random_.bits();
+    plan_.seed = seed;
   }
-  // a log at full speed is over before anything late arrives: what overtakes seconds of it begins it anew
-  if (plan.input == Input::player && plan.speed == 0) network.jitter_us = 0, network.late = 0;
-  if (chance(0.07)) network.truncated = random.log_uniform(0.0005, 0.05);
-  if (chance(0.07)) network.flipped = random.log_uniform(0.0005, 0.05);
-  if (chance(0.3))
-    for (ClockFaults& clock : plan.clocks) {
+
+  Plan plan() {
+    drive();
+    programs();
+    network();
+    if (chance(0.3)) clocks();
+    incidents();
+    return std::move(plan_);
+  }
+
+ private:
+  bool chance(double share) { return random_.uniform() < share; }
+  std::int64_t between(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(random_.below(static_cast<std::uint64_t>(high - low)));
+  }
+  std::int64_t log_between(double low, double high) {
+    return static_cast<std::int64_t>(random_.log_uniform(low, high));
+  }
+
+  void drive() {
+    plan_.sensors = chance(0.85) ? 2 : chance(0.7) ? 3 : static_cast<int>(between(4, 6));
+    plan_.rate_hz = chance(0.8) ? 4 : chance(0.8) ? 10 : 20;
+    plan_.disturbed_us = chance(0.95) ? between(1'500'000, 5'000'000) : between(5'000'000, 20'000'000);
+    plan_.quiet_us = 6'000'000;
+    plan_.free_motion = chance(0.7);
+    plan_.numbered = chance(0.8);
+    plan_.estimation = chance(0.85)   ? Estimation::plain
+                       : chance(0.85) ? Estimation::robust
+                                      : Estimation::automatic;
+    plan_.input = chance(0.5) ? Input::player : Input::live;
+    plan_.speed = chance(0.7) ? 1 : chance(0.5) ? 3 : 0;
+    if (!chance(0.003)) return;
+    plan_.diagnosed = true;
+    plan_.estimation = Estimation::automatic;
+    plan_.rate_hz = 10;
+    if (chance(0.5)) plan_.mistake = static_cast<int>(between(1, most_mistakes + 1));
+  }
+
+  void programs() {
+    plan_.state_file = chance(0.8);
+    plan_.hosts = chance(0.5) ? 1 : static_cast<int>(between(2, most_hosts + 1));
+    plan_.fast_method = chance(0.9) ? Method::sqp : Method::slsqp;
+    plan_.global_method = chance(0.9) ? Method::dual : Method::sdp;
+    plan_.global_always = chance(0.1);
+    if (chance(0.7)) plan_.burden = {between(0, 300'000), between(0, 300'000)};
+  }
+
+  void network() {
+    NetworkFaults& network = plan_.network;
+    network.delay_us = chance(0.5) ? 0 : between(10, 2000);
+    if (chance(0.3)) network.lost = random_.log_uniform(0.001, 0.3);
+    if (chance(0.3)) network.duplicated = random_.log_uniform(0.001, 0.3);
+    if (chance(0.3)) network.jitter_us = log_between(10, 200'000);
+    if (chance(0.2)) {
+      network.late = random_.log_uniform(0.001, 0.1);
+      network.late_by_us = log_between(1000, 1'000'000);
+    }
+    // a log at full speed is over before anything late arrives: what overtakes seconds of it begins it anew
+    if (plan_.input == Input::player && plan_.speed == 0) network.jitter_us = 0, network.late = 0;
+    if (chance(0.07)) network.truncated = random_.log_uniform(0.0005, 0.05);
+    if (chance(0.07)) network.flipped = random_.log_uniform(0.0005, 0.05);
+  }
+
+  void clocks() {
+    for (ClockFaults& clock : plan_.clocks) {
       clock.wall_off_us = chance(0.5) ? between(-10'000'000, 10'000'000) : 0;
       clock.drift_ppm = static_cast<int>(between(-200, 201));
     }
+  }
 
-  // which kinds there are in this life, and how often each
-  const IncidentKind kinds[] = {IncidentKind::kill,      IncidentKind::stop,        IncidentKind::end,
-                                IncidentKind::away,      IncidentKind::partition,   IncidentKind::clog,
-                                IncidentKind::set_date,  IncidentKind::disk_full,   IncidentKind::twin,
-                                IncidentKind::power_cut, IncidentKind::old_version, IncidentKind::hostile,
-                                IncidentKind::flood,     IncidentKind::swap,        IncidentKind::command};
-  for (const IncidentKind kind : kinds) {
-    // in few lives: little is promised then
-    const bool alters = kind == IncidentKind::hostile || kind == IncidentKind::flood ||
-                        kind == IncidentKind::command || kind == IncidentKind::power_cut;
-    if (!chance(alters ? 0.06 : 0.2)) continue;
-    const std::int64_t count = between(1, 4);
-    for (std::int64_t i = 0; i < count; ++i) {
-      Incident incident;
-      incident.kind = kind;
-      incident.at_us = between(0, plan.disturbed_us);
-      incident.target = static_cast<int>(between(0, of_a_host(kind) ? plan.hosts : processes(plan)));
-      // whoever ends the player wants no more of the log
-      if (kind == IncidentKind::end && incident.target >= first_input) incident.target = 0;
-      incident.duration_us = static_cast<std::int64_t>(random.log_uniform(10'000, 5'000'000));
-      if (kind == IncidentKind::kill) {
+  /// Which kinds there are in this life, and how often each.
+  void incidents() {
+    for (int k = 0; k < incident_kinds; ++k) {
+      const auto kind = static_cast<IncidentKind>(k);
+      // in few lives: little is promised then
+      const bool alters = kind == IncidentKind::hostile || kind == IncidentKind::flood ||
+                          kind == IncidentKind::command || kind == IncidentKind::power_cut;
+      if (!chance(alters ? 0.06 : 0.2)) continue;
+      const std::int64_t count = between(1, 4);
+      for (std::int64_t i = 0; i < count; ++i) plan_.incidents.push_back(incident(kind));
+    }
+    std::stable_sort(plan_.incidents.begin(), plan_.incidents.end(),
+                     [](const Incident& x, const Incident& y) { return x.at_us < y.at_us; });
+  }
+
+  Incident incident(IncidentKind kind) {
+    Incident incident;
+    incident.kind = kind;
+    incident.at_us = between(0, plan_.disturbed_us);
+    incident.target = static_cast<int>(between(0, of_a_host(kind) ? plan_.hosts : processes(plan_)));
+    incident.duration_us = log_between(10'000, 5'000'000);
+    switch (kind) {
+      case IncidentKind::end:
+        // a person who ends the player wants no more of the log
+        if (incident.target == first_input) incident.target = 0;
+        if (chance(0.3)) incident.amount = between(1, 4);
+        break;
+      case IncidentKind::kill:
         if (chance(0.5)) incident.target = 0;  // the one with a state
-        incident.amount = chance(0.3) ? 0 : between(1, 20);
-      }
-      if (kind == IncidentKind::set_date)
+        incident.amount = chance(0.3) ? 0 : chance(0.3) ? -between(1, 6) : between(1, 20);
+        break;
+      case IncidentKind::set_date:
         incident.amount =
             chance(0.5) ? between(-5'000'000, 5'000'000) : between(-86'400'000'000, 86'400'000'000);
-      if (kind == IncidentKind::twin) incident.target = chance(0.6) ? 0 : static_cast<int>(between(1, 3));
-      if (kind == IncidentKind::swap) incident.target = static_cast<int>(between(1, 3));
-      if (kind == IncidentKind::twin || kind == IncidentKind::swap) incident.amount = between(0, 2);
-      if (kind == IncidentKind::hostile || kind == IncidentKind::flood)
-        incident.amount = static_cast<std::int64_t>(random.log_uniform(1, 1000));
-      if (kind == IncidentKind::command) {
+        break;
+      case IncidentKind::twin:
+        incident.target = chance(0.6) ? 0 : static_cast<int>(between(1, 3));
+        incident.amount = between(0, 2);
+        break;
+      case IncidentKind::swap:
+        incident.target = static_cast<int>(between(1, 3));
+        incident.amount = between(0, 2);
+        break;
+      case IncidentKind::hostile:
+      case IncidentKind::flood:
+        incident.amount = log_between(1, 1000);
+        break;
+      case IncidentKind::command:
         incident.text = chance(0.5) ? "reset" : chance(0.5) ? "pause" : "resume";
-        incident.amount = between(0, plan.sensors);
-      }
-      plan.incidents.push_back(incident);
+        incident.amount = between(0, plan_.sensors);
+        incident.target = chance(0.6) ? 0 : static_cast<int>(between(-1, 3));
+        break;
+      default:
+        break;
     }
+    return incident;
   }
-  std::stable_sort(plan.incidents.begin(), plan.incidents.end(),
-                   [](const Incident& x, const Incident& y) { return x.at_us < y.at_us; });
-  return plan;
+
+  Random random_;
+  Plan plan_;
+};
+
+}  // namespace
+
+Plan draw(std::uint64_t seed) {
+  return Draw(seed).plan();
 }
 
 std::vector<Simpler> simpler(const Plan& plan) {
@@ -177,6 +247,11 @@ std::vector<Simpler> simpler(const Plan& plan) {
     if (plan.clocks[i].drift_ppm != 0) with("drift of clocks", [i](Plan& p) { p.clocks[i].drift_ppm = 0; });
     if (plan.clocks[i].wall_off_us != 0) with("wrong dates", [i](Plan& p) { p.clocks[i].wall_off_us = 0; });
   }
+  if (plan.burden.solvers_us > 0) with("slow solvers", [](Plan& p) { p.burden.solvers_us = 0; });
+  if (plan.burden.listeners_us > 0) with("slow listeners", [](Plan& p) { p.burden.listeners_us = 0; });
+  if (plan.estimation != Estimation::plain)
+    with("choices of the estimation", [](Plan& p) { p.estimation = Estimation::plain; });
+  if (plan.diagnosed && plan.mistake == 0) with("diagnosis", [](Plan& p) { p.diagnosed = false; });
   if (plan.hosts > 1) with("hosts", [](Plan& p) { p.hosts = 1; });
   if (plan.sensors > 2) with("sensors", [](Plan& p) { p.sensors = 2; });
   if (plan.global_always) with("--always", [](Plan& p) { p.global_always = false; });
@@ -190,7 +265,8 @@ std::vector<Simpler> simpler(const Plan& plan) {
 std::string describe(const Plan& plan, const Incident& incident) {
   std::string text = name(incident.kind);
   if (incident.kind == IncidentKind::command)
-    return text + " " + incident.text +
+    return text + " " + incident.text + " to " +
+           (incident.target < 0 ? "all" : process_name(plan, incident.target)) +
            (incident.amount == 0 ? " for all pairs" : " for pair " + std::to_string(incident.amount));
   if (incident.kind == IncidentKind::hostile || incident.kind == IncidentKind::flood ||
       incident.kind == IncidentKind::old_version)
@@ -201,9 +277,12 @@ std::string describe(const Plan& plan, const Incident& incident) {
     text += " " + process_name(plan, incident.target);
   switch (incident.kind) {
     case IncidentKind::kill:
-      return text + (incident.amount == 0 ? ", idle" : ", at place " + std::to_string(incident.amount));
+      return text + (incident.amount == 0 ? ", idle"
+                     : incident.amount < 0
+                         ? ", at place " + std::to_string(-incident.amount) + " of its next life"
+                         : ", at place " + std::to_string(incident.amount));
     case IncidentKind::end:
-      return text;
+      return text + (incident.amount == 0 ? "" : ", killed at place " + std::to_string(incident.amount));
     case IncidentKind::swap:
       return text + (incident.amount == 1 ? ", the new one first" : ", the old one ends first");
     case IncidentKind::twin:
@@ -224,7 +303,9 @@ std::string describe(const Plan& plan) {
                                    : "live") +
       ", " + std::to_string(plan.hosts) + " hosts, pairing " + (plan.state_file ? "with" : "without") +
       " a state file, solvers " + std::string(to_string(plan.fast_method)) + " and " +
-      std::string(to_string(plan.global_method)) + (plan.global_always ? " --always" : "") +
+      std::string(to_string(plan.global_method)) + (plan.global_always ? " --always" : "") + ", " +
+      estimations[static_cast<int>(plan.estimation)] + " estimation" + (plan.diagnosed ? ", diagnosed" : "") +
+      (plan.mistake > 0 ? ", " + testing::mistakes()[static_cast<std::size_t>(plan.mistake)].name : "") +
       "\nfaults until " + seconds(plan.disturbed_us) + ", then quiet for " + seconds(plan.quiet_us) +
       "\nnetwork: delay " + seconds(plan.network.delay_us);
   const NetworkFaults& network = plan.network;
@@ -235,6 +316,9 @@ std::string describe(const Plan& plan) {
   if (network.truncated > 0) text += ", truncated " + percent(network.truncated);
   if (network.flipped > 0) text += ", one bit flipped in " + percent(network.flipped);
   text += "\n";
+  if (plan.burden.solvers_us > 0 || plan.burden.listeners_us > 0)
+    text += "a turn of a solver takes " + seconds(plan.burden.solvers_us) + ", of a listener " +
+            seconds(plan.burden.listeners_us) + "\n";
   for (int i = 0; i < plan.hosts; ++i)
     if (plan.clocks[i].drift_ppm != 0 || plan.clocks[i].wall_off_us != 0)
       text += "host-" + std::to_string(i) + ": date off by " + seconds(plan.clocks[i].wall_off_us) +

@@ -38,11 +38,12 @@ struct ClockFaults {
 };
 
 enum class IncidentKind {
-  kill,         ///< a process by SIGKILL, at its amount-th send or write from then on
-  stop,         ///< SIGSTOP, and SIGCONT after the duration
-  end,          ///< SIGTERM
-  twin,         ///< a second process of the same name, for the duration; then it ends or is killed
-  away,         ///< a host has no route for multicast
+  kill,  ///< a process by SIGKILL: at once (amount 0), at its amount-th send or write from then on, or at
+         ///< the -amount-th of its next life (amount below 0)
+  stop,  ///< SIGSTOP, and SIGCONT after the duration
+  end,   ///< SIGTERM; killed at its amount-th send or write while it ends, 0: not
+  twin,  ///< a second process of the same name, for the duration; then it ends or is killed
+  away,  ///< a host has no route for multicast
   partition,    ///< a host and the others do not hear each other
   clog,         ///< everything to and from a host waits until the end of the duration
   set_date,     ///< a host's date is set by the amount [us]
@@ -52,7 +53,8 @@ enum class IncidentKind {
   hostile,      ///< amount damaged copies of datagrams that are on the bus, during the duration
   flood,        ///< amount copies of one datagram at once
   swap,     ///< a solver of another method takes the place of one, started before (amount 1) or after its end
-  command,  ///< a verb for pairing, of pair number amount (0: all pairs)
+  command,  ///< a verb for a process (its number is the target, -1: all), of pair number amount (0: all
+            ///< pairs)
 };
 constexpr int incident_kinds = static_cast<int>(IncidentKind::command) + 1;
 const char* name(IncidentKind kind);
@@ -71,6 +73,18 @@ enum class Input {
   live,    ///< one process a sensor, which sends everything once
 };
 
+/// How the rig file says that motions are to be used.
+enum class Estimation {
+  plain,      ///< steps of one, equal weights, nothing is rejected: the cheapest
+  robust,     ///< steps of one, given weights, outliers are rejected
+  automatic,  ///< everything is chosen from the data
+};
+
+/// How long a process works at each of its turns: then nothing else of it happens [us].
+struct Burden {
+  std::int64_t solvers_us = 0, listeners_us = 0;
+};
+
 /// Hosts: 0 has pairing and the input, 1 the solvers, 2 those who listen. With one host all are on 0.
 constexpr int most_hosts = 3;
 
@@ -84,12 +98,16 @@ struct Plan {
   std::int64_t quiet_us = 6'000'000;      ///< of the drive after them
   bool free_motion = true;                ///< else a road vehicle on rough ground
   bool numbered = true;                   ///< odometry_t; else bot_core.pose_t
+  Estimation estimation = Estimation::plain;
   Input input = Input::player;
   double speed = 1;        ///< of the player
   bool state_file = true;  ///< pairing has one
   int hosts = 1;
   Method fast_method = Method::sqp, global_method = Method::dual;
   bool global_always = false;
+  Burden burden;
+  bool diagnosed = false;  ///< egocal-diagnosis runs as well
+  int mistake = 0;         ///< of testing::mistakes(), in the drive of the first pair; 0: none
 
   // what happens to it
   NetworkFaults network;
@@ -97,7 +115,8 @@ struct Plan {
   std::vector<Incident> incidents;
 };
 
-/// Processes of a plan by their numbers: pairing is 0.
+/// Processes of a plan by their numbers: pairing, fast, global, monitor, export, what sends odometry,
+/// diagnosis.
 int processes(const Plan& plan);
 std::string process_name(const Plan& plan, int number);
 

@@ -5,8 +5,10 @@
 #include <exception>
 #include <utility>
 
+#include "diagnosis/diagnosing.hpp"
 #include "pairing/pairing.hpp"
 #include "player/player.hpp"
+#include "simulation/allocations.hpp"
 #include "solving/fast.hpp"
 #include "solving/global.hpp"
 
@@ -24,6 +26,8 @@ bus::Role role_of(Part part) {
       return bus::Role::fast;
     case Part::global:
       return bus::Role::global;
+    case Part::diagnosis:
+      return bus::Role::diagnosis;
     default:
       return bus::Role::monitor;
   }
@@ -48,6 +52,7 @@ struct Process::Instance {
   std::unique_ptr<Odometry> odometry;
   std::unique_ptr<Watcher> watcher;
   std::unique_ptr<Exporter> exporter;
+  std::unique_ptr<services::Diagnosing> diagnosing;
 };
 
 Process::Process(const Surroundings& surroundings, ProcessSpec spec, int number)
@@ -103,24 +108,28 @@ void Process::make_service() {
     case Part::exporter:
       i.exporter = std::make_unique<Exporter>(*i.loop, rig);
       return;
+    case Part::diagnosis:
+      i.diagnosing = std::make_unique<services::Diagnosing>(*i.loop, *i.heartbeat, rig);
+      return;
   }
 }
 
 std::optional<Process::Ending> Process::start() {
+  const MemoryOwner owner(memory_owner());
   Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
   ++lives_;
   started_us_ = surroundings_.schedule.now_us();
   instance_ = std::make_unique<Instance>();
-  const auto port = static_cast<std::uint64_t>(number_ * 1000 + lives_);
+  instance_->life.kill_at_place(std::exchange(kill_next_at_, 0));
   try {
     instance_->loop = std::make_unique<bus::Loop>(
-        surroundings_.network.open({number_, spec_.host, port}, instance_->life, [this] { wake(); }),
+        surroundings_.network.open({number_, spec_.host, port()}, instance_->life, [this] { wake(); }),
         host.clock, bus::LoopOptions{.handle_signals = false, .require_network = false, .host = host.name});
     if (!is_silent(spec_.part)) {
       const std::chrono::duration<double> timeout(surroundings_.drive.rig.heartbeat_timeout);
       instance_->heartbeat = std::make_unique<bus::Heartbeat>(
           *instance_->loop,
-          bus::Identity{spec_.name, role_of(spec_.part), spec_.version, static_cast<std::int32_t>(port)},
+          bus::Identity{spec_.name, role_of(spec_.part), spec_.version, static_cast<std::int32_t>(port())},
           std::chrono::duration_cast<std::chrono::nanoseconds>(timeout));
     }
     make_service();
@@ -134,6 +143,7 @@ std::optional<Process::Ending> Process::start() {
 }
 
 std::optional<Process::Ending> Process::turn() {
+  const MemoryOwner owner(memory_owner());
   bus::Loop& loop = *instance_->loop;
   bool goes_on = true;
   try {
@@ -147,7 +157,22 @@ std::optional<Process::Ending> Process::turn() {
   const std::optional<std::int64_t> due = loop.next_timer_ns();
   const Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
   wake_ns_ = due ? host.clock.schedule_ns(*due) : Schedule::never;
+  busy_until_ns_ = surroundings_.schedule.now_ns() + 1000 * burden_us();
   return std::nullopt;
+}
+
+std::int64_t Process::burden_us() const {
+  switch (spec_.part) {
+    case Part::fast:
+    case Part::global:
+      return surroundings_.plan.burden.solvers_us;
+    case Part::monitor:
+    case Part::exporter:
+    case Part::diagnosis:
+      return surroundings_.plan.burden.listeners_us;
+    default:
+      return 0;
+  }
 }
 
 std::optional<Process::Ending> Process::kill() {
@@ -157,11 +182,12 @@ std::optional<Process::Ending> Process::kill() {
 
 std::optional<Process::Ending> Process::end() {
   if (!instance_) return std::nullopt;
+  const MemoryOwner owner(memory_owner());
   try {
+    instance_->life.begin_to_end();
     if (instance_->heartbeat) instance_->heartbeat->end();
     instance_->pairing.reset();
-  } catch (const Killed&) {
-    return over(-1, "");
+    if (instance_->life.over()) return over(-1, "");
   } catch (const std::exception& error) {
     return over(1, error.what());
   }
@@ -169,13 +195,17 @@ std::optional<Process::Ending> Process::end() {
 }
 
 void Process::kill_at_place(std::int64_t count) {
-  if (instance_) instance_->life.kill_at_place(count);
+  if (count < 0)
+    kill_next_at_ = -count;
+  else if (instance_)
+    instance_->life.kill_at_place(count);
 }
 
 Process::Ending Process::over(int exit_code, const std::string& error) {
   instance_->life.end();
   instance_.reset();
   wake_ns_ = Schedule::never;
+  busy_until_ns_ = 0;
   stopped_ = false;
   const std::chrono::milliseconds lived((surroundings_.schedule.now_us() - started_us_) / 1000);
   tools::Program program;

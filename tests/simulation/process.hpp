@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,7 +14,7 @@
 
 namespace egocal::simulation {
 
-enum class Part { player, odometry, pairing, fast, global, monitor, exporter };
+enum class Part { player, odometry, pairing, fast, global, monitor, exporter, diagnosis };
 
 struct ProcessSpec {
   std::string name;
@@ -54,6 +55,10 @@ class Process {
   const ProcessSpec& spec() const { return spec_; }
   ProcessSpec& spec() { return spec_; }
   int number() const { return number_; }
+  /// Of its newest life.
+  std::uint64_t port() const { return static_cast<std::uint64_t>(number_ * 1000 + lives_); }
+  /// Of its memory, see allocated_bytes(); 0 is the world's.
+  std::size_t memory_owner() const { return static_cast<std::size_t>(number_) + 1; }
   bool runs() const { return instance_ != nullptr; }
   bool stopped() const { return stopped_; }
   std::int64_t started_us() const { return started_us_; }  ///< the newest life
@@ -62,7 +67,7 @@ class Process {
   const Exporter* exporter() const;
 
   /// Of the schedule [ns]; Schedule::never: it waits for nothing.
-  std::int64_t wake_ns() const { return stopped_ ? Schedule::never : wake_ns_; }
+  std::int64_t wake_ns() const { return stopped_ ? Schedule::never : std::max(wake_ns_, busy_until_ns_); }
   void wake() { wake_ns_ = 0; }
 
   /// Each returns how the life ended, if it did.
@@ -70,7 +75,9 @@ class Process {
   std::optional<Ending> turn();
   std::optional<Ending> kill();
   std::optional<Ending> end();
+  /// Below 0: of the next life.
   void kill_at_place(std::int64_t count);
+  void spare_next_life() { kill_next_at_ = 0; }
   void set_stopped(bool stopped) { stopped_ = stopped; }
   /// It is not started again.
   void retire() { retired_ = true; }
@@ -81,6 +88,7 @@ class Process {
   struct Instance;
   Ending over(int exit_code, const std::string& error);
   void make_service();
+  std::int64_t burden_us() const;
 
   const Surroundings& surroundings_;
   ProcessSpec spec_;
@@ -88,6 +96,7 @@ class Process {
   int number_;
   std::int64_t lives_ = 0, started_us_ = 0;
   std::int64_t wake_ns_ = Schedule::never;
+  std::int64_t busy_until_ns_ = 0, kill_next_at_ = 0;
   bool stopped_ = false, retired_ = false;
   std::unique_ptr<Instance> instance_;
 };

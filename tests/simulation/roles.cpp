@@ -20,6 +20,7 @@ Watcher::Watcher(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   };
   loop.subscribe_prefix(bus::problem_prefix, deliver, monitor_queue);
   loop.subscribe_prefix(bus::calibration_prefix, deliver, monitor_queue);
+  loop.subscribe_prefix(bus::verdict_prefix, deliver, monitor_queue);
   loop.subscribe_bytes(bus::status_channel, deliver, monitor_queue);
   loop.subscribe_bytes(bus::command_channel, deliver);
   heartbeat.set_state(bus::State::running);
@@ -34,6 +35,9 @@ Exporter::Exporter(bus::Loop& loop, const bus::Rig& rig) {
     loop.subscribe<calibration_t>(
         bus::calibration_channel(pair.a, pair.b),
         [this](const calibration_t& message, const bus::Arrival&) { answers_.hear(message); });
+    loop.subscribe<verdict_t>(
+        bus::verdict_channel(pair.a, pair.b),
+        [this](const verdict_t& message, const bus::Arrival&) { answers_.hear(message); });
   }
 }
 

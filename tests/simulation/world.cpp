@@ -62,12 +62,16 @@ class World {
         schedule_.do_next();
       else
         ended(*next, next->turn());
+      if (next) checks_->look_at_memory(*next);
     }
     if (!checks_->violation()) {
       schedule_.go_to(1000 * end_us());
       checks_->finish();
     }
-    return {checks_->violation(), trace_, schedule_.now_us(), messages_, checks_->compared()};
+    return {checks_->violation(),   trace_,
+            schedule_.now_us(),     messages_,
+            checks_->compared(),    checks_->certificates(),
+            checks_->judged_good(), checks_->most_memory()};
   }
 
  private:
@@ -138,6 +142,7 @@ class World {
              .sensor = static_cast<std::size_t>(i)},
             0);
     }
+    if (plan_.diagnosed) add({.name = "egocal-diagnosis", .part = Part::diagnosis, .host = 2}, soon());
   }
 
   void start(Process& process) {
@@ -175,7 +180,7 @@ class World {
   void cut_power(int host, std::int64_t duration_us);
   void damage_something();
   void flood(std::int64_t count);
-  void command(const std::string& verb, std::int64_t pair);
+  void command(const std::string& to, const std::string& verb, std::int64_t pair);
   void calm_down();
   void watch_answers() {
     checks_->look_at_answers();
@@ -203,17 +208,16 @@ void World::happens(const Incident& incident) {
   tell("-- " + describe(plan_, incident));
   const auto later = [&](auto action) { schedule_.after_us(incident.duration_us, action); };
   const int target = incident.target;
-  Host& host = *hosts_[static_cast<std::size_t>(target % plan_.hosts)];
-  const int host_number = target % plan_.hosts;
-  Process& victim = process(target % processes(plan_));
+  const int host_number = std::max(0, target) % plan_.hosts;
+  Host& host = *hosts_[static_cast<std::size_t>(host_number)];
+  Process& victim = process(std::max(0, target) % processes(plan_));
   switch (incident.kind) {
     case IncidentKind::kill:
-      if (incident.amount > 0)
-        victim.kill_at_place(incident.amount);
-      else
-        ended(victim, victim.kill());
-      return;
+      if (incident.amount > 0) return victim.kill_at_place(incident.amount);
+      victim.kill_at_place(incident.amount);
+      return ended(victim, victim.kill());
     case IncidentKind::end:
+      if (incident.amount > 0) victim.kill_at_place(incident.amount);
       ended(victim, victim.end());
       return;
     case IncidentKind::stop:
@@ -260,7 +264,7 @@ void World::happens(const Incident& incident) {
     case IncidentKind::swap:
       return swap(victim, incident);
     case IncidentKind::command:
-      return command(incident.text, incident.amount);
+      return command(target < 0 ? "*" : victim.spec().name, incident.text, incident.amount);
   }
 }
 
@@ -321,17 +325,17 @@ void World::flood(std::int64_t count) {
   for (std::int64_t i = 0; i < count; ++i) network_->inject(*original);
 }
 
-void World::command(const std::string& verb, std::int64_t pair) {
+void World::command(const std::string& to, const std::string& verb, std::int64_t pair) {
   command_t message{};
   message.utime = HostClock::start_of_all_us + schedule_.now_us();
-  message.to = "egocal-pairing";
+  message.to = to;
   message.verb = verb;
   if (pair > 0) {
     const bus::PairConfig& config = drive_.rig.pairs[static_cast<std::size_t>(pair - 1)];
     message.sensor_a = config.a;
     message.sensor_b = config.b;
   }
-  checks_->commanded(verb, message.sensor_a, message.sensor_b);
+  checks_->commanded(to, verb, message.sensor_a, message.sensor_b);
   network_->send_from_outside(bus::command_channel, bus::encode(message));
 }
 
@@ -349,11 +353,12 @@ void World::calm_down() {
   for (const auto& one : processes_) {
     one->set_stopped(false);
     one->kill_at_place(0);
+    one->spare_next_life();
     if (!one->spec().supervised) ended(*one, one->end());
   }
   if (std::any_of(plan_.incidents.begin(), plan_.incidents.end(),
                   [](const Incident& incident) { return incident.kind == IncidentKind::command; }))
-    command("resume", 0);
+    command("*", "resume", 0);
   watch_answers();
 }
 

@@ -18,6 +18,9 @@ struct Outcome {
   std::int64_t simulated_us = 0;  ///< virtual time
   std::int64_t messages = 0;      ///< sent
   int compared = 0;               ///< with an undisturbed run
+  std::int64_t certificates = 0;  ///< compared with arithmetic of 113 bits
+  std::int64_t judged_good = 0;   ///< verdicts compared with the truth
+  std::size_t most_memory = 0;    ///< of any process at any time [bytes]
 };
 
 struct WorldOptions {

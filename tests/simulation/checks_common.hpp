@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <initializer_list>
+
+#include "egocal/bus/bytes.hpp"
+#include "simulation/plan.hpp"
+
+namespace egocal::simulation {
+
+/// Problems, answers and verdicts begin alike: eight bytes each, big endian.
+enum Field : std::size_t { utime_at = 8, session_at = 16, seq_at = 24 };
+inline std::int64_t field(bus::Bytes message, std::size_t at) {
+  std::uint64_t value = 0;
+  for (std::size_t i = at; i < at + 8 && i < message.size(); ++i)
+    value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
+  return static_cast<std::int64_t>(value);
+}
+
+inline bool has(const Plan& plan, std::initializer_list<IncidentKind> kinds) {
+  return std::any_of(plan.incidents.begin(), plan.incidents.end(), [&](const Incident& incident) {
+    return std::find(kinds.begin(), kinds.end(), incident.kind) != kinds.end();
+  });
+}
+
+}  // namespace egocal::simulation
