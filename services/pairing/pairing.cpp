@@ -11,32 +11,12 @@
 
 namespace egocal::services {
 
-namespace {
-
 using namespace std::chrono_literals;
 
-constexpr int acknowledge_every = 16;
-/// An acknowledgement that no sender waits for yet is delayed this long: more may come.
-constexpr auto acknowledge_delay = 300us;
-/// Messages of one channel that may wait: more than any player has on the way.
-constexpr int queue_capacity = 1024;
-constexpr std::int64_t silence_us = 500'000;
-/// What is to be sent again comes within this time.
-constexpr std::int64_t patience_us = 1'000'000;
-/// Problems of one pair are no closer than this: under a flood most would be superfluous.
-constexpr std::int64_t problem_distance_us = 2'000;
-/// A disk that is full is not tried more often.
-constexpr std::int64_t save_retry_us = 1'000'000;
-constexpr std::size_t max_known_runs = 1024;
-/// Nothing is sent before an older process of this name had the time to answer the first status, which it
-/// does within 50 ms. One that takes the place of a process that died is most likely alone, and waited for.
-constexpr auto listen = 300ms, listen_restored = 100ms;
-
-}  // namespace
-
 Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
-                 std::unique_ptr<SavedState> saved)
-    : loop_(loop),
+                 std::unique_ptr<SavedState> saved, const PairingServiceOptions& options)
+    : options_(options),
+      loop_(loop),
       heartbeat_(heartbeat),
       saved_(std::move(saved)),
       accumulation_(saved_ ? saved_->restore() : Accumulation(rig)),
@@ -46,7 +26,7 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
     loop_.subscribe_bytes(
         rig.sensors[i].channel,
         [this, i](const bus::Arrival& arrival) { take(static_cast<std::uint16_t>(i), arrival); },
-        queue_capacity);
+        options_.queue_capacity);
   for (const bus::PairConfig& pair : rig.pairs)
     channels_.push_back({bus::problem_channel(pair.a, pair.b), bus::motion_channel(pair.a, pair.b)});
   hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
@@ -59,12 +39,12 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   const bool restored = saved_ && saved_->restored();
   if (restored) {
     patient_ = true;
-    settle_until_mono_us_ = loop_.mono_us() + patience_us;
+    settle_until_mono_us_ = loop_.mono_us() + options_.patience_us;
     heartbeat_.counter("restored") = 1;
   }
   show_state();
   heartbeat_.publish();  // an older namesake answers this
-  loop_.after(restored ? listen_restored : listen, [this] { begin_to_send(); });
+  loop_.after(restored ? options_.listen_restored : options_.listen, [this] { begin_to_send(); });
 }
 
 Pairing::~Pairing() {
@@ -95,7 +75,7 @@ void Pairing::save() {
 void Pairing::not_saved(const std::string& why) {
   if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", why.c_str());
   save_error_ = why;
-  save_again_mono_us_ = loop_.mono_us() + save_retry_us;
+  save_again_mono_us_ = loop_.mono_us() + options_.save_retry_us;
 }
 
 void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
@@ -103,7 +83,7 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   arrivals_[channel].heard_mono_us = loop_.mono_us();
   ++unacknowledged_;
   feed({Input::Kind::message, channel, arrival.bytes, arrival.mono_us});
-  if (unacknowledged_ >= acknowledge_every && leads()) heartbeat_.publish();
+  if (unacknowledged_ >= options_.acknowledge_every && leads()) heartbeat_.publish();
 }
 
 void Pairing::after_batch(bool caught_up) {
@@ -117,7 +97,7 @@ void Pairing::after_batch(bool caught_up) {
   publish_motions();
   // a sender may be waiting for it: a player that keeps in step
   if (caught_up && unacknowledged_ > 0 && !acknowledge_timer_ && heartbeat_.alive(bus::Role::player))
-    acknowledge_timer_ = loop_.after(acknowledge_delay, [this] {
+    acknowledge_timer_ = loop_.after(options_.acknowledge_delay, [this] {
       acknowledge_timer_.reset();
       if (unacknowledged_ > 0 && leads()) heartbeat_.publish();
     });
@@ -125,11 +105,11 @@ void Pairing::after_batch(bool caught_up) {
 
 void Pairing::publish_new_problems() {
   const std::int64_t now = loop_.mono_us();
-  std::int64_t wait = problem_distance_us;
+  std::int64_t wait = options_.problem_distance_us;
   bool later = false;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if (!accumulation_.pairs()[i].fresh()) continue;
-    const std::int64_t due = published_mono_us_[i] + problem_distance_us;
+    const std::int64_t due = published_mono_us_[i] + options_.problem_distance_us;
     if (now >= due) {
       publish_problem(i);
     } else {
@@ -185,8 +165,8 @@ void Pairing::watch_gaps() {
     } else if (arrivals.gap_mono_us == 0 || arrivals.expected != stream.expected()) {
       arrivals.gap_mono_us = now;
       arrivals.expected = stream.expected();
-    } else if (patient_ || stream.settling() ? now - arrivals.gap_mono_us > patience_us
-                                             : now - arrivals.heard_mono_us > silence_us) {
+    } else if (patient_ || stream.settling() ? now - arrivals.gap_mono_us > options_.patience_us
+                                             : now - arrivals.heard_mono_us > options_.silence_us) {
       feed({Input::Kind::give_up, i});
     }
   }
@@ -225,7 +205,7 @@ void Pairing::hear(const status_t& status) {
   if (status.name == heartbeat_.identity().name) show_state();
   const bool player = status.role == "player";
   if ((status.role != "fast" && status.role != "global" && !player) || status.state == "ended" ||
-      known_runs_.contains(status.run) || known_runs_.size() >= max_known_runs)
+      known_runs_.contains(status.run) || known_runs_.size() >= options_.most_known_runs)
     return;  // a flood of invented ones gains nothing
   known_runs_.insert(status.run);
   if (player) be_patient_if_it_helps();

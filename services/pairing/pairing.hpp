@@ -12,6 +12,7 @@
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/rig.hpp"
 #include "pairing/accumulation.hpp"
+#include "pairing/service_options.hpp"
 #include "pairing/state/saved_state.hpp"
 #include "program/commands.hpp"
 
@@ -22,7 +23,8 @@ namespace egocal::services {
 class Pairing {
  public:
   /// saved: may be null, then everything is lost with the process.
-  Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, std::unique_ptr<SavedState> saved);
+  Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, std::unique_ptr<SavedState> saved,
+          const PairingServiceOptions& options = {});
   /// With a last snapshot.
   ~Pairing();
   Pairing(const Pairing&) = delete;
@@ -58,6 +60,7 @@ class Pairing {
   void begin_to_send();
   bool leads() const { return !waits_for_elder_ && !listening_; }
 
+  PairingServiceOptions options_;
   bus::Loop& loop_;
   bus::Heartbeat& heartbeat_;
   std::unique_ptr<SavedState> saved_;

@@ -17,16 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// liblcm's receive queue and the kernel's buffer hold this many poses many times over.
-constexpr std::size_t most_in_flight = 64;
-/// At full speed one turn of the loop sends no more than this before it listens.
-constexpr int most_at_once = 64;
-constexpr std::int64_t wait_for_pairing_us = 3'000'000;
-constexpr std::int64_t stall_us = 500'000;
-constexpr std::int64_t announced_wait_us = 5'000'000;
-/// Longer than anybody waits; what is beyond does not fit into a timer.
+/// A longer wait does not fit into a timer [us].
 constexpr double longest_wait_us = 1e15;
-constexpr std::uint64_t most_told = 5;
 
 template <class... Arguments>
 std::string text(const char* format, Arguments... arguments) {
@@ -150,8 +142,8 @@ void Player::seek(double seconds) {
   }
   tape_ = std::move(there);
   next_ = std::move(event);
-  told_regions_ = tape_.damage().regions;
-  told_jumps_ = tape_.damage().jumps;
+  reported_regions_ = tape_.damage().regions;
+  reported_jumps_ = tape_.damage().jumps;
   in_flight_.clear();
   ended_ = false;
 }
@@ -165,7 +157,7 @@ void Player::load() {
 bool Player::begin_again() {
   if (!options_.loop) return false;
   report();
-  told_regions_ = told_jumps_ = 0;
+  reported_regions_ = reported_jumps_ = 0;
   tape_.rewind(options_.range.start);
   load();
   if (next_) anchor(next_->time_us);
@@ -219,14 +211,14 @@ void Player::play() {
   // at any speed but that of the recording it waits for a pairing to keep in step with
   const bool waits_for_pairing = !in_flight_.heard() && !alone_ && options_.speed != 1 && !step_;
   for (int sent = 0; next_ && (!paused_ || step_) && !waits_for_pairing; ++sent) {
-    if (in_flight_.count() >= most_in_flight) return;  // goes on with the next acknowledgement
+    if (in_flight_.count() >= options_.pace.most_in_flight) return;  // goes on with the next acknowledgement
     const double speed = options_.speed == 0 && alone_ ? 1 : options_.speed;
     if (speed > 0 && !step_) {
       const double ahead_us = (static_cast<double>(next_->time_us) - static_cast<double>(anchor_us_)) / speed;
       const std::int64_t due = anchor_mono_us_ + std::llround(std::min(ahead_us, longest_wait_us));
       const std::int64_t wait = due - loop_.mono_us();
       if (wait > 0) {
-        if (wait > announced_wait_us && announced_gap_us_ != next_->time_us) {
+        if (wait > options_.pace.announced_wait_us && announced_gap_us_ != next_->time_us) {
           announced_gap_us_ = next_->time_us;
           const std::string gap = text("gap in the log, nothing until %.1f s into it: %.1f s to wait",
                                        into_log(next_->time_us), 1e-6 * static_cast<double>(wait));
@@ -236,7 +228,7 @@ void Player::play() {
         wait_until(due);
         return;
       }
-    } else if (sent == most_at_once) {
+    } else if (sent == options_.pace.most_at_once) {
       wait_until(0);
       return;
     }
@@ -265,7 +257,7 @@ void Player::play() {
 void Player::watch_over() {
   const std::int64_t now = loop_.mono_us();
   show_progress(false);
-  if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > wait_for_pairing_us) {
+  if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {
     alone_ = true;
     if (options_.speed != 1) {
       say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
@@ -274,12 +266,13 @@ void Player::watch_over() {
     }
     play();
   }
-  if (in_flight_.count() > 0 && now - progress_mono_us_ > stall_us && heartbeat_.alive(bus::Role::pairing)) {
+  if (in_flight_.count() > 0 && now - progress_mono_us_ > options_.pace.stall_us &&
+      heartbeat_.alive(bus::Role::pairing)) {
     send_again();
     progress_mono_us_ = now;
   }
   // a pairing that has been gone for long at the end of the log is not waited for
-  if (ended_ && in_flight_.count() > 0 && now - progress_mono_us_ > 10'000'000) {
+  if (ended_ && in_flight_.count() > 0 && now - progress_mono_us_ > options_.pace.end_wait_us) {
     say(text("%zu messages were never acknowledged", in_flight_.count()));
     in_flight_.clear();
     play();
@@ -299,16 +292,16 @@ void Player::say(const std::string& line) {
 /// What has been skipped just now.
 void Player::say_damage() {
   const bus::LogDamage& damage = tape_.damage();
-  if (damage.regions <= told_regions_ && damage.jumps <= told_jumps_) return;
+  if (damage.regions <= reported_regions_ && damage.jumps <= reported_jumps_) return;
   const std::uint64_t places = damage.regions + damage.jumps;
-  if (places <= most_told)
+  if (places <= options_.pace.most_reported)
     say(text("the log is damaged here: %llu bytes and at least %llu events lost so far",
              static_cast<unsigned long long>(damage.bytes),
              static_cast<unsigned long long>(damage.lost_events)));
-  else if (told_regions_ + told_jumps_ <= most_told)
+  else if (reported_regions_ + reported_jumps_ <= options_.pace.most_reported)
     say("the log is damaged in more places; their number will be reported at the end");
-  told_regions_ = damage.regions;
-  told_jumps_ = damage.jumps;
+  reported_regions_ = damage.regions;
+  reported_jumps_ = damage.jumps;
 }
 
 void Player::report() {
@@ -330,7 +323,7 @@ void Player::report() {
 void Player::show_progress(bool last) {
   if (!terminal_ || (last && out_ == 0)) return;
   const std::int64_t now = loop_.mono_us();
-  if (!last && now - shown_mono_us_ < 200'000) return;
+  if (!last && now - shown_mono_us_ < options_.pace.progress_period_us) return;
   shown_mono_us_ = now;
   const std::string state = paused_               ? "paused"
                             : options_.speed == 0 ? "playing, full speed"

@@ -11,6 +11,7 @@
 #include "egocal/command_t.hpp"
 #include "player/control.hpp"
 #include "player/in_flight.hpp"
+#include "player/pace_options.hpp"
 #include "player/tape.hpp"
 #include "player/terminal_keys.hpp"
 
@@ -22,6 +23,7 @@ struct PlayerOptions {
   double speed = 1;     ///< times real time; 0: as fast as everybody keeps up
   bool loop = false;    ///< from the beginning again at the end
   bool paused = false;  ///< waits for "resume"
+  PaceOptions pace{};
 };
 
 /// Plays a log on the bus. In step with pairing: no more than a few dozen messages are on their way to it at
@@ -69,7 +71,7 @@ class Player {
   std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported
   std::optional<bus::Loop::TimerId> timer_;
   bool paused_ = false, step_ = false, alone_ = false, ended_ = false, terminal_ = false, line_open_ = false;
-  std::uint64_t out_ = 0, told_regions_ = 0, told_jumps_ = 0;
+  std::uint64_t out_ = 0, reported_regions_ = 0, reported_jumps_ = 0;
 };
 
 }  // namespace egocal::services

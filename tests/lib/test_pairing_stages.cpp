@@ -131,7 +131,7 @@ TEST(Screening, LongLeverArmsAreAnOption) {
     instants.push_back({static_cast<std::int64_t>(i) * period_us, a, normalized(a * T * noise), 0, i + 1});
   }
   const auto rejections = [&](double longest_lever_arm) {
-    Screening screening{ScreeningOptions{.longest_lever_arm = longest_lever_arm}};
+    Screening screening{ScreeningOptions{.congruence = {.longest_lever_arm = longest_lever_arm}}};
     for (const Instant& instant : instants) screening.push(instant, period_us);
     screening.finish();
     return rejected(screening.state().rejections, Rejection::screw_congruence);
@@ -193,7 +193,7 @@ TEST(PairingOptions, OutOfTheirRangeAreRefusedByName) {
   EXPECT_TRUE(refused({.balance = Balance{1, 0}}, "translation weight"));
   EXPECT_TRUE(refused({.balance = Balance{1, nan}}, "translation weight"));
   PairingOptions options;
-  options.screening.longest_lever_arm = nan;
+  options.screening.congruence.longest_lever_arm = nan;
   EXPECT_TRUE(refused(options, "longest_lever_arm"));
   options = {};
   options.accumulator.balances = {};

@@ -45,11 +45,29 @@ void check(const ClockOptions& options) {
   require("clock.phase", options.phase, {0, 1}, "");
 }
 
+void check(const CongruenceOptions& options) {
+  require("congruence.least_turn", options.least_turn, {1e-9, std::numbers::pi}, " rad");
+  require("congruence.angle_floor", options.angle_floor, {1e-15, 1}, " rad");
+  require("congruence.length_floor", options.length_floor, {1e-15, 1e3}, " m");
+  require("congruence.memory", options.memory >= 16 && options.memory <= 1'000'000, "16 to 1e6 motions");
+  require("congruence.first_estimate",
+          options.first_estimate >= 4 && options.first_estimate <= options.memory,
+          "4 to congruence.memory motions");
+  require("congruence.estimate_every", options.estimate_every >= 1 && options.estimate_every_when_full >= 1,
+          "at least 1");
+  require("congruence.doubtful_remembered", options.doubtful_remembered >= 1, "at least 1");
+  require("congruence.most_growing", options.most_growing, {0, 1}, "");
+  require("congruence.gross_angle", options.gross_angle, {1e-3, std::numbers::pi}, " rad");
+  require("congruence.gross_lengths", options.gross_lengths, {1, 1e6}, "");
+  require("longest_lever_arm", options.longest_lever_arm, {0, 1e4}, " m");
+}
+
 void check(const ScreeningOptions& options) {
   require("doubtful", options.doubtful, {1, 1e6}, " standard deviations");
   require("break_chain", options.break_chain, {options.doubtful, 1e6}, " standard deviations");
   require("most_doubtful", options.most_doubtful >= 2 && options.most_doubtful <= 1000, "2 to 1000");
-  require("longest_lever_arm", options.longest_lever_arm, {0, 1e4}, " m");
+  require("repeated", options.repeated, {0, 1e-3}, "");
+  check(options.congruence);
 }
 
 void check(const AccumulatorOptions& options) {

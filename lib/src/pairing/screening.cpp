@@ -12,9 +12,9 @@ namespace {
 
 /// One sensor repeats its pose to the last digit while the other one moves. (At rest, both may.) Rounding of
 /// the interpolation is no motion.
-bool one_repeats(const Instant& before, const Instant& now) {
-  const auto repeats = [](const DualQuaternion& x, const DualQuaternion& y) {
-    return (x.vec() - y.vec()).cwiseAbs().maxCoeff() <= 1e-14 * std::max(1.0, y.dual.norm());
+bool one_repeats(const Instant& before, const Instant& now, double repeated) {
+  const auto repeats = [repeated](const DualQuaternion& x, const DualQuaternion& y) {
+    return (x.vec() - y.vec()).cwiseAbs().maxCoeff() <= repeated * std::max(1.0, y.dual.norm());
   };
   return repeats(before.a, now.a) != repeats(before.b, now.b);
 }
@@ -25,15 +25,16 @@ double steps(const Instant& from, const Instant& to, double period_us) {
 }
 
 /// How far the motion is from congruent, in standard deviations; noise grows with the root of the steps.
-double difference(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale) {
-  return incongruence(motion_between(from.a, to.a), motion_between(from.b, to.b), scale) /
+double difference(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
+                  const CongruenceOptions& options) {
+  return incongruence(motion_between(from.a, to.a), motion_between(from.b, to.b), scale, options) /
          std::sqrt(steps(from, to, period_us));
 }
 
-bool grossly_different(const Instant& from, const Instant& to, double period_us,
-                       const CongruenceScale& scale) {
+bool grossly_different(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
+                       const CongruenceOptions& options) {
   return grossly_incongruent(motion_between(from.a, to.a), motion_between(from.b, to.b),
-                             steps(from, to, period_us), scale);
+                             steps(from, to, period_us), scale, options);
 }
 
 }  // namespace
@@ -45,17 +46,17 @@ Screening::Screening(const ScreeningOptions& options, ScreeningState state)
 
 Screened Screening::push(const Instant& instant, std::int64_t period_us) {
   const std::optional<Instant> before = std::exchange(state_.newest, instant);
-  if (before && before->chain == instant.chain && one_repeats(*before, instant)) {
+  if (before && before->chain == instant.chain && one_repeats(*before, instant, options_.repeated)) {
     state_.rejections.add(Rejection::frozen);
     return {};
   }
   if (before && before->chain != instant.chain) begin_chain();
   const auto period = static_cast<double>(period_us);
-  const bool known = knows_typical(state_.congruence);
+  const bool known = knows_typical(state_.congruence, options_.congruence);
   if (!known) state_.first.push_back(instant);
   Screened result;
   screen(instant, period, result.accepted);
-  if (!known && knows_typical(state_.congruence)) {
+  if (!known && knows_typical(state_.congruence, options_.congruence)) {
     result.replaces = true;
     result.accepted = screen_first_ones_again(period);
   }
@@ -74,17 +75,17 @@ void Screening::finish() {
   state_.doubtful.clear();
 }
 
-/// Learns nothing: the motions were learnt from already.
+/// The motions were remembered already: they are not added a second time.
 std::vector<Instant> Screening::screen_first_ones_again(double period_us) {
   const std::vector<Instant> first = std::exchange(state_.first, {});
-  const CongruenceScale learnt = state_.congruence;
+  const CongruenceScale estimated = state_.congruence;
   state_.accepted.reset();
   std::vector<Instant> accepted;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (i > 0 && first[i].chain != first[i - 1].chain) begin_chain();
     screen(first[i], period_us, accepted);
   }
-  state_.congruence = learnt;
+  state_.congruence = estimated;
   return accepted;
 }
 
@@ -92,22 +93,23 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
   auto& doubtful = state_.doubtful;
   if (!state_.accepted) return accept(instant, instant.number, accepted);
   const auto agree = [&](const Instant& from, const Instant& to) {
-    return difference(from, to, period_us, state_.congruence) <= options_.doubtful;
+    return difference(from, to, period_us, state_.congruence, options_.congruence) <= options_.doubtful;
   };
-  const auto learn_from = [&](const Instant& from, bool doubted) {
-    update_congruence(motion_between(from.a, instant.a), motion_between(from.b, instant.b), doubted,
-                      state_.congruence, options_.longest_lever_arm);
+  const auto remember_from = [&](const Instant& from, bool motion_is_doubtful) {
+    update_congruence(motion_between(from.a, instant.a), motion_between(from.b, instant.b),
+                      motion_is_doubtful, state_.congruence, options_.congruence);
   };
   const Instant newest = *state_.accepted;
   if (agree(newest, instant)) {
-    if (doubtful.empty()) learn_from(newest, false);
+    if (doubtful.empty()) remember_from(newest, false);
     return confirm({}, instant, accepted);
   }
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
     if (!agree(doubtful[i], instant)) continue;
     const bool one_chain =
-        difference(newest, doubtful[i], period_us, state_.congruence) <= options_.break_chain &&
-        !grossly_different(newest, doubtful[i], period_us, state_.congruence);
+        difference(newest, doubtful[i], period_us, state_.congruence, options_.congruence) <=
+            options_.break_chain &&
+        !grossly_different(newest, doubtful[i], period_us, state_.congruence, options_.congruence);
     if (one_chain) return confirm({doubtful[i]}, instant, accepted);
     for (std::size_t k = 0; k < i; ++k) {
       if (!agree(doubtful[k], doubtful[i])) continue;
@@ -116,7 +118,7 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
       return confirm({doubtful[k], doubtful[i]}, instant, accepted);
     }
   }
-  learn_from(doubtful.empty() ? newest : doubtful.back(), true);
+  remember_from(doubtful.empty() ? newest : doubtful.back(), true);
   doubtful.push_back(instant);
   if (doubtful.size() > options_.most_doubtful) {
     doubtful.pop_front();

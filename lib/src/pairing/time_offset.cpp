@@ -19,12 +19,6 @@ using namespace detail;
 namespace {
 
 constexpr double second_us = 1e6;
-/// Length of the parts of a long drive in which the offset is looked for separately [s]: a clock that is off
-/// by half a percent gains a third of a second in one.
-constexpr double window = 60, most_drift = 0.005;
-/// Length of the part that is looked for by itself [s].
-constexpr double part_length = 300;
-
 /// Offset of one part of the drive.
 struct WindowOffset {
   double time = 0;    ///< of its middle [s since the begin of b]
@@ -67,12 +61,13 @@ struct TimeOffsetSearch::Impl {
     if (!long_enough()) return;
     const std::int64_t period_us = std::max(median_period_us(a.poses), median_period_us(b.poses));
     const auto period = static_cast<double>(period_us);
-    step_us = static_cast<std::int64_t>(std::max(std::clamp(period, 0.05e6, 0.25e6), period / 4));
+    step_us = static_cast<std::int64_t>(std::max(
+        std::clamp(period, options.finest_grid * second_us, options.coarsest_grid * second_us), period / 4));
     max_gap_us = static_cast<std::int64_t>(std::clamp(options.max_gap * second_us, 3 * period, 20 * period));
     for (Stream* stream : {&a, &b}) stream->poses = dense_part(stream->poses, max_gap_us);
     if (!long_enough()) return;
     // several times: of neighbouring glitches only the furthest one is found at once
-    for (int round = 0; round < 4; ++round)
+    for (int round = 0; round < options.glitch_rounds; ++round)
       for (Stream* stream : {&a, &b}) schedule.add(1, [this, stream] { remove_glitches(*stream); });
     schedule.add(1, [this] { sample_angles(); });
   }
@@ -134,11 +129,13 @@ struct TimeOffsetSearch::Impl {
     const Correlation found = lags->best();
     lags.reset();
     // a drift smears the correlation of a long drive: its liveliest part shows the offset there
-    const bool smeared = !searched_part && found.value < 0.7 && b.angles.size() > 2 * points(part_length);
+    const bool smeared = !searched_part && found.value < options.smeared_correlation &&
+                         b.angles.size() > 2 * points(options.liveliest_part);
     if (best.value == 0 || found.value > best.value) best = found;
     if (!smeared) return track();
     searched_part = true;
-    lags.emplace(a.angles, liveliest_part(b.angles, points(part_length)), points(options.least_overlap));
+    lags.emplace(a.angles, liveliest_part(b.angles, points(options.liveliest_part)),
+                 points(options.least_overlap));
     schedule.add(1, [this] { search_lags(); });
   }
 
@@ -163,7 +160,7 @@ struct TimeOffsetSearch::Impl {
   /// drifts smears the correlation of the whole.
   void track() {
     if (!(best.significance > 0)) return;
-    const std::size_t size = points(window), count = b.angles.size() / std::max<std::size_t>(1, size);
+    const std::size_t size = points(options.part), count = b.angles.size() / std::max<std::size_t>(1, size);
     if (count < 3) return refine(static_cast<double>(best.lag), 0);
     windows.assign(count, {});
     for (std::size_t i = 0; i < count; ++i)
@@ -172,7 +169,7 @@ struct TimeOffsetSearch::Impl {
   }
 
   Correlation best_in_window(std::size_t i, std::ptrdiff_t centre, std::size_t reach) const {
-    const std::size_t size = points(window);
+    const std::size_t size = points(options.part);
     Correlation result;
     const auto far = static_cast<std::ptrdiff_t>(reach);
     for (std::ptrdiff_t lag = centre - far; lag <= centre + far; ++lag) {
@@ -186,18 +183,18 @@ struct TimeOffsetSearch::Impl {
     std::size_t start = 0;
     for (std::size_t i = 1; i < windows.size(); ++i)
       if (windows[i].significance > windows[start].significance) start = i;
-    const std::size_t reach = std::max<std::size_t>(1, points(most_drift * window)) + 1;
+    const std::size_t reach = std::max<std::size_t>(1, points(options.part_drift * options.part)) + 1;
     const auto follow = [this, reach](std::size_t i, std::ptrdiff_t& lag) {
       windows[i] = best_in_window(i, lag, reach);
-      // a part without turns says nothing
-      if (windows[i].value > 0.5) lag = windows[i].lag;
+      // a part without turns shows no offset
+      if (windows[i].value > options.part_correlation) lag = windows[i].lag;
     };
     schedule.add(1, [this, start, follow, forwards = std::make_shared<std::ptrdiff_t>(windows[start].lag),
                      backwards = std::make_shared<std::ptrdiff_t>(windows[start].lag)] {
       for (std::size_t i = start + 1; i < windows.size(); ++i)
-        schedule.add(points(window) / 4, [follow, i, forwards] { follow(i, *forwards); });
+        schedule.add(points(options.part) / 4, [follow, i, forwards] { follow(i, *forwards); });
       for (std::size_t i = start; i-- > 0;)
-        schedule.add(points(window) / 4, [follow, i, backwards] { follow(i, *backwards); });
+        schedule.add(points(options.part) / 4, [follow, i, backwards] { follow(i, *backwards); });
       schedule.add(windows.size(), [this] { fit_line(); });
     });
   }
@@ -205,8 +202,9 @@ struct TimeOffsetSearch::Impl {
   void fit_line() {
     std::vector<WindowOffset> points_;
     for (std::size_t i = 0; i < windows.size(); ++i)
-      if (windows[i].value > 0.5)
-        points_.push_back({(static_cast<double>(i) + 0.5) * window, static_cast<double>(windows[i].lag)});
+      if (windows[i].value > options.part_correlation)
+        points_.push_back(
+            {(static_cast<double>(i) + 0.5) * options.part, static_cast<double>(windows[i].lag)});
     const auto global = static_cast<double>(best.lag);
     if (points_.size() < 3) return refine(global, 0);
     auto [level, slope] = line_through(points_);
@@ -223,10 +221,11 @@ struct TimeOffsetSearch::Impl {
       if (distances[i] <= limit) near.push_back(points_[i]);
     if (near.size() >= 3) std::tie(level, slope) = line_through(near);
     const double step = static_cast<double>(step_us) / second_us;
-    const double middle = 0.5 * window * static_cast<double>(windows.size());
+    const double middle = 0.5 * options.part * static_cast<double>(windows.size());
     const double rate = slope * step;
     // what three grid points at both ends cannot show is left to the refinement
-    if (!(std::abs(rate) < 2 * most_drift) || std::abs(rate) * middle < 3 * step) return refine(global, 0);
+    if (!(std::abs(rate) < 2 * options.part_drift) || std::abs(rate) * middle < 3 * step)
+      return refine(global, 0);
     refine(level + slope * middle, rate);
   }
 
@@ -239,7 +238,7 @@ struct TimeOffsetSearch::Impl {
                        to = std::min(b.poses.back().time_us, a.poses.back().time_us - offset_us);
     if (to <= from) return;
     ClockLine model;
-    model.at_b_us = rate != 0 ? begin_b + static_cast<std::int64_t>(0.5 * window * second_us *
+    model.at_b_us = rate != 0 ? begin_b + static_cast<std::int64_t>(0.5 * options.part * second_us *
                                                                     static_cast<double>(windows.size()))
                               : from + (to - from) / 2;
     model.at_a_us = model.at_b_us + offset_us;

@@ -48,9 +48,18 @@ void fields(auto& archive, services::Is<ClockOptions> auto& value) {
           least_change, change_sigmas, work_per_pose, phase);
 }
 
+void fields(auto& archive, services::Is<CongruenceOptions> auto& value) {
+  auto& [least_turn, angle_floor, length_floor, memory, first_estimate, estimate_every,
+         estimate_every_when_full, doubtful_remembered, most_growing, gross_angle, gross_lengths,
+         longest_lever_arm] = value;
+  archive(least_turn, angle_floor, length_floor, memory, first_estimate, estimate_every,
+          estimate_every_when_full, doubtful_remembered, most_growing, gross_angle, gross_lengths,
+          longest_lever_arm);
+}
+
 void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
-  auto& [doubtful, break_chain, most_doubtful, longest_lever_arm] = value;
-  archive(doubtful, break_chain, most_doubtful, longest_lever_arm);
+  auto& [doubtful, break_chain, most_doubtful, repeated, congruence] = value;
+  archive(doubtful, break_chain, most_doubtful, repeated, congruence);
 }
 
 void fields(auto& archive, services::Is<AccumulatorOptions> auto& value) {
@@ -120,8 +129,8 @@ void fields(auto& archive, services::Is<TypicalDifference> auto& value) {
 }
 
 void fields(auto& archive, services::Is<CongruenceScale> auto& value) {
-  auto& [angle, slide, length, lever, arm, taught, doubted] = value;
-  archive(angle, slide, length, lever, arm, taught, doubted);
+  auto& [angle, slide, length, lever, arm, remembered, doubtful] = value;
+  archive(angle, slide, length, lever, arm, remembered, doubtful);
 }
 
 void fields(auto& archive, services::Is<Rejections> auto& value) {
@@ -248,7 +257,7 @@ void fields(auto& archive, services::Is<StreamState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 10;
+constexpr int state_layout = 11;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -12,7 +12,7 @@
 
 namespace egocal {
 
-/// How much two measurements of one quantity typically differ: constant + growing * size, learnt from the
+/// How much two measurements of one quantity typically differ: constant + growing * size, estimated from the
 /// newest of them.
 struct TypicalDifference {
   struct Seen {
@@ -34,29 +34,30 @@ struct CongruenceScale {
   TypicalDifference
       lever;       ///< of the lengths again, by angle: turning sensors apart go different ways [m, rad]
   double arm = 0;  ///< difference of the lengths that turning explains, per angle [m/rad]
-  std::uint64_t taught = 0, doubted = 0;  ///< motions
+  std::uint64_t remembered = 0;  ///< motions that were added
+  std::uint64_t doubtful = 0;    ///< motions of doubtful poses, whether remembered or not
 };
 
-/// Whether enough motions were learnt from.
-bool knows_typical(const CongruenceScale& scale);
+/// Whether enough motions were remembered for an estimate.
+bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options);
 
 /// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
 /// length, whatever the extrinsic. How far a and b (over the same time) are from that, in standard deviations
-/// of the typical difference; 0 while nothing is known of what is typical.
-double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale);
+/// of the typical difference; 0 before the first estimate.
+double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale,
+                    const CongruenceOptions& options);
 
-/// Whether a and b, over so many steps, differ by more than noise ever does, however large it is just now: by
-/// the size of the motions.
+/// Whether a and b, over this number of steps, differ by more than noise ever does, however large it is just
+/// now: by the size of the motions.
 bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, double steps,
-                         const CongruenceScale& scale);
+                         const CongruenceScale& scale, const CongruenceOptions& options);
 
-/// Which motion pairs are not congruent, judged by what is typical of the thousand around each: without
-/// poses, there are no witnesses. In three dimensions, in any order.
+/// Which motion pairs are not congruent, compared with what is typical of the `memory` motions around each:
+/// without poses, nothing else can confirm them. In three dimensions, in any order.
 std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& options = {});
 
-/// Learns what is typical. Of motions that were doubted only one in eight teaches: they may be wrong, or the
-/// beginning of another regime. longest_lever_arm [m]: see ScreeningOptions.
-void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubted, CongruenceScale& scale,
-                       double longest_lever_arm = ScreeningOptions{}.longest_lever_arm);
+/// Remembers the motion and estimates anew where that is due. doubtful: the motion of a doubtful pose.
+void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubtful,
+                       CongruenceScale& scale, const CongruenceOptions& options);
 
 }  // namespace egocal

@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "egocal/pairing/clock_options.hpp"
+#include "egocal/pairing/congruence_options.hpp"
 #include "egocal/problem/problem.hpp"
 
 namespace egocal {
@@ -26,9 +28,10 @@ struct SynchroniserOptions {
 };
 
 /// Tuning of the Screening. Distances from congruence are in standard deviations of the typical difference.
+/// Study: tests/bench/outlier_study.cpp, its table in docs/accuracy.md, "Gross outliers".
 struct ScreeningOptions {
   /// A motion further off than this is doubtful: its newer pose waits for the next ones to confirm it.
-  /// Real odometry has heavy tails (KITTI reaches 8); measured in docs/accuracy.md, "Outliers".
+  /// Real odometry has heavy tails; tests/lib/test_congruence.cpp measures them on the drives of the study.
   double doubtful = 10;
   /// Between poses that others confirm, only what is further off than this ends a chain: heavy tails belong
   /// to the odometry, jumps do not.
@@ -36,28 +39,10 @@ struct ScreeningOptions {
   /// Poses that wait for a confirmation. Three that agree begin a new chain; five leave room for two glitches
   /// among them.
   std::size_t most_doubtful = 5;
-  /// How large the lever arm between the sensors may be [m]. It explains why the lengths of their motions
-  /// differ while the vehicle turns. 10 m cover cars and trucks; trailers, cranes and ships need more.
-  double longest_lever_arm = 10;
-};
-
-/// Tuning of the ClockFollower. Study: tests/lib/test_time_offset.cpp, over noise, glitches, drift and
-/// interleaving.
-struct ClockOptions {
-  double first = 10;     ///< length of the first estimate's streams, and of what each next one adds [s]
-  double every = 30;     ///< between estimates once one is in force [s]: quartz changes over minutes
-  double delay = 2;      ///< from the end of an estimate's streams until it comes into force [s]
-  double window = 60;    ///< newest part of the streams that an estimate looks at once one is in force [s]
-  double longest = 180;  ///< poses are held for at most this long, and until the first estimate looked at [s]
-  std::size_t most_held = 200'000;  ///< poses of one stream: 180 s at 1 kHz
-  /// Below these an estimate is not trusted: unrelated streams reach a correlation of 0.5 by chance.
-  double least_correlation = 0.7, least_inliers = 0.5;
-  double largest_stddev = 0.005;  ///< [s]: at 1 rad/s an error of 0.3 deg
-  /// Another offset comes into force where it differs by both [s, standard deviations].
-  double least_change = 0.005, change_sigmas = 4;
-  /// Share of the estimate that is worked out at each pose, in poses looked at: about 0.2 ms.
-  std::size_t work_per_pose = 512;
-  double phase = 0;  ///< in [0, 1): several pairs of one rig estimate at different times
+  /// A pose that differs by less from the one before repeats it: a part of its distance from the origin, and
+  /// of 1 m. What interpolation between equal poses rounds to.
+  double repeated = 1e-14;
+  CongruenceOptions congruence{};
 };
 
 /// Tuning of the Accumulator.

@@ -35,6 +35,32 @@ struct TimeOffsetOptions {
   /// An offset to search near, with `near_by` on both sides [s]; empty: all offsets at which streams overlap.
   std::optional<double> near{};
   double near_by = 1;
+
+  /// Spacing of the grid on which the angles of both streams are correlated: the period of the slower stream,
+  /// within these bounds, and at least a quarter of that period [s]. The refinement does the rest.
+  double finest_grid = 0.05, coarsest_grid = 0.25;
+  /// Rounds in which glitches are removed: of neighbouring ones only the furthest is found in each.
+  int glitch_rounds = 4;
+  /// Parts of a long drive that are searched one after the other, outwards from the best [s], and how fast
+  /// the offset may change between them [s/s]: a clock that is off by half a percent gains 0.3 s in one.
+  double part = 60, part_drift = 0.005;
+  /// A part with a lower correlation hardly turns and shows no offset.
+  double part_correlation = 0.5;
+  /// A drift smears the correlation of a long drive. Where it is below this, the part of this length that
+  /// turns most is searched by itself [s].
+  double smeared_correlation = 0.7, liveliest_part = 300;
+  /// The refinement compares the costs at three offsets, at least this far apart [s], or half a period of the
+  /// slower stream: closer ones differ by less than the noise of the cost.
+  double least_arm = 0.02;
+  /// Instants compared by the refinement are at least this far apart [s]: 20 Hz show all that odometry has to
+  /// say about time.
+  double key_spacing = 0.05;
+  /// Rounds of the refinement at most: each halves the distance of the three offsets, from a quarter of a
+  /// second down to 2 ms in seven.
+  int most_rounds = 8;
+  /// A drift that changes the offset by less than this from the middle of the drive to its ends is not
+  /// applied [s]: an offset is not known to better.
+  double least_drift_effect = 5e-4;
 };
 
 /// What has to be added to the stamps of b so that both streams run on the clock of a.

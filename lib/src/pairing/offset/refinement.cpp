@@ -91,7 +91,7 @@ void Refinement::begin(const ClockLine& model, double arm_us) {
   model_ = model;
   drifts_ = model.rate != 0;
   // far enough apart for the cost to rise above its noise
-  least_arm_us_ = std::max(0.02 * second_us, 0.5 * period_us_);
+  least_arm_us_ = std::max(options_.least_arm * second_us, 0.5 * period_us_);
   arm_us_ = std::max(arm_us, least_arm_us_);
   schedule_.add(256, [this] {
     collect_motions();
@@ -105,9 +105,8 @@ void Refinement::collect_motions() {
   const auto steps =
       static_cast<std::size_t>(std::max(1.0, std::round(options_.motion * second_us / key_period_us)));
   const double longest_us = 2 * static_cast<double>(steps) * key_period_us + max_gap_us_;
-  // 20 Hz show all that odometry has to say about time
   const auto every = std::max<std::size_t>(
-      static_cast<std::size_t>(std::max(1.0, std::round(0.05 * second_us / key_period_us))),
+      static_cast<std::size_t>(std::max(1.0, std::round(options_.key_spacing * second_us / key_period_us))),
       (keys.size() + options_.most_keys - 1) / options_.most_keys);
   for (std::size_t to = steps; to < keys.size(); to += every) {
     const std::size_t from = to - steps;
@@ -305,9 +304,9 @@ void Refinement::conclude() {
     rate_step = newton.step(1);
     rate_stddev = newton.stddev(1);
     const double rate = model_.rate + rate_step;
-    // half a millisecond at the ends of the drive is below what an offset is known to
     drifts_ = duration_ >= options_.least_drift_duration && std::abs(rate) <= options_.most_drift &&
-              std::abs(rate) > options_.drift_sigmas * rate_stddev && std::abs(rate) * duration_ / 2 > 5e-4;
+              std::abs(rate) > options_.drift_sigmas * rate_stddev &&
+              std::abs(rate) * duration_ / 2 > options_.least_drift_effect;
     if (drifts_) {
       step = newton.step(0);
       stddev = newton.stddev(0);
@@ -315,11 +314,10 @@ void Refinement::conclude() {
   }
   const bool inside = std::abs(step) <= arm;
   step = std::clamp(step, -2 * arm, 2 * arm);
-  constexpr int most_rounds = 8;
   const double rate_before = model_.rate;
   const bool last = (arm_us_ <= least_arm_us_ && std::abs(step) < 0.5 * arm &&
                      std::abs(rate_step) * duration_ / 2 < 0.5 * arm) ||
-                    ++round_ >= most_rounds;
+                    ++round_ >= options_.most_rounds;
   const double measured_rate = rate_before + rate_step;
   model_.shift_us += step * second_us;
   model_.rate = drifts_ ? measured_rate : 0;

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace egocal::services {
+
+/// Every number that egocal-pairing decides by. Study: tests/e2e (chaos, lossy relay, floods) and
+/// bench_processes; docs/processes.md and docs/benchmarks.md have the results.
+struct PairingServiceOptions {
+  /// Messages between acknowledgements: a player has four times as many on the way and never waits for one.
+  int acknowledge_every = 16;
+  /// An acknowledgement that no sender waits for yet is delayed this long: more messages may come.
+  std::chrono::microseconds acknowledge_delay{300};
+  /// Messages of one channel that may wait: sixteen times what a player has on the way.
+  int queue_capacity = 1024;
+  /// A gap in a stream is given up where nothing of that stream is heard for this time [us]: no sensor in use
+  /// sends at less than 2 Hz, so that the sender has ended.
+  std::int64_t silence_us = 500'000;
+  /// What a player sends again comes within this time [us], on the lossy network of tests/e2e too.
+  std::int64_t patience_us = 1'000'000;
+  /// Problems of one pair are at least this far apart [us]: at 1 kHz one answer covers two poses, which no
+  /// listener can tell from one each (docs/processes.md).
+  std::int64_t problem_distance_us = 2'000;
+  /// A disk that is full is tried again after this time [us].
+  std::int64_t save_retry_us = 1'000'000;
+  /// Processes that were answered once each; invented ones beyond are ignored.
+  std::size_t most_known_runs = 1024;
+  /// Nothing is sent before an older process of this name had the time to answer the first status, which it
+  /// does within 50 ms. A process that takes the place of one that died is most likely alone, and waited for.
+  std::chrono::milliseconds listen{300}, listen_restored{100};
+};
+
+}  // namespace egocal::services

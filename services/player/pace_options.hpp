@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace egocal::services {
+
+/// How egocal-player keeps in step with pairing. Study: bench_processes and tests/e2e/test_lossy_network.cpp;
+/// docs/benchmarks.md has the rates.
+struct PaceOptions {
+  /// Messages on their way that pairing has not acknowledged. The kernel's buffer holds this many poses many
+  /// times over, and more would gain no speed: pairing acknowledges every sixteenth.
+  std::size_t most_in_flight = 64;
+  /// At full speed one turn of the loop sends no more than this before it listens.
+  int most_at_once = 64;
+  /// Without a pairing process by then the log is played to whoever listens [us]. A process starts within
+  /// one.
+  std::int64_t wait_for_pairing_us = 3'000'000;
+  /// What was not acknowledged is sent again after this time [us]: pairing acknowledges within
+  /// milliseconds, or has lost it.
+  std::int64_t stall_us = 500'000;
+  /// Waits that are longer are announced [us].
+  std::int64_t announced_wait_us = 5'000'000;
+  /// After the last message the player waits this long for its acknowledgement [us].
+  std::int64_t end_wait_us = 10'000'000;
+  /// The line of progress is drawn this often [us].
+  std::int64_t progress_period_us = 200'000;
+  /// Damaged places of a log that are reported one by one; the rest is summed up.
+  std::uint64_t most_reported = 5;
+};
+
+}  // namespace egocal::services
