@@ -1,5 +1,7 @@
 # What every target of ours shares: warnings, sanitizers, and arithmetic that is the same on every run.
 
+include(Precompiled)
+
 # install(), where egocal is not part of another project
 macro(egocal_install)
   if(EGOCAL_INSTALL)
@@ -7,8 +9,16 @@ macro(egocal_install)
   endif()
 endmacro()
 
+# egocal_target_defaults(target [library|tests|none]): which precompiled headers suit it, those of programs by default.
 function(egocal_target_defaults target)
+  egocal_compile_flags(${target})
   target_compile_features(${target} PUBLIC cxx_std_20)
+  list(APPEND ARGN programs)
+  list(GET ARGN 0 kind)
+  egocal_precompile(${target} ${kind})
+endfunction()
+
+function(egocal_compile_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
   # a*b+c must round the same way wherever it is compiled: answers are bit-identical from run to run
   target_compile_options(${target} PRIVATE -ffp-contract=off)
