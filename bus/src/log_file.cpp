@@ -71,10 +71,23 @@ void EventNumbers::begin_at(std::int64_t number) {
 }
 
 bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
+  if (restart_) {
+    // The count goes on as if there had been no zero: the zero was a damaged number.
+    const Restart& restart = *restart_;
+    if (damaged_bytes == 0 && !follows(number, last_) &&
+        static_cast<std::uint64_t>(number) == static_cast<std::uint64_t>(restart.last) + 2) {
+      last_ = restart.last + 1;
+      top_ = restart.top;
+      count_ = restart.count + 1;
+      before_ = restart.before;
+    }
+    restart_.reset();
+  }
   bool in_order = follows(number, last_);
   if (number == 0 && has_zero_) {  // another log begins, appended to the one before
     EventNumbers another;
     another.before_ = missing();
+    another.restart_ = Restart{last_, top_, count_, before_};
     *this = another;
     in_order = true;
   }

@@ -176,8 +176,21 @@ TEST_F(LogFile, TenThousandDamagedCopiesCostNoMoreThanWhatWasDamaged) {
   EXPECT_LE(wrong_counts, counts / 50);
 }
 
+TEST_F(LogFile, ANumberDamagedToZeroBeginsNoOtherLog) {
+  for (std::size_t event = 1; event + 1 < log.events(); ++event) {
+    std::string bytes = log.bytes;
+    std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(log.begin[event]) + 4, 8, '\0');
+    const Read result = read(bytes);
+    EXPECT_EQ(result.events.size(), log.events());
+    EXPECT_EQ(result.damage.lost_events, 0u) << event;
+  }
+  const Read twice = read(log.bytes + log.bytes);
+  EXPECT_EQ(twice.events.size(), 2 * log.events());
+  EXPECT_EQ(twice.damage.lost_events, 0u);
+}
+
 TEST_F(LogFile, NumbersThatAreDamagedAlikeInventNoLostEvents) {
-  for (const std::size_t events : {1, 2, 5}) {
+  for (const std::size_t events : {1u, 2u, 5u}) {
     std::string bytes = log.bytes;
     for (std::size_t event = 8; event < 8 + events; ++event) bytes[log.begin[event] + 9] ^= 0x04;
     const Read result = read(bytes);
@@ -224,7 +237,7 @@ TEST_F(LogFile, SeeksByTimeWithoutReadingWhatIsBefore) {
 
 TEST_F(LogFile, OneLyingLengthCostsOneEvent) {
   for (std::size_t event = 0; event < log.events(); ++event)
-    for (const std::size_t field : {20, 24})
+    for (const std::size_t field : {20u, 24u})
       for (const std::uint32_t lie :
            {0xffffffffu, 0x80000000u, 0x7fffffffu, 0xffff0000u, 1u << 20, 64u << 20}) {
         const Read result = read(with_field(event, field, lie));

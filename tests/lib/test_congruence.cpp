@@ -29,8 +29,7 @@ TEST(Congruence, PairsInAnyOrderAreJudgedByTheirLike) {
         for (MotionPair& pair : pairs) {
           spoilt.push_back(random.uniform() < part);
           if (spoilt.back())
-            pair.b =
-                canonical_sign(normalized(pair.b * displacement(random.normal3(size), random.normal3(size))));
+            pair.b = canonical_sign(normalized(pair.b * normal_displacement(random, size, size)));
         }
         const std::vector<bool> found = incongruent(pairs);
         ASSERT_EQ(found.size(), count);

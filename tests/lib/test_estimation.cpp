@@ -25,7 +25,7 @@ testing::Streams with_pose_noise(testing::Streams streams, double rotation, doub
   Random random(seed);
   for (Trajectory* trajectory : {&streams.a, &streams.b})
     for (StampedPose& pose : *trajectory)
-      pose.pose = pose.pose * displacement(random.normal3(rotation), random.normal3(translation));
+      pose.pose = pose.pose * normal_displacement(random, rotation, translation);
   return streams;
 }
 
@@ -86,13 +86,13 @@ TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   Statistics expected;
   const StrideWeights weights{{2, 1, 0.5}, {0.3, 0.2, 0.1}};
   for (std::uint64_t i = 0; i < 300; ++i) {
-    if (i > 0) poses.push_back(poses.back() * displacement(random.normal3(0.1), random.normal3()));
+    if (i > 0) poses.push_back(poses.back() * normal_displacement(random, 0.1, 1));
     blocks.add_instant(i);
     for (std::size_t k = 0; k < blocks.strides().size(); ++k) {
       const auto steps = static_cast<std::uint64_t>(blocks.strides()[k].stride);
       if (steps > i) continue;
       const DualQuaternion motion = motion_between(poses[i - steps], poses[i]);
-      const DualQuaternion other = motion * displacement(random.normal3(0.01), random.normal3(0.1));
+      const DualQuaternion other = motion * normal_displacement(random, 0.01, 0.1);
       blocks.add(k, i - steps, motion, other, false);
       StrideCell one;
       one.motions.add(motion, other);

@@ -94,7 +94,7 @@ TEST(RobustFit, StandsAFifthOfGrossOutliers) {
   Motions motions = motions_of(streams, 5);
   testing::Random random(3);
   for (std::size_t i = 0; i < motions.all.size(); i += 5)
-    motions.all[i].b = motions.all[i].b * testing::displacement(random.normal3(0.5), random.normal3(5));
+    motions.all[i].b = motions.all[i].b * testing::normal_displacement(random, 0.5, 5);
   const DualQuaternion T = detail::robust_fit(motions).T;
   EXPECT_LT(screw_of(conjugate(streams.T) * T).angle, 0.02);
 }

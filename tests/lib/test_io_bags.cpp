@@ -304,11 +304,17 @@ TEST(Bags, DamagedCopiesAreReadAsFarAsTheyGo) {
       std::string copy = whole;
       const int kind = i % 4;
       if (kind == 0) copy.resize(random.below(whole.size()));
-      if (kind == 1) copy[random.below(copy.size())] ^= static_cast<char>(1 << random.below(8));
+      if (kind == 1) {
+        const auto flipped = static_cast<char>(1 << random.below(8));
+        copy[random.below(copy.size())] ^= flipped;
+      }
       if (kind == 2)
         for (std::size_t at = random.below(copy.size()), n = 0; n < 200 && at < copy.size(); ++n, ++at)
           copy[at] = static_cast<char>(random.below(256));
-      if (kind == 3) copy.erase(random.below(copy.size()), 1 + random.below(1000));
+      if (kind == 3) {
+        const std::size_t count = 1 + random.below(1000);
+        copy.erase(random.below(copy.size()), count);
+      }
       try {
         const TrajectoryReading reading = read_trajectory_file(folder.file("copy", copy) + ":/Odometry");
         readable += reading.trajectory.size() > 5 ? 1 : 0;

@@ -193,7 +193,7 @@ TEST(MotionPairing, JumpsAreLeftOut) {
   int jumps = 0;
   for (std::size_t i = 100; i < data.b.size(); ++i) {
     if (i % 100 == 50) {
-      jump = testing::displacement(0.3 * random.direction(), 5 * random.direction()) * jump;
+      jump = testing::random_displacement(random, 0.3, 5) * jump;
       ++jumps;
     }
     data.b[i].pose = normalized(jump * data.b[i].pose);
@@ -284,8 +284,7 @@ TEST(MotionPairing, ChoosesLongMotionsForNoiseThatDoesNotGrow) {
   // absolute poses with jitter (a camera that sees a target): short steps are useless, long ones good
   Simulated data = simulated(Terrain::free, 0, 2001);
   testing::Random random(6);
-  for (StampedPose& pose : data.b)
-    pose.pose = pose.pose * testing::displacement(random.normal3(0.01), random.normal3(0.02));
+  for (StampedPose& pose : data.b) pose.pose = pose.pose * testing::normal_displacement(random, 0.01, 0.02);
   const MotionPairing chosen = pair_motions({}, data.a, data.b).drive;
   const MotionPairing equal = pair_motions({.stride = 1, .balance = Balance{}}, data.a, data.b).drive;
   EXPECT_GE(chosen.choice().stride, 8);

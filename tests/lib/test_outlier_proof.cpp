@@ -41,7 +41,7 @@ TEST(OutlierProof, NeverOfALocalMinimum) {
     drive.outliers = 0;
     drive.blocks = 12;
     const DualQuaternion T = testing::random_extrinsic(random, 0.5);
-    const DualQuaternion other = T * testing::displacement(random.normal3(0.5), random.normal3(0.5));
+    const DualQuaternion other = T * testing::normal_displacement(random, 0.5, 0.5);
     TruncatedProblem problem;
     std::vector<bool> minority;
     for (std::size_t k = 0; k < 16; ++k) {

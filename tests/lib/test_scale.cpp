@@ -164,7 +164,7 @@ TEST(Scale, CircleAtConstantSpeedShowsNone) {
     for (int i = 0; i < 200; ++i) {
       const DualQuaternion b = testing::displacement({0, 0, 0.1}, {1, 0, 0});
       const auto noisy = [&](const DualQuaternion& q) {
-        return q * testing::displacement(random.normal3(0.1 * noise), random.normal3(noise));
+        return q * testing::normal_displacement(random, 0.1 * noise, noise);
       };
       pairs.push_back({noisy(T * b * conjugate(T)), noisy(b)});
     }
@@ -184,7 +184,7 @@ TEST(Scale, TurningOnTheSpotShowsNone) {
     for (int i = 0; i < 200; ++i) {
       const DualQuaternion a = testing::displacement(random.normal3(0.2), {0, 0, 0});
       const auto noisy = [&](const DualQuaternion& q) {
-        return q * testing::displacement(random.normal3(0.1 * noise), random.normal3(noise));
+        return q * testing::normal_displacement(random, 0.1 * noise, noise);
       };
       pairs.push_back({noisy(a), noisy(conjugate(T) * a * T)});
     }

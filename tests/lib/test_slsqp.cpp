@@ -26,7 +26,7 @@ using testing::RandomDrive;
 
 /// A unit dual quaternion near q: exactly feasible, and wrong.
 DualQuaternion wrong_start(const DualQuaternion& q, Random& random, double rotation, double translation) {
-  return q * displacement(rotation * random.direction(), translation * random.direction());
+  return q * random_displacement(random, rotation, translation);
 }
 
 TEST(Slsqp, AWrongButFeasibleWarmStartMoves) {

@@ -64,7 +64,7 @@ Trajectory glitched(Trajectory path, double part, std::uint64_t seed) {
   testing::Random random(seed);
   for (StampedPose& pose : path)
     if (random.uniform() < part)
-      pose.pose = normalized(pose.pose * testing::displacement(0.1 * random.direction(), random.direction()));
+      pose.pose = normalized(pose.pose * testing::random_displacement(random, 0.1, 1));
   return path;
 }
 

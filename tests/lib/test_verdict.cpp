@@ -45,8 +45,8 @@ TEST(Verdict, OfMotionPairsThatDoNotBelongTogether) {
   testing::Random random(5);
   std::vector<MotionPair> pairs;
   for (int i = 0; i < 50; ++i)
-    pairs.push_back({testing::displacement(random.normal3(0.2), random.normal3()),
-                     testing::displacement(random.normal3(0.2), random.normal3())});
+    pairs.push_back(
+        {testing::normal_displacement(random, 0.2, 1), testing::normal_displacement(random, 0.2, 1)});
   CalibrationOptions options;
   options.pairing.robust = false;
   EXPECT_EQ(calibrate(pairs, options).verdict, Verdict::contradictory);

@@ -39,8 +39,12 @@ inline SimulatedSamples simulate_arm(const ArmSamples& what, Random& random) {
                  z = random.uniform(-size, size);
     return Eigen::Vector3d(x, y, z);
   };
-  const Pose X{rotation_exp(random.uniform(0, std::numbers::pi) * random.direction()), anywhere(0.1)};
-  const Pose Y{rotation_exp(random.uniform(0, std::numbers::pi) * random.direction()), anywhere(0.8)};
+  const auto any_pose = [&](double size) {
+    const Eigen::Vector3d axis = random.direction();
+    const double angle = random.uniform(0, std::numbers::pi);
+    return Pose{rotation_exp(angle * axis), anywhere(size)};
+  };
+  const Pose X = any_pose(0.1), Y = any_pose(0.8);
   SimulatedSamples result{to_dual_quaternion(X), to_dual_quaternion(Y), {}, {}};
   for (std::size_t i = 0; i < what.samples; ++i) {
     const double cosine = random.uniform(std::cos(what.cone * degree), 1);

@@ -139,8 +139,10 @@ inline DamagedLog damaged(const SmallLog& log, Damage damage, testing::Random& r
     case Damage::bits: {
       accident.piece(0, size);
       const std::uint64_t flips = 1 + random.below(20);
-      for (std::uint64_t i = 0; i < flips; ++i)
-        accident.flip(random.below(size), static_cast<int>(random.below(8)));
+      for (std::uint64_t i = 0; i < flips; ++i) {
+        const int bit = static_cast<int>(random.below(8));
+        accident.flip(random.below(size), bit);
+      }
       break;
     }
     case Damage::zeros:
@@ -173,7 +175,8 @@ inline DamagedLog damaged(const SmallLog& log, Damage damage, testing::Random& r
       const std::uint32_t lies[] = {0xffffffff, 0x80000000, 0x7fffffff, 0, 1, 63, 64, 128, 1 << 20, 64 << 20};
       const std::uint64_t count = 1 + random.below(4);
       for (std::uint64_t i = 0; i < count; ++i) {
-        const std::size_t field = log.begin[random.below(log.events())] + (random.below(2) ? 20 : 24);
+        const std::size_t event = random.below(log.events());
+        const std::size_t field = log.begin[event] + (random.below(2) ? 20 : 24);
         const std::uint32_t lie = lies[random.below(std::size(lies))];
         for (std::size_t k = 0; k < 4; ++k) accident.put(field + k, static_cast<char>(lie >> (24 - 8 * k)));
       }

@@ -114,9 +114,24 @@ inline Matrix8d cost_of(const std::vector<MotionPair>& pairs, const Balance& bal
   return cost_matrix(statistics, balance);
 }
 
+/// Rotation [rad] and translation [m] of the given sizes, each in any direction. Draws in one order, whatever
+/// the compiler's order of arguments is.
+inline DualQuaternion random_displacement(Random& random, double rotation, double translation) {
+  const Eigen::Vector3d shift = random.direction(), axis = random.direction();
+  return displacement(rotation * axis, translation * shift);
+}
+
+/// The same with normally distributed components of these standard deviations [rad, m].
+inline DualQuaternion normal_displacement(Random& random, double rotation = 1, double translation = 1) {
+  const Eigen::Vector3d shift = random.normal3(translation), turn = random.normal3(rotation);
+  return displacement(turn, shift);
+}
+
 /// Any rotation at all, translation of about the given size [m].
 inline DualQuaternion random_extrinsic(Random& random, double size = 2) {
-  return displacement(random.uniform(0, std::numbers::pi) * random.direction(), random.normal3(size));
+  const Eigen::Vector3d shift = random.normal3(size), axis = random.direction();
+  const double angle = random.uniform(0, std::numbers::pi);
+  return displacement(angle * axis, shift);
 }
 
 /// x, y and yaw only.

@@ -90,8 +90,7 @@ TEST_F(Commands, MotionPairsFromAFileAreJudgedToo) {
       to_dual_quaternion(T), {.pairs = 500, .rotation = 0.05, .translation = 0.3, .noise = 0.01}, random);
   int spoilt = 0;
   for (std::size_t i = 0; i < pairs.size(); i += 5, ++spoilt)
-    pairs[i].b = canonical_sign(
-        normalized(pairs[i].b * egocal::testing::displacement(random.normal3(2), random.normal3(2))));
+    pairs[i].b = canonical_sign(normalized(pairs[i].b * egocal::testing::normal_displacement(random, 2, 2)));
   write_pairs(path("pairs.txt"), pairs);
   std::ostringstream truth;
   truth.precision(17);

@@ -60,6 +60,11 @@ class EventNumbers {
     std::uint64_t length;
   };
   std::optional<Run> run_;  ///< since the numbers jumped last: the number and the top before it, events since
+  struct Restart {
+    std::int64_t last, top, count;
+    std::uint64_t before;
+  };
+  std::optional<Restart> restart_;  ///< the last event began another log: what was known before it
 };
 
 /// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs what it held: the
