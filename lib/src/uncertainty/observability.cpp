@@ -12,6 +12,7 @@
 #include "egocal/uncertainty/leave_out.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
+#include "uncertainty/tangent_form.hpp"
 
 namespace egocal {
 
@@ -19,19 +20,27 @@ namespace {
 
 using detail::Matrix6d;
 using detail::Matrix86d;
+using detail::TangentForm;
+using detail::TangentSpace;
 using detail::Vector6d;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Spectrum {
-  Matrix6d vectors;  ///< columns; dt in units of length, dtheta [rad]
-  Vector6d curvatures;
+  Matrix6d vectors = Matrix6d::Identity();  ///< columns; dt in units of length, dtheta [rad]
+  Vector6d curvatures = Vector6d::Zero();   ///< ascending
 };
 
 Spectrum spectrum(const Matrix6d& H) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
   return {eigen.eigenvectors(), eigen.eigenvalues()};
+}
+
+/// Whether all curvatures are larger than that.
+bool exceeds(Matrix6d H, double curvature) {
+  H.diagonal().array() -= curvature;
+  return detail::factorise(H);
 }
 
 /// Rotation noise, as it enters D: without noise r'Dr is zero; with noise, independent of sensor and motion,
@@ -76,23 +85,6 @@ constexpr double most_rotation_part = 0.5;
 /// Fewer double ones are not looked at.
 constexpr std::size_t least_double_blocks = 8;
 
-/// Per direction the larger of the variances with single and with double blocks: where neighbours share their
-/// errors (noise that wanders) single ones say too little.
-template <typename Variance>
-Vector6d largest_variance(const Problem& problem, ErrorCorrelation errors, const Variance& variance) {
-  Vector6d single = variance(problem);
-  if (errors == ErrorCorrelation::independent || problem.blocks.size() < 2 * least_double_blocks)
-    return single;
-  Problem doubled = problem;
-  doubled.blocks.clear();
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    if (detail::takes_off(problem.blocks[i])) continue;
-    if (i % 2 == 0) doubled.blocks.emplace_back();
-    doubled.blocks.back() += problem.blocks[i];
-  }
-  return single.cwiseMax(variance(doubled));
-}
-
 std::string text_of(const Eigen::Vector3d& v) {
   char text[64];
   std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
@@ -112,35 +104,71 @@ std::string spatial_hint(int hidden_translations, bool rotation_hidden,
   return "";
 }
 
-/// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen (all
-/// six of them as a rule: sizes that the compiler knows are twice as fast).
-template <int shown>
-Vector6d spatial_variance(const Problem& problem, const Statistics& all, double length,
-                          const DualQuaternion& q, const Matrix86d& T,
-                          const Eigen::Matrix<double, 6, shown, 0, 6, 6>& shown_vectors) {
-  using Tangent = Eigen::Matrix<double, 8, shown, 0, 8, 6>;
-  using Small = Eigen::Matrix<double, shown, shown, 0, 6, 6>;
-  using SmallVector = Eigen::Matrix<double, shown, 1, 0, 6, 1>;
-  const Tangent tangent = T.lazyProduct(shown_vectors);
-  const Vector8d v = q.vec();
-  Jackknife jackknife(static_cast<double>(all.count));
-  for (const Statistics& block : problem.blocks) {
-    if (detail::takes_off(block)) continue;
-    Statistics rest = all;
-    rest.dual_rows -= block.dual_rows;
-    rest.weight -= block.weight;
-    rest.count -= block.count;
-    const Matrix8d Q_rest = detail::in_units_of(length, cost_matrix(rest, problem.balance));
-    const Matrix8d Z = lagrangian_matrix(Q_rest, least_squares_multipliers(Q_rest, q));
-    const Tangent Z_tangent = Z.lazyProduct(tangent);
-    const Small curvature = tangent.transpose().lazyProduct(Z_tangent);
-    const SmallVector slope = Z_tangent.transpose() * v;
-    const Eigen::LDLT<Small> factor(curvature);
-    Vector6d step = Vector6d::Constant(infinity);
-    if (factor.info() == Eigen::Success && factor.isPositive()) step = -shown_vectors * factor.solve(slope);
-    jackknife.leave_out(static_cast<double>(block.count), step);
+/// A block around the minimiser.
+struct BlockForm {
+  TangentForm form;
+  double pairs = 0;
+
+  BlockForm& operator+=(const BlockForm& other) {
+    form += other.form;
+    pairs += other.pairs;
+    return *this;
+  }
+};
+
+/// Neighbours joined, two by two.
+template <typename Block>
+std::vector<Block> doubled(const std::vector<Block>& blocks) {
+  std::vector<Block> result;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (i % 2 == 0)
+      result.push_back(blocks[i]);
+    else
+      result.back() += blocks[i];
+  return result;
+}
+
+/// Where neighbours share their errors (noise that wanders) single blocks say too little.
+bool looks_at_double_blocks(const Problem& problem, ErrorCorrelation errors) {
+  return errors == ErrorCorrelation::correlated && problem.blocks.size() >= 2 * least_double_blocks;
+}
+
+/// Coordinates in which the first `shown` directions are seen; basis: from them to (dt in units of length,
+/// dtheta).
+struct ShownDirections {
+  TangentSpace space;
+  Matrix6d basis;
+  int shown;
+};
+
+/// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
+Vector6d spatial_variance(const std::vector<BlockForm>& blocks, const TangentForm& all, double pairs,
+                          const ShownDirections& directions) {
+  Jackknife jackknife(pairs);
+  for (const BlockForm& block : blocks) {
+    TangentForm rest = all;
+    rest -= block.form;
+    jackknife.leave_out(block.pairs,
+                        directions.basis.lazyProduct(directions.space.newton_step(rest, directions.shown)));
   }
   return jackknife.variance();
+}
+
+/// Per direction the larger of the variances with single and with double blocks.
+Vector6d spatial_variance(const Problem& problem, const Statistics& all, const ShownDirections& directions,
+                          ErrorCorrelation errors) {
+  std::vector<BlockForm> blocks;
+  TangentForm sum;
+  for (const Statistics& block : problem.blocks) {
+    const TangentForm form = directions.space.form(block);
+    sum += form;
+    if (!detail::takes_off(block)) blocks.push_back({form, static_cast<double>(block.count)});
+  }
+  const auto pairs = static_cast<double>(all.count);
+  const Vector6d single = spatial_variance(blocks, sum, pairs, directions);
+  return looks_at_double_blocks(problem, errors)
+             ? single.cwiseMax(spatial_variance(doubled(blocks), sum, pairs, directions))
+             : single;
 }
 
 /// Whether the translation along a direction (dt in units of length, dtheta) differs from zero by more than
@@ -180,12 +208,17 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   Matrix6d clean = H;
   clean.diagonal().head<3>().array() -= 0.25 * noise * (options.independent_noise + fluctuation);
   clean.diagonal().tail<3>().array() -= 0.25 * fluctuation * std::max(0.0, cost(Q, q));
-  const Spectrum seen = spectrum(clean);
   const double floor = 1e-12 * (H.diagonal().cwiseAbs().sum() + Q.diagonal().maxCoeff() * 1e-3);
+  const bool may_share = errors == ErrorCorrelation::correlated && problem.blocks.size() >= least_blocks;
+  const double doubtful =
+      floor + (may_share ? 0.25 * noise * (options.shared_noise - options.independent_noise) : 0);
+  // mostly all directions are seen beyond doubt, which a factorisation shows at a tenth of the cost
+  const bool all_seen = exceeds(clean, doubtful);
+  const Spectrum seen = all_seen ? Spectrum{} : spectrum(clean);
   int hidden = 0;
-  while (hidden < 6 && !(seen.curvatures[hidden] > floor)) ++hidden;
-  const double doubtful = floor + 0.25 * noise * (options.shared_noise - options.independent_noise);
-  if (errors == ErrorCorrelation::correlated && problem.blocks.size() >= least_blocks)
+  if (!all_seen)
+    while (hidden < 6 && !(seen.curvatures[hidden] > floor)) ++hidden;
+  if (!all_seen && may_share)
     while (hidden < 6 && seen.curvatures[hidden] < doubtful &&
            seen.vectors.col(hidden).head<3>().norm() > most_rotation_part &&
            !shown_by_translations(seen.vectors.col(hidden), problem, Q_metres, T_a_b, length,
@@ -208,13 +241,11 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   }
   result.hint = spatial_hint(hidden_translations, rotation_hidden, direction);
 
-  const int shown = 6 - hidden;
-  if (shown == 0 || problem.blocks.size() < least_blocks) return result;
-  const Vector6d variance = largest_variance(problem, errors, [&](const Problem& given) {
-    return shown == 6
-               ? spatial_variance<6>(given, all, length, q, T, seen.vectors)
-               : spatial_variance<Eigen::Dynamic>(given, all, length, q, T, seen.vectors.rightCols(shown));
-  });
+  if (hidden == 6 || problem.blocks.size() < least_blocks) return result;
+  const Matrix6d basis = hidden == 0 ? Matrix6d::Identity() : Matrix6d(seen.vectors.rowwise().reverse());
+  const Matrix86d tangent = hidden == 0 ? T : Matrix86d(T.lazyProduct(basis));
+  const ShownDirections directions{TangentSpace(q, length, tangent, problem.balance), basis, 6 - hidden};
+  const Vector6d variance = spatial_variance(problem, all, directions, errors);
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
@@ -228,6 +259,29 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
     if (std::isfinite(stddev)) result.stddev[k] = stddev;
   }
   return result;
+}
+
+/// Per direction the larger of the variances with single and with double blocks, each minimum solved for.
+Vector6d planar_variance(const Problem& problem, const Statistics& all, const DualQuaternion& T_a_b,
+                         ErrorCorrelation errors) {
+  const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  const auto variance = [&](const std::vector<Statistics>& blocks) {
+    Jackknife jackknife(std::max(1.0, static_cast<double>(all.count)));
+    for (const Statistics& block : blocks) {
+      Statistics rest = all;
+      rest.dual_rows -= block.dual_rows;
+      rest.weight -= block.weight;
+      const Solution without = solve_planar(cost_matrix(rest, problem.balance));
+      jackknife.leave_out(static_cast<double>(block.count),
+                          detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
+    }
+    return jackknife.variance();
+  };
+  std::vector<Statistics> blocks;
+  for (const Statistics& block : problem.blocks)
+    if (!detail::takes_off(block)) blocks.push_back(block);
+  const Vector6d single = variance(blocks);
+  return looks_at_double_blocks(problem, errors) ? single.cwiseMax(variance(doubled(blocks))) : single;
 }
 
 Observability planar_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
@@ -273,20 +327,7 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
     result.hint = translation_seen ? "still needed: motion" : "still needed: turns";
 
   if (problem.blocks.size() < least_blocks) return result;
-  const Vector6d variance = largest_variance(problem, errors, [&](const Problem& given) {
-    Jackknife jackknife(count);
-    for (const Statistics& block : given.blocks) {
-      if (detail::takes_off(block)) continue;
-      Statistics rest = all;
-      rest.dual_rows -= block.dual_rows;
-      rest.weight -= block.weight;
-      rest.count -= block.count;
-      const Solution without = solve_planar(cost_matrix(rest, problem.balance));
-      jackknife.leave_out(static_cast<double>(block.count),
-                          detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
-    }
-    return jackknife.variance();
-  });
+  const Vector6d variance = planar_variance(problem, all, T_a_b, errors);
   const double pull = D_least > 0 ? 2 * T_p.dual.norm() * noise / D_least : infinity;
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -318,10 +359,15 @@ FlatDirections flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T
   const DualQuaternion q = detail::in_units_of(flat.length, T_a_b);
   const Matrix86d T = detail::frame_a_basis(q);
   const Matrix6d H = T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, q)) * T;
-  const Matrix6d size = T.cwiseAbs().transpose() * (Q.cwiseAbs() * T.cwiseAbs());
+  const Matrix86d absolute = T.cwiseAbs();
+  const double size = absolute.cwiseProduct(Q.cwiseAbs().lazyProduct(absolute)).colwise().sum().maxCoeff();
+  if (exceeds(H, 64 * epsilon * size)) {
+    flat.basis.resize(6, 0);
+    return flat;
+  }
   const Spectrum all = spectrum(H);
   int count = 0;
-  while (count < 6 && !(all.curvatures[count] > 64 * epsilon * size.diagonal().maxCoeff())) ++count;
+  while (count < 6 && !(all.curvatures[count] > 64 * epsilon * size)) ++count;
   flat.basis = all.vectors.leftCols(count);
   return flat;
 }

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "egocal/problem/cost.hpp"
+#include "solvers/tangent.hpp"
+
+namespace egocal::detail {
+
+/// What one Newton step from an extrinsic q needs of a sum of motions S: 44 numbers, linear in S. Forms of
+/// blocks are added and subtracted instead of the blocks, so leaving out a block costs one small
+/// factorisation. Not normalised by the weight, which no Newton step depends on.
+struct TangentForm {
+  Matrix6d curvature = Matrix6d::Zero();  ///< T'ST
+  Vector8d gradient = Vector8d::Zero();   ///< Sq
+
+  TangentForm& operator+=(const TangentForm& other) {
+    curvature += other.curvature;
+    gradient += other.gradient;
+    return *this;
+  }
+  TangentForm& operator-=(const TangentForm& other) {
+    curvature -= other.curvature;
+    gradient -= other.gradient;
+    return *this;
+  }
+};
+
+/// Coordinates x in R^6 of the extrinsics around q: directions are the columns of `tangent`, tangent to the
+/// constraints (17). Lengths of q and of the directions are counted in `length` [m].
+class TangentSpace {
+ public:
+  TangentSpace(const DualQuaternion& q, double length, const Matrix86d& tangent, const Balance& balance);
+
+  TangentForm form(const Statistics& statistics) const;
+  /// T'ZT with Z = S - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0] at the least squares multipliers.
+  Matrix6d curvature(const TangentForm& form) const;
+  /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
+  /// Infinite where the curvature is not positive definite.
+  Vector6d newton_step(const TangentForm& form, int directions = 6) const;
+
+ private:
+  DualQuaternion q_;
+  Balance balance_;
+  Matrix86d tangent_;
+  Eigen::Matrix<double, 4, 7> upper_, lower_;  ///< [tangent, q], the dual rows counted in metres
+  Eigen::Matrix<double, 6, 4> tangent_upper_, tangent_lower_;  ///< of the tangent alone, transposed
+  Matrix6d norm_, orthogonal_;                                 ///< T'[I 0; 0 0]T and T'[0 I; I 0]T
+  double length_;
+};
+
+/// L D L' of the leading n x n block in place (unit L below the diagonal, the inverse of D on it), from the
+/// lower triangle. False where a pivot is not positive.
+bool factorise(Matrix6d& A, int n = 6);
+/// Solves with the factors of factorise(); entries from n on are left as they are.
+void solve_factorised(const Matrix6d& factors, Vector6d& x, int n = 6);
+
+}  // namespace egocal::detail
