@@ -16,11 +16,18 @@ namespace {
 /// else neighbouring parts share motions and their spread says too little.
 constexpr std::size_t least_parts = 8;
 
-double score(const Spread& spread) {
+/// Spreads below these are rounding, all alike [rad, m]: the logarithm of one is a draw.
+constexpr double least_rotation = 1e-9, least_translation = 1e-8;
+/// What the spread does not see (stamps, interpolation) weighs less in longer motions. Not where there is no
+/// noise: single steps are then as good, and judge outliers one by one.
+constexpr double longer = 0.075;
+
+double score(const Spread& spread, int stride) {
   double sum = 0;
-  if (spread.rotation > 0) sum += std::log(spread.rotation);
-  if (spread.translation > 0) sum += std::log(spread.translation);
-  return sum;
+  if (spread.rotation > 0) sum += std::log(std::max(spread.rotation, least_rotation));
+  if (spread.translation > 0) sum += std::log(std::max(spread.translation, least_translation));
+  const bool noise = spread.rotation > least_rotation || spread.translation > least_translation;
+  return noise ? sum - longer * std::log2(stride) : sum;
 }
 
 }  // namespace
@@ -69,8 +76,6 @@ std::optional<Spread> answer_spread(const Problem& problem, int stride) {
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
                                           std::optional<std::size_t> current) {
   constexpr double hysteresis = 0.1;
-  // What the spread does not see (stamps, interpolation) weighs less in longer motions.
-  constexpr double longer = 0.075;
   std::optional<Selection> best;
   double best_score = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -79,8 +84,7 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
     trial.blocks = candidates[i].blocks;
     const std::optional<Spread> here = answer_spread(trial, candidates[i].stride);
     if (!here) continue;
-    const double here_score =
-        score(*here) - longer * std::log2(candidates[i].stride) - (current == i ? 2 * hysteresis : 0);
+    const double here_score = score(*here, candidates[i].stride) - (current == i ? 2 * hysteresis : 0);
     const bool better = !best || here->directions > best->spread.directions ||
                         (here->directions == best->spread.directions && here_score < best_score);
     if (!better) continue;
