@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -92,6 +93,25 @@ Cell measure(const ArmSamples& what, std::size_t trials, std::uint64_t seed, con
   return cell;
 }
 
+/// Milliseconds of processor time of one call with its proof, verdict and standard deviations: the median of
+/// `repeats` sets.
+double milliseconds(std::size_t n, std::size_t repeats, bool diagnosis) {
+  ArmSamples what;
+  what.samples = n;
+  SampleOptions options;
+  options.diagnosis.enabled = diagnosis;
+  Random random(1);
+  std::vector<double> times;
+  for (std::size_t i = 0; i < repeats; ++i) {
+    const SimulatedSamples drawn = testing::simulate_arm(what, random);
+    const std::clock_t begin = std::clock();
+    const SampleCalibration found = calibrate_samples(drawn.samples, options);
+    times.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    if (found.calibration.certificate.optimality != Optimality::certified) std::printf("not certified\n");
+  }
+  return quantile(times, 0.5);
+}
+
 /// Trials in which exactly the wrong samples were left out and the answer is within 1 deg and 2 cm.
 std::size_t found_wrong(const ArmSamples& what, std::size_t trials, std::uint64_t seed,
                         const SampleOptions& options) {
@@ -116,14 +136,25 @@ int main(int argc, char** argv) {
   bool check = false;
   SampleOptions options;
   options.diagnosis.enabled = false;
+  std::size_t timed = 0;
   egocal::cli::Program app("sample_study", "Hand-eye calibration from sets of still poses");
   app.add_option("--trials", trials, "per cell").check(egocal::cli::Check::range(1, 100000));
   app.add_option("--samples", sizes, "numbers of samples");
   app.add_option("--prior-log-ratio", options.prior_log_ratio, "of SampleOptions").show_default();
+  app.add_option("--time", timed, "only the time of a call, median of so many sets of each size");
   app.add_flag("--check", check,
                "exit 1 where egocal is not better than the others on average over the cells, its deviations "
                "do not cover, or wrong samples are not found");
   if (const auto code = app.parse(argc, argv)) return *code;
+
+  if (timed > 0) {
+    for (const double size : sizes) {
+      const auto n = static_cast<std::size_t>(size);
+      std::printf("%4zu samples %8.3f ms, without other readings %8.3f ms\n", n, milliseconds(n, timed, true),
+                  milliseconds(n, timed, false));
+    }
+    return 0;
+  }
 
   // single cells of few trials scatter; their means do not
   double log_ratios = 0, log_ratios_high = 0, ratios = 0, covered = 0, cells = 0;

@@ -14,6 +14,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "samples/sample_fit.hpp"
 
 namespace egocal {
 namespace {
@@ -58,6 +59,66 @@ TEST(Samples, WithoutNoiseGiveBothPosesFromThreeOnAndHoweverManyThereAre) {
     EXPECT_EQ(found.calibration.certificate.optimality, Optimality::certified) << n;
     EXPECT_LT(found.spread_largest, 1e-9) << n;
     EXPECT_TRUE(wrong_of(found).empty()) << n;
+  }
+}
+
+TEST(Samples, SumsHoldTheCostAtEveryOrigin) {
+  const SimulatedSamples drawn = arm(9, 1, 5, 21);
+  const detail::SampleSet set(drawn.samples);
+  detail::SampleSums sums;
+  for (std::size_t i = 0; i < set.size(); ++i) sums.add(set.sums(i), set.sign(0, i));
+  Random random(2);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Eigen::Vector3d origin = random.normal3(1);
+    const DualQuaternion X = to_dual_quaternion({rotation_exp(random.normal3(1)), random.normal3(0.3)});
+    // the same from the poses of the target one by one
+    std::vector<DualQuaternion> seen;
+    Vector8d mean = Vector8d::Zero();
+    Eigen::Vector3d where = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      const DualQuaternion y = set.seen(i).with(X);
+      where += to_pose(y).translation / 9;
+      const double sign = set.sign(0, i);
+      const DualQuaternion from_origin = detail::shifted({sign * y.real, sign * y.dual}, -origin);
+      seen.push_back(from_origin);
+      mean += from_origin.vec() / 9;
+    }
+    double dual_squares = 0;
+    for (const DualQuaternion& y : seen) dual_squares += (y.vec() - mean).tail<4>().squaredNorm();
+    const Vector8d q = X.vec();
+    EXPECT_NEAR(q.dot(sums.centred(origin).dual_rows * q), dual_squares, 1e-12 * (1 + dual_squares));
+    EXPECT_LT((to_pose(sums.mean_target(X)).translation - where).norm(), 1e-12);
+  }
+}
+
+TEST(Samples, DeviationsByOneStepAreThoseOfTheAnswersWithoutEachSample) {
+  const SimulatedSamples drawn = arm(31, 0.3, 2, 22);
+  SampleOptions options;
+  options.diagnosis.enabled = false;
+  const SampleCalibration found = calibrate_samples(drawn.samples, options);
+  Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();
+  for (std::size_t k = 0; k < 31; ++k) {
+    std::vector<PoseSample> rest = drawn.samples;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
+    const Pose without = calibrate_samples(rest, options).calibration.T_a_b, &all = found.calibration.T_a_b;
+    Eigen::Matrix<double, 6, 1> difference;
+    difference << without.translation - all.translation,
+        rotation_log(without.rotation * all.rotation.conjugate());
+    squares += difference.cwiseAbs2();
+  }
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(found.calibration.observability.stddev[static_cast<std::size_t>(i)] / std::sqrt(squares[i]),
+                std::sqrt(29.0 / 31) * (1 + 1.21 / 29), 0.05)
+        << i;
+}
+
+TEST(Samples, ManyWithoutWrongOnesNeedNoSearchAndManyWithWrongOnesStillHaveIt) {
+  for (const std::size_t wrong : {0u, 1u, 24u}) {
+    const SimulatedSamples drawn = arm(60, 0.3, 2, 23, wrong);
+    const SampleCalibration found = calibrate_samples(drawn.samples);
+    EXPECT_EQ(wrong_of(found).size(), wrong);
+    EXPECT_LT(error_of(drawn, found).rotation, 0.3 * degree);
+    EXPECT_LT(error_of(drawn, found).translation, 4e-3);
   }
 }
 

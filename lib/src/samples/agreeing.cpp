@@ -18,11 +18,17 @@ using Indices = std::vector<std::size_t>;
 
 /// Best trimmed fits that are followed until they settle, and steps of each start before.
 constexpr std::size_t most_followed = 6;
-constexpr int first_steps = 2, last_steps = 10;
+constexpr int first_steps = 2, steps_from_all = 3, last_steps = 10;
 /// Rounds of a fit on the way: only the last one has to be exact.
 constexpr int rounds_on_the_way = 3;
 /// A sample that noise explains this often is taken in without a second look.
 constexpr double unremarkable = 0.01;
+/// From this many samples on the noise of the rotations is known without an answer (congruent_noise()).
+constexpr std::size_t least_for_congruence = 30;
+/// Samples that agree need no search from triples where they are most of all, their rotations are as good as
+/// the angles of the motions allow, and the positions of the best 60 % are no better than a normal
+/// distribution has it (0.63 of the variance).
+constexpr double most_samples = 0.8, as_good = 1.5, least_trimmed = 0.35;
 
 Indices all_of(const SampleSet& set) {
   Indices indices(set.size());
@@ -34,6 +40,11 @@ FitSettings settings_of(const SampleOptions& options) {
   FitSettings settings;
   settings.prior_log_ratio = options.prior_log_ratio;
   return settings;
+}
+
+double in_variances(const SampleSet& set, std::size_t i, const SampleFit& fit) {
+  const SquaredResidual residual = squared_residual(set, i, fit);
+  return residual.rotation / fit.noise.rotation + residual.translation / fit.noise.translation;
 }
 
 /// Samples trimmed to those that fit best, and what their fit is worth.
@@ -51,15 +62,12 @@ class Search {
     kept_ = std::max<std::size_t>(4, part);
   }
 
+  /// The samples that fit best, beginning with the fit of all.
+  Trimmed from_all() const { return concentrated(first_fit(all_of(set_)), steps_from_all); }
+
   Trimmed best() const {
     std::vector<Trimmed> found;
-    for (const Indices& start : starts()) {
-      FitSettings settings = settings_of(options_);
-      // two motions say nothing of noise
-      settings.noise = SampleNoise{1, set_.length() * set_.length()};
-      settings.most_rounds = rounds_on_the_way;
-      found.push_back(concentrated(fit_samples(set_, start, settings), first_steps));
-    }
+    for (const Indices& start : starts()) found.push_back(concentrated(first_fit(start), first_steps));
     const auto smaller = [](const Trimmed& x, const Trimmed& y) { return x.size < y.size; };
     std::stable_sort(found.begin(), found.end(), smaller);
     Trimmed best = found.front();
@@ -71,6 +79,15 @@ class Search {
   }
 
  private:
+  SampleFit first_fit(const Indices& start) const {
+    FitSettings settings = settings_of(options_);
+    // two motions say nothing of noise
+    settings.noise = SampleNoise{1, set_.length() * set_.length()};
+    settings.most_rounds = rounds_on_the_way;
+    settings.precision = FitPrecision::on_the_way;
+    return fit_samples(set_, start, settings);
+  }
+
   /// Triples, all of them or drawn.
   std::vector<Indices> starts() const {
     std::vector<Indices> starts{all_of(set_)};
@@ -100,9 +117,7 @@ class Search {
     for (int step = 0; step < steps; ++step) {
       std::vector<std::pair<double, std::size_t>> order;
       for (std::size_t i = 0; i < set_.size(); ++i) {
-        const SquaredResidual squares = squared_residual(set_, i, fit);
-        order.emplace_back(
-            squares.rotation / fit.noise.rotation + squares.translation / fit.noise.translation, i);
+        order.emplace_back(in_variances(set_, i, fit), i);
       }
       std::sort(order.begin(), order.end());
       Indices chosen;
@@ -114,6 +129,7 @@ class Search {
       FitSettings settings = settings_of(options_);
       settings.start = fit;
       settings.most_rounds = rounds_on_the_way;
+      settings.precision = FitPrecision::on_the_way;
       fit = fit_samples(set_, trimmed.chosen, settings);
     }
     SquaredResidual sum;
@@ -151,6 +167,7 @@ Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit
   settings.start = fit;
   settings.noise = fit.noise;
   settings.most_rounds = rounds_on_the_way;
+  settings.precision = FitPrecision::on_the_way;
   const SampleFit more = fit_samples(set, with(chosen, one), settings);
   const double dof = more.dof - fit.dof;
   if (!(dof > 0) || !(fit.dof > 0)) return {};
@@ -165,45 +182,109 @@ double underestimated(const SampleSet& set, const SampleFit& fit) {
   constexpr double median_of_six = 5.348;  // chi-squared, rotation and position
   std::vector<double> squares;
   for (std::size_t i = 0; i < set.size(); ++i) {
-    const SquaredResidual residual = squared_residual(set, i, fit);
-    squares.push_back(residual.rotation / fit.noise.rotation + residual.translation / fit.noise.translation);
+    squares.push_back(in_variances(set, i, fit));
   }
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>((squares.size() - 1) / 2);
   std::nth_element(squares.begin(), middle, squares.end());
   return std::max(1.0, *middle / median_of_six);
 }
 
-}  // namespace
+/// Does noise explain the sample by its residual alone? A fit with it is no worse than this one.
+bool plainly_agrees(const SampleSet& set, const SampleFit& fit, std::size_t one) {
+  constexpr double dof = 6;
+  if (!(fit.dof > 0) || !(fit.cost > 0)) return false;
+  return f_exceeded(in_variances(set, one, fit) / dof / (fit.cost / fit.dof), dof, fit.dof) > unremarkable;
+}
 
-AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options) {
-  AgreeingSamples result;
-  if (!options.robust || set.size() < options.least_to_judge) {
-    result.chosen = all_of(set);
-    result.fit = fit_samples(set, result.chosen, settings_of(options));
-    return result;
+Indices others(const SampleSet& set, const Indices& chosen) {
+  Indices result;
+  for (std::size_t i = 0; i < set.size(); ++i)
+    if (!std::binary_search(chosen.begin(), chosen.end(), i)) result.push_back(i);
+  return result;
+}
+
+/// Samples to take in next: those that noise explains, else the nearest one; empty where that is wrong.
+Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options) {
+  const Indices candidates = others(set, agreeing.chosen);
+  Indices plain;
+  for (const std::size_t i : candidates)
+    if (plainly_agrees(set, agreeing.fit, i)) plain.push_back(i);
+  if (!plain.empty()) return plain;
+  std::optional<std::pair<Added, std::size_t>> nearest;
+  for (const std::size_t i : candidates) {
+    const Added added = added_by(set, agreeing.chosen, agreeing.fit, i);
+    if (added.probability > unremarkable) plain.push_back(i);
+    if (!nearest || added.squares < nearest->first.squares) nearest = {added, i};
   }
-  Trimmed trimmed = Search(set, options).best();
-  result.chosen = std::move(trimmed.chosen);
+  const double tail = options.heaviest_tail * options.heaviest_tail * underestimated(set, agreeing.fit);
+  if (nearest->first.probability < options.wrong_probability && nearest->first.squares > tail) return {};
+  if (plain.empty()) plain.push_back(nearest->second);
+  return plain;
+}
+
+/// Takes samples in, best first, as long as noise explains them.
+AgreeingSamples taken_in(const SampleSet& set, const Trimmed& trimmed, const SampleOptions& options) {
+  AgreeingSamples result{trimmed.chosen, trimmed.fit};
   FitSettings settings = settings_of(options);
-  settings.start = std::move(trimmed.fit);
-  result.fit = fit_samples(set, result.chosen, settings);
+  settings.precision = FitPrecision::on_the_way;
   while (result.chosen.size() < set.size()) {
-    Indices plain;
-    std::optional<std::pair<Added, std::size_t>> nearest;
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      if (std::binary_search(result.chosen.begin(), result.chosen.end(), i)) continue;
-      const Added added = added_by(set, result.chosen, result.fit, i);
-      if (added.probability > unremarkable) plain.push_back(i);
-      if (!nearest || added.squares < nearest->first.squares) nearest = {added, i};
-    }
-    const double tail = options.heaviest_tail * options.heaviest_tail * underestimated(set, result.fit);
-    if (nearest->first.probability < options.wrong_probability && nearest->first.squares > tail) break;
-    if (plain.empty()) plain.push_back(nearest->second);
-    for (const std::size_t i : plain) result.chosen = with(result.chosen, i);
+    const Indices next = next_samples(set, result, options);
+    if (next.empty()) break;
+    for (const std::size_t i : next) result.chosen = with(result.chosen, i);
     settings.start = result.fit;
     result.fit = fit_samples(set, result.chosen, settings);
   }
+  settings.start = result.fit;
+  settings.precision = FitPrecision::exact;
+  result.fit = fit_samples(set, result.chosen, settings);
   return result;
+}
+
+double turn(const DualQuaternion& from, const DualQuaternion& to) {
+  const QuaternionVector q = quaternion_product(quaternion_conjugate(from.real), to.real);
+  return 2 * std::atan2(q.tail<3>().norm(), std::abs(q[0]));
+}
+
+/// Standard deviation of a rotation [rad] as the motions show it without any answer: their angles in a and in
+/// b are equal but for noise. From the fifth of the motions that agrees best, as half of them may have a
+/// wrong end.
+double congruent_noise(const SampleSet& set) {
+  constexpr double normal_fifth = 0.2533, least = 1e-10;
+  std::vector<double> differences;
+  const std::size_t n = set.size();
+  for (const std::size_t step : {n / 2, n / 3})
+    for (std::size_t i = 0; i < n; ++i) {
+      const PoseSample &from = set.sample(i), &to = set.sample((i + step) % n);
+      differences.push_back(std::abs(turn(from.a, to.a) - turn(from.b, to.b)));
+    }
+  const auto fifth = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 5);
+  std::nth_element(differences.begin(), fifth, differences.end());
+  return std::max(least, *fifth / (normal_fifth * std::sqrt(2.0)));
+}
+
+/// Is it sure that a search from triples of samples would find nothing better?
+bool beyond_doubt(const SampleSet& set, const Trimmed& trimmed, const AgreeingSamples& agreeing) {
+  if (static_cast<double>(agreeing.chosen.size()) < most_samples * static_cast<double>(set.size()))
+    return false;
+  const SampleNoise& noise = agreeing.fit.noise;
+  return std::sqrt(noise.rotation) <= as_good * congruent_noise(set) &&
+         trimmed.fit.noise.translation >= least_trimmed * noise.translation;
+}
+
+}  // namespace
+
+AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options) {
+  if (!options.robust || set.size() < options.least_to_judge) {
+    const Indices all = all_of(set);
+    return {all, fit_samples(set, all, settings_of(options))};
+  }
+  const Search search(set, options);
+  if (set.size() >= least_for_congruence) {
+    const Trimmed trimmed = search.from_all();
+    AgreeingSamples agreeing = taken_in(set, trimmed, options);
+    if (beyond_doubt(set, trimmed, agreeing)) return agreeing;
+  }
+  return taken_in(set, search.best(), options);
 }
 
 }  // namespace egocal::detail

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,10 @@ constexpr std::size_t least_samples = 4;
 /// A reading is another one where it makes the squared residuals this many times smaller: a wrong one leaves
 /// residuals as large as the motions, a hundred times those of a right one and more.
 constexpr double least_improvement = 10;
+/// A first look takes this many samples. A reading is dropped there whose rotations alone, at their best,
+/// have this many times the variance, or that does not make the squared residuals this many times smaller.
+constexpr std::size_t most_at_first = 32;
+constexpr double most_worse_rotation = 10, least_at_first = 2;
 /// Probability of a scale other than 1 by chance.
 constexpr double scale_by_chance = 1e-6;
 /// A power of ten to this part is a unit.
@@ -41,10 +46,57 @@ std::vector<Alternative> alternatives() {
           {"quaternion_order_both", wxyz, wxyz}, {"quaternion_order_both", xyzw, xyzw}};
 }
 
+/// Variance of the rotations at the X that suits them best, whatever the positions [rad^2].
+double rotation_variance(std::span<const PoseSample> samples) {
+  std::vector<Eigen::Matrix4d> seen;
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  for (const PoseSample& sample : samples) {
+    Eigen::Matrix4d one = left_matrix(sample.a.real) * right_matrix(quaternion_conjugate(sample.b.real));
+    const PoseSample& first = samples.front();
+    if ((first.a.real.dot(sample.a.real) < 0) != (first.b.real.dot(sample.b.real) < 0)) one = -one;
+    sum += one;
+    seen.push_back(one);
+  }
+  const auto n = static_cast<double>(samples.size());
+  double largest = 0;
+  constexpr int rounds_of_signs = 3;
+  for (int round = 0; round < rounds_of_signs; ++round) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(sum.transpose() * sum / n);
+    largest = eigen.eigenvalues()[3];
+    const Eigen::Vector4d x = eigen.eigenvectors().col(3), y = sum * x;
+    sum.setZero();
+    for (Eigen::Matrix4d& one : seen) {
+      if (y.dot(one * x) < 0) one = -one;
+      sum += one;
+    }
+  }
+  return 4 * (n - largest) / (3 * (n - 1));
+}
+
+/// Samples spread over those that count.
+std::vector<PoseSample> some(std::span<const PoseSample> samples, const std::vector<std::size_t>& chosen) {
+  const std::size_t step = (chosen.size() + most_at_first - 1) / most_at_first;
+  std::vector<PoseSample> result;
+  for (std::size_t k = 0; k < chosen.size(); k += step) result.push_back(samples[chosen[k]]);
+  return result;
+}
+
 /// Squared residuals of the given reading over those of another, rotation and position alike.
 double improvement(const SampleFit& given, const SampleFit& other) {
   return std::sqrt(given.noise.rotation / other.noise.rotation) *
          std::sqrt(given.noise.translation / other.noise.translation);
+}
+
+/// Cannot this reading of some samples be better than the given one by least_improvement? Rotations do not
+/// tell quaternions of another order in both lists: they exchange X and Y.
+bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given) {
+  if (rotation_variance(few) > most_worse_rotation * given.noise.rotation) return true;
+  std::vector<std::size_t> all(few.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  FitSettings settings;
+  settings.precision = FitPrecision::on_the_way;
+  settings.most_rounds = 4;
+  return improvement(given, fit_samples(SampleSet(few), all, settings)) < least_at_first;
 }
 
 PoseReading full(const Reading& reading) {
@@ -129,7 +181,9 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
   std::vector<Finding> findings;
   if (given.chosen.size() < least_samples) return findings;
   std::optional<Finding> best;
+  const std::vector<PoseSample> few = some(samples, given.chosen);
   for (const Alternative& other : alternatives()) {
+    if (hopeless(reread(few, other.a, other.b), given.fit)) continue;
     const std::vector<PoseSample> read = reread(samples, other.a, other.b);
     const AgreeingSamples fit = find_agreeing(SampleSet(read), options);
     if (fit.chosen.size() < given.chosen.size()) continue;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/online/answer.hpp"
 #include "egocal/solvers/dual.hpp"
 #include "solvers/tangent.hpp"
 
@@ -16,23 +15,14 @@ namespace {
 
 /// Residuals below this part of a radian, and of the length, are rounding.
 constexpr double rounding = 1e-12;
+/// Of sums of squares, which are differences of large numbers.
+constexpr double rounding_of_sums = 1e-7;
 /// The target has settled where it moves by less than this part of the length, the weights where their ratio
-/// changes by less than this part.
-constexpr double settled_target = 1e-10, settled_weights = 1e-6;
+/// changes by less than this part; on the way, and in the end.
+constexpr double settled_target = 1e-10, settled_weights = 1e-6, settled_on_the_way = 1e-2;
 
 Eigen::Vector3d position(const DualQuaternion& q) {
   return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
-}
-
-DualQuaternion shifted(const DualQuaternion& pose, const Eigen::Vector3d& shift) {
-  QuaternionVector t;
-  t << 0, shift;
-  return {pose.real, pose.dual + 0.5 * quaternion_product(t, pose.real)};
-}
-
-/// The target as sample i sees it with this X.
-DualQuaternion target_seen(const SeenTarget& seen, const DualQuaternion& X) {
-  return {seen.real * X.real, seen.dual * X.real + seen.real * X.dual};
 }
 
 /// Sums over samples about their mean: all motions between two samples, divided by their number. Positions
@@ -126,7 +116,7 @@ SumOfSquares squares_about_mean(const SampleSet& set, std::span<const std::size_
   std::vector<DualQuaternion> seen;
   QuaternionVector mean_real = QuaternionVector::Zero(), mean_dual = QuaternionVector::Zero();
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const DualQuaternion y = shifted(target_seen(set.seen(chosen[k]), X), -origin);
+    const DualQuaternion y = shifted(set.seen(chosen[k]).with(X), -origin);
     seen.push_back({signs[k] * y.real, signs[k] * y.dual});
     mean_real += seen.back().real / static_cast<double>(chosen.size());
     mean_dual += seen.back().dual / static_cast<double>(chosen.size());
@@ -160,7 +150,7 @@ DualQuaternion mean_target(const SampleSet& set, std::span<const std::size_t> ch
   QuaternionVector real = QuaternionVector::Zero();
   Eigen::Vector3d where = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const DualQuaternion y = target_seen(set.seen(chosen[k]), X);
+    const DualQuaternion y = set.seen(chosen[k]).with(X);
     real += signs[k] * y.real;
     where += position(y) / static_cast<double>(chosen.size());
   }
@@ -169,15 +159,82 @@ DualQuaternion mean_target(const SampleSet& set, std::span<const std::size_t> ch
   return shifted({real, QuaternionVector::Zero()}, where);
 }
 
-DualQuaternion minimiser(const Statistics& statistics, const SampleNoise& noise,
-                         const std::optional<DualQuaternion>& prior) {
-  if (!prior) return solve_dual(cost_matrix(statistics, balance_of(noise))).q;
-  Problem problem;
-  problem.balance = balance_of(noise);
-  problem.blocks = {statistics};
-  problem.prior = prior;
-  return solve(problem, Method::dual).T_a_b;
+/// The same from the quadratic forms.
+SumOfSquares squares_of_forms(const Statistics& statistics, const DualQuaternion& X) {
+  const Vector8d q = X.vec();
+  SumOfSquares squares;
+  squares.rotation = 4 * X.real.dot(statistics.dual_rows.bottomRightCorner<4, 4>() * X.real);
+  squares.translation = 4 * q.dot(statistics.dual_rows * q);
+  return squares;
 }
+
+/// One fit on its way: rounds of weights, signs and the target's position.
+class Rounds {
+ public:
+  Rounds(const SampleSet& set, std::span<const std::size_t> chosen, const FitSettings& settings)
+      : set_(set), chosen_(chosen), settings_(settings) {
+    const std::optional<SampleFit>& start = settings.start;
+    fit_.noise = settings.noise.value_or(start ? start->noise : SampleNoise{1, set.length() * set.length()});
+    signs_ = start ? signs_towards(set, chosen, *start) : first_signs(set, chosen);
+    origin_ = start ? position(start->Y) : Eigen::Vector3d::Zero();
+    sum();
+  }
+
+  SampleFit fit() {
+    const bool exact = settings_.precision == FitPrecision::exact;
+    for (int round = 0; round < settings_.most_rounds; ++round)
+      if (once(false) && (round > 0 || !exact)) break;
+    if (!exact) return fit_;
+    for (int round = 0; round < settings_.most_rounds; ++round)
+      if (once(true)) break;
+    return fit_;
+  }
+
+ private:
+  void sum() {
+    sums_ = SampleSums();
+    for (std::size_t k = 0; k < chosen_.size(); ++k) sums_.add(set_.sums(chosen_[k]), signs_[k]);
+  }
+
+  /// True where nothing moved that matters. exact: from the samples, not from their sums.
+  bool once(bool exact) {
+    const double length = set_.length();
+    fit_.statistics = exact ? centred(set_, chosen_, signs_, origin_) : sums_.centred(origin_);
+    fit_.X = solve_dual(cost_matrix(fit_.statistics, balance_of(fit_.noise))).q;
+    fit_.Y = exact ? mean_target(set_, chosen_, signs_, fit_.X) : sums_.mean_target(fit_.X);
+    SumOfSquares squares = squares_of_forms(fit_.statistics, fit_.X);
+    const double n = static_cast<double>(chosen_.size()), least = n * rounding_of_sums * rounding_of_sums;
+    if (exact || squares.rotation < least || squares.translation < least * length * length)
+      squares = squares_about_mean(set_, chosen_, signs_, origin_, fit_.X);
+    if (exact || !parts_) parts_ = determined(fit_.statistics, fit_.noise, length, fit_.X);
+    squares.dof_rotation = 3 * (n - 1) - parts_->by_rotations;
+    squares.dof_translation = 3 * (n - 1) - parts_->by_positions;
+    const SampleNoise before = fit_.noise;
+    if (!settings_.noise) fit_.noise = noise_from(squares, length, settings_.prior_log_ratio);
+    fit_.cost = squares.rotation / fit_.noise.rotation + squares.translation / fit_.noise.translation;
+    fit_.dof = squares.dof_rotation + squares.dof_translation;
+    const double moved = (position(fit_.Y) - origin_).norm() / length;
+    const double reweighted =
+        std::abs(std::log(balance_of(fit_.noise).translation / balance_of(before).translation));
+    origin_ = position(fit_.Y);
+    std::vector<double> next = signs_towards(set_, chosen_, fit_);
+    const bool same = next == signs_;
+    signs_ = std::move(next);
+    if (!same) sum();
+    const bool on_the_way = settings_.precision == FitPrecision::on_the_way;
+    return same && moved < (on_the_way ? settled_on_the_way : settled_target) &&
+           reweighted < (on_the_way ? settled_on_the_way : settled_weights);
+  }
+
+  const SampleSet& set_;
+  std::span<const std::size_t> chosen_;
+  const FitSettings& settings_;
+  SampleFit fit_;
+  SampleSums sums_;
+  std::optional<Determined> parts_;  ///< changes little from round to round
+  std::vector<double> signs_;
+  Eigen::Vector3d origin_;
+};
 
 }  // namespace
 
@@ -185,11 +242,14 @@ SampleSet::SampleSet(std::span<const PoseSample> samples) : samples_(samples.beg
   const auto n = static_cast<double>(samples.size());
   for (const PoseSample& sample : samples) middle_ += position(sample.a) / n;
   double squares = 0;
+  seen_.reserve(samples.size());
+  sums_.reserve(samples.size());
   for (const PoseSample& sample : samples) {
     const DualQuaternion a = shifted(sample.a, -middle_), c = conjugate(sample.b);
     const Eigen::Matrix4d left_real = left_matrix(a.real), left_dual = left_matrix(a.dual);
     const Eigen::Matrix4d right_real = right_matrix(c.real), right_dual = right_matrix(c.dual);
     seen_.push_back({left_real * right_real, left_dual * right_real + left_real * right_dual});
+    sums_.push_back(sums_of(seen_.back(), a.real));
     squares += (position(c).squaredNorm() + position(a).squaredNorm()) / (2 * n);
   }
   if (squares > 0) length_ = std::sqrt(squares);
@@ -201,7 +261,7 @@ double SampleSet::sign(std::size_t i, std::size_t j) const {
 }
 
 SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const SampleFit& fit) {
-  const DualQuaternion y = target_seen(set.seen(i), fit.X);
+  const DualQuaternion y = set.seen(i).with(fit.X);
   const QuaternionVector difference = quaternion_product(quaternion_conjugate(fit.Y.real), y.real);
   const double angle = 2 * std::atan2(difference.tail<3>().norm(), std::abs(difference[0]));
   return {angle * angle, (position(y) - position(fit.Y)).squaredNorm()};
@@ -218,38 +278,7 @@ Balance balance_of(const SampleNoise& noise) {
 
 SampleFit fit_samples(const SampleSet& set, std::span<const std::size_t> chosen,
                       const FitSettings& settings) {
-  const std::optional<SampleFit>& start = settings.start;
-  SampleFit fit;
-  const double length = set.length();
-  fit.noise = settings.noise.value_or(start ? start->noise : SampleNoise{1, length * length});
-  std::vector<double> signs = start ? signs_towards(set, chosen, *start) : first_signs(set, chosen);
-  Eigen::Vector3d origin = start ? position(start->Y) : Eigen::Vector3d::Zero();
-  const auto n = static_cast<double>(chosen.size());
-  for (int round = 0; round < settings.most_rounds; ++round) {
-    const Statistics statistics = centred(set, chosen, signs, origin);
-    const DualQuaternion X = minimiser(statistics, fit.noise, settings.prior);
-    const DualQuaternion Y = mean_target(set, chosen, signs, X);
-    SumOfSquares squares = squares_about_mean(set, chosen, signs, origin, X);
-    const Determined parts = determined(statistics, fit.noise, length, X);
-    squares.dof_rotation = 3 * (n - 1) - parts.by_rotations;
-    squares.dof_translation = 3 * (n - 1) - parts.by_positions;
-    const SampleNoise before = fit.noise;
-    if (!settings.noise) fit.noise = noise_from(squares, length, settings.prior_log_ratio);
-    fit.X = X;
-    fit.Y = Y;
-    fit.statistics = statistics;
-    fit.cost = squares.rotation / fit.noise.rotation + squares.translation / fit.noise.translation;
-    fit.dof = squares.dof_rotation + squares.dof_translation;
-    const double moved = (position(Y) - origin).norm() / length;
-    const double reweighted =
-        std::abs(std::log(balance_of(fit.noise).translation / balance_of(before).translation));
-    origin = position(Y);
-    const std::vector<double> next = signs_towards(set, chosen, fit);
-    const bool same = next == signs;
-    signs = next;
-    if (round > 0 && same && moved < settled_target && reweighted < settled_weights) break;
-  }
-  return fit;
+  return Rounds(set, chosen, settings).fit();
 }
 
 }  // namespace egocal::detail

@@ -10,6 +10,7 @@
 
 #include "egocal/problem/problem.hpp"
 #include "egocal/samples/pose_sample.hpp"
+#include "samples/sample_sums.hpp"
 
 namespace egocal::detail {
 
@@ -17,13 +18,6 @@ namespace egocal::detail {
 struct SampleNoise {
   double rotation = 1;     ///< [rad^2]
   double translation = 1;  ///< [m^2]
-};
-
-/// y = a X c with c = b^-1 is the target's pose as one sample sees it: linear in X. All samples should see
-/// the same one.
-struct SeenTarget {
-  Eigen::Matrix4d real = Eigen::Matrix4d::Zero();  ///< y.real = real X.real
-  Eigen::Matrix4d dual = Eigen::Matrix4d::Zero();  ///< y.dual = dual X.real + real X.dual
 };
 
 /// Samples ready to be fitted, with the origin of a's world in the middle of a's positions.
@@ -37,12 +31,15 @@ class SampleSet {
   double length() const { return length_; }
   const Eigen::Vector3d& middle() const { return middle_; }
   const SeenTarget& seen(std::size_t i) const { return seen_[i]; }
+  const SampleSums& sums(std::size_t i) const { return sums_[i]; }
+  const PoseSample& sample(std::size_t i) const { return samples_[i]; }
   /// +1 or -1: whether the quaternions of the motion between two samples have scalars of one sign.
   double sign(std::size_t i, std::size_t j) const;
 
  private:
   std::vector<PoseSample> samples_;
   std::vector<SeenTarget> seen_;
+  std::vector<SampleSums> sums_;
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   double length_ = 1;
 };
@@ -69,15 +66,19 @@ DualQuaternion target_at(const SampleSet& set, std::span<const std::size_t> chos
 /// The balance of cost_matrix() for a noise.
 Balance balance_of(const SampleNoise& noise);
 
+/// on_the_way: weights to a hundredth, for choices among samples; exact: the sums are made from the samples
+/// themselves, and everything has settled.
+enum class FitPrecision { on_the_way, exact };
+
 /// How fit_samples() goes about it.
 struct FitSettings {
   std::optional<SampleFit> start;  ///< signs of the quaternions and first guess of the target; without it the
                                    ///< signs come from the first chosen sample
   std::optional<SampleNoise> noise;  ///< kept where given, else estimated
   double prior_log_ratio = 2;        ///< of SampleOptions
-  std::optional<DualQuaternion> prior;
   /// Rounds of weights and of the target's position; both settle in three to six.
   int most_rounds = 20;
+  FitPrecision precision = FitPrecision::exact;
 };
 
 /// Fits the chosen samples (indices, at least 2).
