@@ -114,6 +114,45 @@ TEST(Explanations, UnrelatedStreamsAreCalledThat) {
   EXPECT_NE(find(calibration, "unrelated"), nullptr);
 }
 
+/// Turned axes of one stream are those of the other one up to the lever arm: one of them is named.
+TEST(Explanations, PositionsInAnotherWorldFrameAreNamed) {
+  testing::Streams streams = drive(Terrain::free);
+  const Eigen::Matrix3d turn = rotation_exp({0.2, -0.1, 0.6}).toRotationMatrix();
+  streams.b = testing::with_position_columns(streams.b, turn);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  EXPECT_TRUE(find(calibration, "axes_a") || find(calibration, "axes_b")) << calibration.reason;
+}
+
+TEST(Explanations, AStreamThatStandsStillIsNamed) {
+  testing::Streams streams = drive(Terrain::free);
+  EXPECT_EQ(find(calibrate(streams.a, streams.b), "frozen_b"), nullptr);
+  streams.b = testing::frozen(streams.b, 0.4, 0.7);
+  EXPECT_NE(find(calibrate(streams.a, streams.b), "frozen_b"), nullptr);
+}
+
+TEST(Explanations, AStreamGivenTwiceIsNamedAndNotGood) {
+  const testing::Streams streams = drive(Terrain::free);
+  const Calibration calibration = calibrate(streams.a, streams.a);
+  EXPECT_EQ(calibration.verdict, Verdict::doubtful);
+  EXPECT_NE(find(calibration, "same_stream"), nullptr);
+}
+
+TEST(Explanations, APartOfAnotherDriveIsFoundAtItsTime) {
+  testing::Streams streams = drive(Terrain::free, 1);
+  const testing::Streams other = drive(Terrain::free, 9);
+  const std::size_t half = streams.b.size() / 2;
+  const DualQuaternion start = streams.b[half].pose * conjugate(other.b[half].pose);
+  for (std::size_t i = half; i < streams.b.size(); ++i)
+    streams.b[i].pose = canonical_sign(normalized(start * other.b[i].pose));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+  const Finding* finding = find(calibration, "unrelated");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  ASSERT_TRUE(finding->time);
+  EXPECT_NEAR(*finding->time, 30, 8);
+}
+
 TEST(Explanations, AMovedMountIsFoundAtItsTime) {
   testing::Streams streams = drive(Terrain::free);
   streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0.06, 0}), {0, 0.1, 0}});

@@ -73,6 +73,56 @@ inline Trajectory knocked(Trajectory trajectory, double part, const Pose& T_old_
   return trajectory;
 }
 
+/// Every pose the mean of its neighbours: a filter without lag.
+inline Trajectory smoothed(const Trajectory& trajectory, std::size_t reach) {
+  Trajectory result = trajectory;
+  for (std::size_t i = reach; i + reach < trajectory.size(); ++i) {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
+    for (std::size_t k = i - reach; k <= i + reach; ++k) {
+      const Pose pose = to_pose(trajectory[k].pose);
+      const Eigen::Vector4d q = trajectory[k].pose.real;
+      position += pose.translation;
+      rotation += q.dot(trajectory[i].pose.real) < 0 ? Eigen::Vector4d(-q) : q;
+    }
+    rotation.normalize();
+    const Pose mean{Rotation(rotation[0], rotation[1], rotation[2], rotation[3]),
+                    position / static_cast<double>(2 * reach + 1)};
+    result[i].pose = canonical_sign(to_dual_quaternion(mean));
+  }
+  return result;
+}
+
+/// The last pose before [begin, end) of the drive again and again.
+inline Trajectory frozen(Trajectory trajectory, double begin, double end) {
+  const auto n = static_cast<double>(trajectory.size());
+  const auto first = static_cast<std::size_t>(begin * n), last = static_cast<std::size_t>(end * n);
+  for (std::size_t i = first; i < last; ++i) trajectory[i].pose = trajectory[first].pose;
+  return trajectory;
+}
+
+/// The poses in the opposite order.
+inline Trajectory backwards(Trajectory trajectory) {
+  for (std::size_t i = 0, k = trajectory.size() - 1; i < k; ++i, --k)
+    std::swap(trajectory[i].pose, trajectory[k].pose);
+  return trajectory;
+}
+
+/// From half of the drive on, the motions of its first half again: of another drive.
+inline Trajectory half_of_another(Trajectory trajectory) {
+  const std::size_t half = trajectory.size() / 2;
+  const DualQuaternion start = trajectory[half].pose * conjugate(trajectory[0].pose);
+  const Trajectory given = trajectory;
+  for (std::size_t i = half; i < trajectory.size(); ++i)
+    trajectory[i].pose = canonical_sign(normalized(start * given[i - half].pose));
+  return trajectory;
+}
+
+/// Every pose that of its own position, but in the frame of the sensor: the position of the inverse pose.
+inline Trajectory with_inverse_positions(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) { return Pose{pose.rotation, inverse(pose).translation}; });
+}
+
 struct Mistake {
   std::string name;
   std::string code;  ///< of the finding that names it; empty: none has to
@@ -80,9 +130,11 @@ struct Mistake {
 };
 
 inline std::vector<Mistake> mistakes() {
-  Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity(), exchange;
+  Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity(), exchange, cycle;
   mirror(1, 1) = -1;
   exchange << 0, 1, 0, 1, 0, 0, 0, 0, 1;
+  cycle << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  const Eigen::Matrix3d turn = rotation_exp({0.1, 0, 0.7}).toRotationMatrix();
   const Pose bump{rotation_exp({0, 0, 5 * std::numbers::pi / 180}), {0.05, 0, 0}};
   return {
       {"none", "", [](Streams&) {}},
@@ -114,6 +166,16 @@ inline std::vector<Mistake> mistakes() {
       {"rotations of b inverse", "axes_b", [](Streams& s) { s.b = with_inverse_rotations(s.b); }},
       {"b knocked in the middle", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.5, bump); }},
       {"b knocked late", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.75, bump); }},
+      {"clock 3 s off", "clock_offset", [](Streams& s) { s.b = late(s.b, 3); }},
+      {"scale 1.02", "scale", [](Streams& s) { s.b = lengthened(s.b, 1.02); }},
+      {"x, y, z of b from y, z, x", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, cycle); }},
+      {"position of b turned 40 deg", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, turn); }},
+      {"inverse position of a", "axes_a", [](Streams& s) { s.a = with_inverse_positions(s.a); }},
+      {"b given twice", "same_stream", [](Streams& s) { s.a = s.b; }},
+      {"b frozen for a third", "frozen_b", [](Streams& s) { s.b = frozen(s.b, 0.4, 0.73); }},
+      {"b half of another drive", "unrelated", [](Streams& s) { s.b = half_of_another(s.b); }},
+      {"b backwards", "", [](Streams& s) { s.b = backwards(s.b); }},
+      {"b smoothed", "", [](Streams& s) { s.b = smoothed(s.b, 5); }},
       {"b inverted, scale 0.37", "inverted_b", [](Streams& s) { s.b = lengthened(inverted(s.b), 0.37); }},
       {"first 5 s", "",
        [](Streams& s) {

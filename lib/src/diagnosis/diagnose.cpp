@@ -12,6 +12,7 @@
 #include "diagnosis/judge.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/planes.hpp"
+#include "diagnosis/stream_check.hpp"
 #include "diagnosis/wording.hpp"
 
 namespace egocal {
@@ -76,6 +77,10 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
     findings.push_back(unrelated(correlation));
     return;
   }
+  for (Finding& finding : unrelated_part(motions)) {
+    findings.push_back(std::move(finding));
+    return;
+  }
   std::vector<Finding> moves = moved_mount(evidence.instants, answered, options.mount);
   // a mount that moved looks like many things
   if (!moves.empty()) findings = std::move(moves);
@@ -101,7 +106,9 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   Diagnosis result;
   const RobustFit at_answer = evaluated(motions, answered.T_a_b);
   result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
-  result.findings = explain(evidence, options);
+  result.findings = check_streams(a, b, evidence.instants);
+  // what is wrong with the streams themselves looks like other mistakes
+  if (result.findings.empty()) result.findings = explain(evidence, options);
   if (answered.problem.mode == Mode::planar)
     for (Finding& finding :
          check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
@@ -109,7 +116,7 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const Misfit misfit{detail::misfit(motions, at_answer),
                       detail::misfit(motions, evidence.given.explained.fit)};
   const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
-                                     [](const Finding& one) { return one.certain; });
+                                     [](const Finding& one) { return one.certain || one.code == "samples"; });
   if (!explained) look_further(evidence, answered, misfit, options, result.findings);
   judge(result, answered, misfit, options);
   return result;

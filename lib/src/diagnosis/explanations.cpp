@@ -3,12 +3,11 @@
 #include "diagnosis/explanations.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
+#include "diagnosis/axes.hpp"
 #include "diagnosis/forward.hpp"
 #include "diagnosis/scale.hpp"
 #include "diagnosis/wording.hpp"
@@ -33,26 +32,6 @@ std::vector<Candidate> common_mistakes() {
           {"quaternion_order_a", xyzw, as_read}, {"quaternion_order_b", as_read, wxyz},
           {"quaternion_order_b", as_read, xyzw}, {"quaternion_order_both", wxyz, wxyz},
           {"quaternion_order_both", xyzw, xyzw}};
-}
-
-/// Positions with exchanged or mirrored columns (48), with the rotation as it is or of the inverse pose: the
-/// rest are proper changes of the sensor's own axes, which the extrinsic absorbs.
-std::vector<PoseReading> wrong_axes() {
-  std::vector<PoseReading> readings;
-  std::array<int, 3> order{0, 1, 2};
-  do {
-    for (int signs = 0; signs < 8; ++signs) {
-      PoseReading reading;
-      reading.axes.setZero();
-      for (int i = 0; i < 3; ++i)
-        reading.axes(i, order[static_cast<std::size_t>(i)]) = signs >> i & 1 ? -1 : 1;
-      reading.conjugate = false;
-      if (!reading.axes.isIdentity()) readings.push_back(reading);
-      reading.conjugate = true;
-      readings.push_back(reading);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  return readings;
 }
 
 Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
@@ -161,38 +140,41 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   return {best.as_is, twin};
 }
 
-/// Exchanged and mirrored columns of one file.
-Explanation best_axes(const Evidence& evidence, const Explanation& best, const DiagnosisOptions& options) {
-  const std::vector<PoseReading> readings = wrong_axes();
-  struct Look {
-    double typical;
-    bool in_b;
-    std::size_t index;
+/// Lever arms alone tell turned axes of a from those of b; they must be as clear as this many readings.
+constexpr double turned_axes_alike = 3;
+
+/// Positions of one file in other axes than its rotations. Exchanged columns are what people do; turned axes
+/// have three more unknowns and must explain clearly more. Turned axes of one stream are up to the lever arm
+/// those of the other one turned likewise: where both fit, both are named.
+BestReading best_axes(const Evidence& evidence, const BestReading& given, const DiagnosisOptions& options) {
+  std::optional<Explanation> exchanged, turned, turned_other;
+  const auto fits_better = [](const std::optional<Explanation>& x, const Explanation& y) {
+    return !x || compare(x->explained, y.explained).gain > 0;
   };
-  std::vector<Look> looks;
-  for (const bool in_b : {false, true})
-    for (std::size_t i = 0; i < readings.size(); ++i) {
-      const PoseReading as_read;
-      const Motions motions =
-          motions_of(evidence.instants, in_b ? as_read : readings[i], in_b ? readings[i] : as_read,
-                     evidence.stride, options.motions.first_look, options.motions);
-      if (motions.all.empty()) continue;
-      looks.push_back({quick_fit(motions, options.fit).typical, in_b, i});
+  for (const Side wrong : {Side::a, Side::b}) {
+    std::optional<Explanation> turned_here;
+    for (const PoseReading& reading :
+         axes_readings(evidence.instants, wrong, evidence.stride, options.motions.first_look, options)) {
+      const bool in_b = wrong == Side::b;
+      const Explanation here = explained(evidence, in_b ? "axes_b" : "axes_a", in_b ? PoseReading{} : reading,
+                                         in_b ? reading : PoseReading{}, options);
+      if (!better(compare(given.best.explained, here.explained), options.least_gain, options)) continue;
+      std::optional<Explanation>& best = is_permutation(reading.axes) ? exchanged : turned_here;
+      if (fits_better(best, here)) best = here;
     }
-  const std::size_t followed = std::min<std::size_t>(4, looks.size());
-  std::partial_sort(looks.begin(), looks.begin() + static_cast<std::ptrdiff_t>(followed), looks.end(),
-                    [](const Look& x, const Look& y) {
-                      return std::tie(x.typical, x.in_b, x.index) < std::tie(y.typical, y.in_b, y.index);
-                    });
-  Explanation result = best;
-  for (std::size_t i = 0; i < followed; ++i) {
-    const Look& look = looks[i];
-    const PoseReading as_read;
-    Explanation here =
-        explained(evidence, look.in_b ? "axes_b" : "axes_a", look.in_b ? as_read : readings[look.index],
-                  look.in_b ? readings[look.index] : as_read, options);
-    if (better(compare(result.explained, here.explained), 0.05, options)) result = std::move(here);
+    if (!turned_here) continue;
+    std::swap(turned, turned_other);
+    std::swap(turned, turned_here);
+    if (turned_other && !fits_better(turned_other, *turned)) std::swap(turned, turned_other);
   }
+  BestReading result = given;
+  if (exchanged) result = {*exchanged, {}};
+  if (!turned || !better(compare(result.best.explained, turned->explained), options.gain, options))
+    return result;
+  result = {*turned, {}};
+  if (turned_other &&
+      compare(turned_other->explained, turned->explained).gain < turned_axes_alike * options.alike)
+    result.twin = turned_other;
   return result;
 }
 
@@ -303,9 +285,8 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
   if (evidence.given.explained.motions.all.size() < 4) return findings;
   const Explained& given = evidence.given.explained;
 
-  BestReading reading = best_reading(evidence, options);
-  Explanation best = best_axes(evidence, reading.best, options);
-  if (best.code != reading.best.code) reading.twin.reset();
+  BestReading reading = best_axes(evidence, best_reading(evidence, options), options);
+  Explanation best = reading.best;
   // a clock that is off can look like anything: it is tried on the streams as given, too
   std::vector<Explanation> clocks = with_clock(evidence, evidence.given, options);
   if (!clocks.empty() && !better(compare(clocks.back().explained, best.explained), options.gain, options)) {
@@ -319,15 +300,17 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
   if (!(final.fit.typical < options.explains * options.explains)) return findings;
   const Comparison overall = compare(given, final);
   const bool certain = overall.gain >= options.gain;
+  // of which stream the axes are wrong may be open, not that they are
+  const bool open = reading.twin && !reading.twin->code.starts_with("axes_");
   const auto add = [&](Finding finding) {
     finding.T_a_b = to_pose(final.fit.T);
     findings.push_back(std::move(finding));
   };
   if (!best.code.empty())
-    add(worded_reading(finding_of(best, overall, certain && !reading.twin), best.read_a, best.read_b));
+    add(worded_reading(finding_of(best, overall, certain && !open), best.read_a, best.read_b));
   if (reading.twin)
     findings.push_back(
-        worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), false),
+        worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), certain && !open),
                        reading.twin->read_a, reading.twin->read_b));
   if (best.scale != 1) {
     const double power = std::round(std::log10(best.scale) / 3);

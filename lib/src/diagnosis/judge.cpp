@@ -79,10 +79,15 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
   return text;
 }
 
+/// Not another reading: what is wrong with the poses themselves. Pairing rejects those that stand still.
+bool stream_fault(const Finding& finding) {
+  return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "same_stream";
+}
+
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.
 bool misread(const Finding& finding) {
   return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
-         finding.code != "clock_drift" && finding.code != "mount_moved";
+         finding.code != "clock_drift" && finding.code != "mount_moved" && !stream_fault(finding);
 }
 
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
@@ -104,6 +109,8 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     const double far = shift(finding, answered, options);
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
+    else if (stream_fault(finding))
+      verdict = finding.code == "same_stream" ? Verdict::doubtful : Verdict::good;
     else if (misread(finding) || (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
       verdict = Verdict::contradictory;
     else if ((finding.certain && (far > 0.5 || finding.code == "mount_moved")) ||
@@ -141,6 +148,12 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
   const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
   diagnosis.verdict = worse.verdict;
   diagnosis.reason = worse.reason;
+  if (&worse == &fit)
+    for (const Finding& finding : diagnosis.findings)
+      if (stream_fault(finding) || finding.code == "samples") {
+        diagnosis.reason = finding.message;
+        break;
+      }
   if (diagnosis.verdict >= Verdict::doubtful) return;
   const std::string unknown = unknown_directions(answered, options);
   if (!unknown.empty()) {

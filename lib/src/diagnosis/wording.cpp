@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <numbers>
+
+#include "diagnosis/axes.hpp"
 
 namespace egocal::detail {
 
@@ -30,14 +33,31 @@ std::string columns(const Eigen::Matrix3d& axes) {
   return text;
 }
 
+/// What must be done to the positions so that they suit the rotations.
+std::string turned(const Eigen::Matrix3d& axes) {
+  const bool mirrored = axes.determinant() < 0;
+  const Eigen::Vector3d turn = rotation_log(Rotation(mirrored ? Eigen::Matrix3d(-axes) : axes));
+  const double angle = turn.norm();
+  const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitZ();
+  return format("positions turned by %.1f deg about (%.2f %.2f %.2f)%s", angle * 180 / std::numbers::pi,
+                axis.x(), axis.y(), axis.z(), mirrored ? " and mirrored at the origin" : "");
+}
+
 void word_axes(Finding& finding, const PoseReading& reading, const char* stream) {
   std::string change;
-  if (!reading.axes.isIdentity()) change = "position columns read as " + columns(reading.axes);
-  if (reading.conjugate)
-    change += std::string(change.empty() ? "" : ", and ") + "each rotation taken as its inverse";
+  if (reading.invert) {
+    change = "positions taken as those of the inverse poses";
+  } else {
+    if (!is_permutation(reading.axes))
+      change = turned(reading.axes);
+    else if (!reading.axes.isIdentity())
+      change = "position columns read as " + columns(reading.axes);
+    if (reading.conjugate)
+      change += std::string(change.empty() ? "" : ", and ") + "each rotation taken as its inverse";
+  }
   finding.message = format("The position and the rotation of %s do not belong together: with %s, %s.", stream,
                            change.c_str(), fits(finding).c_str());
-  finding.remedy = format("Correct the columns of %s where the file is written.", stream);
+  finding.remedy = format("Write positions and rotations of %s in the same axes.", stream);
 }
 
 }  // namespace

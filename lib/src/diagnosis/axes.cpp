@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/axes.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "diagnosis/robust_fit.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Vector12d = Eigen::Matrix<double, 12, 1>;
+using Matrix12d = Eigen::Matrix<double, 12, 12>;
+using Rows = Eigen::Matrix<double, 3, 12>;
+
+/// One motion of the right stream s, and of the wrong one w as its file has it.
+struct Step {
+  QuaternionVector s, w;  ///< rotations
+  Matrix3d R_s, R_world;  ///< rotation of s; orientation of w at the begin of the motion
+  Vector3d t_s, d;        ///< translation of s in its own frame; of w in its file's axes
+  double weight = 1;
+};
+
+Matrix3d matrix(const QuaternionVector& q) {
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+}
+
+Vector3d position(const DualQuaternion& pose) {
+  return 2 * quaternion_product(pose.dual, quaternion_conjugate(pose.real)).tail<3>();
+}
+
+double angle(const QuaternionVector& q) {
+  return 2 * std::atan2(q.tail<3>().norm(), std::abs(q[0]));
+}
+
+std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
+                           std::size_t most, const DiagnosisOptions& options) {
+  std::vector<Step> steps;
+  const std::size_t n = instants.time.size(), span = static_cast<std::size_t>(stride);
+  if (n <= span) return steps;
+  const std::size_t each = std::max<std::size_t>(1, (n - span) / most);
+  for (std::size_t i = 0; i + span < n; i += each) {
+    const std::size_t k = i + span;
+    if (instants.time[k] - instants.time[i] > options.motions.most_stretched * stride * instants.period)
+      continue;
+    const bool in_b = wrong == Side::b;
+    const DualQuaternion s = canonical_sign(in_b ? conjugate(instants.a(i)) * instants.a(k)
+                                                 : conjugate(instants.b(i)) * instants.b(k));
+    const DualQuaternion w0 = in_b ? instants.b(i) : instants.a(i);
+    const DualQuaternion w1 = in_b ? instants.b(k) : instants.a(k);
+    const QuaternionVector r0 = conjugated ? quaternion_conjugate(w0.real) : w0.real;
+    const QuaternionVector r1 = conjugated ? quaternion_conjugate(w1.real) : w1.real;
+    QuaternionVector w = quaternion_product(quaternion_conjugate(r0), r1);
+    if (w[0] < 0) w = -w;
+    if (std::max(angle(s.real), angle(w)) > options.motions.most_rotation) continue;
+    steps.push_back({s.real, w, matrix(s.real), matrix(r0), position(s), position(w1) - position(w0), 1});
+  }
+  return steps;
+}
+
+/// Weights that outliers lose, from squares in the order of the steps.
+void reweight(std::vector<Step>& steps, const std::vector<double>& squares, double inlier) {
+  std::vector<double> sorted = squares;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double typical = std::max(*middle, 1e-300);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double w = 1 / (1 + squares[i] / (inlier * typical));
+    steps[i].weight = w * w;
+  }
+}
+
+/// Orientation of the wrong sensor in the right one from rotations alone: |s q - q w|^2, reweighted.
+Matrix3d orientation(std::vector<Step>& steps, const RobustFitOptions& options) {
+  QuaternionVector q = QuaternionVector::UnitX();
+  for (int round = 0; round < options.rounds; ++round) {
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+    for (const Step& step : steps) {
+      const Eigen::Matrix4d M = left_matrix(step.s) - right_matrix(step.w);
+      sum += step.weight * M.transpose() * M;
+    }
+    q = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(sum).eigenvectors().col(0);
+    std::vector<double> squares;
+    for (const Step& step : steps)
+      squares.push_back((quaternion_product(step.s, q) - quaternion_product(q, step.w)).squaredNorm());
+    reweight(steps, squares, options.inlier);
+  }
+  return matrix(q);
+}
+
+/// (R_s - 1) t - R R_world' W d = -t_s, linear in t and the columns of W.
+Rows rows_of(const Step& step, const Matrix3d& R) {
+  Rows rows;
+  rows.leftCols<3>() = step.R_s - Matrix3d::Identity();
+  const Matrix3d turned = -R * step.R_world.transpose();
+  for (int column = 0; column < 3; ++column) rows.middleCols<3>(3 + 3 * column) = step.d[column] * turned;
+  return rows;
+}
+
+Matrix3d linear_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFitOptions& options) {
+  Vector12d x = Vector12d::Zero();
+  for (int round = 0; round < options.rounds; ++round) {
+    Matrix12d A = Matrix12d::Zero();
+    Vector12d g = Vector12d::Zero();
+    for (const Step& step : steps) {
+      const Rows rows = rows_of(step, R);
+      A += step.weight * rows.transpose() * rows;
+      g -= step.weight * rows.transpose() * step.t_s;
+    }
+    // what the drive does not show stays zero, and is completed below
+    A.diagonal().array() += 1e-6 * A.trace() / 12 + 1e-300;
+    x = A.ldlt().solve(g);
+    std::vector<double> squares;
+    for (const Step& step : steps) squares.push_back((rows_of(step, R) * x + step.t_s).squaredNorm());
+    reweight(steps, squares, options.inlier);
+  }
+  return Eigen::Map<const Matrix3d>(x.data() + 3);
+}
+
+/// Orthogonal matrices nearest to W: two where the drive shows two directions only, none where it shows
+/// fewer.
+std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
+  if (!W.allFinite()) return {};
+  const Eigen::JacobiSVD<Matrix3d> svd(W, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3d sizes = svd.singularValues();
+  if (!(sizes[1] > 0.3 * sizes[0])) return {};
+  const Matrix3d U = svd.matrixU(), V = svd.matrixV();
+  const Matrix3d one = U * V.transpose();
+  if (sizes[2] > 0.3 * sizes[0]) return {one};
+  return {one, U * Vector3d(1, 1, -1).asDiagonal() * V.transpose()};
+}
+
+/// The signed permutation within about 20 degrees, if there is one.
+std::optional<Matrix3d> nearest_permutation(const Matrix3d& W) {
+  Matrix3d result = Matrix3d::Zero();
+  for (int row = 0; row < 3; ++row) {
+    Eigen::Index column = 0;
+    if (W.row(row).cwiseAbs().maxCoeff(&column) < 0.94) return std::nullopt;
+    result(row, column) = W(row, column) < 0 ? -1 : 1;
+  }
+  if (std::abs(std::abs(result.determinant()) - 1) > 1e-12) return std::nullopt;
+  return result;
+}
+
+}  // namespace
+
+bool is_permutation(const Matrix3d& axes) {
+  return (axes.array() == axes.array().round()).all();
+}
+
+std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int stride, std::size_t most,
+                                       const DiagnosisOptions& options) {
+  std::vector<PoseReading> readings;
+  const auto add = [&](const Matrix3d& axes, bool conjugated) {
+    PoseReading reading;
+    reading.axes = axes;
+    reading.conjugate = conjugated;
+    if (conjugated || !axes.isIdentity(1e-12)) readings.push_back(reading);
+  };
+  for (const bool conjugated : {false, true}) {
+    std::vector<Step> steps = steps_of(instants, wrong, conjugated, stride, most, options);
+    if (steps.size() < options.motions.least) continue;
+    const Matrix3d R = orientation(steps, options.fit);
+    for (const Matrix3d& W : nearest_orthogonal(linear_map(steps, R, options.fit))) {
+      if (const std::optional<Matrix3d> permutation = nearest_permutation(W)) add(*permutation, conjugated);
+      add(W, conjugated);
+    }
+  }
+  // the position of the inverse pose beside the right rotation: inverse of what the inverse rotation gives
+  PoseReading inverse_position;
+  inverse_position.invert = inverse_position.conjugate = true;
+  readings.push_back(inverse_position);
+  return readings;
+}
+
+}  // namespace egocal::detail

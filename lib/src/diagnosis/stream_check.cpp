@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/stream_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "diagnosis/wording.hpp"
+#include "egocal/samples/pose_sample.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+struct Steps {
+  std::size_t all = 0, equal = 0;           ///< steps; of these the same in both streams
+  std::size_t frozen_a = 0, frozen_b = 0;   ///< one pose repeated while the other one moves
+  double travelled_a = 0, travelled_b = 0;  ///< size of the other stream's motion meanwhile
+  double travelled = 0;                     ///< size of all motions
+};
+
+/// Largest part of a motion: half-angles and half-lengths as they come.
+double size_of(const DualQuaternion& motion) {
+  return std::max(motion.real.tail<3>().norm(), motion.dual.norm());
+}
+
+Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
+  Steps steps;
+  const std::size_t n = instants.time.size();
+  const std::size_t each = std::max<std::size_t>(1, n / options.most);
+  for (std::size_t i = 0; i + 1 < n; i += each) {
+    const DualQuaternion a0 = instants.a(i), b0 = instants.b(i), a1 = instants.a(i + 1),
+                         b1 = instants.b(i + 1);
+    const DualQuaternion a = canonical_sign(conjugate(a0) * a1), b = canonical_sign(conjugate(b0) * b1);
+    const double rounding = options.same * (1 + a0.dual.norm() + b0.dual.norm());
+    const double size_a = size_of(a), size_b = size_of(b);
+    const bool still_a = size_a < rounding, still_b = size_b < rounding;
+    if (still_a && still_b) continue;
+    ++steps.all;
+    steps.travelled += std::max(size_a, size_b);
+    if ((a.vec() - b.vec()).norm() < rounding) ++steps.equal;
+    if (still_a) {
+      ++steps.frozen_a;
+      steps.travelled_a += size_b;
+    }
+    if (still_b) {
+      ++steps.frozen_b;
+      steps.travelled_b += size_a;
+    }
+  }
+  return steps;
+}
+
+Finding frozen(char which, double part) {
+  Finding finding;
+  finding.code = std::string("frozen_") + which;
+  finding.certain = true;
+  finding.message = format(
+      "%c repeats its pose during %.0f %% of the way that the other one travels: it stands still or "
+      "has no new poses.",
+      which, 100 * part);
+  finding.remedy = format("Look at the odometry of %c; use the part of the drive where both move.", which);
+  return finding;
+}
+
+Finding same_stream() {
+  Finding finding;
+  finding.code = "same_stream";
+  finding.certain = true;
+  finding.message = "Both streams are the same to rounding: one sensor was given twice.";
+  finding.remedy = "Give the poses of the other sensor.";
+  finding.T_a_b = Pose{};
+  return finding;
+}
+
+Finding samples() {
+  Finding finding;
+  finding.code = "samples";
+  finding.message = "These look like still poses of an arm rather than streams.";
+  finding.remedy = "--samples";
+  return finding;
+}
+
+/// Angles of both streams in one part of the drive, [rad]; medians, which outliers do not change.
+struct Window {
+  double begin = 0, end = 0;  ///< [s]
+  double turned = 0;
+  double difference = 0;
+
+  double misfit() const { return difference / turned; }
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<Window> windows_of(const Motions& motions, std::size_t count) {
+  std::vector<Window> windows;
+  const std::size_t n = motions.all.size();
+  for (std::size_t w = 0; w < count; ++w) {
+    const std::size_t first = w * n / count, last = (w + 1) * n / count;
+    if (first == last) return {};
+    std::vector<double> turned, difference;
+    for (std::size_t i = first; i < last; ++i) {
+      turned.push_back(0.5 * (motions.all[i].angle_a + motions.all[i].angle_b));
+      difference.push_back(std::abs(motions.all[i].angle_a - motions.all[i].angle_b));
+    }
+    windows.push_back({motions.all[first].time, motions.all[last - 1].time, median(std::move(turned)),
+                       median(std::move(difference))});
+  }
+  return windows;
+}
+
+/// What separates windows that agree from those that do not, if anything does: the widest step in the order
+/// of their misfits.
+std::optional<double> limit_of_agreement(const std::vector<Window>& windows,
+                                         const StreamCheckOptions& options) {
+  std::vector<double> misfits;
+  for (const Window& window : windows) misfits.push_back(std::max(window.misfit(), options.same));
+  std::sort(misfits.begin(), misfits.end());
+  std::optional<double> limit;
+  double widest = options.step;
+  for (std::size_t i = 1; i < misfits.size(); ++i) {
+    const double agreeing = misfits[i - 1], other = misfits[i];
+    if (agreeing > options.agree || other < options.disagree || other < widest * agreeing) continue;
+    widest = other / agreeing;
+    limit = std::sqrt(agreeing * other);
+  }
+  return limit;
+}
+
+}  // namespace
+
+std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
+                                   const StreamCheckOptions& options) {
+  std::vector<Finding> findings;
+  if (look_like_samples(a, b)) findings.push_back(samples());
+  const Steps steps = steps_of(instants, options);
+  if (steps.equal >= options.least && steps.equal == steps.all) findings.push_back(same_stream());
+  const auto check = [&](char which, std::size_t count, double travelled) {
+    if (count < options.least || !(travelled > options.least_frozen * steps.travelled)) return;
+    findings.push_back(frozen(which, travelled / steps.travelled));
+  };
+  check('a', steps.frozen_a, steps.travelled_a);
+  check('b', steps.frozen_b, steps.travelled_b);
+  return findings;
+}
+
+std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOptions& options) {
+  std::vector<Window> windows = windows_of(motions, options.windows);
+  std::erase_if(windows, [&](const Window& window) {
+    return !(window.turned > options.least_turning * motions.rotation);
+  });
+  if (windows.size() < 4) return {};
+  const std::optional<double> limit = limit_of_agreement(windows, options);
+  if (!limit) return {};
+  const auto disagrees = [&](const Window& window) { return window.misfit() > *limit; };
+  // one run of windows
+  const auto first = std::find_if(windows.begin(), windows.end(), disagrees);
+  const auto end = std::find_if_not(first, windows.end(), disagrees);
+  if (std::find_if(end, windows.end(), disagrees) != windows.end()) return {};
+  if (end - first < 2 || static_cast<std::ptrdiff_t>(windows.size()) - (end - first) < 2) return {};
+  const auto last = end - 1;
+  Finding finding;
+  finding.code = "unrelated";
+  finding.certain = true;
+  finding.time = first->begin;
+  finding.message = format(
+      "The two streams do not turn together from %.0f to %.0f s after the start, and do in the rest of the "
+      "drive: another recording, a clock that jumped, or an odometry that was lost.",
+      first->begin, last->end);
+  finding.remedy = "Use the part of the drive where the streams belong together.";
+  return {finding};
+}
+
+}  // namespace egocal::detail

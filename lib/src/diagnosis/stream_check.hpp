@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What is wrong with the streams whatever the extrinsic: one of them stands still, both are the same, they
+// are of one drive in part only, or no streams at all. "Study" is tests/bench/mistake_study.cpp.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/motions.hpp"
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal::detail {
+
+struct StreamCheckOptions {
+  std::size_t most = 4000;     ///< steps that are looked at; bounds the cost of a drive of any length
+  double same = 1e-9;          ///< of the length and of 1: poses that agree better are equal
+  std::size_t least = 20;      ///< equal steps, fewer are chance
+  double least_frozen = 0.05;  ///< of what the other stream travels meanwhile; pairing rejects it anyway
+  std::size_t windows = 10;    ///< of the drive; a part of another drive is found to a tenth
+  /// Angles of a window agree where they differ by less than this part, and may disagree from there on: noise
+  /// of a tenth of every motion stays below 0.2 in the study, unlike drives are above 0.3.
+  double agree = 0.25, disagree = 0.15;
+  double step = 4;             ///< least ratio of windows that disagree to those that agree
+  double least_turning = 0.3;  ///< of the typical motion; a window that turns less says nothing
+};
+
+/// frozen_a, frozen_b, same_stream, samples.
+std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
+                                   const StreamCheckOptions& options = {});
+
+/// unrelated, with the time from which on: part of the drive does not turn together, the rest does.
+std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOptions& options = {});
+
+}  // namespace egocal::detail

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Simulated drives with a goal: whether "reached" is true when it is said, how late it is said, and how good
+// the time still needed is at half time. The goal of each kind of drive is what its drives reach at half of
+// their length: the root mean square errors of all of them there. The table of docs/trust.md.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "egocal/cli/cli.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "egocal/online/answer.hpp"
+#include "markdown_tables.hpp"
+#include "support/simulated_drive.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace {
+
+using namespace egocal;
+using Six = std::array<double, 6>;
+
+struct Kind {
+  const char* name;
+  Terrain terrain;
+  double noise;
+  bool wanders, heavy;
+};
+constexpr Kind kinds[] = {{"road, 1 %, white", Terrain::rough, 0.01, false, false},
+                          {"road, 3 %, heavy-tailed", Terrain::rough, 0.03, false, true},
+                          {"road, 1 %, wandering", Terrain::rough, 0.01, true, false},
+                          {"free, 2 %, white", Terrain::free, 0.02, false, false},
+                          {"free, 5 %, wandering", Terrain::free, 0.05, true, false}};
+
+/// What was known of one drive at one time.
+struct Look {
+  double seconds = 0;
+  Answered answered;
+  Six error{};
+};
+
+/// Looks at one drive, evenly in time.
+std::vector<Look> looks_at(const Kind& kind, std::uint64_t seed, int poses, int looks) {
+  SimulationOptions options;
+  options.terrain = kind.terrain;
+  options.relative_noise = kind.noise;
+  options.random_walk = kind.wanders;
+  options.heavy_tails = kind.heavy;
+  options.poses = poses;
+  options.seed = seed;
+  const testing::Streams streams = testing::simulated_drive(options);
+  MotionPairing pairing{PairingOptions{}};
+  std::vector<Look> result;
+  const std::size_t n = std::min(streams.a.size(), streams.b.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    pairing.push(Side::a, streams.a[i]);
+    pairing.push(Side::b, streams.b[i]);
+    const auto next = result.size() + 1;
+    if ((i + 1) * static_cast<std::size_t>(looks) < next * n) continue;
+    Look look;
+    look.seconds = 1e-6 * static_cast<double>(streams.a[i].time_us - streams.a[0].time_us);
+    const Problem problem = pairing.problem();
+    if (problem.blocks.empty()) {
+      look.error.fill(INFINITY);
+      result.push_back(look);
+      continue;
+    }
+    const Answer answer = solve(problem, Method::dual);
+    look.answered.T_a_b = answer.T_a_b;
+    look.answered.observability = answer.observability;
+    look.answered.problem = pairing.single_stride_problem();
+    look.answered.seconds = look.seconds;
+    const detail::Vector6d error = detail::frame_a_difference(streams.T, answer.T_a_b);
+    for (std::size_t k = 0; k < 6; ++k) look.error[k] = error[static_cast<Eigen::Index>(k)];
+    result.push_back(std::move(look));
+  }
+  return result;
+}
+
+/// Root mean square of the errors of all drives at one time.
+Six rms_at(const std::vector<std::vector<Look>>& drives, std::size_t look) {
+  Six rms{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    double sum = 0;
+    for (const std::vector<Look>& drive : drives) sum += drive[look].error[k] * drive[look].error[k];
+    rms[k] = std::sqrt(sum / static_cast<double>(drives.size()));
+  }
+  return rms;
+}
+
+bool within(const Six& x, const GoalOptions& goal, double factor) {
+  for (std::size_t k = 0; k < 6; ++k)
+    if (!(std::abs(x[k]) <= factor * (k < 3 ? goal.translation : goal.rotation))) return false;
+  return true;
+}
+
+Goal goal_at(const Look& look, const GoalOptions& goal) {
+  if (look.answered.problem.blocks.empty()) return {};
+  DiagnosisOptions options;
+  options.goal = goal;
+  return diagnose(look.answered, options).goal.value_or(Goal{});
+}
+
+struct Tally {
+  int drives = 0, said = 0, right = 0, in_time = 0, asked = 0, near = 0;
+};
+
+Tally study(const Kind& kind, int count, int poses, int looks) {
+  std::vector<std::vector<Look>> drives;
+  for (int seed = 1; seed <= count; ++seed)
+    drives.push_back(looks_at(kind, 500 + static_cast<std::uint64_t>(seed), poses, looks));
+  const std::size_t half = static_cast<std::size_t>(looks) / 2 - 1;
+  const Six reached = rms_at(drives, half);
+  const GoalOptions goal{*std::max_element(reached.begin() + 3, reached.end()),
+                         *std::max_element(reached.begin(), reached.begin() + 3),
+                         {}};
+  // the first time from which on the errors of all drives keep within the goal
+  std::size_t first_true = half;
+  while (first_true > 0 && within(rms_at(drives, first_true - 1), goal, 1)) --first_true;
+  Tally tally;
+  for (const std::vector<Look>& drive : drives) {
+    ++tally.drives;
+    std::size_t said = 0;
+    while (said < drive.size() && !goal_at(drive[said], goal).reached) ++said;
+    if (said == drive.size()) continue;
+    ++tally.said;
+    tally.right += within(drive[said].error, goal, 1.96);
+    tally.in_time += drive[said].seconds <= 1.5 * drive[first_true].seconds;
+    if (said < 3) continue;
+    const Look& middle = drive[(said + 1) / 2 - 1];
+    const std::optional<double> left = goal_at(middle, goal).seconds_left;
+    ++tally.asked;
+    const double ratio = left ? *left / (drive[said].seconds - middle.seconds) : 0;
+    tally.near += ratio > 1 / 1.5 && ratio < 1.5;
+  }
+  return tally;
+}
+
+std::string part(int x, int of) {
+  return std::to_string(x) + " of " + std::to_string(of);
+}
+
+std::string content(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream all;
+  all << stream.rdbuf();
+  return all.str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::Program app(
+      "goal_study",
+      "goals of simulated drives: exit code 1 where fewer than 90 % of the goals that are said to "
+      "be reached are");
+  int drives = 100, poses = 1601, looks = 40;
+  std::string write;
+  app.add_option("--drives", drives, "of each kind").show_default();
+  app.add_option("--poses", poses, "of each drive").show_default();
+  app.add_option("--looks", looks, "at each drive").check(cli::Check::range(8, 1000)).show_default();
+  app.add_option("--write", write, "a page: put the table in its place");
+  if (const auto code = app.parse(argc, argv)) return *code;
+  bench::Table table{"goals",
+                     {{"drives", "number", "reached is said", "and true (1.96 times the goal)",
+                       "at most 1.5 times later than true", "time left within a factor 1.5 at half time"}}};
+  int said = 0, right = 0;
+  for (const Kind& kind : kinds) {
+    const Tally tally = study(kind, drives, poses, looks);
+    table.rows.push_back({kind.name, std::to_string(tally.drives), std::to_string(tally.said),
+                          part(tally.right, tally.said), part(tally.in_time, tally.said),
+                          part(tally.near, tally.asked)});
+    said += tally.said;
+    right += tally.right;
+  }
+  std::printf("%s\n", bench::markdown(table).c_str());
+  if (!write.empty()) write_whole_file(write, bench::with_table(content(write), table));
+  return 10 * right < 9 * said ? 1 : 0;
+}
