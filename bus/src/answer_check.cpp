@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "egocal/bus/check.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/ground_plane.hpp"
 
@@ -57,6 +58,7 @@ std::string AnswerCheck::take(const problem_t& message) {
     pairs_.erase(std::min_element(pairs_.begin(), pairs_.end(), [](const auto& x, const auto& y) {
       return x.second.touched < y.second.touched;
     }));
+  EGOCAL_CHECK(pairs_.size() <= max_pairs, "the number of pairs with problems is bounded");
   return {};
 }
 

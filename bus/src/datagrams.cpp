@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "egocal/bus/check.hpp"
+
 namespace egocal::bus {
 
 namespace {
@@ -181,6 +183,7 @@ Reassembly::Place Reassembly::begin_message(std::uint64_t sender, std::uint32_t 
          (partials_.size() >= options_.max_senders || held_ + memory > options_.max_total))
     drop(partials_.begin());
   held_ += memory;
+  EGOCAL_CHECK(held_ <= std::max(options_.max_total, memory), "memory of incomplete messages is bounded");
   Partial& partial = partials_.emplace_back();
   partial.sender = sender;
   partial.number = number;

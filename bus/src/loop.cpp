@@ -9,9 +9,11 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "egocal/bus/check.hpp"
 #include "egocal/error.hpp"
 #include "ending_signals.hpp"
 #include "message_queue.hpp"
@@ -79,6 +81,8 @@ struct Loop::Impl {
 
   void run_timers() {
     const std::int64_t now = clock.mono_ns();
+    EGOCAL_CHECK(now >= timers_run_ns, "the monotonic clock never goes back");
+    timers_run_ns = now;
     std::vector<TimerId> due;
     for (const Timer& timer : timers)
       if (timer.due_ns <= now) due.push_back(timer.id);
@@ -107,6 +111,7 @@ struct Loop::Impl {
   }
 
   TimerId add_timer(Duration delay, Duration period, Callback callback) {
+    EGOCAL_CHECK(callback != nullptr && period.count() >= 0, "a timer has something to do");
     timers.push_back({next_timer, clock.mono_ns() + delay.count(), period, std::move(callback)});
     return next_timer++;
   }
@@ -123,6 +128,7 @@ struct Loop::Impl {
   std::vector<Timer> timers;
   std::vector<Watch> watches;
   TimerId next_timer = 1;
+  std::int64_t timers_run_ns = std::numeric_limits<std::int64_t>::min();
   bool stopped = false;
   int ended_by = 0;
 };

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "egocal/bus/check.hpp"
+
 namespace egocal::bus {
 
 namespace {
@@ -69,10 +71,13 @@ void MessageQueue::put(Subscriber& subscriber, const Received& message) {
 }
 
 void MessageQueue::handle_one() {
+  EGOCAL_CHECK(!waiting_.empty(), "a message waits when one is handled");
   const Waiting message = std::move(waiting_.front());
   waiting_.pop_front();
   --message.subscriber->waiting;
   bytes_ -= message.bytes.size();
+  EGOCAL_CHECK(message.subscriber->waiting >= 0 && (!waiting_.empty() || bytes_ == 0),
+               "an empty queue holds no bytes");
   message.subscriber->handler({message.channel, message.bytes, message.mono_us});
 }
 

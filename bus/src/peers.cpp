@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "egocal/bus/check.hpp"
+
 namespace egocal::bus {
 
 namespace {
@@ -25,6 +27,7 @@ bool Peers::hear(const status_t& status, std::int64_t now_us) {
     peers_.erase(std::min_element(peers_.begin(), peers_.end(), [](const auto& x, const auto& y) {
       return x.second.heard_us < y.second.heard_us;
     }));
+  EGOCAL_CHECK(peers_.size() <= max_peers, "the number of peers is bounded");
   return is_new;
 }
 

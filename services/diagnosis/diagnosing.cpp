@@ -10,6 +10,7 @@
 
 #include "diagnosis/remedies.hpp"
 #include "egocal/bus/channels.hpp"
+#include "egocal/bus/check.hpp"
 #include "egocal/bus/odometry.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
@@ -110,6 +111,7 @@ void Diagnosing::look() {
 }
 
 void Diagnosing::judge(Pair& pair) {
+  EGOCAL_CHECK(pair.newest.has_value(), "a problem is there when it is judged");
   const problem_t& message = pair.newest->message;
   const Problem& problem = pair.newest->problem;
   pair.judged_seq = message.seq;

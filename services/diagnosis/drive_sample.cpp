@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/bus/check.hpp"
+
 namespace egocal::services {
 
 namespace {
@@ -20,6 +22,7 @@ void DriveSample::push(Side side, const StampedPose& pose) {
   if (!origin_us_) origin_us_ = pose.time_us + offset_of(side);
   poses.push_back(pose);
   if (full()) thin();
+  EGOCAL_CHECK(!full(), "the sample of a drive is bounded");
 }
 
 void DriveSample::begin_anew(Side side) {

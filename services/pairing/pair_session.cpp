@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "egocal/bus/check.hpp"
 #include "egocal/bus/convert.hpp"
 
 namespace egocal::services {
@@ -26,6 +27,7 @@ PairSession::PairSession(const bus::Rig& rig, std::size_t index)
 void PairSession::begin(std::int64_t time_us) {
   // session numbers only grow, so that the newest problem is known by it
   state_.session = std::max(time_us, state_.last_session + 1);
+  EGOCAL_CHECK(state_.session > state_.last_session, "session numbers only grow");
   state_.last_session = state_.session;
   drive_ = MotionPairing(options_);
   state_.seq = 0;
@@ -103,6 +105,8 @@ std::optional<problem_t> PairSession::message() {
   message.left_out = static_cast<std::int64_t>(counts.outliers);
   for (const std::uint64_t rejected : counts.rejected)
     message.rejected += static_cast<std::int64_t>(rejected);
+  EGOCAL_CHECK(message.matched >= 0 && message.left_out >= 0 && message.rejected >= 0,
+               "no count of motion pairs is negative");
   message.received_mono_us = fresh_ ? received_mono_us_ : 0;
   fresh_ = false;
   return message;

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "egocal/bus/channels.hpp"
+#include "egocal/bus/check.hpp"
 #include "egocal/bus/convert.hpp"
 
 namespace egocal::services {
@@ -48,7 +49,8 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
 }
 
 Pairing::~Pairing() {
-  if (!saved_) return;
+  // what is saved is what others know; what is in memory may be what has just been found wrong
+  if (!saved_ || std::uncaught_exceptions() > 0) return;
   try {
     saved_->snapshot(accumulation_);
   } catch (const std::exception& error) {
@@ -125,7 +127,14 @@ void Pairing::publish_new_problems() {
     });
 }
 
+/// What has been said to others survives this process, unless the disk does not take it, which is shown.
+bool Pairing::saved_or_known_not_to_be() const {
+  return !saved_ || saved_->complete() || !save_error_.empty();
+}
+
 void Pairing::publish_problem(std::size_t pair) {
+  EGOCAL_CHECK(leads(), "only the pairing process that leads sends problems");
+  EGOCAL_CHECK(saved_or_known_not_to_be(), "a problem is saved before it is sent");
   std::optional<problem_t> message = accumulation_.pairs()[pair].message();
   if (!message) return;
   message->host = loop_.host();
@@ -246,6 +255,7 @@ void Pairing::acknowledge() {
   std::vector<acknowledgement_t>& acknowledgements = heartbeat_.acknowledgements();
   acknowledgements.clear();
   if (!leads()) return;
+  EGOCAL_CHECK(saved_or_known_not_to_be(), "a message is saved before it is acknowledged");
   for (std::size_t i = 0; i < arrivals_.size(); ++i) {
     acknowledgement_t& entry = acknowledgements.emplace_back();
     entry.channel = accumulation_.sensor(i).channel;

@@ -58,6 +58,7 @@ class Pairing {
   void hear(const status_t& status);
   void show_state();
   void begin_to_send();
+  bool saved_or_known_not_to_be() const;
   bool leads() const { return !waits_for_elder_ && !listening_; }
 
   PairingServiceOptions options_;

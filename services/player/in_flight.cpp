@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "egocal/bus/check.hpp"
+
 namespace egocal::services {
 
 namespace {
@@ -77,6 +79,7 @@ bool InFlight::make_room_for(const std::string& channel) {
                                    [](const auto& entry) { return !entry.second.was_sent; });
   if (unused == channels_.end()) return false;
   channels_.erase(unused);
+  EGOCAL_CHECK(channels_.size() < most_channels, "the number of channels in flight is bounded");
   return true;
 }
 

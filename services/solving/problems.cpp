@@ -3,7 +3,10 @@
 #include "solving/problems.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "egocal/bus/check.hpp"
 
 namespace egocal::services {
 
@@ -37,6 +40,9 @@ bool AnswerOutbox::repeat(const problem_t& problem) {
 }
 
 void AnswerOutbox::send(const Answer& answer, const problem_t& problem, bool fallback) {
+  EGOCAL_CHECK(
+      answer.certificate.optimality != Optimality::certified || std::isfinite(answer.certificate.gap),
+      "a certified answer has a finite gap");
   calibration_t message = bus::to_message(answer, problem);
   message.solver = heartbeat_.identity().name;
   message.fallback = fallback;

@@ -35,6 +35,8 @@ class SavedState {
   /// Everything noted is on disk afterwards. Throws Error where that fails; a later snapshot heals it.
   void save(const Accumulation& accumulation);
   void snapshot(const Accumulation& accumulation);
+  /// Everything noted is on disk.
+  bool complete() const { return !broken_ && inputs_.bytes().empty(); }
 
  private:
   bus::Rig rig_;
