@@ -15,20 +15,51 @@ namespace {
 
 using namespace pybind11::literals;
 
+/// The numbers of n rotations or translations: one array of them all, or a sequence of arrays.
+class Rows {
+ public:
+  explicit Rows(const py::sequence& rows) {
+    size_ = rows.size();
+    if (py::isinstance<py::array>(rows)) {
+      add(rows.cast<Array>(), size_);
+      return;
+    }
+    for (const py::handle row : rows) add(row.cast<Array>(), 1);
+  }
+  std::size_t size() const { return size_; }
+  std::size_t width(std::size_t i) const { return widths_[i]; }
+  const double* operator[](std::size_t i) const { return numbers_.data() + begins_[i]; }
+
+ private:
+  void add(const Array& array, std::size_t rows) {
+    const std::size_t width = rows > 0 ? static_cast<std::size_t>(array.size()) / rows : 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      begins_.push_back(numbers_.size() + i * width);
+      widths_.push_back(width);
+    }
+    numbers_.insert(numbers_.end(), array.data(), array.data() + array.size());
+  }
+
+  std::size_t size_ = 0;
+  std::vector<double> numbers_;
+  std::vector<std::size_t> begins_, widths_;
+};
+
 /// A rotation as a matrix (3, 3) or as a rotation vector of three numbers [rad]; a translation of three.
-Pose pose_of(const py::handle& rotation, const py::handle& translation, const std::string& name) {
-  const auto R = rotation.cast<Array>(), t = translation.cast<Array>();
-  if ((R.size() != 9 && R.size() != 3) || t.size() != 3)
+Pose pose_of(const Rows& rotations, const Rows& translations, std::size_t i, const char* list) {
+  const std::string name = std::string(list) + " " + std::to_string(i);
+  const std::size_t width = rotations.width(i);
+  if ((width != 9 && width != 3) || translations.width(i) != 3)
     throw py::value_error(name +
                           ": expected a 3 x 3 rotation or a rotation vector, and 3 numbers of translation");
-  const Eigen::Vector3d vector(t.data()[0], t.data()[1], t.data()[2]);
-  if (R.size() == 3) {
-    const Eigen::Vector3d axis(R.data()[0], R.data()[1], R.data()[2]);
+  const Eigen::Map<const Eigen::Vector3d> vector(translations[i]);
+  if (width == 3) {
+    const Eigen::Vector3d axis = Eigen::Map<const Eigen::Vector3d>(rotations[i]);
     if (!axis.allFinite() || !vector.allFinite()) throw py::value_error(name + ": not finite");
     return {rotation_exp(axis), vector};
   }
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = R.data()[i];
+  matrix.topLeftCorner<3, 3>() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotations[i]);
   matrix.topRightCorner<3, 1>() = vector;
   return to_pose(matrix, name.c_str());
 }
@@ -37,9 +68,10 @@ std::vector<Pose> poses_of(const py::sequence& rotations, const py::sequence& tr
                            const char* name) {
   if (rotations.size() != translations.size())
     throw py::value_error(std::string(name) + ": as many rotations as translations are expected");
+  const Rows R(rotations), t(translations);
   std::vector<Pose> poses;
-  for (std::size_t i = 0; i < rotations.size(); ++i)
-    poses.push_back(pose_of(rotations[i], translations[i], std::string(name) + " " + std::to_string(i)));
+  poses.reserve(R.size());
+  for (std::size_t i = 0; i < R.size(); ++i) poses.push_back(pose_of(R, t, i, name));
   return poses;
 }
 

@@ -122,6 +122,19 @@ def test_hand_eye_has_opencvs_signature(n):
     assert np.allclose(R, X[:3, :3], atol=1e-9) and np.allclose(t, X[:3, 3], atol=1e-9)
 
 
+def test_hand_eye_takes_one_array_of_all_poses_as_well():
+    rng = np.random.default_rng(3)
+    X, target = random_pose(rng), random_pose(rng)
+    gripper = np.array([random_pose(rng) for _ in range(7)])
+    seen = np.linalg.inv(gripper @ X) @ target
+    lists = [list(gripper[:, :3, :3]), list(gripper[:, :3, 3]), list(seen[:, :3, :3]), list(seen[:, :3, 3])]
+    arrays = [gripper[:, :3, :3], gripper[:, :3, 3:], seen[:, :3, :3], seen[:, :3, 3]]  # (7, 3, 1) and (7, 3)
+    for by_lists, by_arrays in zip(egocal.calibrate_hand_eye(*lists), egocal.calibrate_hand_eye(*arrays)):
+        assert np.array_equal(by_lists, by_arrays)
+    with pytest.raises(ValueError, match="target2cam 0: expected a 3 x 3"):
+        egocal.calibrate_hand_eye(arrays[0], arrays[1], seen[:, :2, :3], arrays[3])
+
+
 def test_hand_eye_finds_the_wrong_pose_and_the_target():
     rng = np.random.default_rng(11)
     X, target = random_pose(rng), random_pose(rng)

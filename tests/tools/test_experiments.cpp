@@ -146,20 +146,38 @@ TEST(Noise, ErrorsFallWithThePairsAndRiseWithTheNoise) {
   for (const NoisePoint& point : points) EXPECT_EQ(point.certified, point.runs);
 }
 
-TEST(Noise, SlopesAreThoseOfThePoints) {
+TEST(Noise, SlopesAreTheMeanOfThoseOfTheRuns) {
   std::vector<NoisePoint> points;
   for (const int n : {50, 200, 400, 800}) {
     NoisePoint point;
     point.level = 0.1;
     point.pairs = n;
-    point.translation.median = n < 100 ? 7 : 3 / std::sqrt(n);  // too few pairs are not looked at
-    point.rotation.median = 0.1 / n;
+    // too few pairs are not looked at; one run falls with -0.4, one with -0.6
+    const double few = n < 100 ? 7 : 1;
+    point.translations = {few * 3 * std::pow(n, -0.4), few * 8 * std::pow(n, -0.6)};
+    point.rotations = {0.1 / n, 0.3 / n};
     points.push_back(point);
   }
   const std::vector<NoiseSlope> found = slopes(points);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_NEAR(found[0].translation, -0.5, 1e-9);
-  EXPECT_NEAR(found[0].rotation, -1, 1e-9);
+  EXPECT_NEAR(found[0].translation.mean, -0.5, 1e-9);
+  EXPECT_NEAR(found[0].translation.standard_error, 0.1, 1e-9);
+  EXPECT_NEAR(found[0].rotation.mean, -1, 1e-9);
+  EXPECT_NEAR(found[0].rotation.standard_error, 0, 1e-9);
+}
+
+TEST(Noise, ErrorsFallWithTheRootOfTheNumberOfPairs) {
+  NoiseOptions options;
+  options.levels = {0.02};
+  options.sizes = 15;
+  options.sensors = 8;
+  options.repeats = 12;
+  options.mixed = true;
+  const NoiseSlope found = slopes(noise_experiment(options, {})).front();
+  for (const Exponent& exponent : {found.translation, found.rotation}) {
+    EXPECT_LT(exponent.standard_error, 0.05);
+    EXPECT_NEAR(exponent.mean, -0.5, 0.05 + 2 * exponent.standard_error);
+  }
 }
 
 std::string content_of(const std::string& file) {

@@ -73,8 +73,11 @@ void add_noise(cli::App experiment) {
     const std::vector<NoisePoint> points = noise_experiment(options->noise, Progress{});
     finish(points, options->out, "noise");
     for (const NoiseSlope& slope : slopes(points))
-      fmt::print("noise {:g} %: errors fall with n^{:.2f} (translation), n^{:.2f} (rotation)\n",
-                 100 * slope.level, slope.translation, slope.rotation);
+      fmt::print(
+          "noise {:g} %: errors fall with n^({:.2f} +- {:.2f}) (translation), n^({:.2f} +- {:.2f}) "
+          "(rotation)\n",
+          100 * slope.level, slope.translation.mean, slope.translation.standard_error, slope.rotation.mean,
+          slope.rotation.standard_error);
   });
 }
 

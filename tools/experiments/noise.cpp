@@ -84,6 +84,26 @@ double slope(const std::vector<double>& sizes, const std::vector<double>& errors
   return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
 }
 
+/// Mean of the slopes of the runs, and its standard error.
+Exponent exponent(const std::vector<const NoisePoint*>& points,
+                  std::vector<double> NoisePoint::*errors_of_runs) {
+  std::vector<double> sizes, slopes;
+  for (const NoisePoint* point : points) sizes.push_back(point->pairs);
+  const std::size_t runs = points.empty() ? 0 : (points.front()->*errors_of_runs).size();
+  for (std::size_t run = 0; run < runs; ++run) {
+    std::vector<double> errors;
+    for (const NoisePoint* point : points) errors.push_back((point->*errors_of_runs)[run]);
+    slopes.push_back(slope(sizes, errors));
+  }
+  const auto n = static_cast<double>(runs);
+  Exponent result;
+  double squares = 0;
+  for (const double one : slopes) result.mean += one / n;
+  for (const double one : slopes) squares += (one - result.mean) * (one - result.mean);
+  result.standard_error = runs > 1 ? std::sqrt(squares / (n * (n - 1))) : 0;
+  return result;
+}
+
 /// One curve a noise level, with the band between the quartiles.
 Plot error_plot(const std::vector<NoisePoint>& points, const std::string& title, const std::string& unit,
                 NoisePoint::Errors NoisePoint::*errors, double factor) {
@@ -155,16 +175,15 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
       NoisePoint point;
       point.level = level;
       point.pairs = size;
-      std::vector<double> translations, rotations;
       for (const Sample& run : runs) {
-        translations.push_back(run.translation);
-        rotations.push_back(run.rotation);
+        point.translations.push_back(run.translation);
+        point.rotations.push_back(run.rotation);
         point.certified += run.certified;
         point.solve_seconds += run.seconds;
         ++point.runs;
       }
-      point.translation = errors_of(translations);
-      point.rotation = errors_of(rotations);
+      point.translation = errors_of(point.translations);
+      point.rotation = errors_of(point.rotations);
       points.push_back(point);
     }
   }
@@ -172,26 +191,21 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
 }
 
 std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points) {
-  constexpr int least_pairs = 100;  // below, the motions of one short road decide
+  constexpr int least_pairs = 100;  // below, single motions decide
   std::vector<NoiseSlope> result;
   std::vector<double> levels;
   for (const NoisePoint& point : points)
     if (levels.empty() || levels.back() != point.level) levels.push_back(point.level);
   for (const double level : levels) {
-    std::vector<double> sizes, translations, rotations;
+    std::vector<const NoisePoint*> sizes;
     for (const int least : {least_pairs, 0}) {
       if (sizes.size() >= 3) break;
       sizes.clear();
-      translations.clear();
-      rotations.clear();
-      for (const NoisePoint& point : points) {
-        if (point.level != level || point.pairs <= least) continue;
-        sizes.push_back(point.pairs);
-        translations.push_back(point.translation.median);
-        rotations.push_back(point.rotation.median);
-      }
+      for (const NoisePoint& point : points)
+        if (point.level == level && point.pairs > least) sizes.push_back(&point);
     }
-    result.push_back({level, slope(sizes, translations), slope(sizes, rotations)});
+    result.push_back(
+        {level, exponent(sizes, &NoisePoint::translations), exponent(sizes, &NoisePoint::rotations)});
   }
   return result;
 }

@@ -21,8 +21,7 @@ struct NoiseOptions {
   int sensors = 8;          ///< poses of sensor b
   int repeats = 8;          ///< runs of each
   /// A number of pairs is a sample of the whole drive and not its beginning: every size sees the same kinds
-  /// of motion, and what is left is how noise averages. Exponents of the errors up to 10 % noise, full size:
-  /// -0.52 to -0.63 without, -0.45 to -0.58 with it (docs/paper.md).
+  /// of motion, and what is left is how noise averages (docs/paper.md).
   bool mixed = false;
   std::uint64_t seed = 1;
 };
@@ -35,6 +34,8 @@ struct NoisePoint {
     double median = 0, lower_quartile = 0, upper_quartile = 0, worst = 0;
   };
   Errors translation, rotation;
+  /// The errors themselves, run by run: sensors, and repeats of each.
+  std::vector<double> translations, rotations;
   int certified = 0, runs = 0;
   double solve_seconds = 0;  ///< of solving and proving, all runs together
 };
@@ -44,11 +45,16 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
                                          const std::function<void(double)>& progress);
 
 std::string csv(const std::vector<NoisePoint>& points);
-/// How the errors of one noise level fall with the number of pairs: exponents of n, fitted to the medians
-/// where n > 100 (all of them where fewer than three are). -1/2 is what independent noise gives.
+/// How the errors of one noise level fall with the number of pairs: exponents of n where n > 100 (all sizes
+/// where fewer than three are). Each run gives one, by the line through (log n, log error); this is their
+/// mean, so that near and far sensors count alike, and its standard error. -1/2 is what independent noise
+/// gives. The errors of one run are those of a growing set of motions: a single slope scatters by 0.3 to 0.4.
+struct Exponent {
+  double mean = 0, standard_error = 0;
+};
 struct NoiseSlope {
   double level = 0;
-  double translation = 0, rotation = 0;
+  Exponent translation, rotation;
 };
 std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points);
 

@@ -132,11 +132,19 @@ std::string figure_4_part(const PaperOptions& options, const PaperData&, const P
   text += figures_html(drawn) +
           "<table>\n<tr><th>noise</th><th>translation falls with</th><th>rotation falls with</th></tr>\n";
   for (const NoiseSlope& slope : slopes(points))
-    text += fmt::format("<tr><td>{:g} %</td><td>n<sup>{:.2f}</sup></td><td>n<sup>{:.2f}</sup></td></tr>\n",
-                        100 * slope.level, slope.translation, slope.rotation);
+    text += fmt::format(
+        "<tr><td>{:g} %</td><td>n<sup>{:.2f} &plusmn; {:.2f}</sup></td><td>n<sup>{:.2f} &plusmn; "
+        "{:.2f}</sup></td></tr>\n",
+        100 * slope.level, slope.translation.mean, slope.translation.standard_error, slope.rotation.mean,
+        slope.rotation.standard_error);
+  const NoisePoint& last = points.back();
   return text +
-         "</table>\n<p>Medians for n &gt; 100; independent noise gives n<sup>-0.5</sup>. Bands: "
-         "quartiles.</p>\n";
+         fmt::format(
+             "</table>\n<p>Mean of the slopes of all runs for n &gt; 100, with its standard error; "
+             "independent noise gives n<sup>-0.5</sup>. Errors of a rotation end at half a turn: at {:g} % "
+             "noise and {} motions the median is {:.0f} deg, where no slope of -0.5 can be. Bands: "
+             "quartiles.</p>\n",
+             100 * last.level, last.pairs, last.rotation.median * 180 / std::numbers::pi);
 }
 
 std::string figure_5_part(const PaperOptions& options, const PaperData& data, const PartProgress&) {
