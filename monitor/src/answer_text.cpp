@@ -12,7 +12,7 @@ double seconds(std::int64_t from_us, std::int64_t to_us) {
 }
 
 double scale_of(int direction) {
-  return direction < 3 ? kCentimetres : kDegrees;
+  return direction < 3 ? centimetres : degrees;
 }
 
 bool from_ground(const PairState& pair, int direction) {
@@ -36,11 +36,11 @@ std::string spread(const PairState& pair, const calibration_t& answer, int direc
 }
 
 std::string centimetres(double metres, Charset charset) {
-  const double value = metres * kCentimetres;
+  const double value = metres * centimetres;
   return number(value, std::abs(value) < 100 ? 2 : 1, charset) + " cm";
 }
 std::string degrees(double radians, Charset charset) {
-  const double value = radians * kDegrees;
+  const double value = radians * degrees;
   return number(value, std::abs(value) < 10 ? 3 : 1, charset) + (charset == Charset::unicode ? "°" : " deg");
 }
 
@@ -52,7 +52,7 @@ std::string missing_directions(const PairState& pair, const calibration_t& answe
   std::string text;
   for (int i = 0; i < 6; ++i)
     if (!shown_by_motion(answer, i) && !from_ground(pair, i))
-      text += (text.empty() ? "" : " ") + std::string(kDirections[i]);
+      text += (text.empty() ? "" : " ") + std::string(direction_names[i]);
   return text;
 }
 

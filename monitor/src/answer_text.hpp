@@ -15,9 +15,9 @@ namespace egocal::monitor {
 
 // What an answer says, in words and numbers for people: degrees and centimetres.
 
-inline constexpr double kDegrees = 180.0 / std::numbers::pi;
-inline constexpr double kCentimetres = 100.0;
-inline constexpr const char* kDirections[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
+inline constexpr double degrees = 180.0 / std::numbers::pi;
+inline constexpr double centimetres = 100.0;
+inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 double seconds(std::int64_t from_us, std::int64_t to_us);
 /// From SI to what is shown, by direction (x y z roll pitch yaw).

@@ -54,16 +54,16 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     pane.text(2, 1, "no answer yet", Style::dim);
     return;
   }
-  constexpr int kLabel = 8;
+  constexpr int label_width = 8;
   const int number_width = charset == Charset::unicode ? 9 : 11;  // "±11.05 cm", "+-0.017 deg"
-  const int length = std::max(4, pane.width() - kLabel - number_width - 2);
+  const int length = std::max(4, pane.width() - label_width - number_width - 2);
   for (int i = 0; i < 6; ++i) {
     const int y = 1 + i;
-    pane.text(2, y, kDirections[i], Style::normal);
+    pane.text(2, y, direction_names[i], Style::normal);
     const bool ground = from_ground(pair, i);
     const bool known = shown_by_motion(*answer, i);
     // from a metre (10 degrees) of doubt, an empty bar, to a millimetre (a hundredth of a degree), a full one
-    const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : kDegrees / 10.0);
+    const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : degrees / 10.0);
     double filled =
         known && doubt >= 0 ? std::clamp(-std::log10(std::max(doubt, 1e-9)) / 3.0, 0.0, 1.0) : 0.0;
     if (ground) filled = 0;
@@ -73,12 +73,12 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
                                        : Style::good;
     const int full = static_cast<int>(std::lround(filled * length));
     for (int k = 0; k < length; ++k)
-      pane.text(kLabel + k, y, k < full ? s.bar_full : s.bar_empty, k < full ? style : Style::dim);
+      pane.text(label_width + k, y, k < full ? s.bar_full : s.bar_empty, k < full ? style : Style::dim);
     const std::string text = ground   ? "plane"
                              : !known ? "not shown"
                                       : s.plus_minus + (i < 3 ? centimetres(answer->stddev[i], charset)
                                                               : degrees(answer->stddev[i], charset));
-    pane.text(kLabel + length + 1, y, pad_left(text, number_width),
+    pane.text(label_width + length + 1, y, pad_left(text, number_width),
               known || ground ? Style::dim : Style::bad);
   }
   pane.text(2, 7, answer->hint.empty() ? "the motions show everything" : clean(answer->hint, 120),
@@ -92,9 +92,10 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     pane.text(2, 1, "no answer yet", Style::dim);
     return;
   }
-  constexpr int kLabel = 10, kNarrow = 10;
-  const int room = pane.width() - kLabel;
-  const int columns = std::min<int>({static_cast<int>(pair.solvers.size()), std::max(1, room / kNarrow), 3});
+  constexpr int label_width = 10, narrow_width = 10;
+  const int room = pane.width() - label_width;
+  const int columns =
+      std::min<int>({static_cast<int>(pair.solvers.size()), std::max(1, room / narrow_width), 3});
   const int w = std::min(20, room / columns);
   const int indent = w >= 14 ? 2 : 0;
   // always in the same place; where there is no room for all, the freshest
@@ -112,16 +113,16 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
   std::vector<std::string> labels{"method", "optimal", "gap",
                                   spread_rows ? s.plus_minus + std::string(" t") : "error t",
                                   spread_rows ? s.plus_minus + std::string(" R") : "error R"};
-  if (transforms) labels.insert(labels.end(), std::begin(kDirections), std::end(kDirections));
+  if (transforms) labels.insert(labels.end(), std::begin(direction_names), std::end(direction_names));
   for (const char* label : {"cost", "solve", "verify", "total", "frames", "age"}) labels.emplace_back(label);
   for (std::size_t i = 0; i < labels.size(); ++i)
-    pane.text(2, 2 + static_cast<int>(i), pad_right(labels[i], kLabel - 3), Style::dim);
+    pane.text(2, 2 + static_cast<int>(i), pad_right(labels[i], label_width - 3), Style::dim);
 
   for (int c = 0; c < columns; ++c) {
     const SolverTrack& solver = *order[static_cast<std::size_t>(c)];
     const calibration_t& answer = solver.answer;
     const Shown own = shown_of(pair, answer);
-    const Pane column = pane.part({kLabel + c * w, 0, w - 1, pane.height()});
+    const Pane column = pane.part({label_width + c * w, 0, w - 1, pane.height()});
     const std::string mark = &solver == pair.counted_solver() ? s.cursor : " ";
     column.text(0, 1, mark + (indent ? " " : "") + short_solver(solver.name), solver_style(solver.role));
     int row = 2;
@@ -178,16 +179,16 @@ void draw_direction(const Pane& pane, const PairState& pair, bool inverted, bool
   const Eigen::Quaterniond& q = T.rotation;
   const int fine = cell - 4;  // decimals of what lies between -1 and 1
   row(1, "x y z",
-      {number(t.x() * kCentimetres, 2, charset), number(t.y() * kCentimetres, 2, charset),
-       number(t.z() * kCentimetres, 2, charset)},
+      {number(t.x() * centimetres, 2, charset), number(t.y() * centimetres, 2, charset),
+       number(t.z() * centimetres, 2, charset)},
       "cm");
   row(2, "q wxyz",
       {number(q.w(), fine, charset), number(q.x(), fine, charset), number(q.y(), fine, charset),
        number(q.z(), fine, charset)},
       "");
   row(3, "r p y",
-      {number(rpy.x() * kDegrees, 3, charset), number(rpy.y() * kDegrees, 3, charset),
-       number(rpy.z() * kDegrees, 3, charset)},
+      {number(rpy.x() * degrees, 3, charset), number(rpy.y() * degrees, 3, charset),
+       number(rpy.z() * degrees, 3, charset)},
       symbols(charset).degree);
   if (!matrix) return;
   const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
@@ -214,11 +215,11 @@ void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewSt
   switch (plot.curve) {
     case rotation_error:
       plot.title = std::string("rotation ") + kind + (unicode ? " [°]" : " [deg]");
-      plot.scale = kDegrees;
+      plot.scale = degrees;
       break;
     case translation_error:
       plot.title = std::string("translation ") + kind + " [cm]";
-      plot.scale = kCentimetres;
+      plot.scale = centimetres;
       break;
     case scaled_gap:
       // the global solution's gap is zero; what matters is how far the fast one is from needing it

@@ -8,9 +8,9 @@
 
 namespace egocal::monitor {
 namespace {
-constexpr double kFinest = 0.1;  // [s]
+constexpr double finest_s = 0.1;  // [s]
 double width_of_level(std::size_t level) {
-  return kFinest * std::pow(8.0, static_cast<double>(level));
+  return finest_s * std::pow(8.0, static_cast<double>(level));
 }
 }  // namespace
 
@@ -22,11 +22,11 @@ void History::add(double time, const std::array<double, curve_count>& values) {
     return;
   }
   last_ = time;
-  for (std::size_t level = 0; level < kLevels; ++level) {
+  for (std::size_t level = 0; level < levels; ++level) {
     std::deque<Slice>& course = levels_[level];
     const double begin = std::floor(time / width_of_level(level)) * width_of_level(level);
     if (course.empty() || begin > course.back().begin) {
-      if (course.size() == kSlices) course.pop_front();
+      if (course.size() == slices) course.pop_front();
       course.emplace_back().begin = begin;
       course.back().low.fill(std::numeric_limits<float>::quiet_NaN());
       course.back().high.fill(std::numeric_limits<float>::quiet_NaN());
@@ -43,7 +43,7 @@ void History::add(double time, const std::array<double, curve_count>& values) {
 
 const std::deque<Slice>& History::since(double time) const {
   for (const std::deque<Slice>& course : levels_)
-    if (course.size() < kSlices || course.front().begin <= time) return course;
+    if (course.size() < slices || course.front().begin <= time) return course;
   return levels_.back();
 }
 

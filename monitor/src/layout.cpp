@@ -7,8 +7,8 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr int kSummaryRows = 4;
-constexpr int kMostVerdictRows = 4;
+constexpr int summary_rows = 4;
+constexpr int most_verdict_rows = 4;
 
 struct Frame {
   Rect header, body, keys;
@@ -38,9 +38,9 @@ OverviewLayout layout_overview(int width, int height, int pairs, int processes, 
   layout.titles = rows >= 8;
   if (!layout.titles) {
     layout.pairs = frame.body;
-    if (rows >= pairs + kSummaryRows) {  // room for the chosen pair in full
-      layout.pairs.h = rows - kSummaryRows;
-      layout.summary = {0, frame.body.y + layout.pairs.h, width, kSummaryRows};
+    if (rows >= pairs + summary_rows) {  // room for the chosen pair in full
+      layout.pairs.h = rows - summary_rows;
+      layout.summary = {0, frame.body.y + layout.pairs.h, width, summary_rows};
     }
     return layout;
   }
@@ -123,7 +123,7 @@ DetailLayout layout_detail(int width, int height) {
   };
 
   if (body.w >= 76 && body.h >= 18) {
-    const int verdict_rows = std::clamp(body.h - 18, 0, kMostVerdictRows);
+    const int verdict_rows = std::clamp(body.h - 18, 0, most_verdict_rows);
     layout.verdict = {0, body.y, body.w, verdict_rows};
     const int top = body.y + verdict_rows, rows = body.h - verdict_rows;
     layout.matrices = rows >= 24;
@@ -139,7 +139,7 @@ DetailLayout layout_detail(int width, int height) {
     return layout;
   }
 
-  const int summary = std::min(body.h, kSummaryRows);
+  const int summary = std::min(body.h, summary_rows);
   layout.summary = {0, body.y, body.w, summary};
   Rect rest{0, body.y + summary, body.w, body.h - summary};
   if (rest.h >= 8 + 8 && rest.w >= 28) {

@@ -13,20 +13,20 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 // A verdict or a fallback must have lasted this long before its end is an event: solvers alternate, people do
 // not.
-constexpr double kSettle = 1.0;             // [s]
-constexpr double kLongest = 366 * 86400.0;  // [s] no session lasts longer: a time beyond it is none
-constexpr double kManyLeftOut = 0.05;       // more than this says that a sensor is at fault
-constexpr double kRepeat = 30.0;            // [s] the same event again within this time is only counted
+constexpr double settle_s = 1.0;             // [s]
+constexpr double longest_s = 366 * 86400.0;  // [s] no session lasts longer: a time beyond it is none
+constexpr double many_outliers = 0.05;       // more than this says that a sensor is at fault
+constexpr double repeat_s = 30.0;            // [s] the same event again within this time is only counted
 
 double seconds(std::int64_t from_us, std::int64_t to_us) {
   return (static_cast<double>(to_us) - static_cast<double>(from_us)) * 1e-6;
 }
 
 std::string bounded(const std::string& text) {
-  return text.substr(0, Model::kMaxText);
+  return text.substr(0, Model::max_text);
 }
 
 std::string rounded(double value, int decimals) {
@@ -89,7 +89,7 @@ std::optional<Pose> pose_from(const double pos[3], const double quat_wxyz[4]) {
 PairState* Model::find_pair(const std::string& a, const std::string& b) {
   for (PairState& pair : pairs_)
     if (pair.a == a && pair.b == b) return &pair;
-  if (pairs_.size() == kMaxPairs) {
+  if (pairs_.size() == max_pairs) {
     ++ignored_;
     return nullptr;
   }
@@ -110,7 +110,7 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
   for (std::size_t i = 1; i <= recent; ++i) {
     Event& event = events_[events_.size() - i];
     if (event.subject != subject) continue;
-    if (event.text == text && seconds(event.at.mono_us, now.mono_us) < kRepeat) {
+    if (event.text == text && seconds(event.at.mono_us, now.mono_us) < repeat_s) {
       ++event.repeated;
       return;
     }
@@ -118,7 +118,7 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
     if (severity == Severity::good || severity == Severity::bad) break;
   }
   ++events_seen_;
-  if (events_.size() == kMaxEvents) events_.pop_front();
+  if (events_.size() == max_events) events_.pop_front();
   events_.push_back({now, severity, subject, text, 1});
 }
 
@@ -153,7 +153,7 @@ void Model::on_problem(const problem_t& message, Now now) {
     }
   }
   if (pair->paused && message.seq > pair->problem.seq && message.session == pair->problem.session &&
-      seconds(pair->paused_mono_us, now.mono_us) > kSettle)
+      seconds(pair->paused_mono_us, now.mono_us) > settle_s)
     pair->paused = false;  // it was resumed, or the command was lost
   if (pair->silent) note(Severity::good, name, "the stream is back", now);
   const bool chosen_anew = pair->has_problem && pair->problem.stride != message.stride;
@@ -174,12 +174,12 @@ void Model::on_problem(const problem_t& message, Now now) {
          now);
 
   const double share = share_left_out(kept);
-  if (share > kManyLeftOut && share > 2 * pair->reported_left_out) {
+  if (share > many_outliers && share > 2 * pair->reported_left_out) {
     pair->reported_left_out = share;
     note(Severity::warning, name,
          rounded(100 * share, 0) + " % of the motions contradict the others and are rejected as outliers",
          now);
-  } else if (share < 0.5 * kManyLeftOut) {
+  } else if (share < 0.5 * many_outliers) {
     pair->reported_left_out = 0;
   }
 
@@ -211,7 +211,7 @@ Role Model::role_of(const calibration_t& message) const {
 
 Shown shown_of(const PairState& pair, const calibration_t& answer) {
   Shown shown;
-  shown.error_translation = shown.error_rotation = kNaN;
+  shown.error_translation = shown.error_rotation = not_a_number;
   std::optional<Pose> reference;
   if (pair.has_problem && pair.problem.has_truth) {
     reference = pose_from(pair.problem.truth_pos, pair.problem.truth_quat);
@@ -251,7 +251,7 @@ void Model::watch_certificate(PairState& pair, Now now) {
     if (!pair.certified) note(Severity::good, name, "optimal (proven), by " + answer->solver, now);
     pair.certified = true;
     pair.certified_mono_us = now.mono_us;
-  } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > kSettle) {
+  } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > settle_s) {
     pair.certified = false;
     note(Severity::bad, name,
          answer->status == 1 ? "proof lost: a better answer is known" : "proof lost: too imprecise to decide",
@@ -273,7 +273,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   for (SolverTrack& candidate : pair->solvers)
     if (candidate.name == solver) track = &candidate;
   if (!track) {
-    if (pair->solvers.size() == kMaxSolvers) {
+    if (pair->solvers.size() == max_solvers) {
       // a long session of swapped solvers: the one that has been silent the longest makes room
       auto oldest =
           std::min_element(pair->solvers.begin(), pair->solvers.end(),
@@ -323,7 +323,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
       note(Severity::warning, name, "fallback: " + solver + " asked for the global solver", now);
     pair->fallback = true;
     pair->fallback_mono_us = now.mono_us;
-  } else if (pair->fallback && seconds(pair->fallback_mono_us, now.mono_us) > kSettle) {
+  } else if (pair->fallback && seconds(pair->fallback_mono_us, now.mono_us) > settle_s) {
     pair->fallback = false;
     note(Severity::good, name, "only the fast solver runs again", now);
   }
@@ -340,10 +340,10 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   // where the fast process solved globally itself, its own solution is not known
   const bool own_solution =
       track->role != Role::fast || (message.method != "dual" && message.method != "sdp");
-  values[scaled_gap] = own_solution ? message.scaled_gap : kNaN;
+  values[scaled_gap] = own_solution ? message.scaled_gap : not_a_number;
   values[execution_time] =
       (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
-  if (time >= 0 && time < kLongest) track->history.add(time, values);
+  if (time >= 0 && time < longest_s) track->history.add(time, values);
   count_answer(*pair, now);
 }
 
@@ -357,7 +357,7 @@ void Model::on_status(const status_t& message, Now now) {
   const std::string state_text = bounded(message.state), error = bounded(message.last_error);
   const std::optional<bus::State> state = bus::state_from_name(message.state);
   if (!process) {
-    if (processes_.size() == kMaxProcesses) {
+    if (processes_.size() == max_processes) {
       auto gone = std::find_if(processes_.begin(), processes_.end(), [](const auto& p) { return !p.alive; });
       if (gone == processes_.end()) {
         ++ignored_;

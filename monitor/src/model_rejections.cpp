@@ -9,21 +9,21 @@ namespace egocal::monitor {
 
 namespace {
 
-constexpr std::size_t kMostReasons = 64;
-const std::string kPrefix = "rejected: ";
+constexpr std::size_t most_reasons = 64;
+const std::string prefix = "rejected: ";
 
 }  // namespace
 
 /// The first of each kind is an event.
 void Model::watch_rejections(ProcessState& process, const status_t& message, Now now) {
   for (const counter_t& counter : message.counters) {
-    if (counter.value <= 0 || !counter.name.starts_with(kPrefix)) continue;
-    const std::string reason = counter.name.substr(kPrefix.size(), kMaxText);
+    if (counter.value <= 0 || !counter.name.starts_with(prefix)) continue;
+    const std::string reason = counter.name.substr(prefix.size(), max_text);
     const auto known = std::find_if(process.rejections.begin(), process.rejections.end(),
                                     [&](const bus::Refusal& refusal) { return refusal.reason == reason; });
     if (known != process.rejections.end()) {
       known->count = counter.value;
-    } else if (process.rejections.size() < kMostReasons) {
+    } else if (process.rejections.size() < most_reasons) {
       process.rejections.push_back({reason, bus::cure_of_rejection(reason), counter.value});
       const std::string& cure = process.rejections.back().cure;
       note(Severity::info, process.status.name, "rejects: " + reason + (cure.empty() ? "" : ": " + cure),

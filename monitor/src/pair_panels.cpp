@@ -73,7 +73,7 @@ void draw_transform(const Pane& pane, int y, const PairState& pair, const calibr
     pane.text(4, y + row, row == 0 ? "translation" : "rotation", Style::dim);
     int x = 17;
     for (int i = 3 * row; i < 3 * row + 3; ++i) {
-      pane.text(x, y + row, pad_left(kDirections[i], 5), Style::dim);
+      pane.text(x, y + row, pad_left(direction_names[i], 5), Style::dim);
       const auto d = static_cast<std::size_t>(i);
       const bool known = shown_by_motion(answer, i) || from_ground(pair, i);
       pane.text(x + 5, y + row, pad_left(number(values[d] * scale_of(i), 2, charset), 8),

@@ -19,10 +19,10 @@ class Dots {
 
   void set(int x, int y, Style style) {
     if (x < 0 || y < 0 || x >= width() || y >= height()) return;
-    static constexpr unsigned kBit[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+    static constexpr unsigned dot_bits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
     if (charset_ == Charset::unicode) {
       Dot& cell = cells_[static_cast<std::size_t>(y / 4 * w_ + x / 2)];
-      cell.bits |= kBit[y % 4][x % 2];
+      cell.bits |= dot_bits[y % 4][x % 2];
       cell.style = style;
     } else {
       Dot& cell = cells_[static_cast<std::size_t>(y * w_ + x)];
@@ -71,8 +71,8 @@ double round_step(double size) {
 }  // namespace
 
 void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
-  constexpr int kLabel = 8;
-  const int w = pane.width() - kLabel - 2, h = pane.height() - 2;
+  constexpr int label_width = 8;
+  const int w = pane.width() - label_width - 2, h = pane.height() - 2;
   pane.text(1, 0, pad_right(plot.title, pane.width() - 1), Style::strong);
   if (w < 4 || h < 1) return;
 
@@ -94,7 +94,7 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
   if (plot.threshold && (usable(*plot.threshold))) range.take(*plot.threshold);
   if (range.empty()) {
     const std::string text = "no values yet";
-    pane.text(kLabel + std::max(0, (w - width_of(text)) / 2), 1 + h / 2, text, Style::dim);
+    pane.text(label_width + std::max(0, (w - width_of(text)) / 2), 1 + h / 2, text, Style::dim);
     return;
   }
   double low = range.low, high = range.high, step = 1;
@@ -120,11 +120,11 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
     const double value = plot.logarithmic ? std::pow(10.0, axis) : axis;
     const int row = row_of(axis);
     if (row < 0 || row >= h) return;
-    pane.text(0, 1 + row, pad_left(compact(value, charset), kLabel - 1), Style::dim);
-    pane.text(kLabel, 1 + row, charset == Charset::unicode ? "┤" : "+", Style::dim);
+    pane.text(0, 1 + row, pad_left(compact(value, charset), label_width - 1), Style::dim);
+    pane.text(label_width, 1 + row, charset == Charset::unicode ? "┤" : "+", Style::dim);
   };
   for (int row = 0; row < h; ++row)
-    pane.text(kLabel, 1 + row, charset == Charset::unicode ? "│" : "|", Style::dim);
+    pane.text(label_width, 1 + row, charset == Charset::unicode ? "│" : "|", Style::dim);
   if (plot.logarithmic) {
     const int decades = static_cast<int>(high - low);
     const int every = std::max(1, (2 * decades + h - 1) / std::max(1, h));
@@ -135,14 +135,15 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
   const auto time_text = [&](double time) { return number(time, span < 10 ? 1 : 0, charset); };
   const std::string from = time_text(plot.begin), to = time_text(plot.end) + " s",
                     middle = time_text(plot.begin + 0.5 * span);
-  pane.text(kLabel, 1 + h, charset == Charset::unicode ? "└" : "+", Style::dim);
-  for (int x = 0; x < w; ++x) pane.text(kLabel + 1 + x, 1 + h, symbols(charset).line, Style::dim);
-  pane.text(kLabel + 1, 1 + h, from, Style::dim);
-  if (w > width_of(from) + width_of(to) + 1) pane.text(kLabel + 1 + w - width_of(to), 1 + h, to, Style::dim);
+  pane.text(label_width, 1 + h, charset == Charset::unicode ? "└" : "+", Style::dim);
+  for (int x = 0; x < w; ++x) pane.text(label_width + 1 + x, 1 + h, symbols(charset).line, Style::dim);
+  pane.text(label_width + 1, 1 + h, from, Style::dim);
+  if (w > width_of(from) + width_of(to) + 1)
+    pane.text(label_width + 1 + w - width_of(to), 1 + h, to, Style::dim);
   if (w > 2 * (width_of(to) + width_of(middle)) + 6)
-    pane.text(kLabel + 1 + (w - width_of(middle)) / 2, 1 + h, middle, Style::dim);
+    pane.text(label_width + 1 + (w - width_of(middle)) / 2, 1 + h, middle, Style::dim);
 
-  const Pane field = pane.part({kLabel + 1, 1, w, h});
+  const Pane field = pane.part({label_width + 1, 1, w, h});
   if (plot.threshold && usable(*plot.threshold)) {
     const int row = row_of(axis_value(*plot.threshold));
     for (int x = 0; x < w; ++x) field.text(x, row, charset == Charset::unicode ? "╌" : "-", Style::threshold);

@@ -26,11 +26,11 @@ namespace egocal::monitor {
 namespace {
 
 // What signal handlers may touch: plain memory, set up before the handlers are.
-constexpr std::size_t kSequence = 250;
+constexpr std::size_t sequence_length = 250;
 struct Rescue {
   struct termios modes {};
   bool has_modes = false;
-  char sequence[kSequence + 2] = {};
+  char sequence[sequence_length + 2] = {};
   std::size_t length = 0;
   int real_stderr = -1;
 };
@@ -40,7 +40,7 @@ volatile std::sig_atomic_t resize_flag = 0;
 volatile std::sig_atomic_t suspend_flag = 0;
 alignas(16) char crash_stack[64 * 1024];
 
-constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+constexpr int fatal_signals[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 extern "C" void on_quit(int) {
   quit_flag = 1;
@@ -76,7 +76,7 @@ void handle(int signal_number, void (*handler)(int), int flags = 0) {
 void add_capability(const char* name) {
   const char* text = tigetstr(name);
   if (text == nullptr || text == reinterpret_cast<const char*>(-1)) return;
-  for (const char* c = text; *c != '\0' && rescue.length < kSequence;) {
+  for (const char* c = text; *c != '\0' && rescue.length < sequence_length;) {
     if (c[0] == '$' && c[1] == '<') {
       while (*c != '\0' && *c != '>') ++c;
       if (*c == '>') ++c;
@@ -240,7 +240,7 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
   stack.ss_sp = crash_stack;
   stack.ss_size = sizeof crash_stack;
   sigaltstack(&stack, nullptr);
-  for (int signal_number : kFatal)
+  for (int signal_number : fatal_signals)
     handle(signal_number, on_crash, static_cast<int>(SA_ONSTACK | SA_RESETHAND));
   return terminal;
 }
@@ -263,7 +263,7 @@ Terminal::~Terminal() {
   // from here on an ending needs no care
   for (int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGTSTP})
     handle(signal_number, SIG_DFL);
-  for (int signal_number : kFatal) handle(signal_number, SIG_DFL);
+  for (int signal_number : fatal_signals) handle(signal_number, SIG_DFL);
 }
 
 Charset Terminal::charset() const {

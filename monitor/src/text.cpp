@@ -8,8 +8,8 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr Symbols kAscii{"->", "+-", "deg", "u", "+", "!", "*", "x", ">", "|", "-", "#", ".", "inf"};
-constexpr Symbols kUnicode{"→", "±", "°", "µ", "✓", "✗", "●", "○", "▸", "·", "─", "█", "░", "∞"};
+constexpr Symbols ascii_glyphs{"->", "+-", "deg", "u", "+", "!", "*", "x", ">", "|", "-", "#", ".", "inf"};
+constexpr Symbols unicode_glyphs{"→", "±", "°", "µ", "✓", "✗", "●", "○", "▸", "·", "─", "█", "░", "∞"};
 
 // Characters that every terminal draws one cell wide; the rest is not worth a torn screen.
 bool is_safe(char32_t c) {
@@ -28,7 +28,7 @@ std::string printed(const char* format, int decimals, double value) {
 }  // namespace
 
 const Symbols& symbols(Charset charset) {
-  return charset == Charset::unicode ? kUnicode : kAscii;
+  return charset == Charset::unicode ? unicode_glyphs : ascii_glyphs;
 }
 
 std::u32string decode(std::string_view text) {

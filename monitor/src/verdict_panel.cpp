@@ -31,7 +31,7 @@ std::vector<Line> lines_of(const PairVerdict& verdict, Charset charset) {
   return lines;
 }
 
-constexpr int kLabel = 9;
+constexpr int label_width = 9;
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void draw_verdict(const Pane& pane, const PairState& pair, Charset charset) {
     return;
   }
   const auto row = [&](int y, const char* label, const Label& what, const std::string& text, Style style) {
-    int x = pane.text(1, y, pad_right(label, kLabel), Style::dim);
+    int x = pane.text(1, y, pad_right(label, label_width), Style::dim);
     x = pane.text(x, y, what.text, what.style) + (what.text.empty() ? 0 : 2);
     if (x < pane.width()) pane.text(x, y, clean(text, static_cast<std::size_t>(pane.width() - x)), style);
   };

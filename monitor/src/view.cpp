@@ -14,7 +14,7 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr std::array<double, 6> kWindows{10, 30, 60, 300, 1800, 7200};  // [s]
+constexpr std::array<double, 6> window_choices{10, 30, 60, 300, 1800, 7200};  // [s]
 
 const PairState* selected_pair(const Model& model, const ViewState& view) {
   if (model.pairs().empty()) return nullptr;
@@ -32,8 +32,9 @@ double session_length(const PairState* pair) {
 void zoom(ViewState& view, const Model& model, int step) {
   const double length = session_length(selected_pair(model, view));
   std::vector<double> windows;
-  for (const double window : kWindows)
-    if (window < length || window == kWindows.front() || window == view.window_s) windows.push_back(window);
+  for (const double window : window_choices)
+    if (window < length || window == window_choices.front() || window == view.window_s)
+      windows.push_back(window);
   windows.push_back(0);  // all
   auto at = std::find(windows.begin(), windows.end(), view.window_s);
   if (step > 0 && at != windows.begin()) --at;

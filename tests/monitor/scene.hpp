@@ -18,7 +18,7 @@ namespace egocal::monitor::test {
 // A drive as its messages show it: errors that fall with the square root of the frames, a global solver for
 // the first seconds, the fast one throughout.
 
-inline constexpr std::int64_t kBegin = 1'600'000'000'000'000;  // [us]
+inline constexpr std::int64_t begin_utime = 1'600'000'000'000'000;  // [us]
 
 /// Of the answers to the problem with this number.
 inline Pose extrinsic_at(double n) {
@@ -52,8 +52,8 @@ inline std::vector<statistics_t> blocks_for(const Pose& extrinsic, int count) {
 inline problem_t problem_at(const std::string& a, const std::string& b, std::int64_t step, double hz,
                             int blocks = 0) {
   problem_t p{};
-  p.session = kBegin;
-  p.utime = kBegin + static_cast<std::int64_t>(static_cast<double>(step) * 1e6 / hz);
+  p.session = begin_utime;
+  p.utime = begin_utime + static_cast<std::int64_t>(static_cast<double>(step) * 1e6 / hz);
   p.seq = step + 1;
   p.sensor_a = a;
   p.sensor_b = b;
@@ -106,7 +106,7 @@ inline calibration_t calibration_at(const problem_t& p, bool global) {
 
 inline status_t status_of(const std::string& name, const std::string& role, std::int64_t in) {
   status_t s{};
-  s.utime = kBegin;
+  s.utime = begin_utime;
   s.name = name;
   s.role = role;
   s.host = "car";

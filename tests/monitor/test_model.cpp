@@ -16,8 +16,8 @@
 namespace egocal::monitor {
 namespace {
 
+using test::begin_utime;
 using test::calibration_at;
-using test::kBegin;
 using test::problem_at;
 using test::status_of;
 using testing::Contains;
@@ -26,10 +26,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::int64_t largest_int = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t smallest_int = std::numeric_limits<std::int64_t>::min();
 
 // A drive of one pair, ten motions a second, whose messages can be changed before they are sent.
 struct MotionPairing {
@@ -39,7 +39,7 @@ struct MotionPairing {
   std::function<void(problem_t&)> change_problem = [](problem_t&) {};
   std::function<void(calibration_t&)> change_answer = [](calibration_t&) {};
 
-  Now now() const { return {1'000'000 + step * 100'000, kBegin + step * 100'000}; }
+  Now now() const { return {1'000'000 + step * 100'000, begin_utime + step * 100'000}; }
   void run(int steps) {
     for (int i = 0; i < steps; ++i, ++step) {
       problem_t problem = problem_at("lidar", "camera", step, 10);
@@ -142,7 +142,7 @@ TEST(ModelEvents, ManySolversOfOneSessionAreBounded) {
     answer.solver = "solver-" + std::to_string(answer.seq);
   };
   drive.run(500);
-  EXPECT_EQ(drive.pair().solvers.size(), Model::kMaxSolvers);
+  EXPECT_EQ(drive.pair().solvers.size(), Model::max_solvers);
   EXPECT_EQ(drive.pair().counted_solver()->name, "solver-500");
 }
 
@@ -177,7 +177,7 @@ TEST(ModelEvents, SessionResetForgetsTheOldOne) {
   drive.run(30);
   drive.fresh();
   const auto anew = [](auto& message) {
-    message.session = kBegin + 3'000'000;
+    message.session = begin_utime + 3'000'000;
     message.seq -= 30;
   };
   drive.change_problem = anew;
@@ -271,7 +271,7 @@ TEST(ModelEvents, TheSameAgainIsCounted) {
     drive.model.note(Severity::warning, "stderr", std::string(500, 'x'), drive.now());
   ASSERT_EQ(drive.model.events().size(), 1u);
   EXPECT_EQ(drive.model.events()[0].repeated, 5);
-  EXPECT_EQ(drive.model.events()[0].text.size(), Model::kMaxText);
+  EXPECT_EQ(drive.model.events()[0].text.size(), Model::max_text);
   drive.step += 400;
   drive.model.note(Severity::warning, "stderr", std::string(500, 'x'), drive.now());
   EXPECT_EQ(drive.model.events().size(), 2u) << "after a while it is news again";
@@ -345,9 +345,9 @@ TEST(ModelAnswer, TheOneThatCountsIsTheLibrarysChoice) {
 }
 
 TEST(ModelAnswer, WhatIsNoTransformIsNeverCertified) {
-  const std::function<void(calibration_t&)> lies[] = {[](calibration_t& c) { c.pos[1] = kNaN; },
-                                                      [](calibration_t& c) { c.quat[0] = kInf; },
-                                                      [](calibration_t& c) { c.scaled_gap = kNaN; },
+  const std::function<void(calibration_t&)> lies[] = {[](calibration_t& c) { c.pos[1] = not_a_number; },
+                                                      [](calibration_t& c) { c.quat[0] = infinity; },
+                                                      [](calibration_t& c) { c.scaled_gap = not_a_number; },
                                                       [](calibration_t& c) {
                                                         for (double& q : c.quat) q = 0;
                                                       }};
@@ -384,7 +384,7 @@ TEST(ModelAnswer, ErrorsAgainstTruthOrNominalOrSpreads) {
   drive.run(1);
   EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::none);
   EXPECT_TRUE(std::isnan(drive.pair().shown.error_translation));
-  drive.change_problem = [](problem_t& p) { p.truth_quat[2] = kNaN; };
+  drive.change_problem = [](problem_t& p) { p.truth_quat[2] = not_a_number; };
   drive.run(1);
   EXPECT_EQ(drive.pair().shown.reference, ReferenceKind::nominal) << "a broken truth is none";
 }
@@ -441,7 +441,8 @@ TEST(ModelProcesses, CountsAndRates) {
 
 namespace {
 
-const std::string kEvil = "\x1b[2J\x1b]0;x\x07\r\n\t\xff\xfe\xc0\xaf\xf5\xed\xa0\x80" + std::string(200, 'W');
+const std::string evil_text =
+    "\x1b[2J\x1b]0;x\x07\r\n\t\xff\xfe\xc0\xaf\xf5\xed\xa0\x80" + std::string(200, 'W');
 
 void expect_clean_screens(const Model& model) {
   for (const Charset charset : {Charset::ascii, Charset::unicode})
@@ -457,8 +458,8 @@ void expect_clean_screens(const Model& model) {
             view.scroll = w;
             view.window_s = h % 2 ? 10 : 0;
             view.logarithmic = h % 2;
-            view.notice = h == 8 ? kEvil : "";
-            view.source = kEvil;
+            view.notice = h == 8 ? evil_text : "";
+            view.source = evil_text;
             Canvas canvas(w, h);
             draw(canvas, model, view);
             for (int y = 0; y < h; ++y)
@@ -482,16 +483,16 @@ void expect_clean_screens(const Model& model) {
 
 TEST(Hostile, ValuesNamesAndTimesNeitherCrashNorReachTheScreen) {
   Model model;
-  const double values[] = {kNaN, kInf, -kInf, 1e308, -1e308, 5e-324, 0, -1};
-  const std::int64_t counts[] = {kMost, kLeast, -1, 0, 1};
+  const double values[] = {not_a_number, infinity, -infinity, 1e308, -1e308, 5e-324, 0, -1};
+  const std::int64_t counts[] = {largest_int, smallest_int, -1, 0, 1};
   std::int64_t n = 0;
   const auto value = [&] { return values[static_cast<std::size_t>(n++) % std::size(values)]; };
   const auto number = [&] { return counts[static_cast<std::size_t>(n++) % std::size(counts)]; };
   for (std::int64_t step = 0; step < 3000; ++step) {
     const Now now{step * 50'000, step % 500 == 0 ? number() : step * 50'000};
-    problem_t p = problem_at("lidar", step % 3 ? "camera" : kEvil, step, 10);
+    problem_t p = problem_at("lidar", step % 3 ? "camera" : evil_text, step, 10);
     calibration_t c = calibration_at(p, step % 2);
-    status_t s = status_of(step % 4 ? kEvil : "egocal-fast", "fast", number());
+    status_t s = status_of(step % 4 ? evil_text : "egocal-fast", "fast", number());
     for (double* field :
          {&p.truth_pos[0], &p.truth_quat[1], &p.prior_pos[2], &p.prior_quat[0], &p.time_offset,
           &p.time_offset_stddev, &p.weight_rotation, &c.pos[0], &c.pos[2], &c.quat[0], &c.quat[3], &c.cost,
@@ -503,15 +504,15 @@ TEST(Hostile, ValuesNamesAndTimesNeitherCrashNorReachTheScreen) {
     if (step % 11 == 0) p.session = c.session = number();
     if (step % 13 == 0) p.stride = static_cast<std::int32_t>(number());
     if (step % 17 == 0) p.mode = c.status = static_cast<std::int8_t>(step);
-    p.choice = c.hint = c.method = s.last_error = s.state = kEvil;
+    p.choice = c.hint = c.method = s.last_error = s.state = evil_text;
     s.pid = -1;
-    s.counters[0].name = step % 2 ? "lost" : kEvil;
+    s.counters[0].name = step % 2 ? "lost" : evil_text;
     s.counters[0].value = number();
     model.on_problem(p, now);
     model.on_calibration(c, now);
     model.on_status(s, now);
     command_t command{};
-    command.verb = command.sensor_a = command.to = kEvil;
+    command.verb = command.sensor_a = command.to = evil_text;
     model.on_command(command, now);
     model.tick(now);
     if (step % 750 == 0) {
@@ -520,7 +521,7 @@ TEST(Hostile, ValuesNamesAndTimesNeitherCrashNorReachTheScreen) {
     }
   }
   expect_clean_screens(model);
-  EXPECT_LE(model.events().size(), Model::kMaxEvents);
+  EXPECT_LE(model.events().size(), Model::max_events);
 }
 
 TEST(Hostile, AFloodOfNamesIsBoundedAndCounted) {
@@ -532,10 +533,10 @@ TEST(Hostile, AFloodOfNamesIsBoundedAndCounted) {
     model.on_calibration(calibration_at(p, false), {i, i});
     model.on_status(status_of(name, "fast", 1), {i, i});
   }
-  EXPECT_EQ(model.pairs().size(), Model::kMaxPairs);
-  EXPECT_EQ(model.processes().size(), Model::kMaxProcesses);
+  EXPECT_EQ(model.pairs().size(), Model::max_pairs);
+  EXPECT_EQ(model.processes().size(), Model::max_processes);
   for (int i = 0; i < 2000; ++i) model.note(Severity::info, "stderr", std::to_string(i), {i, i});
-  EXPECT_EQ(model.events().size(), Model::kMaxEvents);
+  EXPECT_EQ(model.events().size(), Model::max_events);
   EXPECT_EQ(model.events().back().text, "1999");
   EXPECT_GT(model.events_seen(), 2000);
   EXPECT_EQ(model.ignored(), 3 * 1000 - 2 * 64 - 64);
@@ -550,7 +551,7 @@ TEST(Hostile, TimeRunningBackwardsIsSaidAndTheCurveGoesOn) {
   drive.run(1);
   EXPECT_THAT(drive.fresh(),
               ElementsAre("lidar -> camera: time ran backwards in the problems of one session"));
-  drive.change_problem = [](problem_t& p) { p.utime = kMost; };
+  drive.change_problem = [](problem_t& p) { p.utime = largest_int; };
   drive.run(1);
   drive.change_problem = [](problem_t&) {};
   drive.run(10);
@@ -575,10 +576,10 @@ TEST(Memory, FlatOverASimulatedDay) {
   const std::size_t after = mallinfo2().uordblks;
   EXPECT_NEAR(static_cast<double>(drive.step) / 36000, 24, 0.01);
   EXPECT_LE(after, before + 256 * 1024) << "bytes in use, 8 h and 24 h into the day";
-  EXPECT_EQ(drive.model.events().size(), Model::kMaxEvents);
+  EXPECT_EQ(drive.model.events().size(), Model::max_events);
   for (const SolverTrack& solver : drive.pair().solvers)
     for (double back : {0.0, 100.0, 1000.0, 40000.0, 86400.0})
-      EXPECT_LE(solver.history.since(solver.history.last_time() - back).size(), History::kSlices);
+      EXPECT_LE(solver.history.since(solver.history.last_time() - back).size(), History::slices);
 }
 
 }  // namespace egocal::monitor

@@ -17,8 +17,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kFieldX = 9;  // columns before the field: numbers and axis
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr int field_x = 9;  // columns before the field: numbers and axis
 
 History course(double seconds, double step, const std::function<double(double)>& value) {
   History history;
@@ -52,8 +52,8 @@ std::vector<std::string> drawn(const Plot& plot, int w, int h, Charset charset, 
 int star(const std::vector<std::string>& lines, int column) {
   int row = -1;
   for (std::size_t y = 1; y + 1 < lines.size(); ++y)
-    if (static_cast<int>(lines[y].size()) > kFieldX + column &&
-        lines[y][static_cast<std::size_t>(kFieldX + column)] == '*') {
+    if (static_cast<int>(lines[y].size()) > field_x + column &&
+        lines[y][static_cast<std::size_t>(field_x + column)] == '*') {
       EXPECT_EQ(row, -1);
       row = static_cast<int>(y);
     }
@@ -86,8 +86,8 @@ TEST(Plot, AnExponentialIsAStraightLineOnLogarithmicAxesAndNotOnLinearOnes) {
   auto lines = drawn(plot, w, h, Charset::ascii);
   const auto top_star = [&](int column) {
     for (std::size_t y = 1; y + 1 < lines.size(); ++y)
-      if (static_cast<int>(lines[y].size()) > kFieldX + column &&
-          lines[y][static_cast<std::size_t>(kFieldX + column)] == '*')
+      if (static_cast<int>(lines[y].size()) > field_x + column &&
+          lines[y][static_cast<std::size_t>(field_x + column)] == '*')
         return static_cast<int>(y);
     return -1;
   };
@@ -144,8 +144,8 @@ TEST(Plot, ThresholdAcrossAndMarkDown) {
         << "the threshold is on the axis though no value comes near";
     EXPECT_THAT(lines[0], HasSubstr("fast alone"));
     int dashes = 0, marks = 0;
-    for (int x = kFieldX; x < 60; ++x) dashes += canvas.at(x, 1).style == Style::threshold;
-    for (int y = 1; y < 11; ++y) marks += canvas.at(kFieldX + 24, y).style == Style::global;
+    for (int x = field_x; x < 60; ++x) dashes += canvas.at(x, 1).style == Style::threshold;
+    for (int y = 1; y < 11; ++y) marks += canvas.at(field_x + 24, y).style == Style::global;
     EXPECT_GE(dashes, 48);
     EXPECT_GE(marks, 9);
   }
@@ -160,7 +160,7 @@ TEST(Plot, BrailleDrawsTwoByFourDotsACell) {
   Canvas canvas(0, 0);
   drawn(plot, 40, 10, Charset::unicode, &canvas);
   int braille = 0, last = -1;
-  for (int x = kFieldX; x < 39; ++x)
+  for (int x = field_x; x < 39; ++x)
     for (int y = 1; y < 9; ++y) {
       const char32_t g = canvas.at(x, y).glyph;
       if (g < 0x2801 || g > 0x28ff) continue;
@@ -191,21 +191,22 @@ TEST(Plot, AGapStaysOpen) {
 }
 
 TEST(Plot, HostileValuesAndSizes) {
-  const double evil[] = {kNaN, std::numeric_limits<double>::infinity(), -1, 0, 1e308, 1e-308, -1e308, 5};
+  const double evil[] = {
+      not_a_number, std::numeric_limits<double>::infinity(), -1, 0, 1e308, 1e-308, -1e308, 5};
   int n = 0;
   const History history = course(50, 0.1, [&](double) { return evil[n++ % 8]; });
-  const History nothing, none = course(5, 0.1, [](double) { return kNaN; });
+  const History nothing, none = course(5, 0.1, [](double) { return not_a_number; });
   for (const Charset charset : {Charset::ascii, Charset::unicode})
     for (bool logarithmic : {true, false})
-      for (double end : {50.0, 0.0, -3.0, kNaN, 1e300})
+      for (double end : {50.0, 0.0, -3.0, not_a_number, 1e300})
         for (int w = 0; w < 90; w += 3)
           for (int h = 0; h < 25; ++h) {
             Plot plot = plot_of(history, end);
             plot.series.push_back({&nothing, Style::global});
             plot.series.push_back({&none, Style::global});
             plot.logarithmic = logarithmic;
-            plot.threshold = h % 2 ? kNaN : 1.0;
-            plot.mark = w % 2 ? kNaN : 3.0;
+            plot.threshold = h % 2 ? not_a_number : 1.0;
+            plot.mark = w % 2 ? not_a_number : 3.0;
             drawn(plot, w, h, charset);
           }
   const auto lines = drawn(plot_of(none, 5), 40, 10, Charset::ascii);
@@ -216,7 +217,7 @@ TEST(History, IsBoundedAndKeepsItsExtremes) {
   const History history = course(50000, 1, [](double t) { return t == 7 ? 99.0 : 1.0; });
   for (double back : {10.0, 50.0, 1000.0, 49000.0, 60000.0}) {
     const auto& slices = history.since(history.last_time() - back);
-    EXPECT_LE(slices.size(), History::kSlices);
+    EXPECT_LE(slices.size(), History::slices);
     EXPECT_LE(slices.front().begin, std::max(0.0, history.last_time() - back));
   }
   EXPECT_EQ(history.since(0).front().high[rotation_error], 99.0f);

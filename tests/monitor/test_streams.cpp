@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 using Severity_ = bus::StreamLine::Severity;
 
-constexpr Now kNow{1'000'000, 1'600'000'100'000'000};
+constexpr Now some_time{1'000'000, 1'600'000'100'000'000};
 
 class Streams : public testing::Test {
  protected:
@@ -30,14 +30,14 @@ class Streams : public testing::Test {
   ViewState view;
 };
 
-const std::string kSilent = "camera: ODOMETRY_CAMERA, nothing heard; heard instead: ODOMETRY_CAM";
+const std::string silent_line = "camera: ODOMETRY_CAMERA, nothing heard; heard instead: ODOMETRY_CAM";
 
 TEST_F(Streams, AFirstScreenSaysWhichSensorIsMissed) {
   model.expect_pair("lidar", "camera");
-  model.set_streams({{Severity_::good, "lidar: ODOMETRY_LIDAR, 10 Hz"}, {Severity_::bad, kSilent}});
+  model.set_streams({{Severity_::good, "lidar: ODOMETRY_LIDAR, 10 Hz"}, {Severity_::bad, silent_line}});
   for (const auto& [w, h] : {std::pair{80, 24}, {120, 40}})
-    EXPECT_THAT(shown(Screen::overview, w, h), HasSubstr(kSilent));
-  EXPECT_THAT(text_lines(model, Charset::ascii), HasSubstr("stream " + kSilent));
+    EXPECT_THAT(shown(Screen::overview, w, h), HasSubstr(silent_line));
+  EXPECT_THAT(text_lines(model, Charset::ascii), HasSubstr("stream " + silent_line));
   model.set_streams({{Severity_::good, "lidar: ODOMETRY_LIDAR, 10 Hz"}});
   EXPECT_THAT(shown(Screen::overview, 80, 24), Not(HasSubstr("Streams"))) << "nothing is wrong";
   EXPECT_THAT(shown(Screen::streams, 80, 24), HasSubstr("lidar: ODOMETRY_LIDAR, 10 Hz"));
@@ -71,9 +71,9 @@ TEST_F(Streams, TheFirstRejectionOfEachKindIsAnEventWithItsCure) {
   };
   reject("gap", 0);
   reject("screw congruence", 3);
-  model.on_status(status, kNow);
+  model.on_status(status, some_time);
   status.counters.back().value = 9;
-  model.on_status(status, kNow);
+  model.on_status(status, some_time);
   int events = 0;
   for (const Event& event : model.events())
     if (event.text.starts_with("rejects: ")) {
@@ -83,21 +83,21 @@ TEST_F(Streams, TheFirstRejectionOfEachKindIsAnEventWithItsCure) {
   EXPECT_EQ(events, 1);
   EXPECT_THAT(shown(Screen::streams, 120, 24), HasSubstr("egocal-pairing rejected 9 x screw congruence: "));
   for (int i = 0; i < 1000; ++i) reject("flood " + std::to_string(i), 1);
-  model.on_status(status, kNow);
+  model.on_status(status, some_time);
   EXPECT_LE(model.processes()[0].rejections.size(), 64u);
 }
 
 TEST_F(Streams, TheGapPanelIsAboutTheFastSolution) {
   const problem_t problem = test::problem_at("lidar", "camera", 100, 10);
-  model.on_problem(problem, kNow);
-  model.on_calibration(test::calibration_at(problem, true), kNow);
+  model.on_problem(problem, some_time);
+  model.on_calibration(test::calibration_at(problem, true), some_time);
   EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("scaled gap of the global solution (limit 1)"));
-  model.on_calibration(test::calibration_at(problem, false), kNow);
+  model.on_calibration(test::calibration_at(problem, false), some_time);
   EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("scaled gap of the fast solution (limit 1)"));
   // while the fast process solves globally itself, its own solution is not known
   calibration_t answer = test::calibration_at(test::problem_at("lidar", "camera", 110, 10), false);
   answer.method = "dual";
-  model.on_calibration(answer, kNow);
+  model.on_calibration(answer, some_time);
   const SolverTrack& fast = model.pairs()[0].solvers.back();
   ASSERT_EQ(fast.role, Role::fast);
   const Slice& last = fast.history.since(0).back();

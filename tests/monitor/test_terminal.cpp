@@ -22,8 +22,8 @@ namespace egocal {
 namespace {
 
 using namespace std::chrono_literals;
+using monitor::test::begin_utime;
 using monitor::test::calibration_at;
-using monitor::test::kBegin;
 using monitor::test::problem_at;
 using monitor::test::status_of;
 using test::Output;
@@ -47,7 +47,7 @@ const std::string evil_name = "\x1b[2J\x1b]0;owned\x07\xff" + std::string(120, '
 void write_recording() {
   bus::LogWriter log(recording);
   for (std::int64_t step = 0; step < 200; ++step) {
-    const std::int64_t now = kBegin + step * 100'000;
+    const std::int64_t now = begin_utime + step * 100'000;
     for (const std::string b : {"camera", "radar", "evil"}) {
       problem_t problem = problem_at("lidar", b, step, 10, 4);
       calibration_t fast = calibration_at(problem, false), global = calibration_at(problem, true);
@@ -344,7 +344,7 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
   ASSERT_TRUE(heard(1));
   EXPECT_EQ(commands[0].verb, "reset");
   EXPECT_EQ(commands[0].sensor_b, "camera1");
-  EXPECT_EQ(commands[0].session, kBegin);
+  EXPECT_EQ(commands[0].session, begin_utime);
   tmux.keys("p");
   ASSERT_TRUE(until([&] { return tmux.shows("Pause the calibration of lidar → camera1?"); }));
   tmux.keys("Escape");

@@ -8,8 +8,8 @@
 
 namespace egocal::monitor {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TEST(Text, NumbersForPeople) {
   constexpr Charset a = Charset::ascii, u = Charset::unicode;
@@ -17,9 +17,9 @@ TEST(Text, NumbersForPeople) {
   EXPECT_EQ(number(-0.001, 2, a), "0.00") << "never a negative zero";
   EXPECT_EQ(number(-0.0, 0, a), "0");
   EXPECT_EQ(number(-0.01, 2, a), "-0.01");
-  EXPECT_EQ(number(kNaN, 2, a), "-");
-  EXPECT_EQ(number(kInf, 2, a), "inf");
-  EXPECT_EQ(number(-kInf, 2, u), "-∞");
+  EXPECT_EQ(number(not_a_number, 2, a), "-");
+  EXPECT_EQ(number(infinity, 2, a), "inf");
+  EXPECT_EQ(number(-infinity, 2, u), "-∞");
   EXPECT_EQ(number(1e300, 2, a), "1.0e+300");
   EXPECT_EQ(compact(0, a), "0");
   EXPECT_EQ(compact(0.01234, a), "0.0123");
@@ -27,7 +27,7 @@ TEST(Text, NumbersForPeople) {
   EXPECT_EQ(compact(1.5, a), "1.50");
   EXPECT_EQ(compact(123.4, a), "123");
   EXPECT_EQ(compact(1.2e-9, a), "1.2e-09");
-  EXPECT_EQ(compact(kNaN, a), "-");
+  EXPECT_EQ(compact(not_a_number, a), "-");
 }
 
 TEST(Text, TimesForPeople) {
@@ -39,15 +39,15 @@ TEST(Text, TimesForPeople) {
   EXPECT_EQ(duration(1.4e-3, a), "1.4 ms");
   EXPECT_EQ(duration(2, a), "2.0 s");
   EXPECT_EQ(duration(-1e-9, a), "-");
-  EXPECT_EQ(duration(kNaN, a), "-");
-  EXPECT_EQ(duration(kInf, a), "long");
+  EXPECT_EQ(duration(not_a_number, a), "-");
+  EXPECT_EQ(duration(infinity, a), "long");
   EXPECT_EQ(age(0.2), "now");
   EXPECT_EQ(age(3.4), "3 s");
   EXPECT_EQ(age(300), "5 min");
   EXPECT_EQ(age(7200), "2 h");
   EXPECT_EQ(age(1e9), "days");
   EXPECT_EQ(age(-5), "-");
-  EXPECT_EQ(age(kNaN), "-");
+  EXPECT_EQ(age(not_a_number), "-");
   EXPECT_EQ(count(99999), "99999");
   EXPECT_EQ(count(123456), "123k");
   EXPECT_EQ(count(4'500'000), "4.5M");

@@ -18,7 +18,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr Now kNow{1'000'000, 1'600'000'100'000'000};
+constexpr Now some_time{1'000'000, 1'600'000'100'000'000};
 
 Diagnosis clean() {
   Diagnosis diagnosis;
@@ -44,13 +44,13 @@ class VerdictShown : public testing::Test {
   VerdictShown() {
     view.charset = Charset::unicode;
     problem = test::problem_at("lidar", "camera", 100, 10);
-    model.on_problem(problem, kNow);
-    model.on_calibration(test::calibration_at(problem, false), kNow);
+    model.on_problem(problem, some_time);
+    model.on_calibration(test::calibration_at(problem, false), some_time);
   }
-  void judge(const Diagnosis& diagnosis, std::int64_t session = test::kBegin, std::int64_t seq = 101) {
+  void judge(const Diagnosis& diagnosis, std::int64_t session = test::begin_utime, std::int64_t seq = 101) {
     verdict_t message =
-        bus::to_message(diagnosis, {DualQuaternion{}, test::kBegin, test::kBegin + 1'000'000, 100});
-    message.utime = test::kBegin + 1'000'000;
+        bus::to_message(diagnosis, {DualQuaternion{}, test::begin_utime, test::begin_utime + 1'000'000, 100});
+    message.utime = test::begin_utime + 1'000'000;
     message.session = session;
     message.seq = seq;
     message.sensor_a = "lidar";
@@ -58,7 +58,7 @@ class VerdictShown : public testing::Test {
     message.sender = "egocal-diagnosis";
     const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
     ASSERT_TRUE(received) << received.reason;
-    model.on_verdict(message, *received.value, kNow);
+    model.on_verdict(message, *received.value, some_time);
   }
   std::string shown(Screen screen, int w, int h) {
     view.screen = screen;
@@ -135,23 +135,23 @@ TEST_F(VerdictShown, IsNotThatOfAnAnswerThatIsNotProven) {
   judge(clean());
   calibration_t answer = test::calibration_at(test::problem_at("lidar", "camera", 101, 10), false);
   answer.status = 1;
-  model.on_calibration(answer, kNow);
+  model.on_calibration(answer, some_time);
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("? not proven"));
   EXPECT_THAT(shown(Screen::overview, 110, 30), Not(HasSubstr("✓ good")));
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("not optimal"));
 }
 
 TEST_F(VerdictShown, NeverThatOfAnotherSession) {
-  judge(without_scale(), test::kBegin - 5);
+  judge(without_scale(), test::begin_utime - 5);
   EXPECT_FALSE(model.pairs()[0].verdict);
-  judge(without_scale(), test::kBegin + 5);
+  judge(without_scale(), test::begin_utime + 5);
   EXPECT_FALSE(model.pairs()[0].verdict);
   judge(clean());
   ASSERT_TRUE(model.pairs()[0].verdict);
-  judge(without_scale(), test::kBegin, 50);
+  judge(without_scale(), test::begin_utime, 50);
   EXPECT_EQ(model.pairs()[0].verdict->diagnosis.verdict, Verdict::good) << "an older one came late";
   problem.session += 7;
-  model.on_problem(problem, kNow);
+  model.on_problem(problem, some_time);
   EXPECT_FALSE(model.pairs()[0].verdict) << "a new session is not judged yet";
 }
 
@@ -168,7 +168,7 @@ TEST_F(VerdictShown, ItsChangesAreEvents) {
   EXPECT_THAT(events(), Contains("camera moved at 2:18: yaw -2.0 deg."));
   moved.findings.back().time = 10.05;
   judge(moved);
-  model.on_calibration(test::calibration_at(test::problem_at("lidar", "camera", 102, 10), false), kNow);
+  model.on_calibration(test::calibration_at(test::problem_at("lidar", "camera", 102, 10), false), some_time);
   EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("┃")) << "a mark on the curves";
 }
 

@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr Now kNow{1'000'000, test::kBegin};
+constexpr Now some_time{1'000'000, test::begin_utime};
 
 KeyPress character(char c) {
   return {Key::character, c};
@@ -29,12 +29,12 @@ class View : public testing::Test {
             const std::function<void(calibration_t&)>& change_answer, bool both = true) {
     problem_t problem = test::problem_at("lidar", "camera", step++, 10);
     change_problem(problem);
-    model.on_problem(problem, kNow);
+    model.on_problem(problem, some_time);
     for (bool global : {false, true}) {
       if (global && !both) continue;
       calibration_t answer = test::calibration_at(problem, global);
       change_answer(answer);
-      model.on_calibration(answer, kNow);
+      model.on_calibration(answer, some_time);
     }
   }
   std::string shown(Screen screen, int w, int h) {
@@ -112,11 +112,11 @@ TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
 TEST_F(View, ProcessesSayWhoWhereAndWhatIsWrong) {
   status_t status = test::status_of("egocal-fast", "fast", 5);
   status.last_error = "no global solver is heard";
-  model.on_status(status, kNow);
+  model.on_status(status, some_time);
   for (int w : {100, 140})
     EXPECT_THAT(shown(Screen::overview, w, 30), HasSubstr("no global solver is heard")) << w;
   EXPECT_THAT(shown(Screen::overview, 140, 30), HasSubstr("pid 4711 on car"));
-  model.tick({kNow.mono_us + 4'000'000, kNow.wall_us});
+  model.tick({some_time.mono_us + 4'000'000, some_time.wall_us});
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("GONE"));
 }
 
@@ -131,7 +131,7 @@ TEST_F(View, NothingIsCutInHalfBesideTheClock) {
 }
 
 TEST_F(View, KeysMoveBetweenScreensAndPairs) {
-  for (const char* b : {"radar", "imu"}) model.on_problem(test::problem_at("lidar", b, 1, 10), kNow);
+  for (const char* b : {"radar", "imu"}) model.on_problem(test::problem_at("lidar", b, 1, 10), some_time);
   press(view, model, {Key::down});
   EXPECT_EQ(view.selected, 1);
   press(view, model, {Key::end});
@@ -154,7 +154,8 @@ TEST_F(View, KeysMoveBetweenScreensAndPairs) {
 }
 
 TEST_F(View, EventsScrollAPageAtATimeAndNoFurtherThanThereAre) {
-  for (int i = 0; i < 100; ++i) model.note(Severity::info, "x", "event " + std::to_string(i) + ".", kNow);
+  for (int i = 0; i < 100; ++i)
+    model.note(Severity::info, "x", "event " + std::to_string(i) + ".", some_time);
   view.height = 20;
   press(view, model, character('e'));
   EXPECT_THAT(shown(Screen::events, 80, 20), HasSubstr("event 99."));
@@ -196,7 +197,7 @@ TEST_F(View, PausedIsSeenOnEveryScreen) {
   command_t command{};
   command.to = "*";
   command.verb = "pause";
-  model.on_command(command, kNow);
+  model.on_command(command, some_time);
   for (const auto& [width, height] : {std::pair{120, 40}, std::pair{80, 24}, std::pair{40, 8}})
     for (const Screen screen : {Screen::overview, Screen::detail})
       EXPECT_THAT(shown(screen, width, height), HasSubstr("PAUSED")) << width << "x" << height;
@@ -232,7 +233,7 @@ TEST_F(View, NothingIsCommandedWithoutAYes) {
   const Action action = press(view, model, character('y'));
   EXPECT_EQ(action.kind, Action::Kind::reset);
   EXPECT_EQ(action.a, "lidar");
-  EXPECT_EQ(action.session, test::kBegin) << "this session and no later one";
+  EXPECT_EQ(action.session, test::begin_utime) << "this session and no later one";
   view.live = false;
   press(view, model, character('r'));
   EXPECT_EQ(view.dialog, Dialog::none);

@@ -30,11 +30,11 @@ class History {
   double first_time() const { return first_; }
   double last_time() const { return last_; }
 
-  static constexpr std::size_t kSlices = 600;  ///< a level
-  static constexpr std::size_t kLevels = 5;    ///< 0.1 s to 410 s: a minute to 68 hours
+  static constexpr std::size_t slices = 600;  ///< a level
+  static constexpr std::size_t levels = 5;    ///< 0.1 s to 410 s: a minute to 68 hours
 
  private:
-  std::array<std::deque<Slice>, kLevels> levels_;
+  std::array<std::deque<Slice>, levels> levels_;
   double first_ = 0, last_ = 0;
 };
 

@@ -162,8 +162,8 @@ class Model {
   Now now() const { return now_; }
   const ModelOptions& options() const { return options_; }
 
-  static constexpr std::size_t kMaxPairs = 64, kMaxProcesses = 64, kMaxSolvers = 4, kMaxEvents = 1000;
-  static constexpr std::size_t kMaxText = 200;  ///< bytes kept of any text
+  static constexpr std::size_t max_pairs = 64, max_processes = 64, max_solvers = 4, max_events = 1000;
+  static constexpr std::size_t max_text = 200;  ///< bytes kept of any text
 
  private:
   PairState* find_pair(const std::string& a, const std::string& b);
