@@ -12,7 +12,7 @@ double seconds(std::int64_t from_us, std::int64_t to_us) {
 }
 
 double scale_of(int direction) {
-  return direction < 3 ? centimetres : degrees;
+  return direction < 3 ? centimetres_per_metre : degrees_per_radian;
 }
 
 bool from_ground(const PairState& pair, int direction) {
@@ -36,11 +36,11 @@ std::string spread(const PairState& pair, const calibration_t& answer, int direc
 }
 
 std::string centimetres(double metres, Charset charset) {
-  const double value = metres * centimetres;
+  const double value = metres * centimetres_per_metre;
   return number(value, std::abs(value) < 100 ? 2 : 1, charset) + " cm";
 }
 std::string degrees(double radians, Charset charset) {
-  const double value = radians * degrees;
+  const double value = radians * degrees_per_radian;
   return number(value, std::abs(value) < 10 ? 3 : 1, charset) + (charset == Charset::unicode ? "°" : " deg");
 }
 

@@ -15,8 +15,8 @@ namespace egocal::monitor {
 
 // What an answer says, in words and numbers for people: degrees and centimetres.
 
-inline constexpr double degrees = 180.0 / std::numbers::pi;
-inline constexpr double centimetres = 100.0;
+inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+inline constexpr double centimetres_per_metre = 100.0;
 inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 double seconds(std::int64_t from_us, std::int64_t to_us);

@@ -63,7 +63,7 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     const bool ground = from_ground(pair, i);
     const bool known = shown_by_motion(*answer, i);
     // from a metre (10 degrees) of doubt, an empty bar, to a millimetre (a hundredth of a degree), a full one
-    const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : degrees / 10.0);
+    const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : degrees_per_radian / 10.0);
     double filled =
         known && doubt >= 0 ? std::clamp(-std::log10(std::max(doubt, 1e-9)) / 3.0, 0.0, 1.0) : 0.0;
     if (ground) filled = 0;
@@ -179,16 +179,16 @@ void draw_direction(const Pane& pane, const PairState& pair, bool inverted, bool
   const Eigen::Quaterniond& q = T.rotation;
   const int fine = cell - 4;  // decimals of what lies between -1 and 1
   row(1, "x y z",
-      {number(t.x() * centimetres, 2, charset), number(t.y() * centimetres, 2, charset),
-       number(t.z() * centimetres, 2, charset)},
+      {number(t.x() * centimetres_per_metre, 2, charset), number(t.y() * centimetres_per_metre, 2, charset),
+       number(t.z() * centimetres_per_metre, 2, charset)},
       "cm");
   row(2, "q wxyz",
       {number(q.w(), fine, charset), number(q.x(), fine, charset), number(q.y(), fine, charset),
        number(q.z(), fine, charset)},
       "");
   row(3, "r p y",
-      {number(rpy.x() * degrees, 3, charset), number(rpy.y() * degrees, 3, charset),
-       number(rpy.z() * degrees, 3, charset)},
+      {number(rpy.x() * degrees_per_radian, 3, charset), number(rpy.y() * degrees_per_radian, 3, charset),
+       number(rpy.z() * degrees_per_radian, 3, charset)},
       symbols(charset).degree);
   if (!matrix) return;
   const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
@@ -215,11 +215,11 @@ void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewSt
   switch (plot.curve) {
     case rotation_error:
       plot.title = std::string("rotation ") + kind + (unicode ? " [°]" : " [deg]");
-      plot.scale = degrees;
+      plot.scale = degrees_per_radian;
       break;
     case translation_error:
       plot.title = std::string("translation ") + kind + " [cm]";
-      plot.scale = centimetres;
+      plot.scale = centimetres_per_metre;
       break;
     case scaled_gap:
       // the global solution's gap is zero; what matters is how far the fast one is from needing it

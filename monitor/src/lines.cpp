@@ -75,7 +75,7 @@ json answer_json(const PairState& pair, const SolverTrack& solver) {
   j["latency_us"] = answer.latency_us < 0 ? json(nullptr) : json(answer.latency_us);
   j["reference"] = reference_name(shown.reference);
   j["error_translation_m"] = real(shown.error_translation);
-  j["error_rotation_deg"] = real(shown.error_rotation * degrees);
+  j["error_rotation_deg"] = real(shown.error_rotation * degrees_per_radian);
   return j;
 }
 
@@ -116,7 +116,7 @@ std::string pair_lines(const Model& model, Charset charset) {
     if (pair_is_paused(model, pair)) text += "paused, ";
     if (pair.shown.valid) {
       const Pose& T = pair.shown.T_a_b;
-      const Eigen::Vector3d rpy = roll_pitch_yaw(T.rotation) * degrees;
+      const Eigen::Vector3d rpy = roll_pitch_yaw(T.rotation) * degrees_per_radian;
       const auto triple = [&](const Eigen::Vector3d& v, const double* spread, double scale) {
         std::string part;
         for (int i = 0; i < 3; ++i)
@@ -125,11 +125,11 @@ std::string pair_lines(const Model& model, Charset charset) {
         return part;
       };
       text += "x y z " + triple(T.translation * 100, answer->stddev, 100) + " cm, roll pitch yaw " +
-              triple(rpy, answer->stddev + 3, degrees) + degree;
+              triple(rpy, answer->stddev + 3, degrees_per_radian) + degree;
       if (pair.shown.reference != ReferenceKind::none)
         text += std::string(pair.shown.reference == ReferenceKind::truth ? ", error " : ", off nominal ") +
                 number(pair.shown.error_translation * 100, 2, charset) + " cm " +
-                number(pair.shown.error_rotation * degrees, 3, charset) + degree;
+                number(pair.shown.error_rotation * degrees_per_radian, 3, charset) + degree;
     } else {
       text += "no transform: values that are not finite";
     }

@@ -150,6 +150,16 @@ TEST_F(Tables, RowsOutOfOrderAreSortedAndCounted) {
               ElementsAre(HasSubstr("1 poses were out of order"), HasSubstr("the first of each")));
 }
 
+/// Neighbouring rows are 23 s and more apart, as milliseconds might be; the times in order are 1 s apart.
+TEST_F(Tables, RowsOutOfOrderDoNotChangeTheUnitOfTheirTimes) {
+  std::string rows;
+  for (int i = 0; i < 60; ++i) rows += std::to_string(1'487'321'563 + i * 37 % 60) + ".5 0 0 0 0 0 0 1\n";
+  const TrajectoryReading reading = read(rows);
+  ASSERT_EQ(reading.trajectory.size(), 60u);
+  EXPECT_EQ(reading.trajectory.front().time_us, 1'487'321'563'500'000);
+  EXPECT_EQ(reading.trajectory.back().time_us - reading.trajectory.front().time_us, 59'000'000);
+}
+
 TEST_F(Tables, ALastRowThatIsCutOffIsCounted) {
   const TrajectoryReading reading = read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0");
   EXPECT_EQ(reading.trajectory.size(), 2u);

@@ -192,7 +192,7 @@ constexpr UnitName units[] = {{TimeUnit::seconds, "seconds", 1},
                               {TimeUnit::microseconds, "microseconds", 1e-6},
                               {TimeUnit::nanoseconds, "nanoseconds", 1e-9}};
 
-const UnitName& unit_by_size(const std::vector<double>& times) {
+const UnitName& unit_by_size(std::vector<double> times) {
   constexpr double latest = 4.1e9;  // [s], the year 2100
   double largest = 0;
   for (const double time : times) largest = std::max(largest, std::abs(time));
@@ -200,8 +200,10 @@ const UnitName& unit_by_size(const std::vector<double>& times) {
     if (unit.in_seconds < 1 && largest * unit.in_seconds * 1e3 > latest &&
         largest * unit.in_seconds <= latest)
       return unit;
+  // rows may be out of order: the steps are those of the times in order
+  std::sort(times.begin(), times.end());
   std::vector<double> steps;
-  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(std::abs(times[i] - times[i - 1]));
+  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) return units[0];
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
