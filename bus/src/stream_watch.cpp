@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t rate_window_us = 2'000'000;
 /// Times of a stream are compared with the clock after this long.
 constexpr std::int64_t pace_window_us = 3'000'000;
-/// Same time again and again: so many in a row are no accident.
+/// Messages in a row with the same time: five are no accident.
 constexpr std::int64_t most_at_same_time = 5;
 
 Refusal* known(std::vector<Refusal>& refusals, const std::string& reason) {

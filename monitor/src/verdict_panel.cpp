@@ -15,7 +15,7 @@ struct Line {
   Style style;
 };
 
-/// Most important first: what is drawn where there is room for so many.
+/// Most important first: the first ones are drawn where there is no room for all.
 std::vector<Line> lines_of(const PairVerdict& verdict, Charset charset) {
   const Diagnosis& diagnosis = verdict.diagnosis;
   std::vector<Line> lines;

@@ -11,7 +11,7 @@
 namespace egocal::services {
 
 struct DriveSampleOptions {
-  /// Of each stream. A diagnosis of so many takes some 50 ms.
+  /// Of each stream. A diagnosis of this number takes some 50 ms.
   std::size_t most_poses = 1200;
   /// Poses closer than this are skipped [us]: motions are compared over tenths of seconds and more.
   std::int64_t least_distance_us = 45'000;

@@ -266,7 +266,7 @@ TEST_F(DiagnosisService, LooksAwayWhileThePairIsPaused) {
 
 TEST_F(DiagnosisService, WithoutPosesItJudgesByTheProblemAlone) {
   const testing::Streams streams = drive(400);
-  play(streams, 0, 395);  // nobody listens yet
+  play(streams, 0, 395);  // no process listens yet
   start();
   play(streams, 390, 400);
   ASSERT_FALSE(verdicts.empty());

@@ -78,7 +78,7 @@ Found live(const Options& options) {
       found.answers.hear(message);
     });
   }
-  // verdicts are sent again every second, as heartbeats are: where nobody judges none is waited for
+  // verdicts are sent again every second, as heartbeats are: without a diagnosis none is waited for
   bool judged_here = false;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
     judged_here = judged_here || (status.role == bus::role_name(bus::Role::diagnosis) &&

@@ -262,7 +262,7 @@ Place emptiest_corner(const Plot& plot, const Frame& frame, double width, double
   Place best = corners[0];
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (const Place& corner : corners) {
-    constexpr std::size_t label = 20;  // as bad as hiding so many points
+    constexpr std::size_t label = 20;  // as bad as hiding this many points
     std::size_t hidden = hides_a_label(plot, frame, corner, width) ? label : 0;
     for (const Series& series : plot.series)
       for (std::size_t i = 0; i < series.x.size(); ++i) {

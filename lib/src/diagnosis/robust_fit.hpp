@@ -47,7 +47,7 @@ struct Comparison {
   double gain =
       0;  ///< mean of log(square of x / square of y), above a floor of noise: > 0 where y fits better
   double sigmas = 0;  ///< of Wilcoxon's signed-rank test over consecutive blocks of the drive; > 0 for y
-  double most = 0;    ///< the most sigmas that so many blocks can show
+  double most = 0;    ///< the most sigmas that this number of blocks can show
   double ratio = 1;   ///< of the mean squares of inliers, x / y
 };
 Comparison compare(const Explained& x, const Explained& y);

@@ -103,7 +103,7 @@ double correlation_of(std::span<const Block> blocks, const Fit& fit) {
   return largest;
 }
 
-/// Chance that the model reduces the cost by so much where the scale is one, at one of so many places.
+/// Chance that the model reduces the cost by this much where the scale is one, at one of `places`.
 double chance_of(std::span<const Block> blocks, const Fit& one, const Fit& model, double places) {
   const double freedom = static_cast<double>(blocks.size()) - 2;
   if (!(model.cost > 0)) return one.cost > 0 ? 0 : 1;

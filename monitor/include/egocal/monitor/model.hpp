@@ -153,7 +153,7 @@ class Model {
 
   const std::vector<PairState>& pairs() const { return pairs_; }
   const std::vector<ProcessState>& processes() const { return processes_; }
-  /// A line for each sensor and for each kind of fault in what it sends; empty: nobody watches them.
+  /// A line for each sensor and for each kind of fault in what it sends; empty: they are not watched.
   const std::vector<bus::StreamLine>& streams() const { return streams_; }
   const std::deque<Event>& events() const { return events_; }  ///< oldest first
   std::int64_t events_seen() const { return events_seen_; }    ///< ever, also those that are no longer kept
