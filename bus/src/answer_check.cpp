@@ -16,6 +16,7 @@ namespace {
 constexpr double same_pose = 1e-9;
 
 const std::string denied = "answer that claims a certificate which its problem denies";
+const std::string denied_verdict = "verdict that calls an answer good which its problem denies";
 
 bool same(const DualQuaternion& x, const DualQuaternion& y) {
   const Vector8d difference = canonical_sign(x).vec() - canonical_sign(y).vec();
@@ -62,7 +63,8 @@ std::string AnswerCheck::take(const problem_t& message) {
   return {};
 }
 
-const AnswerCheck::Known* AnswerCheck::find(const calibration_t& message) const {
+template <class Message>
+const AnswerCheck::Known* AnswerCheck::find(const Message& message) const {
   const auto pair = pairs_.find({message.sensor_a, message.sensor_b});
   if (pair == pairs_.end()) return nullptr;
   const auto known =
@@ -94,6 +96,14 @@ CheckedAnswer AnswerCheck::check(const calibration_t& message) const {
   }
   checked.standing = Standing::verified;
   return checked;
+}
+
+std::string AnswerCheck::refusal(const verdict_t& message, const ReceivedVerdict& received) const {
+  if (received.diagnosis.verdict != Verdict::good) return {};
+  const Known* known = find(message);
+  if (!known) return {};
+  const Certificate certificate = verify_answer(known->problem, received.judged.T_a_b);
+  return certificate.optimality == Optimality::certified ? "" : denied_verdict;
 }
 
 void set_certificate(const CheckedAnswer& checked, calibration_t& message) {

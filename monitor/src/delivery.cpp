@@ -61,11 +61,13 @@ void Delivery::calibration(calibration_t& message, Now now) {
 }
 
 void Delivery::verdict(const verdict_t& message, Now now) {
-  if (const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message))
+  const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
+  const std::string refused = received ? answers_.refusal(message, *received.value) : received.reason;
+  if (refused.empty())
     model_.on_verdict(message, *received.value, now);
   else
     model_.note(Severity::warning, pair_name(message.sensor_a, message.sensor_b),
-                "a verdict of " + message.sender + " is refused: " + received.reason, now);
+                "a verdict of " + message.sender + " is refused: " + refused, now);
 }
 
 }  // namespace egocal::monitor

@@ -112,7 +112,24 @@ struct Tally {
   int drives = 0, said = 0, right = 0, in_time = 0, asked = 0, near = 0;
 };
 
-Tally study(const Kind& kind, int count, int poses, int looks) {
+/// The worst standard deviation over the goal at each look.
+void print(const std::vector<Look>& drive, const GoalOptions& goal) {
+  for (const Look& look : drive) {
+    std::size_t worst = 0;
+    double most = 0;
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double ratio = look.answered.observability.stddev[k] / (k < 3 ? goal.translation : goal.rotation);
+      if (ratio > most) {
+        most = ratio;
+        worst = k;
+      }
+    }
+    std::printf(" %.2f%c", most, "xyzabc"[worst]);
+  }
+  std::printf("\n");
+}
+
+Tally study(const Kind& kind, int count, int poses, int looks, bool verbose) {
   std::vector<std::vector<Look>> drives;
   for (int seed = 1; seed <= count; ++seed)
     drives.push_back(looks_at(kind, 500 + static_cast<std::uint64_t>(seed), poses, looks));
@@ -127,6 +144,7 @@ Tally study(const Kind& kind, int count, int poses, int looks) {
   Tally tally;
   for (const std::vector<Look>& drive : drives) {
     ++tally.drives;
+    if (verbose) print(drive, goal);
     std::size_t said = 0;
     while (said < drive.size() && !goal_at(drive[said], goal).reached) ++said;
     if (said == drive.size()) continue;
@@ -163,6 +181,8 @@ int main(int argc, char** argv) {
       "be reached are");
   int drives = 100, poses = 1601, looks = 40;
   std::string write;
+  bool verbose = false;
+  app.add_flag("--verbose", verbose, "the worst standard deviation over the goal at each look");
   app.add_option("--drives", drives, "of each kind").show_default();
   app.add_option("--poses", poses, "of each drive").show_default();
   app.add_option("--looks", looks, "at each drive").check(cli::Check::range(8, 1000)).show_default();
@@ -173,7 +193,7 @@ int main(int argc, char** argv) {
                        "at most 1.5 times later than true", "time left within a factor 1.5 at half time"}}};
   int said = 0, right = 0;
   for (const Kind& kind : kinds) {
-    const Tally tally = study(kind, drives, poses, looks);
+    const Tally tally = study(kind, drives, poses, looks, verbose);
     table.rows.push_back({kind.name, std::to_string(tally.drives), std::to_string(tally.said),
                           part(tally.right, tally.said), part(tally.in_time, tally.said),
                           part(tally.near, tally.asked)});

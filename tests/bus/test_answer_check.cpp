@@ -77,6 +77,40 @@ TEST(AnswerCheck, TrueAnswersAreVerifiedInBothModes) {
     }
 }
 
+verdict_t verdict_message(Verdict verdict, const DualQuaternion& T_a_b, const problem_t& of) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = verdict;
+  verdict_t message = to_message(diagnosis, {T_a_b, of.utime, of.utime, 0});
+  message.sender = "egocal-diagnosis";
+  message.utime = of.utime;
+  message.session = of.session;
+  message.seq = of.seq;
+  message.sensor_a = of.sensor_a;
+  message.sensor_b = of.sensor_b;
+  return message;
+}
+
+TEST(AnswerCheck, AVerdictCallsOnlyTheOptimumGood) {
+  for (const Mode mode : {Mode::spatial, Mode::planar}) {
+    const Problem problem = noisy_problem(1, mode);
+    const problem_t message = problem_message(problem);
+    AnswerCheck check;
+    const auto refusal = [&](Verdict verdict, const DualQuaternion& T_a_b) {
+      const verdict_t sent = verdict_message(verdict, T_a_b, message);
+      const Checked<ReceivedVerdict> received = to_verdict(sent);
+      EXPECT_TRUE(received) << received.reason;
+      return check.refusal(sent, *received.value);
+    };
+    const DualQuaternion optimum = solve(problem, Method::dual).T_a_b;
+    const DualQuaternion other = optimum * to_dual_quaternion(Pose{rotation_exp({0, 0, 0.05}), {0.1, 0, 0}});
+    EXPECT_EQ(refusal(Verdict::good, other), "") << "its problem is not known";
+    ASSERT_EQ(check.take(message), "");
+    EXPECT_EQ(refusal(Verdict::good, optimum), "");
+    EXPECT_NE(refusal(Verdict::good, other), "");
+    EXPECT_EQ(refusal(Verdict::doubtful, other), "");
+  }
+}
+
 // Each of them was exported or shown as certified.
 TEST(AnswerCheck, ForgedCertificatesAreRefused) {
   const Problem problem = noisy_problem(1);

@@ -131,6 +131,14 @@ TEST(Explanations, AStreamThatStandsStillIsNamed) {
   EXPECT_NE(find(calibrate(streams.a, streams.b), "frozen_b"), nullptr);
 }
 
+TEST(Explanations, APositionWithoutHeightIsNamedAndNotGood) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.b = testing::with_position_columns(streams.b, Eigen::Vector3d(1, 1, 0).asDiagonal());
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_GE(calibration.verdict, Verdict::doubtful);
+  EXPECT_NE(find(calibration, "flat_b"), nullptr);
+}
+
 TEST(Explanations, AStreamGivenTwiceIsNamedAndNotGood) {
   const testing::Streams streams = drive(Terrain::free);
   const Calibration calibration = calibrate(streams.a, streams.a);

@@ -134,6 +134,8 @@ inline std::vector<Mistake> mistakes() {
   mirror(1, 1) = -1;
   exchange << 0, 1, 0, 1, 0, 0, 0, 0, 1;
   cycle << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  const Eigen::Matrix3d flat = Eigen::Vector3d(1, 1, 0).asDiagonal();
+  const Eigen::Matrix3d halved = Eigen::Vector3d(1, 1, 0.5).asDiagonal();
   const Eigen::Matrix3d turn = rotation_exp({0.1, 0, 0.7}).toRotationMatrix();
   const Pose bump{rotation_exp({0, 0, 5 * std::numbers::pi / 180}), {0.05, 0, 0}};
   return {
@@ -171,6 +173,8 @@ inline std::vector<Mistake> mistakes() {
       {"x, y, z of b from y, z, x", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, cycle); }},
       {"position of b turned 40 deg", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, turn); }},
       {"inverse position of a", "axes_a", [](Streams& s) { s.a = with_inverse_positions(s.a); }},
+      {"z of b always 0", "flat_b", [=](Streams& s) { s.b = with_position_columns(s.b, flat); }},
+      {"z of b halved", "", [=](Streams& s) { s.b = with_position_columns(s.b, halved); }},
       {"b given twice", "same_stream", [](Streams& s) { s.a = s.b; }},
       {"b frozen for a third", "frozen_b", [](Streams& s) { s.b = frozen(s.b, 0.4, 0.73); }},
       {"b half of another drive", "unrelated", [](Streams& s) { s.b = half_of_another(s.b); }},

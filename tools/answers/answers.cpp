@@ -93,6 +93,10 @@ void Answers::hear(const verdict_t& message) {
     ++refused_[received.reason];
     return;
   }
+  if (const std::string reason = check_.refusal(message, *received.value); !reason.empty()) {
+    ++refused_[reason];
+    return;
+  }
   const auto known = judgements_.find(pair);
   if (known == judgements_.end() && judgements_.size() >= most_pairs) return;
   if (known != judgements_.end() && known->second.session == message.session &&

@@ -107,6 +107,8 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const RobustFit at_answer = evaluated(motions, answered.T_a_b);
   result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
   result.findings = check_streams(a, b, evidence.instants);
+  if (answered.problem.mode == Mode::planar)  // level positions are what planar mode is for
+    std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
   // what is wrong with the streams themselves looks like other mistakes
   if (result.findings.empty()) result.findings = explain(evidence, options);
   if (answered.problem.mode == Mode::planar)
@@ -114,7 +116,8 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
          check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
       result.findings.push_back(std::move(finding));
   const Misfit misfit{detail::misfit(motions, at_answer),
-                      detail::misfit(motions, evidence.given.explained.fit)};
+                      detail::misfit(motions, evidence.given.explained.fit),
+                      median_misfit(motions, at_answer)};
   const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain || one.code == "samples"; });
   if (!explained) look_further(evidence, answered, misfit, options, result.findings);

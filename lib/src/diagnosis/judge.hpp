@@ -9,7 +9,8 @@ namespace egocal::detail {
 struct Misfit {
   double at_answer =
       0;  ///< residual at the answer that a third of the motion keeps below, as a part of the typical motion
-  double best = 0;  ///< at the extrinsic that suits the motions best
+  double best = 0;    ///< at the extrinsic that suits the motions best
+  double median = 0;  ///< residual at the answer that half of the motion keeps below
 };
 
 /// Sets verdict and reason from fit, findings and what is known of each direction.

@@ -65,12 +65,20 @@ double weighted_median(std::vector<std::pair<double, double>> values) {
   return weighted_quantile(std::move(values), 0.5);
 }
 
-double misfit(const Motions& motions, const RobustFit& fit) {
-  constexpr double better_third = 1.0 / 3;
+static double misfit_of(const Motions& motions, const RobustFit& fit, double part) {
   std::vector<std::pair<double, double>> values;
   for (std::size_t i = 0; i < motions.all.size(); ++i)
     values.emplace_back(fit.squares[i], size_of(motions.all[i], motions));
-  return std::sqrt(weighted_quantile(std::move(values), better_third));
+  return std::sqrt(weighted_quantile(std::move(values), part));
+}
+
+double misfit(const Motions& motions, const RobustFit& fit) {
+  constexpr double better_third = 1.0 / 3;
+  return misfit_of(motions, fit, better_third);
+}
+
+double median_misfit(const Motions& motions, const RobustFit& fit) {
+  return misfit_of(motions, fit, 0.5);
 }
 
 Residual residual_at(const Motion& motion, const Pose& T) {

@@ -30,6 +30,8 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T);
 /// wrong poses in each stream spoils up to two thirds of the motions; what contradicts, contradicts
 /// everywhere.
 double misfit(const Motions& motions, const RobustFit& fit);
+/// The same of the better half: of motions that contradict in one direction alone, a third may fit.
+double median_misfit(const Motions& motions, const RobustFit& fit);
 /// The extrinsic by iteratively reweighted global solves of (18).
 RobustFit robust_fit(const Motions& motions, const RobustFitOptions& options = {});
 

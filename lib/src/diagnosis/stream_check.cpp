@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "diagnosis/wording.hpp"
@@ -71,6 +72,48 @@ Finding same_stream() {
   finding.message = "Both streams are the same to rounding: one sensor was given twice.";
   finding.remedy = "Give the poses of the other sensor.";
   finding.T_a_b = Pose{};
+  return finding;
+}
+
+/// A stream whose positions lack a coordinate: one that never changes although the sensor tilts, which on a
+/// plane it would not.
+struct Flatness {
+  char coordinate = 0;  ///< x, y or z of the file; 0: none
+  double tilt = 0;      ///< root mean square of the turning out of the plane of the other two [rad]
+};
+
+Flatness flatness(const Trajectory& trajectory, const StreamCheckOptions& options) {
+  Flatness result;
+  if (trajectory.size() < options.least) return result;
+  const std::size_t each = std::max<std::size_t>(1, trajectory.size() / options.most);
+  const Pose first = to_pose(trajectory.front().pose);
+  Eigen::Vector3d low = first.translation, high = low, tilt = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < trajectory.size(); i += each, count += 1) {
+    const Pose pose = to_pose(trajectory[i].pose);
+    low = low.cwiseMin(pose.translation);
+    high = high.cwiseMax(pose.translation);
+    const Eigen::Vector3d turn = 2 * (pose.rotation * first.rotation.conjugate()).vec();
+    tilt += (turn.squaredNorm() - turn.array().square()).matrix();
+  }
+  const Eigen::Vector3d range = high - low;
+  Eigen::Index flat = 0;
+  if (range.minCoeff(&flat) > options.flat * range.maxCoeff() || !(range.maxCoeff() > 0)) return result;
+  // a stream that moves along one axis lacks two coordinates, and any motion along it is that of a plane
+  if ((range.array() <= options.flat * range.maxCoeff()).count() > 1) return result;
+  result.coordinate = "xyz"[flat];
+  result.tilt = std::sqrt(tilt[flat] / count);
+  return result;
+}
+
+Finding flat(char which, const Flatness& flatness) {
+  Finding finding;
+  finding.code = std::string("flat_") + which;
+  finding.certain = true;
+  finding.message =
+      format("The positions of %c never change in %c although it tilts by %.1f deg: a coordinate is missing.",
+             which, flatness.coordinate, flatness.tilt * 180 / std::numbers::pi);
+  finding.remedy = format("Give positions of %c in three dimensions, or ground planes (planar mode).", which);
   return finding;
 }
 
@@ -144,6 +187,10 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
     if (count < options.least || !(travelled > options.least_frozen * steps.travelled)) return;
     findings.push_back(frozen(which, travelled / steps.travelled));
   };
+  for (const char which : {'a', 'b'}) {
+    const Flatness found = flatness(which == 'a' ? a : b, options);
+    if (found.coordinate != 0 && found.tilt > options.least_tilt) findings.push_back(flat(which, found));
+  }
   check('a', steps.frozen_a, steps.travelled_a);
   check('b', steps.frozen_b, steps.travelled_b);
   return findings;

@@ -22,9 +22,11 @@ struct StreamCheckOptions {
   double agree = 0.25, disagree = 0.15;
   double step = 4;             ///< least ratio of windows that disagree to those that agree
   double least_turning = 0.3;  ///< of the typical motion; a window that turns less says nothing
+  double flat = 1e-6;          ///< of the longest extent: a coordinate that changes by less never changes
+  double least_tilt = 0.0175;  ///< of a stream with a flat coordinate: a degree [rad]; level ground is within
 };
 
-/// frozen_a, frozen_b, same_stream, samples.
+/// flat_a, flat_b, frozen_a, frozen_b, same_stream, samples.
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
                                    const StreamCheckOptions& options = {});
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/verdict.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/online/algorithm1.hpp"
 #include "egocal/problem_t.hpp"
@@ -43,6 +44,10 @@ class AnswerCheck {
   /// The reason why it was refused; empty: taken.
   std::string take(const problem_t& message);
   CheckedAnswer check(const calibration_t& message) const;
+  /// The reason why a verdict is refused: it calls an answer good that its problem denies to be the optimum.
+  /// Empty: it is not refused, or its problem is not known here. Whether the motions agree is the sender's
+  /// word: that takes the poses.
+  std::string refusal(const verdict_t& message, const ReceivedVerdict& received) const;
 
   static constexpr std::size_t max_pairs = 256;
   static constexpr std::size_t problems_per_pair = 16;  ///< answers come within a few problems
@@ -58,7 +63,8 @@ class AnswerCheck {
     std::size_t next = 0;       ///< where the next one goes
     std::uint64_t touched = 0;  ///< the longest untouched pair is forgotten
   };
-  const Known* find(const calibration_t& message) const;
+  template <class Message>
+  const Known* find(const Message& message) const;
 
   std::map<Key, Pair> pairs_;
   std::uint64_t touches_ = 0;
