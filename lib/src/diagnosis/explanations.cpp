@@ -140,12 +140,9 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   return {best.as_is, twin};
 }
 
-/// Lever arms alone tell turned axes of a from those of b; they must be as clear as this many readings.
-constexpr double turned_axes_alike = 3;
-
 /// Positions of one file in other axes than its rotations. Exchanged columns are what people do; turned axes
 /// have three more unknowns and must explain clearly more. Turned axes of one stream are up to the lever arm
-/// those of the other one turned likewise: where both fit, both are named.
+/// those of the other one turned likewise: where both fit better, both are named.
 BestReading best_axes(const Evidence& evidence, const BestReading& given, const DiagnosisOptions& options) {
   std::optional<Explanation> exchanged, turned, turned_other;
   const auto fits_better = [](const std::optional<Explanation>& x, const Explanation& y) {
@@ -172,9 +169,7 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   if (!turned || !better(compare(result.best.explained, turned->explained), options.gain, options))
     return result;
   result = {*turned, {}};
-  if (turned_other &&
-      compare(turned_other->explained, turned->explained).gain < turned_axes_alike * options.alike)
-    result.twin = turned_other;
+  result.twin = turned_other;
   return result;
 }
 
