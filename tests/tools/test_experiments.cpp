@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "../support/paths.hpp"
@@ -384,21 +385,45 @@ TEST(Compare, RepeatsTableIIOnKitti07) {
   EXPECT_LT(by_name.at("matrix [8]").error->rotation, by_name.at("global (dual)").error->rotation);
 }
 
-TEST(Compare, GivesTheNumbersOfThePageOnThePaper) {
+/// The drives of the page; empty where they are absent.
+std::optional<DataSet> drives_of_the_page(const std::vector<std::string>& names) {
   const std::string folder = paths::data_dir();
-  if (!std::filesystem::exists(folder + "/kitti_05")) GTEST_SKIP() << folder << "/kitti_05 is absent";
-  const DataSet data = load(
-      {.file_a = folder + "/kitti_05/velodyne_pylidar.tum," + folder + "/kitti_07/velodyne_pylidar.tum",
-       .file_b = folder + "/kitti_05/cam0_orbslam2.tum," + folder + "/kitti_07/cam0_orbslam2.tum",
+  std::string a, b;
+  for (const std::string& name : names) {
+    if (!std::filesystem::exists(folder + "/" + name)) return std::nullopt;
+    a += (a.empty() ? "" : ",") + folder + "/" + name + "/velodyne_pylidar.tum";
+    b += (b.empty() ? "" : ",") + folder + "/" + name + "/cam0_orbslam2.tum";
+  }
+  return load(
+      {.file_a = a,
+       .file_b = b,
        .truth = truth_of(folder + "/kitti_07/truth.txt"),
        .plane_a = validated({{-1.220921993720055186e-02, 2.798845739362088372e-03, 9.999215476281387849e-01},
                              -1.779603641715662210e+00}),
        .plane_b =
            validated({{-6.613857662736873089e-03, -9.998207740635888241e-01, -1.773912730951216279e-02},
                       -1.684677553916568593e+00})});
-  const std::string page = content_of(paths::source_dir() + "/docs/paper.md");
+}
+
+/// Line breaks count as spaces.
+std::string page_on_the_paper() {
+  std::string page = content_of(paths::source_dir() + "/docs/paper.md");
+  std::string flat;
+  for (const char c : page)
+    if (c != '\n')
+      flat += c;
+    else if (flat.empty() || flat.back() != ' ')
+      flat += ' ';
+  for (std::size_t at = flat.find("  "); at != std::string::npos; at = flat.find("  ")) flat.erase(at, 1);
+  return flat;
+}
+
+TEST(Compare, GivesTheNumbersOfThePageOnThePaper) {
+  const std::optional<DataSet> data = drives_of_the_page({"kitti_05", "kitti_07"});
+  if (!data) GTEST_SKIP() << "kitti_05 is absent";
+  const std::string page = page_on_the_paper();
   int compared = 0;
-  for (const ComparisonRow& row : compare(data, 1)) {
+  for (const ComparisonRow& row : compare(*data, 1)) {
     if (row.verdict != "certified" && row.verdict != "valid") continue;
     const std::string line =
         fmt::format("| {} | {} | {:.2f} | {:.3f} |", row.method, row.mode == Mode::planar ? "planar" : "3-D",
@@ -407,6 +432,39 @@ TEST(Compare, GivesTheNumbersOfThePageOnThePaper) {
     ++compared;
   }
   EXPECT_GE(compared, 8);
+}
+
+TEST(Online, GivesTheNumbersOfThePageOnThePaper) {
+  const std::optional<DataSet> data = drives_of_the_page({"kitti_07"});
+  if (!data) GTEST_SKIP() << "kitti_07 is absent";
+  const std::string page = page_on_the_paper();
+  for (const Mode mode : {Mode::spatial, Mode::planar}) {
+    const std::vector<OnlinePoint> points = online_experiment(*data, mode, data->pairs.size(), {}, {});
+    ASSERT_EQ(points.size(), 1100u);
+    const auto errors = [&](std::size_t frame) {
+      const ExtrinsicError& error = *points[frame - 1].error;
+      return fmt::format("{:.2f} cm and {:.3f} degrees", 100 * error.translation, error.rotation / degree);
+    };
+    const std::string at_the_end = fmt::format("{:.2f} cm", 100 * points.back().error->translation);
+    EXPECT_THAT(page, HasSubstr(errors(150)));
+    EXPECT_THAT(page, HasSubstr(at_the_end));
+    EXPECT_THAT(page, HasSubstr(fmt::format("frame {};", last_global_frame(points))));
+    for (const OnlinePoint& point : points) EXPECT_TRUE(point.certified) << point.frame;
+    // the answer before does not do for the new motions, the fast solution does
+    EXPECT_GT(*points[149].scaled_gap_before, 1);
+    EXPECT_LE(points[149].scaled_gap, 1);
+  }
+}
+
+TEST(Globality, GivesTheNumbersOfThePageOnThePaper) {
+  const std::optional<DataSet> data = drives_of_the_page({"kitti_07"});
+  if (!data) GTEST_SKIP() << "kitti_07 is absent";
+  const std::vector<GlobalityPoint> points = globality_experiment(*data, {});
+  for (const GlobalityPoint& point : points) EXPECT_EQ(point.disproved, point.runs) << point.amount;
+  const GlobalityOptions tried;
+  EXPECT_THAT(page_on_the_paper(),
+              HasSubstr(fmt::format("every one from {:g} degrees or {:g} mm on is disproved",
+                                    tried.rotations.front(), 1e3 * tried.translations.front())));
 }
 
 }  // namespace

@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numbers>
 
+#include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/blocks.hpp"
+#include "egocal/problem/ground_plane.hpp"
 
 namespace egocal::tools {
 
@@ -36,6 +39,15 @@ void measure(const Problem& problem, const std::optional<DualQuaternion>& last, 
   point.global_us = global.empty() ? 0 : median(global);
 }
 
+/// Scaled gap of any extrinsic on a problem.
+double gap_at(const Problem& problem, const DualQuaternion& T_a_b) {
+  const Matrix8d Q = cost_matrix(problem);
+  if (problem.mode == Mode::spatial) return verify(Q, T_a_b).scaled_gap;
+  return verify_planar(
+             Q, planar_from_extrinsic(T_a_b, plane_frame(problem.plane_a), plane_frame(problem.plane_b)))
+      .scaled_gap;
+}
+
 }  // namespace
 
 std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::size_t frames,
@@ -54,6 +66,7 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
     const OnlineStep step = algorithm1_step(problem, pairs[i].end_us, state, options);
     OnlinePoint point;
     measure(problem, state.last, options, point);
+    if (state.last) point.scaled_gap_before = gap_at(problem, *state.last);
     state = step.state;
     point.frame = static_cast<int>(i) + 1;
     point.time = static_cast<double>(pairs[i].end_us - pairs.front().begin_us) * 1e-6;
@@ -71,14 +84,15 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
 std::string csv(const std::vector<OnlinePoint>& points) {
   constexpr double degrees = 180 / std::numbers::pi;
   std::string text =
-      "frame,time_s,translation_m,rotation_deg,scaled_gap,certified,fast_verified,global_used,fast_us,global_"
-      "us,verify_us\n";
+      "frame,time_s,translation_m,rotation_deg,scaled_gap,scaled_gap_before,certified,fast_verified,global_"
+      "used,fast_us,global_us,verify_us\n";
   for (const OnlinePoint& p : points) {
     const std::string error =
         p.error ? fmt::format("{:.9g},{:.9g}", p.error->translation, degrees * p.error->rotation) : ",";
-    text += fmt::format("{},{:.6f},{},{:.6g},{:d},{:d},{:d},{:.2f},{:.2f},{:.2f}\n", p.frame, p.time, error,
-                        p.scaled_gap, p.certified, p.fast_verified, p.global_used, p.fast_us, p.global_us,
-                        p.verify_us);
+    const std::string before = p.scaled_gap_before ? fmt::format("{:.6g}", *p.scaled_gap_before) : "";
+    text += fmt::format("{},{:.6f},{},{:.6g},{},{:d},{:d},{:d},{:.2f},{:.2f},{:.2f}\n", p.frame, p.time,
+                        error, p.scaled_gap, before, p.certified, p.fast_verified, p.global_used, p.fast_us,
+                        p.global_us, p.verify_us);
   }
   return text;
 }
@@ -98,7 +112,7 @@ std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
     plot.title = title;
     plot.x.label = "frame";
     plot.y = {unit, AxisScale::logarithmic, {}, {}};
-    if (last_global > 0) plot.markers.push_back({true, last_global + 0.5, "fast alone from here"});
+    if (last_global > 0) plot.markers.push_back({true, last_global + 0.5, "fast alone"});
     return plot;
   };
   const auto series_of = [&](const std::string& name, Colour colour, Series::Style style, auto value) {
@@ -114,7 +128,8 @@ std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
   };
   std::vector<Panel> result;
   if (!points.empty() && points.front().error) {
-    Plot rotation = plot_of("Rotation error", "[deg]"), translation = plot_of("Translation error", "[m]");
+    Plot rotation = plot_of("Rotation error", "rotation error [deg]"),
+         translation = plot_of("Translation error", "translation error [m]");
     rotation.series.push_back(series_of("", Colour::blue, Series::Style::line,
                                         [&](const OnlinePoint& p) { return degrees * p.error->rotation; }));
     translation.series.push_back(series_of("", Colour::blue, Series::Style::line,
@@ -125,19 +140,27 @@ std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
   Plot gap = plot_of("Duality gap of the fast solution", "gap / threshold");
   gap.markers.push_back({false, 1, "verified below"});
   gap.y.least = 0.01;
-  gap.y.most = 100;
+  double largest = 1;  // with room for the legend above the curves
+  for (const OnlinePoint& p : points) largest = std::max(largest, p.scaled_gap_before.value_or(0));
+  gap.y.most = 1e4 * largest;
   // a gap of zero has no place on a logarithmic axis
-  const double least_gap = 1e-3;
-  gap.series.push_back(series_of("", Colour::blue, Series::Style::line, [least_gap](const OnlinePoint& p) {
-    return std::max(p.scaled_gap, least_gap);
-  }));
+  const double least_gap = 0.01;
+  gap.series.push_back(
+      series_of("answer before", Colour::vermilion, Series::Style::dotted,
+                [](const OnlinePoint& p) { return p.scaled_gap_before.value_or(std::nan("")); }));
+  gap.series.push_back(
+      series_of("fast solution", Colour::blue, Series::Style::line,
+                [least_gap](const OnlinePoint& p) { return std::max(p.scaled_gap, least_gap); }));
   result.push_back({"gap", gap});
-  Plot time = plot_of("Execution time", "[us]");
+  Plot time = plot_of("Execution time", "execution time [us]");
+  double longest = 0;  // with room for the label above the curves
+  for (const OnlinePoint& p : points) longest = std::max({longest, p.fast_us, p.global_us, p.verify_us});
+  if (longest > 0) time.y.most = 3 * longest;
   time.series.push_back(series_of("global", Colour::vermilion, Series::Style::dashes,
                                   [](const OnlinePoint& p) { return p.global_us; }));
   time.series.push_back(
       series_of("fast", Colour::blue, Series::Style::line, [](const OnlinePoint& p) { return p.fast_us; }));
-  time.series.push_back(series_of("verification", Colour::green, Series::Style::line,
+  time.series.push_back(series_of("verification", Colour::green, Series::Style::dotted,
                                   [](const OnlinePoint& p) { return p.verify_us; }));
   result.push_back({"time", time});
   return result;

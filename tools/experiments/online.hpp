@@ -22,6 +22,9 @@ struct OnlinePoint {
   /// Duality gap of the fast solution itself, over the threshold of its certificate; of the answer where
   /// there is no fast solution yet. Above 1 the global solver is asked.
   double scaled_gap = 0;
+  /// The same of the answer before, on this frame's problem: what the fast solver starts from. Empty in the
+  /// first frame.
+  std::optional<double> scaled_gap_before;
   bool certified = false;
   bool fast_verified = false;
   bool global_used = false;

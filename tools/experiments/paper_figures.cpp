@@ -172,7 +172,7 @@ std::string figure_5_part(const PaperOptions& options, const PaperData& data, co
   }
   Plot plot = map("First frames of the drive", "across [m]", "along [m]");
   plot.series = {series_of("", path, Colour::blue, Series::Style::line),
-                 series_of("first frame", first, Colour::green, Series::Style::points),
+                 series_of("first frame", first, Colour::green, Series::Style::rings),
                  series_of(fmt::format("frame {}", paper::online_frames), later, Colour::vermilion,
                            Series::Style::points)};
   const std::vector<Panel> panels{{"path", plot}};
@@ -198,6 +198,10 @@ std::string figure_6_part(const PaperOptions& options, const PaperData& data, co
         [&](double part) { progress((part + (mode == Mode::planar ? 1 : 0)) / (planar ? 2 : 1)); });
     const std::vector<Panel> drawn = panels(points);
     write_figure(options.out, name, csv(points), drawn);
+    const std::vector<OnlinePoint> whole =
+        online_experiment(data.online, mode, data.online.pairs.size(), {}, {});
+    const std::vector<Panel> whole_drive = panels(whole);
+    write_figure(options.out, std::string(name) + "-all", csv(whole), whole_drive);
     std::vector<double> fast, verify;
     int not_verified = 0;
     for (const OnlinePoint& point : points) {
@@ -218,6 +222,14 @@ std::string figure_6_part(const PaperOptions& options, const PaperData& data, co
                                  100 * last.error->translation, last.error->rotation * 180 / std::numbers::pi)
                    : std::string());
     text += figures_html(drawn);
+    const OnlinePoint& end = whole.back();
+    text += fmt::format(
+                "<p>All {} frames: certified in {}{}.</p>\n", whole.size(),
+                std::count_if(whole.begin(), whole.end(), [](const OnlinePoint& p) { return p.certified; }),
+                end.error ? fmt::format("; at the end {:.2f} cm, {:.3f} deg", 100 * end.error->translation,
+                                        end.error->rotation * 180 / std::numbers::pi)
+                          : std::string()) +
+            figures_html(whole_drive);
   }
   if (!planar) text += "<p>Planar: not without ground planes (--data).</p>\n";
   return text;

@@ -166,9 +166,24 @@ std::string band(const Series& series, const Plot& plot, const Frame& frame) {
                      hex(series.colour));
 }
 
+/// The attribute of a line's pattern.
+const char* dashes_of(const Series& series) {
+  if (series.style == Series::Style::dashes) return " stroke-dasharray='4 2.5'";
+  if (series.style == Series::Style::dotted) return " stroke-dasharray='1 1.6'";
+  return "";
+}
+
+std::string circle(double x, double y, double radius, const Series& series) {
+  const std::string colour = hex(series.colour);
+  const std::string paint = series.style == Series::Style::rings
+                                ? fmt::format("fill='white' stroke='{}' stroke-width='1.3'", colour)
+                                : fmt::format("fill='{}'", colour);
+  return fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='{:g}' {}/>\n", x, y, radius, paint);
+}
+
 std::string polyline(const std::string& points, const Series& series) {
   if (points.empty()) return "";
-  const char* dashes = series.style == Series::Style::dashes ? " stroke-dasharray='4 2.5'" : "";
+  const char* dashes = dashes_of(series);
   return fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='1.1'{}/>\n", points,
                      hex(series.colour), dashes);
 }
@@ -190,8 +205,7 @@ std::string dots(const Series& series, const Plot& plot, const Frame& frame) {
   std::string out;
   for (std::size_t i = 0; i < series.x.size(); ++i)
     if (drawable(plot.x, series.x[i]) && drawable(plot.y, series.y[i]))
-      out += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='{:g}' fill='{}'/>\n", frame.x(series.x[i]),
-                         frame.y(series.y[i]), series.radius, hex(series.colour));
+      out += circle(frame.x(series.x[i]), frame.y(series.y[i]), series.radius, series);
   return out;
 }
 
@@ -213,11 +227,13 @@ std::string bars(const Series& series, const Plot& plot, const Frame& frame) {
 std::string drawn(const Series& series, const Plot& plot, const Frame& frame) {
   switch (series.style) {
     case Series::Style::points:
+    case Series::Style::rings:
       return dots(series, plot, frame);
     case Series::Style::bars:
       return bars(series, plot, frame);
     case Series::Style::line:
     case Series::Style::dashes:
+    case Series::Style::dotted:
       break;
   }
   return band(series, plot, frame) + lines(series, plot, frame);
@@ -294,10 +310,9 @@ std::string legend(const Plot& plot, const Frame& frame) {
   double y = place.y + font_size;
   for (const Series& series : plot.series) {
     if (series.name.empty()) continue;
-    const char* dashes = series.style == Series::Style::dashes ? " stroke-dasharray='4 2.5'" : "";
-    if (series.style == Series::Style::points)
-      out += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='{:g}' fill='{}'/>\n", place.x + 2 + sample / 2,
-                         y - 3, std::max(2.0, series.radius), hex(series.colour));
+    const char* dashes = dashes_of(series);
+    if (series.style == Series::Style::points || series.style == Series::Style::rings)
+      out += circle(place.x + 2 + sample / 2, y - 3, std::max(2.0, series.radius), series);
     else
       out += fmt::format(
           "<line x1='{:.2f}' y1='{:.2f}' x2='{:.2f}' y2='{:.2f}' stroke='{}' stroke-width='2'{}/>\n",

@@ -24,8 +24,8 @@ struct Axis {
 /// Points in the order given. Points that are not finite, or not positive on a logarithmic axis, interrupt a
 /// line.
 struct Series {
-  enum class Style { line, dashes, points, bars };
-  std::string name;  ///< for the legend; empty: not listed
+  enum class Style { line, dashes, dotted, points, rings, bars };  ///< told apart in grey
+  std::string name;                                                ///< for the legend; empty: not listed
   std::vector<double> x, y;
   Style style = Style::line;
   Colour colour = Colour::blue;
