@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/problem/blocks.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
+#include "egocal/uncertainty/observability.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
 
@@ -70,6 +72,53 @@ TEST(Jackknife, LeavingOutABlockIsANewtonStepOnTheRest) {
         EXPECT_LT((steps[i] - expected).norm(), 1e-8 * expected.norm()) << seed << " block " << i;
       }
     }
+}
+
+/// 24 blocks of 10 motions, of which the last ones turn about all axes and the others drive straight on.
+Problem turning_at_the_end(int turning_blocks, std::uint64_t seed) {
+  Random random(seed);
+  const DualQuaternion T = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
+  Problem problem;
+  problem.balance = {1, 0.1};
+  for (int block = 0; block < 24; ++block) {
+    Statistics& statistics = problem.blocks.emplace_back();
+    const bool turns = block >= 24 - turning_blocks;
+    for (int i = 0; i < 10; ++i) {
+      const Eigen::Vector3d turn = random.normal3(turns ? 0.2 : 0), shift = {1, 0, 0};
+      const DualQuaternion a = displacement(turn, shift), b = conjugate(T) * a * T;
+      const DualQuaternion noise = displacement(random.normal3(0.002), random.normal3(0.01));
+      statistics.add(a * noise, b);
+    }
+  }
+  return problem;
+}
+
+/// Mean ratio of the reported standard deviations of the translation to those of the plain jack-knife.
+double ratio_to_plain_jackknife(const Problem& problem) {
+  const Matrix8d Q = cost_matrix(problem);
+  const DualQuaternion q = solve(problem, Method::dual).T_a_b;
+  const Observability known = assess_observability(problem, Q, q, ErrorCorrelation::independent);
+  const std::vector<Vector6d> differences = leave_out_differences(problem, Q, q);
+  const auto n = static_cast<double>(differences.size());
+  Vector6d mean = Vector6d::Zero(), squares = Vector6d::Zero();
+  for (const Vector6d& difference : differences) mean += difference / n;
+  for (const Vector6d& difference : differences) squares += (difference - mean).cwiseAbs2();
+  double ratio = 0;
+  for (int i = 0; i < 3; ++i)
+    ratio += known.stddev[static_cast<std::size_t>(i)] / std::sqrt(squares[i] * (n - 1) / n) / 3;
+  return ratio;
+}
+
+/// The spread of two or three blocks says less of its own size than that of 24.
+TEST(Jackknife, WhatFewBlocksHoldIsLessCertain) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const double spread_out = ratio_to_plain_jackknife(turning_at_the_end(24, seed));
+    EXPECT_GT(spread_out, 1) << seed;
+    EXPECT_LT(spread_out, 1.15) << seed;
+    const double concentrated = ratio_to_plain_jackknife(turning_at_the_end(3, seed));
+    EXPECT_GT(concentrated, 1.2) << seed;
+    EXPECT_LT(concentrated, 1.7) << seed;
+  }
 }
 
 /// Where there is no noise the spreads of all settings are rounding, and the logarithm of rounding is a draw:

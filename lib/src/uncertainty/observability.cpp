@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -49,13 +50,23 @@ double rotation_noise(const Matrix8d& Q, const DualQuaternion& q) {
   return std::max(0.0, q.real.dot(Q.bottomRightCorner<4, 4>() * q.real));
 }
 
+/// t(0.975) / 1.96 by its series in 1 / degrees of freedom: to three hundredths from two on.
+double student_factor(double freedom) {
+  const double x = 1 / freedom;
+  return 1 + x * (1.2104 + x * (1.440 + x * 1.304));
+}
+
 /// Standard deviations by leaving out blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et
 /// al. 1999).
 class Jackknife {
+  /// A spread of fewer has no meaning; Student's factor would only grow without bound.
+  static constexpr double least_equal_blocks = 2;
+
  public:
   explicit Jackknife(double pairs) : pairs_(pairs) {}
-  /// difference: estimate without the block minus estimate with all.
-  void leave_out(double block_pairs, const Vector6d& difference) {
+  /// difference: estimate without the block minus estimate with all. information: what part of what is known
+  /// of each direction the block holds, up to a common factor.
+  void leave_out(double block_pairs, const Vector6d& difference, const Vector6d& information) {
     const double h = pairs_ / block_pairs;
     const Vector6d pseudo = -(h - 1) * difference;  // pseudo value minus the estimate with all
     count_ += 1;
@@ -63,19 +74,37 @@ class Jackknife {
     squares_ += pseudo.cwiseAbs2() / (h - 1);
     cross_ += pseudo / (h - 1);
     weights_ += 1 / (h - 1);
+    information_ += information;
+    information_squares_ += information.cwiseAbs2();
   }
   /// With Student's factor: 1.96 of its roots cover 95 % whatever the number of blocks.
   Vector6d variance() const {
-    const double student = 1 + 1.21 / (count_ - 1);  // t(0.975) / 1.96, to a hundredth from six blocks on
+    const double student = student_factor(count_ - 1);
     // mean of (pseudo - mean)^2 / (h - 1)
     const Vector6d squares = squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_;
     return student * student * squares / count_;
+  }
+  /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
+  /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. Student's factor of about
+  /// so many degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the part
+  /// by which leaving out one of m says too much. One where all blocks hold alike.
+  Vector6d concentration() const {
+    Vector6d factor;
+    for (int i = 0; i < 6; ++i) {
+      const double squares = information_squares_[i];
+      const double all = squares > 0 ? information_[i] * information_[i] / squares : count_;
+      const double m = std::clamp(all, least_equal_blocks, count_);
+      factor[i] = student_factor(m - m / count_) / student_factor(count_ - 1) *
+                  std::sqrt((m - 1) / m * count_ / (count_ - 1));
+    }
+    return factor;
   }
 
  private:
   double pairs_;
   double count_ = 0, weights_ = 0;
   Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
+  Vector6d information_ = Vector6d::Zero(), information_squares_ = Vector6d::Zero();
 };
 
 /// Fewer blocks than this say too little about a spread.
@@ -108,10 +137,12 @@ std::string spatial_hint(int hidden_translations, bool rotation_hidden,
 struct BlockForm {
   TangentForm form;
   double pairs = 0;
+  Vector6d information = Vector6d::Zero();  ///< see Jackknife::leave_out
 
   BlockForm& operator+=(const BlockForm& other) {
     form += other.form;
     pairs += other.pairs;
+    information += other.information;
     return *this;
   }
 };
@@ -141,17 +172,36 @@ struct ShownDirections {
   int shown;
 };
 
+/// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
+void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
+                     const ShownDirections& directions) {
+  Matrix6d factors = directions.space.curvature(all);
+  if (!detail::factorise(factors, directions.shown)) return;
+  Matrix6d inverse = Matrix6d::Zero();  // H^-1 e_i
+  inverse.topRows(directions.shown) = directions.basis.transpose().topRows(directions.shown);
+  for (int i = 0; i < 6; ++i) {
+    Vector6d column = inverse.col(i);
+    detail::solve_factorised(factors, column, directions.shown);
+    inverse.col(i) = column;
+  }
+  for (BlockForm& block : blocks) {
+    const Matrix6d H = directions.space.curvature(block.form);
+    block.information =
+        inverse.cwiseProduct(H.lazyProduct(inverse)).colwise().sum().transpose().cwiseMax(0.0);
+  }
+}
+
 /// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
-Vector6d spatial_variance(const std::vector<BlockForm>& blocks, const TangentForm& all, double pairs,
-                          const ShownDirections& directions) {
+Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& all, double pairs,
+                       const ShownDirections& directions) {
   Jackknife jackknife(pairs);
   for (const BlockForm& block : blocks) {
     TangentForm rest = all;
     rest -= block.form;
-    jackknife.leave_out(block.pairs,
-                        directions.basis.lazyProduct(directions.space.newton_step(rest, directions.shown)));
+    const Vector6d step = directions.space.newton_step(rest, directions.shown);
+    jackknife.leave_out(block.pairs, directions.basis.lazyProduct(step), block.information);
   }
-  return jackknife.variance();
+  return jackknife;
 }
 
 /// Per direction the larger of the variances with single and with double blocks.
@@ -162,13 +212,16 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, const S
   for (const Statistics& block : problem.blocks) {
     const TangentForm form = directions.space.form(block);
     sum += form;
-    if (!detail::takes_off(block)) blocks.push_back({form, static_cast<double>(block.count)});
+    if (!detail::takes_off(block))
+      blocks.push_back({form, static_cast<double>(block.count), Vector6d::Zero()});
   }
+  set_information(blocks, sum, directions);
   const auto pairs = static_cast<double>(all.count);
-  const Vector6d single = spatial_variance(blocks, sum, pairs, directions);
-  return looks_at_double_blocks(problem, errors)
-             ? single.cwiseMax(spatial_variance(doubled(blocks), sum, pairs, directions))
-             : single;
+  const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
+  Vector6d variance = single.variance();
+  if (looks_at_double_blocks(problem, errors))
+    variance = variance.cwiseMax(jackknife_of(doubled(blocks), sum, pairs, directions).variance());
+  return single.concentration().cwiseAbs2().cwiseProduct(variance);
 }
 
 /// Whether the translation along a direction (dt in units of length, dtheta) differs from zero by more than
@@ -265,7 +318,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
 Vector6d planar_variance(const Problem& problem, const Statistics& all, const DualQuaternion& T_a_b,
                          ErrorCorrelation errors) {
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
-  const auto variance = [&](const std::vector<Statistics>& blocks) {
+  const auto jackknife_of = [&](const std::vector<Statistics>& blocks) {
     Jackknife jackknife(std::max(1.0, static_cast<double>(all.count)));
     for (const Statistics& block : blocks) {
       Statistics rest = all;
@@ -273,15 +326,19 @@ Vector6d planar_variance(const Problem& problem, const Statistics& all, const Du
       rest.weight -= block.weight;
       const Solution without = solve_planar(cost_matrix(rest, problem.balance));
       jackknife.leave_out(static_cast<double>(block.count),
-                          detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
+                          detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)),
+                          Vector6d::Zero());
     }
-    return jackknife.variance();
+    return jackknife;
   };
   std::vector<Statistics> blocks;
   for (const Statistics& block : problem.blocks)
     if (!detail::takes_off(block)) blocks.push_back(block);
-  const Vector6d single = variance(blocks);
-  return looks_at_double_blocks(problem, errors) ? single.cwiseMax(variance(doubled(blocks))) : single;
+  const Jackknife single = jackknife_of(blocks);
+  Vector6d variance = single.variance();
+  if (looks_at_double_blocks(problem, errors))
+    variance = variance.cwiseMax(jackknife_of(doubled(blocks)).variance());
+  return variance;
 }
 
 Observability planar_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
