@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "egocal/bus/diagnosis_json.hpp"
@@ -14,6 +15,11 @@ namespace egocal::tools {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
+
+/// Three significant digits, and no exponent where a number is large.
+std::string rounded(double value) {
+  return std::abs(value) < 100 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+}
 
 std::string verdict_word(Verdict verdict) {
   std::string word(to_string(verdict));
@@ -44,12 +50,14 @@ std::string trust_text(const Calibration& calibration) {
   const Fit& fit = calibration.fit;
   if (!fit.tenths.empty())
     text += fmt::format(
-        "fit           {:.3g} deg, {:.3g} cm ({:.2g} % of the distance) a motion{}; 95 % below {:.3g} deg, "
-        "{:.3g} "
-        "cm; lengths b / a {:.4g}\n",
-        fit.rotation_median * degrees, 100 * fit.translation_median, 100 * fit.translation_relative_median,
+        "fit           {} deg, {} cm ({} % of the distance) a motion{}; 95 % below {} deg, {} cm; lengths b "
+        "/ "
+        "a {:.4g}\n",
+        rounded(fit.rotation_median * degrees), rounded(100 * fit.translation_median),
+        fit.translation_relative_median < 0.995 ? fmt::format("{:.2g}", 100 * fit.translation_relative_median)
+                                                : rounded(100 * fit.translation_relative_median),
         fit.motion_seconds > 0 ? fmt::format(" of {:.2g} s", fit.motion_seconds) : "",
-        fit.rotation_95 * degrees, 100 * fit.translation_95, fit.length_ratio);
+        rounded(fit.rotation_95 * degrees), rounded(100 * fit.translation_95), fit.length_ratio);
   if (calibration.goal) {
     const Goal& goal = *calibration.goal;
     text += goal.reached
