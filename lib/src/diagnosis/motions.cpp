@@ -17,8 +17,27 @@ double seconds(std::int64_t us) {
   return 1e-6 * static_cast<double>(us);
 }
 
+/// The times of a stream under a clock [s], worked out when they are asked for: a drive of a million poses
+/// is looked at dozens of times.
+class Times {
+ public:
+  Times(const Trajectory& trajectory, std::int64_t origin_us, const ClockModel& clock)
+      : trajectory_(trajectory), origin_us_(origin_us), clock_(clock) {}
+  std::size_t size() const { return trajectory_.size(); }
+  double operator[](std::size_t i) const {
+    const double t = seconds(trajectory_[i].time_us - origin_us_);
+    return t + clock_.offset + clock_.rate * (t - clock_.middle);
+  }
+
+ private:
+  const Trajectory& trajectory_;
+  std::int64_t origin_us_;
+  ClockModel clock_;
+};
+
 /// Median of at most most_periods distances, evenly spread.
-double median_period(const std::vector<double>& times) {
+template <typename Values>
+double median_period(const Values& times) {
   if (times.size() < 2) return 0;
   std::vector<double> periods;
   const std::size_t each = std::max<std::size_t>(1, times.size() / most_periods);
@@ -28,20 +47,10 @@ double median_period(const std::vector<double>& times) {
   return periods[periods.size() / 2];
 }
 
-std::vector<double> times_of(const Trajectory& trajectory, std::int64_t origin_us, const ClockModel& clock) {
-  std::vector<double> times;
-  times.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) {
-    const double t = seconds(pose.time_us - origin_us);
-    times.push_back(t + clock.offset + clock.rate * (t - clock.middle));
-  }
-  return times;
-}
-
 /// Where given times lie among those of a stream, looked up in order.
 class Lookup {
  public:
-  Lookup(const std::vector<double>& times, double max_gap) : times_(times), max_gap_(max_gap) {}
+  Lookup(const Times& times, double max_gap) : times_(times), max_gap_(max_gap) {}
 
   struct Found {
     std::size_t before = 0;
@@ -49,18 +58,19 @@ class Lookup {
   };
   std::optional<Found> at(double time) {
     while (from_ + 1 < times_.size() && times_[from_ + 1] <= time) ++from_;
-    if (times_[from_] > time) return std::nullopt;
-    const double before = time - times_[from_];
+    const double at = times_[from_];
+    if (at > time) return std::nullopt;
+    const double before = time - at;
     if (before < same_time) return Found{from_, 0};
     if (from_ + 1 >= times_.size()) return std::nullopt;
-    const double period = times_[from_ + 1] - times_[from_];
+    const double period = times_[from_ + 1] - at;
     if (period > max_gap_) return std::nullopt;
     return Found{from_, before / period};
   }
 
  private:
   static constexpr double same_time = 5e-7;  ///< half of a stamp's resolution [s]
-  const std::vector<double>& times_;
+  const Times& times_;
   double max_gap_;
   std::size_t from_ = 0;
 };
@@ -109,19 +119,20 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
   Instants instants;
   if (a.empty() || b.empty()) return instants;
   const std::int64_t origin_us = a.front().time_us;
-  const std::vector<double> times_a = times_of(a, origin_us, {}), times_b = times_of(b, origin_us, clock);
+  const Times times_a(a, origin_us, {}), times_b(b, origin_us, clock);
   const bool b_slower = 10 * median_period(times_b) >= 9 * median_period(times_a);
   instants.b_slower_ = b_slower;
   instants.keys_ = b_slower ? &b : &a;
   instants.others_ = b_slower ? &a : &b;
-  const std::vector<double>& key_times = b_slower ? times_b : times_a;
+  const Times& key_times = b_slower ? times_b : times_a;
   Lookup other(b_slower ? times_a : times_b, max_gap);
   instants.time.reserve(key_times.size());
   instants.places_.reserve(key_times.size());
   for (std::size_t i = 0; i < key_times.size(); ++i) {
-    const std::optional<Lookup::Found> found = other.at(key_times[i]);
+    const double time = key_times[i];
+    const std::optional<Lookup::Found> found = other.at(time);
     if (!found) continue;
-    instants.time.push_back(key_times[i]);
+    instants.time.push_back(time);
     instants.places_.push_back({i, found->before, found->part});
   }
   instants.period = median_period(instants.time);

@@ -48,11 +48,13 @@ double robust_deviation(std::vector<double> values) {
     return values[place];
   };
   double deviation = deviations_per_quartile * at(values.size(), values.size() / 4);
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0, before = 0; i < 3; ++i) {
     // the same order statistics as of sorted values, in linear time
     const auto end = std::partition(values.begin(), values.end(),
                                     [limit = 4 * deviation](double value) { return value <= limit; });
     const auto near = static_cast<std::size_t>(end - values.begin());
+    if (near == before) break;  // the same values, and the same median
+    before = near;
     deviation = deviations_per_median * at(near, near / 2);
   }
   return deviation;
