@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <utility>
 
 #include "../support/random_motion.hpp"
+#include "../support/real_drives.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal {
 namespace {
@@ -50,6 +54,38 @@ TEST(Congruence, TooFewToTellAreNotJudged) {
   const std::vector<bool> found = incongruent(pairs);
   EXPECT_EQ(std::count(found.begin(), found.end(), true), 0);
   EXPECT_TRUE(incongruent({}).empty());
+}
+
+/// What ScreeningOptions::doubtful and CongruenceOptions::most_growing rest on: real odometry has heavy
+/// tails, but hardly ever is a step of it as far from congruent as a pose that is wrong.
+TEST(RealCongruence, StepsOfRealDrivesAreHardlyEverDoubtful) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "shared/data is not there";
+  const std::pair<const char*, testing::Streams> drives[] = {{"KITTI 05", testing::kitti("05")},
+                                                             {"KITTI 07", testing::kitti("07")},
+                                                             {"EuRoC", testing::euroc()},
+                                                             {"arm", testing::robot_arm()}};
+  const ScreeningOptions limits;
+  for (const auto& [name, streams] : drives) {
+    PairingOptions options;
+    options.stride = 1;
+    options.balance = Balance{};
+    options.robust = false;
+    CongruenceScale scale;
+    int steps = 0, doubtful = 0;
+    double largest = 0, growing = 0;
+    for (const MotionPair& step : pair_motions(options, streams.a, streams.b).pairs) {
+      const double distance = incongruence(step.a, step.b, scale, limits.congruence);
+      ++steps;
+      doubtful += distance > limits.doubtful;
+      largest = std::max(largest, distance);
+      growing = std::max({growing, scale.angle.growing, scale.length.growing});
+      update_congruence(step.a, step.b, distance > limits.doubtful, scale, limits.congruence);
+    }
+    std::printf("%-9s %5d steps, largest %6.1f standard deviations, %2d doubtful, noise grows by %.3f\n",
+                name, steps, largest, doubtful, growing);
+    EXPECT_GT(steps, 500) << name;
+    EXPECT_LE(doubtful, steps / 100) << name;
+  }
 }
 
 }  // namespace
