@@ -164,6 +164,17 @@ def write_table(file, rows):
         writer.writerows(plain)
 
 
+def require_parquet(*files):
+    """Says before the work, not after it, that a .parquet file cannot be written here."""
+    if not any(str(file).endswith(".parquet") for file in files if file):
+        return
+    try:
+        import pandas  # noqa: F401
+        import pyarrow  # noqa: F401
+    except ImportError as error:
+        raise ImportError(f".parquet needs pandas and pyarrow ({error}); Debian 12 has no pyarrow: use .csv") from error
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="egocal.fleet", description="many drives of many rigs, on Dask")
     parser.add_argument("drives", help="csv with the columns rig, a, b and any more")
@@ -178,6 +189,7 @@ def main(arguments=None):
             print(f"\r{done} of {total} drives", end="\n" if done == total else "", file=sys.stderr, flush=True)
 
     try:
+        require_parquet(asked.out, asked.pooled)
         answers = solve(read_table(asked.drives), asked.scheduler, asked.workers, progress)
         write_table(asked.out, answers)
         if asked.pooled:

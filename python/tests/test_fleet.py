@@ -76,6 +76,18 @@ def test_a_drive_that_cannot_be_read_is_a_row(drives, tmp_path):
     assert egocal.fleet.main([str(table), "--out", str(out)]) == 1
 
 
+def test_parquet_is_refused_before_the_work_where_it_cannot_be_written(drives, tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setattr(egocal.fleet, "solve", lambda *_: pytest.fail("worked before it looked"))
+    table = tmp_path / "drives.csv"
+    with open(table, "w", newline="") as stream:
+        writer = csv.DictWriter(stream, list(drives[0]))
+        writer.writeheader()
+        writer.writerow(drives[0])
+    assert egocal.fleet.main([str(table), "--out", str(tmp_path / "answers.parquet")]) == 1
+    assert "use .csv" in capsys.readouterr().err
+
+
 def cluster_of_two_hosts(drives_file):
     """Run inside two_hosts: a scheduler here, a worker on each host, the second one killed after the first answer."""
     drives = egocal.fleet.read_table(drives_file)

@@ -23,8 +23,9 @@ constexpr int first_steps = 2, steps_from_all = 3, last_steps = 10;
 constexpr int rounds_on_the_way = 3;
 /// A sample that noise explains this often is taken in without a second look.
 constexpr double unremarkable = 0.01;
-/// From this many samples on the noise of the rotations is known without an answer (congruent_noise()).
-constexpr std::size_t least_for_congruence = 30;
+/// From this many samples on the noise of the rotations is known without an answer (congruent_noise()), to a
+/// third.
+constexpr std::size_t least_for_congruence = 12;
 /// Samples that agree need no search from triples where they are most of all, their rotations are as good as
 /// the angles of the motions allow, and the positions of the best 60 % are no better than a normal
 /// distribution has it (0.63 of the variance).
