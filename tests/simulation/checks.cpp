@@ -203,13 +203,16 @@ void Checks::status_sent(const Process& from, const status_t& status) {
                         network.jitter_us == 0;
   for (const acknowledgement_t& acknowledgement : status.acknowledgements) {
     const auto before = lineage.acknowledged.find(acknowledgement.channel);
-    if (promised && before != lineage.acknowledged.end() && acknowledgement.utime < before->second)
+    // what comes once more is acknowledged by its own time
+    if (promised && before != lineage.acknowledged.end() && acknowledgement.utime < before->second &&
+        !lineage.again[acknowledgement.channel].contains(acknowledgement.utime))
       fail('a', "what was acknowledged on " + acknowledgement.channel + " until " +
                     std::to_string(before->second - HostClock::start_of_all_us) +
                     " us has been forgotten: now it is acknowledged until " +
                     std::to_string(acknowledgement.utime - HostClock::start_of_all_us) + " us");
     lineage.acknowledged[acknowledgement.channel] = acknowledgement.utime;
   }
+  acknowledged_ = acknowledged_ || !status.acknowledgements.empty();
   lineage.counters.clear();
   for (const counter_t& counter : status.counters) lineage.counters[counter.name] = counter.value;
 }
@@ -223,7 +226,8 @@ void Checks::received(const Address& by, std::string_view channel, bus::Bytes me
     Lineage& lineage = lineages_[listener.spec().name + listener.spec().state_file];
     if (lineage.sensors[i].received++ == 0) lineage.sensors[i].first = field(message, utime_at);
     lineage.sensors[i].numbers.insert(field(message, utime_at));
-    lineage.all[i].insert(field(message, utime_at));
+    if (!lineage.all[i].insert(field(message, utime_at)).second)
+      lineage.again[std::string(channel)].insert(field(message, utime_at));
   }
 }
 
@@ -250,6 +254,7 @@ void Checks::started(const Process& process) {
 
 void Checks::ended(const Process& process, const Process::Ending& ending) {
   if (ending.exit_code > 0) fail('f', process.spec().name + " ended by itself: " + ending.error);
+  if (process.spec().part == Part::pairing && !acknowledged_) died_unheard_ = true;
   if (ending.next == tools::Restarts::Next::hopeless) fail('f', process.spec().name + " is given up");
 }
 

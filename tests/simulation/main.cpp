@@ -66,13 +66,13 @@ void tell_story(const Plan& plan, bool everything) {
               .everything = everything});
 }
 
-void report(const Plan& plan, const Violation& violation, bool shrinks) {
+void report(const Plan& plan, const Violation& violation, bool shrinks, bool everything) {
   std::printf("seed %" PRIu64 ": (%c) at %.6f s: %s\n", plan.seed, violation.check,
               1e-6 * static_cast<double>(violation.at_us), violation.text.c_str());
   const Plan shortest = shrinks ? shrink(plan, violation.check) : plan;
   std::printf("\n%s\n", describe(shortest).c_str());
   if (!shrinks) return;
-  tell_story(shortest, false);
+  tell_story(shortest, everything);
   const Outcome again = live(shortest);
   if (again.violation) std::printf("=> (%c) %s\n", again.violation->check, again.violation->text.c_str());
   std::fflush(stdout);
@@ -129,7 +129,7 @@ int run(const Options& options) {
     ++failed;
     const itimerval none{};
     setitimer(ITIMER_PROF, &none, nullptr);
-    report(plan, *violation, !options.no_shrink);
+    report(plan, *violation, !options.no_shrink, options.everything);
     std::fflush(stdout);
     if (options.until_failure) {
       ++lives;

@@ -87,6 +87,7 @@ class Draw {
     network();
     if (chance(0.3)) clocks();
     incidents();
+    if (plan_.input == Input::player && chance(0.03)) play_again();
     return std::move(plan_);
   }
 
@@ -163,6 +164,18 @@ class Draw {
     }
     std::stable_sort(plan_.incidents.begin(), plan_.incidents.end(),
                      [](const Incident& x, const Incident& y) { return x.at_us < y.at_us; });
+  }
+
+  /// The player dies late in its log and begins anew, before all that pairing knows again.
+  void play_again() {
+    plan_.rate_hz = 20;
+    plan_.speed = 1;
+    plan_.disturbed_us = between(6'000'000, 9'000'000);
+    Incident kill;
+    kill.kind = IncidentKind::kill;
+    kill.target = first_input;
+    kill.at_us = between(plan_.disturbed_us * 9 / 10, plan_.disturbed_us);
+    plan_.incidents = {kill};
   }
 
   Incident incident(IncidentKind kind) {
