@@ -370,8 +370,11 @@ class Up : public Supervision {
 };
 
 TEST_F(Up, PlaysALogToItsEndAndEndsAll) {
-  ChildProcess egocal = up({"--log", log, "--speed", "0", "--follow"});
+  ChildProcess egocal = up({"--log", log, "--speed", "0", "--follow", "--report"});
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  const std::string page = read(path("out/report-lidar-camera.html"));
+  EXPECT_THAT(page, HasSubstr("good: "));
+  EXPECT_THAT(page, HasSubstr("</html>"));
   for (const char* name :
        {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-diagnosis", "egocal-player"})
     EXPECT_TRUE(std::filesystem::exists(path("out/" + std::string(name) + ".out"))) << name;

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include "commands/report.hpp"
+
 #include <fmt/format.h>
 
 #include <memory>
@@ -7,7 +9,6 @@
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "report/html.hpp"
 
 namespace egocal::tools {
 
@@ -44,10 +45,7 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
 }
 
 void run(const Options& options, const std::string& command) {
-  SolveRequest request = understood(options.request);
-  request.keep_motions = true;
-  const ReportInput input = report_input(request, calibrate_offline(request), command);
-  write_whole_file(options.out, report_html(input));
+  const ReportInput input = write_report(understood(options.request), options.out, command);
   fmt::print("{}\n{}\n", input.verdict, options.out);
   if (input.calibration.verdict == Verdict::contradictory ||
       (input.calibration.goal && !input.calibration.goal->reached))
@@ -55,6 +53,13 @@ void run(const Options& options, const std::string& command) {
 }
 
 }  // namespace
+
+ReportInput write_report(SolveRequest request, const std::string& out, const std::string& command) {
+  request.keep_motions = true;
+  ReportInput input = report_input(request, calibrate_offline(request), command);
+  write_whole_file(out, report_html(input));
+  return input;
+}
 
 void add_report(cli::App program) {
   const auto options = std::make_shared<Options>();

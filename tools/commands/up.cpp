@@ -12,6 +12,7 @@
 
 #include "answers/answers.hpp"
 #include "commands/commands.hpp"
+#include "commands/report.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/whole_file.hpp"
@@ -27,7 +28,7 @@ namespace {
 
 struct Options {
   std::string rig, log, url, output_dir, state, speed = "1", fast = "sqp", global = "dual";
-  bool monitor = false, follow = false, join = false;
+  bool monitor = false, follow = false, join = false, report = false;
 };
 
 /// Every process is heard once a second.
@@ -75,7 +76,31 @@ void report_left_behind(const std::string& directory) {
              files.back(), files.size() > 1 ? fmt::format(" and {} others", files.size() - 1) : "");
 }
 
+/// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
+/// offline is named; the answer of the processes stands.
+void write_reports(const Options& options, const bus::Rig& rig, const std::string& directory) {
+  for (const bus::PairConfig& pair : rig.pairs) {
+    const std::string file = fmt::format("{}/report-{}-{}.html", directory, pair.a, pair.b);
+    SolveRequest request;
+    request.source.log = options.log;
+    request.source.a = bus::sensor(rig, pair.a).channel;
+    request.source.b = bus::sensor(rig, pair.b).channel;
+    request.calibration.pairing = bus::drive_options(rig, pair);
+    request.calibration.read_a.scale = bus::sensor(rig, pair.a).scale;
+    request.calibration.read_b.scale = bus::sensor(rig, pair.b).scale;
+    request.truth = pair.truth;
+    try {
+      write_report(request, file, fmt::format("egocal up {} --log {} --report", options.rig, options.log));
+      fmt::print(stderr, "egocal up: {}\n", file);
+    } catch (const Error& error) {
+      fmt::print(stderr, "egocal up: no report of {} and {}: {}\n", pair.a, pair.b, error.what());
+    }
+  }
+}
+
 void run(const Options& options) {
+  if (options.report && options.log.empty())
+    throw cli::UsageError("--report: goes with --log, whose drive it shows");
   const bus::Rig rig = bus::read_rig(options.rig);
   const std::string url = options.url.empty() ? rig.lcm_url : options.url;
   if (!options.log.empty()) require_a_pair(options.log, rig);
@@ -136,6 +161,8 @@ void run(const Options& options) {
     throw Error("up: nothing was calibrated: no solver answered; see " +
                 (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
   fmt::print("{}", outcome.text);
+  if (options.report)
+    write_reports(options, rig, supervisor.output_dir.empty() ? "." : supervisor.output_dir);
   if (outcome.unusable) throw cli::Exit{not_to_be_used};
 }
 
@@ -160,6 +187,8 @@ void add_up(cli::App program) {
   command.add_option(
       "--output-dir", options->output_dir,
       "each process's output in a file there; -: here; default: ~/.local/state/egocal/NAME OF RIG");
+  command.add_flag("--report", options->report,
+                   "with --log: a page of each pair (egocal report) in the output folder, made at the end");
   command.add_flag("--join", options->join, "also where pairing is running on this bus already");
   command.add_option("--state", options->state, "file in which the statistics outlive this command");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
