@@ -20,4 +20,12 @@ std::string verdict_channel(const std::string& a, const std::string& b) {
   return verdict_prefix + a + "_" + b;
 }
 
+std::string scale_problem_channel(const std::string& a, const std::string& b) {
+  return scale_problem_prefix + a + "_" + b;
+}
+
+std::string scale_channel(const std::string& a, const std::string& b) {
+  return scale_prefix + a + "_" + b;
+}
+
 }  // namespace egocal::bus

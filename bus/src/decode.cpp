@@ -62,6 +62,7 @@ class Walk {
 };
 
 constexpr std::size_t statistics_size = 8 + 8 + 36 * 8;
+constexpr std::size_t scale_statistics_size = 8 + 8 + (10 + 16 + 16 + 10 + 2) * 8;
 constexpr std::size_t fit_size = 8 + 8 * 8;
 /// Of a finding: what lies between its strings and behind them.
 constexpr std::size_t finding_numbers = 8 + 8 + 1 + 8 + 1 + 24 + 32;
@@ -156,6 +157,24 @@ bool lengths_fit(const verdict_t*, Bytes bytes) {
   walk.string();
   walk.skip(8);
   walk.string();
+  return walk.done();
+}
+
+bool lengths_fit(const scale_problem_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(3 * 8);
+  walk.string();
+  walk.string();
+  walk.skip(3 + 5 * 8);
+  walk.skip(scale_statistics_size * walk.count(scale_statistics_size));
+  return walk.done();
+}
+
+bool lengths_fit(const scale_t*, Bytes bytes) {
+  Walk walk(bytes);
+  walk.skip(3 * 8);
+  for (int i = 0; i < 3; ++i) walk.string();
+  walk.skip(1 + 9 * 8 + 3 + 8);
   return walk.done();
 }
 

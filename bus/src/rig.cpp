@@ -168,7 +168,12 @@ Sensor read_sensor(const Table& in) {
     in.fail("channel", "expected the name of one channel, not a pattern");
   if (in.has("type") && in.choice("type", {"egocal.odometry_t", "bot_core.pose_t"}) == "bot_core.pose_t")
     sensor.type = OdometryType::pose;
-  if (in.has("scale")) sensor.scale = in.number("scale", sensor_scale, "");
+  if (in.has("scale")) {
+    sensor.find_scale = in.require("scale").is_string() && in.text("scale") == "auto";
+    if (!sensor.find_scale && in.require("scale").is_string())
+      in.fail("scale", "expected a number or \"auto\"");
+    if (!sensor.find_scale) sensor.scale = in.number("scale", sensor_scale, "");
+  }
   if (in.has("plane")) {
     const std::vector<double> v = in.numbers("plane", 4, "[nx, ny, nz, d]");
     try {
@@ -205,6 +210,12 @@ PairConfig read_pair(const Table& in, const Rig& rig) {
     (key == "a" ? pair.a : pair.b) = name;
   }
   if (pair.a == pair.b) in.fail("b", "is the same sensor as a");
+  const bool unscaled_a = sensor(rig, pair.a).find_scale, unscaled_b = sensor(rig, pair.b).find_scale;
+  if (unscaled_a && unscaled_b)
+    in.fail("b", "both sensors have scale = \"auto\": one of the two must measure metres");
+  // the motions of such a pair have a length of their own
+  if ((unscaled_a || unscaled_b) && in.has("stride"))
+    in.fail("stride", "cannot be chosen where a sensor has scale = \"auto\"");
   if (calibration_channel(pair.a, pair.b).size() > max_channel_length)
     in.fail("b", "the two names together are too long for a channel (63 characters)");
   if (in.has("mode") && in.choice("mode", {"spatial", "planar"}) == "planar") {
@@ -364,6 +375,12 @@ PairingOptions drive_options(const Rig& rig, const PairConfig& pair) {
   options.max_gap = rig.max_gap;
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
   return options;
+}
+
+std::optional<Side> unscaled_side(const Rig& rig, const PairConfig& pair) {
+  for (const Sensor& s : rig.sensors)
+    if (s.find_scale && (s.name == pair.a || s.name == pair.b)) return s.name == pair.a ? Side::a : Side::b;
+  return std::nullopt;
 }
 
 }  // namespace egocal::bus

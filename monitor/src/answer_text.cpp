@@ -155,6 +155,20 @@ std::string fit_text(const PairVerdict& verdict, Charset charset) {
          number(fit.length_ratio, 3, charset);
 }
 
+Label scale_text(const bus::CheckedScale& scale, Charset charset) {
+  const ScaleSolution& solution = scale.solution;
+  const std::string sensor = clean(scale.sensor, 40);
+  if (!scale.verified)
+    return {"of " + sensor + " not verified: its problem was not received", Style::warning};
+  if (!solution.observable || !std::isfinite(solution.stddev))
+    return {"of " + sensor + " not shown by the motions yet: drive on, with curves", Style::warning};
+  const double percent = 100 * solution.stddev / solution.scale;
+  return {compact(solution.scale, charset) + " of " + sensor + " " + symbols(charset).plus_minus +
+              number(percent, percent < 1 ? 3 : 1, charset) + " %, " +
+              (solution.certified ? "optimal (proven)" : "not proven"),
+          solution.certified ? Style::good : Style::warning};
+}
+
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max) {
   return clean(pair.a, max) + " " + symbols(charset).arrow + " " + clean(pair.b, max);
 }

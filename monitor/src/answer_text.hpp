@@ -57,6 +57,8 @@ Label advice_of(const PairState& pair);
 std::string goal_text(const Diagnosis& diagnosis);
 /// "0.12 deg, 1.3 cm (0.8 % of the way) a motion of 1.2 s, ..."; empty where it was not measured.
 std::string fit_text(const PairVerdict& verdict, Charset charset);
+/// "0.37012 ±0.0004 of camera, proven": what its lengths are multiplied by, or why that is not known.
+Label scale_text(const bus::CheckedScale& scale, Charset charset);
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
 /// "fast" for "egocal-fast".
 std::string short_solver(const std::string& name, std::size_t max = 12);

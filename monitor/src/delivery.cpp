@@ -31,6 +31,12 @@ void Delivery::deliver(const std::string& channel, std::span<const std::byte> by
   } else if (channel.starts_with(bus::verdict_prefix)) {
     verdict_t message{};
     if (decoded(message) && of_channel(message, bus::verdict_channel)) verdict(message, now);
+  } else if (channel.starts_with(bus::scale_problem_prefix)) {
+    scale_problem_t message{};
+    if (decoded(message) && of_channel(message, bus::scale_problem_channel)) scale_problem(message, now);
+  } else if (channel.starts_with(bus::scale_prefix)) {
+    scale_t message{};
+    if (decoded(message) && of_channel(message, bus::scale_channel)) scale(message, now);
   } else if (channel == bus::status_channel) {
     status_t message{};
     if (decoded(message)) model_.on_status(message, now);
@@ -68,6 +74,22 @@ void Delivery::verdict(const verdict_t& message, Now now) {
   else
     model_.note(Severity::warning, pair_name(message.sensor_a, message.sensor_b),
                 "a verdict of " + message.sender + " is refused: " + refused, now);
+}
+
+void Delivery::scale_problem(const scale_problem_t& message, Now now) {
+  if (const std::string refused = scales_.take(message); !refused.empty())
+    model_.note(Severity::warning, pair_name(message.sensor_a, message.sensor_b),
+                "a scale problem is refused: " + refused, now);
+}
+
+void Delivery::scale(const scale_t& message, Now now) {
+  const std::string refused = scales_.take(message);
+  if (!refused.empty())
+    model_.note(Severity::warning, pair_name(message.sensor_a, message.sensor_b),
+                "a scale of " + message.solver + " is refused: " + refused, now);
+  else if (const bus::CheckedScale* checked =
+               scales_.find(message.sensor_a, message.sensor_b, message.session))
+    model_.on_scale(message, *checked, now);
 }
 
 }  // namespace egocal::monitor

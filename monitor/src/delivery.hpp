@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
@@ -25,9 +26,12 @@ class Delivery {
   void problem(const problem_t& message, Now now);
   void calibration(calibration_t& message, Now now);
   void verdict(const verdict_t& message, Now now);
+  void scale_problem(const scale_problem_t& message, Now now);
+  void scale(const scale_t& message, Now now);
 
   Model& model_;
   bus::AnswerCheck answers_;
+  bus::ScaleCheck scales_;
 };
 
 }  // namespace egocal::monitor

@@ -30,6 +30,8 @@ Feed::Feed(Model& model, const FeedOptions& options)
   loop_.subscribe_prefix(bus::problem_prefix, deliver, queue_capacity);
   loop_.subscribe_prefix(bus::calibration_prefix, deliver, queue_capacity);
   loop_.subscribe_prefix(bus::verdict_prefix, deliver, queue_capacity);
+  loop_.subscribe_prefix(bus::scale_problem_prefix, deliver, queue_capacity);
+  loop_.subscribe_prefix(bus::scale_prefix, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::status_channel, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::command_channel, deliver);
   if (!options.sensors.empty()) watch_streams();

@@ -10,6 +10,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/diagnosis_json.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "egocal/monitor/loops.hpp"
 
 namespace egocal::monitor {
 namespace {
@@ -92,6 +93,23 @@ void verdict_into(json& p, const PairState& pair) {
   p["verdict_seq"] = pair.verdict->seq;
 }
 
+/// Null where no scale is looked for, or none was heard of.
+json scale_json(const PairState& pair) {
+  if (!pair.scale) return nullptr;
+  const ScaleSolution& solution = pair.scale->solution;
+  return {{"sensor", clean(pair.scale->sensor, 40)},
+          {"value", real(solution.scale)},
+          {"stddev", real(solution.stddev)},
+          {"least", real(solution.least_scale)},
+          {"most", real(solution.most_scale)},
+          {"certified", pair.scale->verified && solution.certified},
+          {"verified", pair.scale->verified},
+          {"observable", solution.observable},
+          {"observability", real(solution.observability)},
+          {"attenuation", real(solution.attenuation)},
+          {"gap", real(solution.gap)}};
+}
+
 }  // namespace
 
 std::string pair_lines(const Model& model, Charset charset) {
@@ -102,8 +120,11 @@ std::string pair_lines(const Model& model, Charset charset) {
     text += clean(pair.a, 40) + " -> " + clean(pair.b, 40) + ": ";
     const calibration_t* answer = pair.answer();
     if (!answer) {
-      text +=
-          pair.has_problem ? count(pair.problem.matched) + " motions, no answer yet\n" : "no motions yet\n";
+      if (pair.scale && !pair.has_problem)
+        text += "scale " + scale_text(*pair.scale, charset).text + "\n";
+      else
+        text +=
+            pair.has_problem ? count(pair.problem.matched) + " motions, no answer yet\n" : "no motions yet\n";
       continue;
     }
     text += verdict_of(pair, charset).text;
@@ -138,6 +159,7 @@ std::string pair_lines(const Model& model, Charset charset) {
             duration(static_cast<double>(answer->verify_ns) * 1e-9, charset);
     if (answer->latency_us >= 0)
       text += " end to end " + duration(static_cast<double>(answer->latency_us) * 1e-6, charset);
+    if (pair.scale) text += ", scale " + scale_text(*pair.scale, charset).text;
     if (!answer->hint.empty()) text += ", hint: " + clean(answer->hint, 120);
     text += "\n";
   }
@@ -146,6 +168,14 @@ std::string pair_lines(const Model& model, Charset charset) {
 
 std::string text_lines(const Model& model, Charset charset) {
   std::string text = pair_lines(model, charset);
+  const std::vector<Loop> loops = loops_of(model);
+  for (const Loop& loop : loops)
+    text += "loop " + clean(loop.sensors[0], 40) + " " + clean(loop.sensors[1], 40) + " " +
+            clean(loop.sensors[2], 40) + ": misfit " + centimetres(loop.translation, charset) + " " +
+            degrees(loop.rotation, charset) +
+            (loop.open() ? ", open: one of the three is wrong\n" : ", closed\n");
+  if (const std::string sensor = sensor_to_blame(loops); !sensor.empty())
+    text += "every open loop has " + clean(sensor, 40) + ": look at that sensor\n";
   for (const bus::StreamLine& line : model.streams())
     if (line.severity != bus::StreamLine::Severity::good) text += "stream " + clean(line.text, 400) + "\n";
   for (const ProcessState& process : model.processes()) {
@@ -193,11 +223,35 @@ std::string json_line(const Model& model) {
     p["paused"] = pair_is_paused(model, pair);
     p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
     verdict_into(p, pair);
+    p["scale"] = scale_json(pair);
     p["answer"] = pair.counted_solver() ? answer_json(pair, *pair.counted_solver()) : json(nullptr);
+    p["previous_session"] = nullptr;
+    if (pair.previous) {
+      const calibration_t& answer = *pair.previous;
+      p["previous_session"] = {{"session", answer.session},
+                               {"utime", answer.utime},
+                               {"pairs", answer.pairs},
+                               {"translation", reals(answer.pos, 3)},
+                               {"rotation_wxyz", reals(answer.quat, 4)},
+                               {"stddev", reals(answer.stddev, 6)},
+                               {"certified", answer.status == 0}};
+    }
     p["solvers"] = json::array();
     for (const SolverTrack& solver : pair.solvers) p["solvers"].push_back(answer_json(pair, solver));
     j["pairs"].push_back(p);
   }
+  const std::vector<Loop> loops = loops_of(model);
+  j["loops"] = json::array();
+  for (const Loop& loop : loops)
+    j["loops"].push_back(
+        {{"sensors", {clean(loop.sensors[0], 200), clean(loop.sensors[1], 200), clean(loop.sensors[2], 200)}},
+         {"rotation_deg", real(loop.rotation * degrees_per_radian)},
+         {"translation_m", real(loop.translation)},
+         {"rotation_limit_deg", real(loop.rotation_limit * degrees_per_radian)},
+         {"translation_limit_m", real(loop.translation_limit)},
+         {"open", loop.open()}});
+  const std::string blamed = sensor_to_blame(loops);
+  j["blamed"] = blamed.empty() ? json(nullptr) : json(clean(blamed, 200));
   j["processes"] = json::array();
   for (const ProcessState& process : model.processes()) {
     const status_t& status = process.status;

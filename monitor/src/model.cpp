@@ -8,6 +8,7 @@
 
 #include "egocal/bus/answer_check.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/monitor/loops.hpp"
 #include "egocal/online/algorithm1.hpp"
 
 namespace egocal::monitor {
@@ -123,8 +124,10 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
 }
 
 void Model::begin_session(PairState& pair, std::int64_t session) {
+  if (pair.answer()) pair.previous = *pair.answer();
   pair.session = session;
   pair.verdict.reset();
+  pair.scale.reset();
   pair.solvers.clear();
   pair.counted = -1;
   pair.shown = {};
@@ -450,8 +453,25 @@ void Model::on_command(const command_t& message, Now now) {
        "command: " + bounded(message.verb) + (message.to == "*" ? "" : " to " + bounded(message.to)), now);
 }
 
+/// A loop that opens, and one that closes again, as events.
+void Model::watch_loops(Now now) {
+  std::set<std::array<std::string, 3>> open;
+  for (const Loop& loop : loops_of(*this))
+    if (loop.open()) open.insert(loop.sensors);
+  const auto report = [&](const std::array<std::string, 3>& s, Severity severity, const char* text) {
+    note(severity, s[0] + ", " + s[1] + ", " + s[2], text, now);
+  };
+  for (const auto& sensors : open)
+    if (!open_loops_.contains(sensors))
+      report(sensors, Severity::bad, "their extrinsics contradict each other: the loop does not close");
+  for (const auto& sensors : open_loops_)
+    if (!open.contains(sensors)) report(sensors, Severity::good, "their extrinsics agree again");
+  open_loops_ = std::move(open);
+}
+
 void Model::tick(Now now) {
   now_ = now;
+  watch_loops(now);
   for (ProcessState& process : processes_) {
     if (process.alive && seconds(process.at.mono_us, now.mono_us) > options_.heartbeat_timeout) {
       process.alive = false;

@@ -60,6 +60,8 @@ void draw_proof(const Pane& pane, int y, const PairState& pair, const calibratio
          Style::strong);
   const std::string missing = missing_directions(pair, answer);
   if (!missing.empty()) item("not shown: " + missing, "", Style::warning);
+  if (pair.scale)
+    item("scale", scale_text(*pair.scale, charset).text, scale_text(*pair.scale, charset).style);
   item("solve", solve_time(answer, charset), Style::normal);
   item("verify", verify_time(answer, charset), Style::normal);
   item("end to end", latency(answer, charset), Style::normal);
@@ -110,7 +112,8 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
   const calibration_t* answer = pair.answer();
   if (!answer) {
     const std::string text =
-        pair.has_problem
+        pair.scale && !pair.has_problem ? "scale " + scale_text(*pair.scale, charset).text
+        : pair.has_problem
             ? "motions arrive (" + count(pair.problem.matched) + " so far), no solver has answered yet"
             : "no motions yet: is the odometry of both sensors coming in, and pairing running?";
     pane.text(4, 1, text, Style::dim);

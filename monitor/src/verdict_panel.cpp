@@ -50,8 +50,9 @@ void draw_verdict(const Pane& pane, const PairState& pair, Charset charset) {
       pair.verdict ? pair.verdict->diagnosis.reason : "is egocal-diagnosis running?", Style::normal);
   row(1, "proof", proof_of(*answer),
       "by " + answer->solver + ", gap " + compact(answer->scaled_gap, charset) + " of 1", Style::dim);
-  if (!pair.verdict) return;
   int y = 2;
+  if (pair.scale && y < pane.height()) row(y++, "scale", scale_text(*pair.scale, charset), "", Style::normal);
+  if (!pair.verdict) return;
   for (const Line& line : lines_of(*pair.verdict, charset)) {
     if (y >= pane.height()) break;
     row(y++, line.label, {"", Style::normal}, line.text, line.style);

@@ -14,6 +14,7 @@
 #include "egocal/bus/odometry.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
+#include "egocal/scale/scale_statistics.hpp"
 
 namespace egocal::services {
 
@@ -41,7 +42,8 @@ Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
     : loop_(loop), heartbeat_(heartbeat), rig_(rig), options_(options) {
   for (const bus::Sensor& sensor : rig.sensors) sensors_.push_back({sensor, Stream(stream_options(rig)), 0});
   for (const bus::PairConfig& pair : rig.pairs)
-    pairs_.push_back(std::make_unique<Pair>(loop, heartbeat, pair, options.sample));
+    pairs_.push_back(
+        std::make_unique<Pair>(loop, heartbeat, pair, bus::unscaled_side(rig, pair), options.sample));
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     loop_.subscribe_bytes(
         sensors_[i].config.channel, [this, i](const bus::Arrival& arrival) { take(i, arrival); },
@@ -73,6 +75,9 @@ void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
 
 void Diagnosing::take_problems() {
   for (const auto& pair : pairs_) {
+    scale_problem_t scale{};
+    if (pair->unscaled && pair->scales.take(scale))
+      if (const std::string refused = pair->scale.take(scale); !refused.empty()) heartbeat_.reject(refused);
     std::optional<ReceivedProblem> received = pair->inbox.take();
     if (!received) continue;
     const problem_t& message = received->message;
@@ -114,13 +119,20 @@ void Diagnosing::judge(Pair& pair) {
   EGOCAL_CHECK(pair.newest.has_value(), "a problem is there when it is judged");
   const problem_t& message = pair.newest->message;
   const Problem& problem = pair.newest->problem;
+  // the scale that the problem was made with comes in a message of its own
+  const std::optional<double> scale =
+      pair.unscaled ? pair.scale.in_force(pair.config.a, pair.config.b, message.session) : 1;
+  if (!scale) return;
   pair.judged_seq = message.seq;
   DiagnosisOptions options;
   options.goal = pair.config.goal;
   options.platform = pair.config.platform;
   PairingOptions pairing = bus::drive_options(rig_, pair.config);
   pairing.time_offset = message.time_offset;
-  const Trajectory &a = pair.sample.poses(Side::a), &b = pair.sample.poses(Side::b);
+  const auto poses_of = [&](Side side) {
+    return pair.unscaled == side ? scaled(pair.sample.poses(side), *scale) : pair.sample.poses(side);
+  };
+  const Trajectory a = poses_of(Side::a), b = poses_of(Side::b);
   const std::size_t poses = std::min(a.size(), b.size());
   try {
     const Answer answer = solve(problem, Method::dual);

@@ -9,7 +9,9 @@
 
 #include "diagnosis/drive_sample.hpp"
 #include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/newest.hpp"
 #include "egocal/bus/rig.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/pairing/stream.hpp"
 #include "program/commands.hpp"
 #include "solving/problems.hpp"
@@ -46,10 +48,17 @@ class Diagnosing {
   };
   struct Pair {
     Pair(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::PairConfig& pair,
-         const DriveSampleOptions& options)
-        : config(pair), inbox(loop, heartbeat, pair), sample(options) {}
+         std::optional<Side> whose_scale, const DriveSampleOptions& options)
+        : config(pair),
+          unscaled(whose_scale),
+          inbox(loop, heartbeat, pair),
+          scales(loop, bus::scale_problem_channel(pair.a, pair.b)),
+          sample(options) {}
     bus::PairConfig config;
+    std::optional<Side> unscaled;  ///< whose scale is to be found
     ProblemInbox inbox;
+    bus::Newest<scale_problem_t> scales;
+    bus::ScaleCheck scale;
     DriveSample sample;
     std::optional<ReceivedProblem> newest;
     std::int64_t newest_mono_us = 0;      ///< when its number was new

@@ -6,6 +6,7 @@
 
 #include "egocal/bus/check.hpp"
 #include "egocal/bus/convert.hpp"
+#include "egocal/error.hpp"
 
 namespace egocal::services {
 
@@ -19,17 +20,41 @@ PairingOptions options_of(const bus::Rig& rig, std::size_t index) {
   return options;
 }
 
+ScaleDriveOptions scale_options(const PairingOptions& pairing, Side side) {
+  ScaleDriveOptions options;
+  options.pairing = pairing;
+  options.scale.side = side;
+  return options;
+}
+
 }  // namespace
 
 PairSession::PairSession(const bus::Rig& rig, std::size_t index)
-    : index_(index), config_(rig.pairs[index]), options_(options_of(rig, index)), drive_(options_) {}
+    : index_(index),
+      config_(rig.pairs[index]),
+      options_(options_of(rig, index)),
+      unscaled_(bus::unscaled_side(rig, config_)),
+      drive_(options_) {
+  begin_drive();
+}
+
+void PairSession::begin_drive() {
+  if (unscaled_)
+    scale_.emplace(scale_options(options_, *unscaled_));
+  else
+    drive_ = MotionPairing(options_);
+}
+
+std::vector<MotionPair> PairSession::push_pose(Side side, const StampedPose& pose) {
+  return scale_ ? scale_->push(side, pose) : drive_.push(side, pose);
+}
 
 void PairSession::begin(std::int64_t time_us) {
   // session numbers only grow, so that the newest problem is known by it
   state_.session = std::max(time_us, state_.last_session + 1);
   EGOCAL_CHECK(state_.session > state_.last_session, "session numbers only grow");
   state_.last_session = state_.session;
-  drive_ = MotionPairing(options_);
+  begin_drive();
   state_.seq = 0;
   state_.early.clear();
   fresh_ = false;
@@ -42,7 +67,7 @@ void PairSession::reset() {
 
 void PairSession::timeline_restarts(Side side) {
   const bool second_of_both = state_.session >= 0 && state_.restarted_by && *state_.restarted_by != side &&
-                              drive_.counts().synchronised == 0 && state_.early.size() < max_early_poses;
+                              pairing().counts().synchronised == 0 && state_.early.size() < max_early_poses;
   if (!second_of_both) {
     state_.session = -1;
     state_.restarted_by = side;
@@ -50,9 +75,9 @@ void PairSession::timeline_restarts(Side side) {
   }
   // the other stream began anew shortly before: same session, without what this one still sent of the old
   // timeline
-  drive_ = MotionPairing(options_);
+  begin_drive();
   std::erase_if(state_.early, [side](const EarlyPose& early) { return early.side == side; });
-  for (const EarlyPose& early : state_.early) drive_.push(early.side, early.pose);
+  for (const EarlyPose& early : state_.early) push_pose(early.side, early.pose);
   state_.restarted_by.reset();
 }
 
@@ -66,41 +91,54 @@ void PairSession::push(Side side, const NumberedPose& sample, std::vector<Motion
 
 void PairSession::accumulate(Side side, const StampedPose& pose, std::vector<MotionOut>& out) {
   if (state_.restarted_by) {
-    if (drive_.counts().synchronised > 0) {
+    if (pairing().counts().synchronised > 0) {
       state_.restarted_by.reset();
       state_.early = {};
     } else if (state_.early.size() < max_early_poses) {
       state_.early.push_back({side, pose});
     }
   }
-  for (const MotionPair& pair : drive_.push(side, pose)) {
+  const std::uint64_t solved = scale_ ? scale_->solved_motions() : 0;
+  for (const MotionPair& pair : push_pose(side, pose)) {
+    ++state_.seq;
+    if (!scale_) fresh_ = true;
+    if (scale_ && !scale_->known()) continue;  // motions of unknown length are of no use to listeners
     motion_pair_t& message = out.emplace_back(MotionOut{index_, bus::to_message(pair)}).message;
     message.session = state_.session;
-    message.seq = ++state_.seq;
-    message.stride = drive_.choice().stride;
-    fresh_ = true;
+    message.seq = state_.seq;
+    message.stride = scale_ ? scale_->choice().stride : drive_.choice().stride;
   }
+  if (scale_ && scale_->solved_motions() != solved) fresh_ = true;
 }
 
 std::optional<problem_t> PairSession::message() {
   if (state_.session < 0 || state_.seq == 0) return std::nullopt;
-  problem_t message = bus::to_message(drive_.problem());
-  message.utime = drive_.newest_us().value_or(state_.session);
+  if (scale_ && !scale_->known()) {
+    fresh_ = false;
+    return std::nullopt;
+  }
+  problem_t message = bus::to_message(scale_ ? *scale_->problem() : drive_.problem());
+  message.utime = pairing().newest_us().value_or(state_.session);
   message.session = state_.session;
   message.seq = state_.seq;
+  if (scale_) {  // of the newest solution
+    message.utime = scale_->solved_us();
+    message.seq = static_cast<std::int64_t>(scale_->solved_motions());
+  }
   message.sensor_a = config_.a;
   message.sensor_b = config_.b;
-  message.stride = drive_.choice().stride;
-  message.choice = drive_.choice().reason;
+  const Choice choice = scale_ ? scale_->choice() : drive_.choice();
+  message.stride = choice.stride;
+  message.choice = choice.reason;
   if (config_.truth) {
     message.has_truth = 1;
     bus::set_pose(to_dual_quaternion(*config_.truth), message.truth_pos, message.truth_quat);
   }
-  message.time_offset = drive_.time_offset().value_or(0);
+  message.time_offset = pairing().time_offset().value_or(0);
   message.time_offset_stddev = -1;
-  if (const std::optional<TimeOffset>& estimate = drive_.estimated_time_offset())
+  if (const std::optional<TimeOffset>& estimate = pairing().estimated_time_offset())
     message.time_offset_stddev = estimate->stddev;
-  const PairingCounts counts = drive_.counts();
+  const PairingCounts counts = this->counts();
   message.matched = static_cast<std::int64_t>(counts.matched);
   message.left_out = static_cast<std::int64_t>(counts.outliers);
   for (const std::uint64_t rejected : counts.rejected)
@@ -112,8 +150,20 @@ std::optional<problem_t> PairSession::message() {
   return message;
 }
 
+std::optional<scale_problem_t> PairSession::scale_message() const {
+  if (state_.session < 0 || !scale_ || !scale_->scale_problem()) return std::nullopt;
+  scale_problem_t message = bus::to_message(*scale_->scale_problem());
+  message.utime = scale_->solved_us();
+  message.session = state_.session;
+  message.seq = static_cast<std::int64_t>(scale_->solved_motions());
+  message.sensor_a = config_.a;
+  message.sensor_b = config_.b;
+  message.scale = scale_->known() ? scale_->solution().scale : 0;
+  return message;
+}
+
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
-  const PairingCounts counts = drive_.counts();
+  const PairingCounts counts = this->counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
   counters["outliers"] += static_cast<std::int64_t>(counts.outliers);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)
@@ -124,12 +174,19 @@ void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
 
 PairState PairSession::state() const {
   PairState state = state_;
-  state.drive = drive_.state();
+  if (scale_)
+    state.scale = scale_->state();
+  else
+    state.drive = drive_.state();
   return state;
 }
 
 void PairSession::restore(PairState state) {
-  drive_ = MotionPairing(options_, std::exchange(state.drive, {}));
+  if (state.scale.has_value() != unscaled_.has_value()) throw Error("is of a rig with another scale");
+  if (unscaled_)
+    scale_.emplace(scale_options(options_, *unscaled_), std::move(*std::exchange(state.scale, std::nullopt)));
+  else
+    drive_ = MotionPairing(options_, std::exchange(state.drive, {}));
   state_ = std::move(state);
   fresh_ = false;
 }

@@ -11,8 +11,10 @@
 
 #include "egocal/bus/decode.hpp"
 #include "egocal/bus/rig.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/stream.hpp"
+#include "egocal/scale/scale_drive.hpp"
 
 namespace egocal::services {
 
@@ -24,7 +26,8 @@ struct EarlyPose {
 /// What one sensor pair has accumulated.
 struct PairState {
   PairingState drive;
-  std::int64_t session = -1;  ///< -1: none has begun
+  std::optional<ScaleDriveState> scale;  ///< instead, where a sensor's scale is to be found
+  std::int64_t session = -1;             ///< -1: none has begun
   std::int64_t last_session = -1;
   std::int64_t seq = 0;
   /// Until the two streams have met, so that the second one's restart does not cost the first one's poses.
@@ -57,6 +60,8 @@ class PairSession {
   bool fresh() const { return fresh_; }
   /// The problem as it stands, without the sender's host; empty where there is none yet.
   std::optional<problem_t> message();
+  /// What is known of the scale that is to be found; empty where there is none, or nothing is known yet.
+  std::optional<scale_problem_t> scale_message() const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 
   PairState state() const;
@@ -66,12 +71,19 @@ class PairSession {
   void begin(std::int64_t time_us);
   void timeline_restarts(Side side);
   void accumulate(Side side, const StampedPose& pose, std::vector<MotionOut>& out);
+  void begin_drive();
+  std::vector<MotionPair> push_pose(Side side, const StampedPose& pose);
+  /// Poses, clock and synchronisation, whatever is made of them.
+  const MotionPairing& pairing() const { return scale_ ? scale_->pairing() : drive_; }
+  PairingCounts counts() const { return scale_ ? scale_->counts() : drive_.counts(); }
 
   std::size_t index_;
   bus::PairConfig config_;
   PairingOptions options_;
+  std::optional<Side> unscaled_;
   MotionPairing drive_;
-  PairState state_;  // without the drive's
+  std::optional<ScaleDrive> scale_;  ///< instead of drive_, where a sensor's scale is to be found
+  PairState state_;                  // without the drive's
   bool fresh_ = false;
   std::int64_t received_mono_us_ = 0;
 };

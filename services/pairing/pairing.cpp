@@ -29,7 +29,8 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
         [this, i](const bus::Arrival& arrival) { take(static_cast<std::uint16_t>(i), arrival); },
         options_.queue_capacity);
   for (const bus::PairConfig& pair : rig.pairs)
-    channels_.push_back({bus::problem_channel(pair.a, pair.b), bus::motion_channel(pair.a, pair.b)});
+    channels_.push_back({bus::problem_channel(pair.a, pair.b), bus::motion_channel(pair.a, pair.b),
+                         bus::scale_problem_channel(pair.a, pair.b)});
   hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
   heartbeat_.on_status([this](const status_t& status) { hear(status); });
   heartbeat_.before_publish([this] { acknowledge(); });
@@ -135,7 +136,10 @@ bool Pairing::saved_or_known_not_to_be() const {
 void Pairing::publish_problem(std::size_t pair) {
   EGOCAL_CHECK(leads(), "only the pairing process that leads sends problems");
   EGOCAL_CHECK(saved_or_known_not_to_be(), "a problem is saved before it is sent");
-  std::optional<problem_t> message = accumulation_.pairs()[pair].message();
+  PairSession& session = accumulation_.pairs()[pair];
+  if (const std::optional<scale_problem_t> scale = session.scale_message())
+    loop_.publish(channels_[pair].scale_problem, *scale);
+  std::optional<problem_t> message = session.message();
   if (!message) return;
   message->host = loop_.host();
   loop_.publish(channels_[pair].problem, *message);

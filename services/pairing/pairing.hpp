@@ -32,7 +32,7 @@ class Pairing {
 
  private:
   struct Channel {
-    std::string problem, motion;  // of a pair
+    std::string problem, motion, scale_problem;  // of a pair
   };
   struct Arrivals {                  // of a sensor
     std::int64_t count = 0;          // since the start of the process

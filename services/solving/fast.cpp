@@ -5,7 +5,7 @@
 namespace egocal::services {
 
 FastSolver::FastSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, Method method)
-    : Solver(loop, heartbeat, rig), progress_(rig.pairs.size()) {
+    : Solver(loop, heartbeat, rig), scales_(loop, heartbeat, rig), progress_(rig.pairs.size()) {
   options_.fast = method;
   options_.t_no_fail = rig.t_no_fail;
   options_.clock = &monotonic_ns;
@@ -19,6 +19,7 @@ std::string FastSolver::advice() const {
 }
 
 void FastSolver::answer_newest() {
+  if (!heartbeat_.alive(bus::Role::global)) scales_.answer_newest();
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (const std::optional<ReceivedProblem> received = take(i)) answer(i, *received);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "egocal/online/algorithm1.hpp"
+#include "solving/scales.hpp"
 #include "solving/solver.hpp"
 
 namespace egocal::services {
@@ -32,6 +33,7 @@ class FastSolver final : public Solver {
   void answer(std::size_t pair, const ReceivedProblem& received);
 
   OnlineOptions options_;
+  ScaleDesk scales_;                ///< a scale has no local solution: only while no global process is heard
   std::vector<Progress> progress_;  ///< of the pairs
 };
 

@@ -8,7 +8,11 @@ namespace egocal::services {
 
 GlobalSolver::GlobalSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, Method method,
                            bool always)
-    : Solver(loop, heartbeat, rig), method_(method), always_(always), tasks_(rig.pairs.size()) {
+    : Solver(loop, heartbeat, rig),
+      method_(method),
+      always_(always),
+      scales_(loop, heartbeat, rig),
+      tasks_(rig.pairs.size()) {
   report();
 }
 
@@ -17,6 +21,7 @@ std::string GlobalSolver::advice() const {
 }
 
 void GlobalSolver::answer_newest() {
+  scales_.answer_newest();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Task& task = tasks_[i];
     if (std::optional<ReceivedProblem> received = take(i)) task.unanswered = std::move(received);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solving/scales.hpp"
 #include "solving/solver.hpp"
 
 namespace egocal::services {
@@ -32,6 +33,7 @@ class GlobalSolver final : public Solver {
 
   Method method_;
   bool always_;
+  ScaleDesk scales_;         ///< answered always: no fast process does while this one is heard
   std::vector<Task> tasks_;  ///< of the pairs
 };
 

@@ -9,6 +9,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/evaluation/errors.hpp"
 
@@ -105,10 +106,37 @@ verdict_t example() {
   return message;
 }
 
+ScaleProblem scale_problem() {
+  ScaleProblem problem;
+  problem.options.side = Side::b;
+  ScaleStatistics block;
+  for (int i = 0; i < 20; ++i) {
+    const double x = 0.1 * i;
+    block.add(to_dual_quaternion(Pose{rotation_exp({0.1, 0.2 * x, 0.3 - x}), {x, 1 - x, x * x}}),
+              to_dual_quaternion(Pose{rotation_exp({0.3 - x, 0.1, 0.2 * x}), {x * x, x, 1 - x}}));
+  }
+  problem.blocks = {block, block};
+  return problem;
+}
+
+template <>
+scale_problem_t example() {
+  scale_problem_t message = to_message(scale_problem());
+  message.sensor_a = "left";
+  message.sensor_b = "right";
+  return message;
+}
+template <>
+scale_t example() {
+  scale_t message = to_message(ScaleSolution{}, example<scale_problem_t>());
+  message.solver = "egocal-global";
+  return message;
+}
+
 template <class Message>
 class EveryMessage : public testing::Test {};
 using Messages = testing::Types<odometry_t, bot_core::pose_t, motion_pair_t, problem_t, calibration_t,
-                                status_t, command_t, verdict_t>;
+                                status_t, command_t, verdict_t, scale_problem_t, scale_t>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, RoundTrips) {

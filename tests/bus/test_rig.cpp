@@ -90,6 +90,21 @@ TEST(Rig, ScaleAndWhatFollowsAMove) {
   EXPECT_EQ(parse_rig(sensors + pair, "my.toml").pairs[0].on_move, OnMove::report);
 }
 
+TEST(Rig, AScaleCanBeLookedFor) {
+  const std::string lidar = "[[sensor]]\nname = \"lidar\"\nchannel = \"L\"\n",
+                    camera = "[[sensor]]\nname = \"camera\"\nchannel = \"C\"\nscale = \"auto\"\n";
+  const Rig rig = parse_rig(lidar + camera + pair, "my.toml");
+  EXPECT_FALSE(rig.sensors[0].find_scale);
+  EXPECT_TRUE(rig.sensors[1].find_scale);
+  EXPECT_EQ(unscaled_side(rig, rig.pairs[0]), Side::b);
+  const Rig known = parse_rig(sensors + pair, "my.toml");
+  EXPECT_FALSE(unscaled_side(known, known.pairs[0]));
+  for (const std::string& text :
+       {lidar + "scale = \"auto\"\n" + camera + pair, lidar + camera + pair + "stride = 3\n",
+        lidar + "scale = \"maybe\"\n" + pair})
+    EXPECT_THROW(parse_rig(text, "my.toml"), Error) << text;
+}
+
 TEST(Rig, AGoalIsStatedAsTextOrAsNumbers) {
   for (const std::string goal :
        {"goal = \"0.1deg,2cm\"\n", "goal = { rotation_deg = 0.1, translation_m = 0.02 }\n"}) {

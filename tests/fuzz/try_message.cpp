@@ -8,6 +8,7 @@
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "require.hpp"
 
@@ -95,6 +96,24 @@ void enter(const verdict_t& message) {
   const auto again = bus::to_message(diagnosis, verdict.value->judged);
   require(again.findings.size() == message.findings.size(), "a verdict that came in can go out");
 }
+void enter(const scale_problem_t& message) {
+  const auto problem = bus::to_scale_problem(message);
+  if (!problem) {
+    fuzz::require_one_line(problem.reason);
+    return;
+  }
+  const ScaleSolution solution = solve_scale(problem.value->blocks, problem.value->options);
+  require(std::isfinite(solution.scale), "a scale is finite");
+  require(bus::to_message(*problem.value).blocks.size() == message.blocks.size(), "it can go out again");
+}
+void enter(const scale_t& message) {
+  const auto scale = bus::to_scale(message);
+  if (!scale) {
+    fuzz::require_one_line(scale.reason);
+    return;
+  }
+  require(std::isfinite(scale.value->scale) && scale.value->scale > 0, "a scale is positive");
+}
 void enter(const motion_pair_t&) {}
 
 }  // namespace
@@ -122,5 +141,7 @@ template void try_message<calibration_t>(std::span<const std::uint8_t>);
 template void try_message<status_t>(std::span<const std::uint8_t>);
 template void try_message<command_t>(std::span<const std::uint8_t>);
 template void try_message<verdict_t>(std::span<const std::uint8_t>);
+template void try_message<scale_problem_t>(std::span<const std::uint8_t>);
+template void try_message<scale_t>(std::span<const std::uint8_t>);
 
 }  // namespace egocal::fuzz

@@ -143,6 +143,46 @@ TEST_F(SavedStates, GoOnWithTheSameBits) {
   }
 }
 
+bus::Rig rig_without_scale() {
+  return bus::parse_rig(
+      "[[sensor]]\nname = \"left\"\nchannel = \"L\"\n"
+      "[[sensor]]\nname = \"right\"\nchannel = \"R\"\nscale = \"auto\"\n"
+      "[[pair]]\na = \"left\"\nb = \"right\"\n",
+      "rig.toml");
+}
+
+TEST_F(SavedStates, KeepTheScale) {
+  const bus::Rig config = rig_without_scale();
+  const auto messages = drive("egocal.odometry_t", 500);
+  Accumulation undisturbed(config);
+  for (const Message& message : messages)
+    undisturbed.apply({Input::Kind::message, message.channel, message.bytes});
+  auto saved = std::make_unique<SavedState>(file, config);
+  Accumulation accumulation = saved->restore();
+  for (std::size_t next = 0; next < messages.size(); ++next) {
+    const Input input{Input::Kind::message, messages[next].channel, messages[next].bytes};
+    saved->note(input);
+    accumulation.apply(input);
+    if (next % 101 == 0) saved->snapshot(accumulation);
+    saved->save(accumulation);
+    if (next % 333 != 332) continue;
+    saved.reset();  // killed
+    saved = std::make_unique<SavedState>(file, config);
+    accumulation = saved->restore();
+    ASSERT_TRUE(saved->restored()) << saved->refused();
+  }
+  const auto scale = undisturbed.pairs()[0].scale_message();
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(scale->scale, 1, 0.01) << "the streams of this drive are in metres";
+  const auto restored = accumulation.pairs()[0].scale_message();
+  ASSERT_TRUE(restored);
+  EXPECT_EQ(bus::encode(*restored), bus::encode(*scale));
+  const auto problem = accumulation.pairs()[0].message();
+  ASSERT_TRUE(problem);
+  EXPECT_EQ(bus::encode(*problem), bus::encode(*undisturbed.pairs()[0].message()));
+  EXPECT_EQ(problem->seq, scale->seq);
+}
+
 TEST_F(SavedStates, KeepWhatIsPausedAndReset) {
   const bus::Rig config = rig("egocal.odometry_t");
   write_state(config, 100);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "egocal/bus/channels.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "solving/fast.hpp"
 #include "solving/global.hpp"
@@ -35,6 +36,11 @@ class Solving : public testing::Test {
     observer.subscribe<calibration_t>(
         bus::calibration_channel("left", "right"),
         [this](const calibration_t& message, const bus::Arrival&) { answers[message.solver] = message; });
+    rig.sensors = {{"left", "ODO_LEFT", bus::OdometryType::odometry, {}},
+                   {"right", "ODO_RIGHT", bus::OdometryType::odometry, {}, 1, true}};
+    observer.subscribe<scale_t>(
+        bus::scale_channel("left", "right"),
+        [this](const scale_t& message, const bus::Arrival&) { scales.push_back(message); });
     observer.subscribe<status_t>(bus::status_channel, [this](const status_t& message, const bus::Arrival&) {
       statuses[message.name] = message;
     });
@@ -45,9 +51,12 @@ class Solving : public testing::Test {
     options.T_vehicle_sensor = {Pose{}, Pose{rotation_exp({0.3, -0.2, 0.9}), {0.4, -0.8, 0.3}}};
     const std::vector<Trajectory> drive = simulate(options);
     Statistics statistics;
-    for (std::size_t i = 1; i < drive[0].size(); ++i)
-      statistics.add(conjugate(drive[0][i - 1].pose) * drive[0][i].pose,
-                     conjugate(drive[1][i - 1].pose) * drive[1][i].pose);
+    for (std::size_t i = 1; i < drive[0].size(); ++i) {
+      MotionPair& motion = motions.emplace_back();
+      motion.a = conjugate(drive[0][i - 1].pose) * drive[0][i].pose;
+      motion.b = conjugate(drive[1][i - 1].pose) * drive[1][i].pose;
+      statistics.add(motion.a, motion.b);
+    }
     problem.blocks = {statistics};
   }
 
@@ -68,6 +77,23 @@ class Solving : public testing::Test {
     if (global_host) loops.push_back(&global_host->loop);
     test::run_for(clock, loops, time);
   }
+  /// The same motions of one second, those of the right sensor in another unit.
+  void send_scale(std::int64_t seq, double factor) {
+    ScaleProblem scale;
+    scale.options.side = Side::b;
+    scale.blocks = scale_blocks(motions);
+    for (ScaleStatistics& block : scale.blocks) {  // lengths of b divided by the factor
+      block.coupling_b /= factor;
+      block.cross /= factor;
+      block.square_b /= factor * factor;
+    }
+    scale_problem_t message = bus::to_message(scale);
+    message.session = message.utime = 1'600'000'000'000'000;
+    message.seq = seq;
+    message.sensor_a = "left";
+    message.sensor_b = "right";
+    observer.publish(bus::scale_problem_channel("left", "right"), message);
+  }
   void start_fast() {
     fast_host =
         std::make_unique<Host>(network, clock, bus::Identity{"egocal-fast", bus::Role::fast, "1", 100});
@@ -85,12 +111,42 @@ class Solving : public testing::Test {
   bus::Loop observer{network.transport(), clock, {.handle_signals = false, .host = "car"}};
   bus::Rig rig;
   Problem problem;
+  std::vector<MotionPair> motions;
   std::map<std::string, calibration_t> answers;
+  std::vector<scale_t> scales;
   std::map<std::string, status_t> statuses;
   std::unique_ptr<Host> fast_host, global_host;
   std::unique_ptr<FastSolver> fast;
   std::unique_ptr<GlobalSolver> global;
 };
+
+TEST_F(Solving, TheGlobalSolverAnswersTheScaleAndTheFastOneStepsIn) {
+  start_fast();
+  start_global();
+  pass(5s);
+  send_scale(5, 0.37);
+  pass(100ms);
+  ASSERT_EQ(scales.size(), 1u);
+  EXPECT_EQ(scales[0].solver, "egocal-global");
+  EXPECT_NEAR(scales[0].scale, 0.37, 0.02);
+  EXPECT_EQ(scales[0].side, 1);
+  EXPECT_TRUE(scales[0].certified);
+  EXPECT_TRUE(scales[0].observable);
+  EXPECT_GT(scales[0].stddev, 0);
+  send_scale(5, 0.37);  // again, as pairing does every second
+  pass(100ms);
+  ASSERT_EQ(scales.size(), 2u);
+  EXPECT_EQ(bus::encode(scales[1]), bus::encode(scales[0]));
+  global.reset();
+  global_host.reset();
+  pass(5s);
+  send_scale(6, 2.7);
+  pass(100ms);
+  ASSERT_FALSE(scales.empty());
+  EXPECT_EQ(scales.back().solver, "egocal-fast");
+  EXPECT_EQ(scales.back().seq, 6);
+  EXPECT_NEAR(scales.back().scale, 2.7, 0.15);
+}
 
 TEST_F(Solving, RightAfterTheStartNoSolverIsMissed) {
   start_fast();

@@ -23,6 +23,8 @@ class LastSessions {
   void hear(const problem_t& message) { set(problems_, message); }
   void hear(const calibration_t& message) { set(answers_, message); }
   void hear(const verdict_t&) {}
+  void hear(const scale_problem_t&) {}
+  void hear(const scale_t&) {}
   template <class Message>
   bool is_last(const Message& message) const {
     const PairName pair{message.sensor_a, message.sensor_b};
@@ -55,6 +57,10 @@ void read(const std::string& file, Hear hear) {
       hear_as(calibration_t{}, *event);
     else if (event->channel.starts_with(bus::verdict_prefix))
       hear_as(verdict_t{}, *event);
+    else if (event->channel.starts_with(bus::scale_problem_prefix))
+      hear_as(scale_problem_t{}, *event);
+    else if (event->channel.starts_with(bus::scale_prefix))
+      hear_as(scale_t{}, *event);
 }
 
 }  // namespace
@@ -103,6 +109,19 @@ void Answers::hear(const verdict_t& message) {
       known->second.seq > message.seq)
     return;
   judgements_[pair] = {message.session, message.seq, std::move(received.value->diagnosis)};
+}
+
+void Answers::hear(const scale_problem_t& message) {
+  if (const std::string refused = scales_.take(message); !refused.empty()) ++refused_[refused];
+}
+
+void Answers::hear(const scale_t& message) {
+  if (const std::string refused = scales_.take(message); !refused.empty()) ++refused_[refused];
+}
+
+const bus::CheckedScale* Answers::scale(const PairName& pair) const {
+  const Best* answer = best(pair);
+  return answer ? scales_.find(pair.first, pair.second, answer->message.session) : nullptr;
 }
 
 const Diagnosis* Answers::diagnosis(const PairName& pair) const {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
 
 namespace egocal::tools {
@@ -33,11 +34,15 @@ class Answers {
   void hear(const problem_t& message);
   void hear(const calibration_t& message);
   void hear(const verdict_t& message);
+  void hear(const scale_problem_t& message);
+  void hear(const scale_t& message);
 
   /// Null: none.
   const Best* best(const PairName& pair) const;
   /// The newest verdict about the session of the answer that counts; null: none.
   const Diagnosis* diagnosis(const PairName& pair) const;
+  /// The scale that was found together with the answer that counts; null: none was looked for, or heard.
+  const bus::CheckedScale* scale(const PairName& pair) const;
   const std::map<PairName, Best>& all() const { return best_; }
   /// Answers that were refused, by reason.
   const std::map<std::string, std::int64_t>& refused() const { return refused_; }
@@ -62,6 +67,7 @@ class Answers {
   std::map<PairName, Best> best_;
   std::map<PairName, calibration_t> early_;  ///< heard before its problem
   std::map<PairName, Judgement> judgements_;
+  bus::ScaleCheck scales_;
   std::map<std::string, std::int64_t> refused_;
 };
 

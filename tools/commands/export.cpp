@@ -77,7 +77,18 @@ Found live(const Options& options) {
     loop.subscribe<verdict_t>(bus::verdict_channel(a, b), [&](const verdict_t& message, const bus::Arrival&) {
       found.answers.hear(message);
     });
+    loop.subscribe<scale_problem_t>(
+        bus::scale_problem_channel(a, b),
+        [&](const scale_problem_t& message, const bus::Arrival&) { found.answers.hear(message); });
+    loop.subscribe<scale_t>(bus::scale_channel(a, b), [&](const scale_t& message, const bus::Arrival&) {
+      found.answers.hear(message);
+    });
   }
+  const auto unscaled = [&](const PairName& name) {
+    return std::any_of(rig.pairs.begin(), rig.pairs.end(), [&](const bus::PairConfig& pair) {
+      return pair.a == name.first && pair.b == name.second && bus::unscaled_side(rig, pair);
+    });
+  };
   // verdicts are sent again every second, as heartbeats are: without a diagnosis none is waited for
   bool judged_here = false;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
@@ -90,7 +101,9 @@ Found live(const Options& options) {
     const bool waits = judged_here || std::chrono::steady_clock::now() < heard_all;
     return std::all_of(found.pairs.begin(), found.pairs.end(), [&](const PairName& pair) {
       const Answers::Best* best = found.answers.best(pair);
-      return best && best->certified() && (!waits || found.answers.diagnosis(pair));
+      const bus::CheckedScale* scale = found.answers.scale(pair);
+      return best && best->certified() && (!waits || found.answers.diagnosis(pair)) &&
+             (!unscaled(pair) || (scale && scale->verified));
     });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
@@ -98,7 +111,8 @@ Found live(const Options& options) {
   return found;
 }
 
-NamedExtrinsic named(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis) {
+NamedExtrinsic named(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis,
+                     const bus::CheckedScale* scale) {
   const Answer& answer = best.checked.answer;
   if (best.checked.standing == bus::Standing::unverified)
     fmt::print(stderr,
@@ -112,6 +126,9 @@ NamedExtrinsic named(const PairName& pair, const Answers::Best& best, const Diag
                            best.certified(), best.message.pairs, answer.observability.stddev};
   extrinsic.usable = !diagnosis || diagnosis->verdict != Verdict::contradictory;
   if (diagnosis) extrinsic.verdict = to_string(diagnosis->verdict);
+  if (scale)
+    extrinsic.scale = NamedScale{scale->sensor, scale->solution.scale, scale->solution.stddev,
+                                 scale->verified && scale->solution.certified};
   return extrinsic;
 }
 
@@ -138,7 +155,7 @@ void run(const Options& options) {
     if (const Answers::Best* best = found.answers.best(pair)) {
       const Diagnosis* diagnosis = found.answers.diagnosis(pair);
       refused = refused || (diagnosis && unusable(*diagnosis));
-      extrinsics.push_back(named(pair, *best, diagnosis));
+      extrinsics.push_back(named(pair, *best, diagnosis, found.answers.scale(pair)));
     } else if (options.all)
       fmt::print(stderr, "egocal: warning: there is no answer for the pair {}\n", text(pair));
     else

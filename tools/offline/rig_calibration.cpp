@@ -20,6 +20,10 @@ namespace {
 /// Names and sources of the sensors of the rig that have one, and the planes of a planar rig.
 void take_from_rig(RigRequest& request, std::vector<GroundPlane>& planes) {
   const bus::Rig rig = bus::read_rig(request.rig);
+  for (const bus::Sensor& sensor : rig.sensors)
+    if (sensor.find_scale)
+      throw Error("--rig: sensor \"" + sensor.name +
+                  "\" has scale = \"auto\": find it with solve A B --scale auto, and put the number there");
   if (request.from.empty() == request.log.empty())
     throw UsageError("--rig: expected --from NAME=FILE for its sensors, or --log FILE");
   const auto take = [&](const bus::Sensor& sensor, const std::string& source) {

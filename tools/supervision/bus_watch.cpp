@@ -38,16 +38,22 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 
 namespace {
 
-std::string line_of(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis) {
+std::string line_of(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis,
+                    const bus::CheckedScale* scale) {
   const Pose T = to_pose(best.checked.answer.T_a_b);
   const Eigen::Quaterniond& q = T.rotation;
-  return fmt::format(
+  std::string text = fmt::format(
       "{} -> {}: {}\n  {}, {} motion pairs; translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} "
       "{:.5f} "
       "{:.5f} {:.5f}\n",
       pair.first, pair.second, diagnosis ? verdict_line(*diagnosis) : "not judged",
       best.certified() ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
       T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
+  if (scale)
+    text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
+                        scale->solution.stddev,
+                        scale->verified && scale->solution.certified ? "optimal (proven)" : "not proven");
+  return text;
 }
 
 /// What the parent reads: a character each for answered and unusable, then the text.
@@ -60,7 +66,7 @@ std::string report(const bus::Rig& rig, const Answers& answers) {
     const Diagnosis* diagnosis = answers.diagnosis(pair);
     outcome.answered = true;
     outcome.unusable = outcome.unusable || (diagnosis && unusable(*diagnosis));
-    outcome.text += line_of(pair, *best, diagnosis);
+    outcome.text += line_of(pair, *best, diagnosis, answers.scale(pair));
   }
   return std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text;
 }
@@ -82,6 +88,8 @@ void write_all(int out, const std::string& text) {
       loop.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b), hear);
       loop.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b), hear);
       loop.subscribe<verdict_t>(bus::verdict_channel(pair.a, pair.b), hear);
+      loop.subscribe<scale_problem_t>(bus::scale_problem_channel(pair.a, pair.b), hear);
+      loop.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b), hear);
     }
     loop.run();
     write_all(out, report(rig, answers));

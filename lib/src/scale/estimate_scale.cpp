@@ -8,59 +8,11 @@
 
 #include "egocal/error.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
+#include "scale/kept_motions.hpp"
 
 namespace egocal {
 
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double length(const DualQuaternion& motion) {
-  return to_pose(motion).translation.norm();
-}
-
-/// Pairs of which the lengths of both motions have a ratio within a factor of two of the median one. Lever
-/// arms change it by less while the vehicle drives on; a jump of one stream by more.
-std::vector<MotionPair> of_plausible_length(std::span<const MotionPair> pairs) {
-  std::vector<double> lengths;
-  for (const MotionPair& pair : pairs) lengths.push_back(length(pair.b));
-  const double typical = median(lengths);
-  std::vector<double> ratios;
-  for (const MotionPair& pair : pairs) {
-    const double a = length(pair.a), b = length(pair.b);
-    if (b > 0.5 * typical && a > 0) ratios.push_back(b / a);
-  }
-  const double ratio = median(ratios);
-  std::vector<MotionPair> kept;
-  for (const MotionPair& pair : pairs) {
-    const double a = ratio * length(pair.a), b = length(pair.b);
-    const double larger = std::max(a, b);
-    if (larger < 4 * typical && (larger < 0.5 * typical || (a < 2 * b && b < 2 * a))) kept.push_back(pair);
-  }
-  return 2 * kept.size() >= pairs.size() ? kept : std::vector<MotionPair>(pairs.begin(), pairs.end());
-}
-
-/// |a q - q b|^2, weighted, with the scale on its side.
-double residual(const MotionPair& pair, const ScaleSolution& solution, Side side) {
-  const DualQuaternion a = canonical_sign(side == Side::a ? scaled(pair.a, solution.scale) : pair.a);
-  const DualQuaternion b = canonical_sign(side == Side::b ? scaled(pair.b, solution.scale) : pair.b);
-  const DualQuaternion left = a * solution.q, right = solution.q * b;
-  return solution.balance.rotation * (left.real - right.real).squaredNorm() +
-         solution.balance.translation * (left.dual - right.dual).squaredNorm();
-}
-
-/// Rotations and translations weigh alike where nothing is known of their noise.
-Balance even_balance(std::span<const ScaleStatistics> blocks, Side side) {
-  const ScaleStatistics all = sum_blocks(blocks);
-  const double square = side == Side::a ? all.square_b : all.square_a;
-  const double rotation = 0.25 * all.rotation.trace();
-  return {1, square > 0 && rotation > 0 ? rotation / square : 1};
-}
 
 /// Motions of a fixed stride, none rejected: nothing is congruent at a wrong scale.
 std::vector<MotionPair> first_pairs(const Trajectory& a, const Trajectory& b, PairingOptions pairing,
@@ -78,13 +30,14 @@ std::vector<MotionPair> first_pairs(const Trajectory& a, const Trajectory& b, Pa
 }  // namespace
 
 ScaleSolution estimate_scale(std::span<const MotionPair> given, const DriveScaleOptions& options) {
-  std::vector<MotionPair> kept = of_plausible_length(given);
+  std::vector<MotionPair> kept = detail::of_plausible_length(given);
   ScaleSolution solution;
   for (int pass = 0; pass < 6; ++pass) {
     solution = solve_scale(scale_blocks(kept), options.scale);
     std::vector<double> residuals;
-    for (const MotionPair& pair : given) residuals.push_back(residual(pair, solution, options.scale.side));
-    const double limit = options.most_residual * median(residuals);
+    for (const MotionPair& pair : given)
+      residuals.push_back(detail::scale_residual(pair, solution, options.scale.side));
+    const double limit = options.most_residual * detail::median(residuals);
     if (!(limit > 0) || !std::isfinite(limit)) break;
     std::vector<MotionPair> again;
     for (std::size_t i = 0; i < given.size(); ++i)
@@ -108,7 +61,7 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
 
   const std::vector<MotionPair> first = first_pairs(a, b, pairing, options.first_motion);
   if (first.empty()) throw Error("scale: no motion pairs");
-  options.scale.balance = even_balance(scale_blocks(first), side);
+  options.scale.balance = detail::even_balance(scale_blocks(first), side);
   ScaleSolution solution = estimate_scale(first, options);
   double applied = solution.scale;
   for (int round = 0; round < options.rounds; ++round) {

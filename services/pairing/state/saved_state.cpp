@@ -20,12 +20,12 @@ constexpr std::uint64_t most_added = 4 << 20;
 /// mathematics.
 std::string identity(const bus::Rig& rig) {
   std::string text = "egocal-pairing " EGOCAL_VERSION ", layout " + std::to_string(state_layout) + "\n";
-  char line[300];
+  char line[320];
   for (const bus::Sensor& sensor : rig.sensors) {
-    std::snprintf(line, sizeof line, "sensor %s on %s, %s, scale %.17g, reorder_window %g\n",
+    std::snprintf(line, sizeof line, "sensor %s on %s, %s, scale %.17g%s, reorder_window %g\n",
                   sensor.name.c_str(), sensor.channel.c_str(),
                   sensor.type == bus::OdometryType::pose ? "bot_core.pose_t" : "egocal.odometry_t",
-                  sensor.scale, rig.reorder_window);
+                  sensor.scale, sensor.find_scale ? " and to be found" : "", rig.reorder_window);
     text += line;
   }
   for (const bus::PairConfig& pair : rig.pairs) {

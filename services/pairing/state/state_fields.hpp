@@ -6,6 +6,7 @@
 
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/stream.hpp"
+#include "egocal/scale/scale_drive.hpp"
 #include "pairing/accumulation.hpp"
 #include "pairing/state/archive.hpp"
 
@@ -254,10 +255,39 @@ void fields(auto& archive, services::Is<StreamState> auto& value) {
           patient, gap, gap_repeats, settling, held, counts);
 }
 
+void fields(auto& archive, services::Is<ScaleStatistics> auto& value) {
+  auto& [rotation, coupling_a, coupling_b, cross, square_a, square_b, weight, count] = value;
+  archive(rotation, coupling_a, coupling_b, cross, square_a, square_b, weight, count);
+}
+
+void fields(auto& archive, services::Is<ScaleOptions> auto& value) {
+  auto& [side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share] = value;
+  archive(side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share);
+}
+
+void fields(auto& archive, services::Is<ScaleProblem> auto& value) {
+  auto& [blocks, options] = value;
+  archive(blocks, options);
+}
+
+void fields(auto& archive, services::Is<ScaleSolution> auto& value) {
+  auto& [scale, q, cost, balance, lower_bound, gap, rounding, least_scale, most_scale, certified, at_limit,
+         stddev, attenuation, observability, observable, solves] = value;
+  archive(scale, q, cost, balance, lower_bound, gap, rounding, least_scale, most_scale, certified, at_limit,
+          stddev, attenuation, observability, observable, solves);
+}
+
+void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
+  auto& [pairing, open, recent, old, old_block, motions, left_out, next_solution, solved_motions,
+         solved_left_out, solved_us, step_us, limit, balance, problem, solution] = value;
+  archive(pairing, open, recent, old, old_block, motions, left_out, next_solution, solved_motions,
+          solved_left_out, solved_us, step_us, limit, balance, problem, solution);
+}
+
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 11;
+constexpr int state_layout = 12;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;
@@ -265,8 +295,8 @@ void fields(auto& archive, Is<EarlyPose> auto& value) {
 }
 
 void fields(auto& archive, Is<PairState> auto& value) {
-  auto& [drive, session, last_session, seq, restarted_by, early, paused] = value;
-  archive(drive, session, last_session, seq, restarted_by, early, paused);
+  auto& [drive, scale, session, last_session, seq, restarted_by, early, paused] = value;
+  archive(drive, scale, session, last_session, seq, restarted_by, early, paused);
 }
 
 void fields(auto& archive, Is<ChannelState> auto& value) {

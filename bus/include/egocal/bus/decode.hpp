@@ -13,6 +13,8 @@
 #include "egocal/motion_pair_t.hpp"
 #include "egocal/odometry_t.hpp"
 #include "egocal/problem_t.hpp"
+#include "egocal/scale_problem_t.hpp"
+#include "egocal/scale_t.hpp"
 #include "egocal/status_t.hpp"
 #include "egocal/verdict_t.hpp"
 
@@ -28,6 +30,8 @@ bool lengths_fit(const calibration_t*, Bytes bytes);
 bool lengths_fit(const status_t*, Bytes bytes);
 bool lengths_fit(const command_t*, Bytes bytes);
 bool lengths_fit(const verdict_t*, Bytes bytes);
+bool lengths_fit(const scale_problem_t*, Bytes bytes);
+bool lengths_fit(const scale_t*, Bytes bytes);
 
 /// Fingerprint and lengths are those of the type.
 template <class Message>

@@ -22,7 +22,8 @@ struct Sensor {
   std::string channel;  ///< of its odometry
   OdometryType type = OdometryType::odometry;
   std::optional<GroundPlane> plane{};
-  double scale = 1;  ///< its lengths are multiplied by it, > 0: a camera without scale, another unit
+  double scale = 1;         ///< its lengths are multiplied by it, > 0: a camera without scale, another unit
+  bool find_scale = false;  ///< scale = "auto": what is left of the scale is found from the motions
 };
 
 /// What follows where the mount is found to have moved during a session.
@@ -68,5 +69,7 @@ const Sensor& sensor(const Rig& rig, const std::string& name);
 
 /// What pairing is to make of the rig's pair.
 PairingOptions drive_options(const Rig& rig, const PairConfig& pair);
+/// Whose scale is to be found; empty: both are known.
+std::optional<Side> unscaled_side(const Rig& rig, const PairConfig& pair);
 
 }  // namespace egocal::bus

@@ -12,6 +12,14 @@
 
 namespace egocal {
 
+/// A sensor whose lengths are not metres.
+struct NamedScale {
+  std::string sensor;
+  double value = 1;        ///< its lengths, multiplied by this, are metres
+  double stddev = 0;       ///< infinite: unknown
+  bool certified = false;  ///< no other scale fits better, proven
+};
+
 /// An extrinsic with what a reader must know to use it the right way round.
 struct NamedExtrinsic {
   std::string parent, child;                    ///< frames: the sensors a and b
@@ -21,6 +29,7 @@ struct NamedExtrinsic {
   std::optional<std::array<double, 6>> stddev;  ///< x y z [m] roll pitch yaw [rad] in the parent's frame
   bool usable = true;     ///< false: optimal, but the motions contradict each other; every format says so
   std::string verdict{};  ///< good, incomplete, doubtful, contradictory; empty: it was not judged
+  std::optional<NamedScale> scale{};  ///< that was found together with it; every format says so
 };
 
 enum class ExtrinsicFormat {

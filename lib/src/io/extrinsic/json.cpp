@@ -47,6 +47,13 @@ std::string json_text(const ExtrinsicWords& words) {
   text += std::string("  \"certified\": ") + (words.extrinsic.certified ? "true" : "false") + ",\n";
   text += std::string("  \"usable\": ") + (words.extrinsic.usable ? "true" : "false") + ",\n";
   if (!words.extrinsic.verdict.empty()) text += "  \"verdict\": \"" + words.extrinsic.verdict + "\",\n";
+  if (words.extrinsic.scale) {
+    const NamedScale& scale = *words.extrinsic.scale;
+    text += "  \"scale\": {\"sensor\": \"" + frame_name(scale.sensor) +
+            "\", \"value\": " + exact(scale.value) +
+            ", \"stddev\": " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : "null") +
+            ", \"certified\": " + (scale.certified ? "true" : "false") + "},\n";
+  }
   return text + "  \"pairs\": " + std::to_string(words.extrinsic.pairs) + "\n}\n";
 }
 

@@ -15,6 +15,9 @@ ExtrinsicWords::ExtrinsicWords(const NamedExtrinsic& named)
   verdict = std::string(named.usable ? "" : "DO NOT USE, the motions contradict each other; ") +
             (named.certified ? "certified globally optimal" : "not certified") + ", from " +
             std::to_string(named.pairs) + " motion pairs";
+  if (named.scale)
+    verdict += "; lengths of " + frame_name(named.scale->sensor) + " multiplied by " +
+               exact(named.scale->value) + (named.scale->certified ? "" : ", which is not certified");
 }
 
 std::string exact(double value) {

@@ -22,6 +22,13 @@ std::string yaml_text(const ExtrinsicWords& words) {
   text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
   text += std::string("usable: ") + (words.extrinsic.usable ? "true" : "false") + "\n";
   if (!words.extrinsic.verdict.empty()) text += "verdict: " + words.extrinsic.verdict + "\n";
+  if (words.extrinsic.scale) {
+    const NamedScale& scale = *words.extrinsic.scale;
+    text += "scale:  # lengths of this sensor, multiplied by the value, are metres\n";
+    text += "  sensor: " + frame_name(scale.sensor) + "\n  value: " + exact(scale.value) + "\n";
+    text += "  stddev: " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : std::string(".inf")) + "\n";
+    text += std::string("  certified: ") + (scale.certified ? "true" : "false") + "\n";
+  }
   return text + "pairs: " + std::to_string(words.extrinsic.pairs) + "\n";
 }
 

@@ -7,11 +7,13 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "egocal/bus/process.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/bus/stream_watch.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/calibration_t.hpp"
@@ -88,7 +90,9 @@ struct PairState {
   bool silent = false;
   std::int64_t session = 0;
   std::optional<PairVerdict> verdict;
+  std::optional<bus::CheckedScale> scale;  ///< where the rig says scale = "auto" of one of the sensors
   std::vector<SolverTrack> solvers;
+  std::optional<calibration_t> previous;  ///< the answer that counted when the last session ended
   int counted = -1;  ///< the solver whose answer counts (egocal::outranks); -1: no answer yet
   Shown shown;
   /// Measured time [s since the session began] from which on only the fast solver ran; empty while the global
@@ -141,6 +145,8 @@ class Model {
   void on_calibration(const calibration_t& message, Now now, bool verified = true);
   /// A checked verdict: of this pair's session, or it is ignored.
   void on_verdict(const verdict_t& message, const bus::ReceivedVerdict& received, Now now);
+  /// A checked scale of this pair.
+  void on_scale(const scale_t& message, const bus::CheckedScale& scale, Now now);
   void on_status(const status_t& message, Now now);
   void on_command(const command_t& message, Now now);
   /// What is to be said of the sensors' streams now.
@@ -173,12 +179,14 @@ class Model {
   void watch_rejections(ProcessState& process, const status_t& message, Now now);
   void watch_certificate(PairState& pair, Now now);
   void watch_verdict(const PairState& pair, const PairVerdict& verdict, Now now);
+  void watch_loops(Now now);
 
   ModelOptions options_;
   std::vector<PairState> pairs_;
   std::vector<ProcessState> processes_;
   std::vector<bus::StreamLine> streams_;
   std::deque<Event> events_;
+  std::set<std::array<std::string, 3>> open_loops_;
   std::int64_t ignored_ = 0;
   std::int64_t events_seen_ = 0;
   std::int64_t messages_ = 0;

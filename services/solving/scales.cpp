@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solving/scales.hpp"
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/scale.hpp"
+#include "solving/problems.hpp"
+
+namespace egocal::services {
+
+ScaleDesk::Pair::Pair(bus::Loop& loop, const bus::PairConfig& pair)
+    : config(pair), inbox(loop, bus::scale_problem_channel(pair.a, pair.b)) {}
+
+ScaleDesk::ScaleDesk(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig)
+    : loop_(loop), heartbeat_(heartbeat) {
+  for (const bus::PairConfig& pair : rig.pairs)
+    if (bus::unscaled_side(rig, pair)) pairs_.push_back(std::make_unique<Pair>(loop, pair));
+}
+
+void ScaleDesk::answer_newest() {
+  for (const auto& pair : pairs_) {
+    scale_problem_t problem{};
+    if (pair->inbox.take(problem)) answer(*pair, problem);
+  }
+}
+
+void ScaleDesk::answer(Pair& pair, const scale_problem_t& problem) {
+  const std::string channel = bus::scale_channel(pair.config.a, pair.config.b);
+  if (pair.last && pair.last->session == problem.session && pair.last->seq == problem.seq &&
+      pair.last->utime == problem.utime) {
+    loop_.publish(channel, *pair.last);
+    return;
+  }
+  bus::Checked<ScaleProblem> checked = bus::to_scale_problem(problem);
+  if (checked && (problem.sensor_a != pair.config.a || problem.sensor_b != pair.config.b))
+    checked = {{}, "sensors of another pair"};
+  if (!checked) return heartbeat_.reject(checked.reason);
+  const std::int64_t begin = monotonic_ns();
+  const ScaleSolution solution = solve_scale(checked.value->blocks, checked.value->options);
+  scale_t message = bus::to_message(solution, problem);
+  message.solver = heartbeat_.identity().name;
+  message.solve_ns = monotonic_ns() - begin;
+  loop_.publish(channel, message);
+  ++heartbeat_.counter("scales");
+  pair.last = std::move(message);
+}
+
+}  // namespace egocal::services

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/newest.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/scale_problem_t.hpp"
+#include "egocal/scale_t.hpp"
+
+namespace egocal::services {
+
+/// Answers the scale problems of those pairs of which a sensor has scale = "auto": each once, and with the
+/// same message again when the problem is sent again.
+class ScaleDesk {
+ public:
+  ScaleDesk(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig);
+
+  /// Problems may be waiting.
+  void answer_newest();
+
+ private:
+  struct Pair {
+    Pair(bus::Loop& loop, const bus::PairConfig& pair);
+    bus::PairConfig config;
+    bus::Newest<scale_problem_t> inbox;
+    std::optional<scale_t> last;
+  };
+  void answer(Pair& pair, const scale_problem_t& problem);
+
+  bus::Loop& loop_;
+  bus::Heartbeat& heartbeat_;
+  std::vector<std::unique_ptr<Pair>> pairs_;
+};
+
+}  // namespace egocal::services
