@@ -30,8 +30,30 @@ struct Options {
   std::uint64_t seed = 1, seeds = 1;
   double minutes = 0;
   bool twice = false, story = false, everything = false, no_shrink = false, until_failure = false;
-  std::string corpus;
+  std::string corpus, resume;
 };
+
+/// What a long run has done, in a file: `next seed, lives, violations, trace`.
+struct Progress {
+  std::uint64_t seed = 1, lives = 0, failed = 0, trace = 0;
+};
+
+bool read(const std::string& file, Progress& progress) {
+  std::ifstream in(file);
+  return static_cast<bool>(in >> progress.seed >> progress.lives >> progress.failed >> std::hex >>
+                           progress.trace);
+}
+
+void write_to(const std::string& file, const Progress& progress) {
+  std::ofstream out(file + ".new");
+  out << progress.seed << ' ' << progress.lives << ' ' << progress.failed << ' ' << std::hex << progress.trace
+      << '\n';
+  out.close();
+  if (!out || std::rename((file + ".new").c_str(), file.c_str()) != 0)
+    throw error_at(file, 0, "", "cannot be written");
+}
+
+volatile std::sig_atomic_t asked_to_end = 0;
 
 /// What services write for people belongs to nobody here, and nobody types.
 void silence_services() {
@@ -93,7 +115,7 @@ int run(const Options& options) {
   const std::clock_t cpu_begin = std::clock();
   const Clock::time_point begin = Clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  constexpr std::uint64_t report_every = 10'000;  // seeds: a run that was ended goes on behind them
+  constexpr std::uint64_t report_every = 10'000, remember_every = 500;  // seeds
   std::uint64_t lives = 0, failed = 0, trace = 0;
   double simulated_s = 0;
   std::int64_t compared = 0, messages = 0, certificates = 0, good = 0;
@@ -101,8 +123,18 @@ int run(const Options& options) {
   const std::vector<std::uint64_t> corpus =
       options.corpus.empty() ? std::vector<std::uint64_t>{} : seeds_of(options.corpus);
   const std::uint64_t count = options.corpus.empty() ? options.seeds : corpus.size();
+  Progress before;
+  if (options.resume.empty() || !read(options.resume, before)) before.seed = options.seed;
+  trace = before.trace;
+  const auto remember = [&] {
+    if (!options.resume.empty())
+      write_to(options.resume, {before.seed + lives, before.lives + lives, before.failed + failed, trace});
+  };
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { asked_to_end = 1; });
   for (; options.minutes > 0 ? passed() < 60 * options.minutes : lives < count; ++lives) {
-    const std::uint64_t seed = options.corpus.empty() ? options.seed + lives : corpus[lives];
+    if (asked_to_end) break;
+    if (lives % remember_every == 0) remember();
+    const std::uint64_t seed = options.corpus.empty() ? before.seed + lives : corpus[lives];
     const Plan plan = draw(seed);
     if (options.story) {
       std::printf("%s\n", describe(plan).c_str());
@@ -136,13 +168,14 @@ int run(const Options& options) {
       break;
     }
   }
+  remember();
   const double cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
   std::printf("seeds %" PRIu64 " to %" PRIu64 ": %" PRIu64 " lives, %" PRIu64
               " violations, %.0f s simulated in %.1f s of processor time (%.0f times real time), %" PRId64
               " messages, %" PRId64 " compared with an undisturbed run, %" PRId64
               " certificates by 113 bits, %" PRId64
               " verdicts 'good', at most %zu kB a process, trace %016" PRIx64 "\n",
-              options.seed, options.seed + lives - 1, lives, failed, simulated_s, cpu_s, simulated_s / cpu_s,
+              before.seed, before.seed + lives - 1, lives, failed, simulated_s, cpu_s, simulated_s / cpu_s,
               messages, compared, certificates, good, memory / 1024, trace);
   return failed > 0 ? 1 : 0;
 }
@@ -157,6 +190,8 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", options.seeds, "how many").show_default();
   app.add_option("--minutes", options.minutes, "instead of --seeds: as many as fit");
   app.add_option("--corpus", options.corpus, "file with the seeds, one a line");
+  app.add_option("--resume", options.resume,
+                 "file in which a long run keeps how far it is, and goes on from");
   app.add_flag("--twice", options.twice, "live each life twice and compare the traces");
   app.add_flag("--story", options.story, "print what happens");
   app.add_flag("--everything", options.everything, "print each message as well");
