@@ -162,13 +162,16 @@ void refine(const Streams& streams, double ClockModel::*number, double width, in
 std::vector<double> turning_of(const Trajectory& trajectory) {
   std::vector<double> angles;
   angles.reserve(trajectory.size());
-  for (std::size_t i = 1; i < trajectory.size(); ++i)
-    angles.push_back(screw_of(canonical_sign(conjugate(trajectory[i - 1].pose) * trajectory[i].pose)).angle);
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const QuaternionVector turn =
+        quaternion_product(quaternion_conjugate(trajectory[i - 1].pose.real), trajectory[i].pose.real);
+    angles.push_back(2 * std::atan2(turn.tail<3>().norm(), std::abs(turn[0])));
+  }
   return angles;
 }
 
 Explained explained_by(const Streams& streams, const ClockModel& clock) {
-  const Instants instants = synchronised(streams.a, streams.b, clock, streams.max_gap);
+  const Instants instants = synchronised(streams.a, streams.b, clock, streams.max_gap, streams.each);
   Explained result;
   if (instants.time.size() < 2 || !(instants.period > 0)) return result;
   const int stride = std::max(1, static_cast<int>(std::lround(streams.motion_length / instants.period)));

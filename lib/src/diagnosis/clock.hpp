@@ -20,6 +20,7 @@ struct Streams {
   DiagnosisOptions options;
   /// From each pose to the next, see turning_of() [rad].
   std::span<const double> turning_a, turning_b;
+  std::size_t each = 1;  ///< every such pose of the slower stream is looked at
 };
 
 /// The angle from each pose to the next [rad].

@@ -115,7 +115,8 @@ DualQuaternion Instants::between(std::size_t i) const {
   return place.part > 0 ? interpolate(before, (*others_)[place.before + 1].pose, place.part) : before;
 }
 
-Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap) {
+Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
+                      std::size_t each) {
   Instants instants;
   if (a.empty() || b.empty()) return instants;
   const std::int64_t origin_us = a.front().time_us;
@@ -126,9 +127,9 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
   instants.others_ = b_slower ? &a : &b;
   const Times& key_times = b_slower ? times_b : times_a;
   Lookup other(b_slower ? times_a : times_b, max_gap);
-  instants.time.reserve(key_times.size());
-  instants.places_.reserve(key_times.size());
-  for (std::size_t i = 0; i < key_times.size(); ++i) {
+  instants.time.reserve(key_times.size() / each + 1);
+  instants.places_.reserve(key_times.size() / each + 1);
+  for (std::size_t i = 0; i < key_times.size(); i += each) {
     const double time = key_times[i];
     const std::optional<Lookup::Found> found = other.at(time);
     if (!found) continue;

@@ -34,7 +34,7 @@ class Instants {
   DualQuaternion b(std::size_t i) const { return b_slower_ ? key(i) : between(i); }
 
  private:
-  friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double);
+  friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t);
 
   struct Place {
     std::size_t key = 0;     ///< pose of the slower stream
@@ -50,7 +50,9 @@ class Instants {
   std::vector<Place> places_;
 };
 
-Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap);
+/// each: only every such pose of the slower stream is an instant.
+Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
+                      std::size_t each = 1);
 
 /// One motion of both sensors, in the parts that residuals are made of.
 struct Motion {
