@@ -114,14 +114,14 @@ Medians medians(Terrain terrain, int poses, std::uint64_t first_seed) {
 }
 
 TEST(Efficiency, OnARoadAsGoodAsKnowingTheNoise) {
-  for (const std::uint64_t seed : {1, 101}) {
+  for (const std::uint64_t seed : {1u, 101u}) {
     const Medians m = medians(Terrain::rough, 1001, seed);
     EXPECT_LT(m.ours, 1.1 * m.best);
   }
 }
 
 TEST(Efficiency, InSixDegreesOfFreedomNearlyAsGoodAsKnowingTheNoise) {
-  for (const std::uint64_t seed : {1, 101}) {
+  for (const std::uint64_t seed : {1u, 101u}) {
     const Medians m = medians(Terrain::free, 201, seed);
     EXPECT_LT(m.ours, 1.1 * m.best);
   }

@@ -69,7 +69,7 @@ TEST(Bags, McapIsReadHoweverItIsPacked) {
   const Trajectory trajectory = some_trajectory(120);
   for (const MessageEncoder::Kind kind : {MessageEncoder::Kind::cdr, MessageEncoder::Kind::cdr_big_endian})
     for (const char* compression : {"", "lz4", "zstd"})
-      for (const std::size_t chunk : {0, 50})
+      for (const std::size_t chunk : {0u, 50u})
         for (const bool checksums : {false, true})
           expect_all_types(
               folder.file("drive.mcap", testing::mcap_file(all_types(trajectory, kind),

@@ -109,10 +109,10 @@ TEST_F(RealOutliers, TwoAxesExchangedOnALongDrive) {
 TEST_F(RealOutliers, RobotArm) {
   const Streams data = testing::robot_arm();
   double missing = 0;
-  for (const std::uint64_t seed : {7, 8, 9})
+  for (const std::uint64_t seed : {7u, 8u, 9u})
     for (const ExtrinsicError& error : errors_of(data, Corruption::missing, seed))
       missing = std::max(missing, error.rotation);
-  for (const std::uint64_t seed : {7, 8, 9})
+  for (const std::uint64_t seed : {7u, 8u, 9u})
     for (const Corruption corruption :
          {Corruption::lasting_jumps, Corruption::frozen_once, Corruption::frozen_often})
       for (const ExtrinsicError& error : errors_of(data, corruption, seed))
