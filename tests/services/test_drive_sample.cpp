@@ -63,9 +63,9 @@ TEST(DriveSample, KeepsTheSameTimesOfBothStreams) {
   const Trajectory &a = sample.poses(Side::a), &b = sample.poses(Side::b);
   std::size_t partners = 0;
   for (const StampedPose& pose : a)
-    partners += std::count_if(b.begin(), b.end(), [&](const StampedPose& other) {
+    partners += static_cast<std::size_t>(std::count_if(b.begin(), b.end(), [&](const StampedPose& other) {
       return other.time_us == pose.time_us + 300'000'000;
-    });
+    }));
   // one stream is a pose ahead when the sample becomes full: its stretches begin to be dropped a pose earlier
   EXPECT_GE(partners + 50, std::max(a.size(), b.size()));
 }

@@ -132,7 +132,7 @@ TEST_F(Commands, LogDirectoryAndPairsGiveTheSameAnswer) {
   const json from_files = solved(path("d/lidar.tum") + " " + path("d/camera.tum"));
   const json from_created = solved("--log " + path("e.log") + " ODOMETRY_LIDAR ODOMETRY_CAMERA");
   for (const json& other : {from_files, from_created})
-    for (int i = 0; i < 3; ++i)
+    for (std::size_t i = 0; i < 3; ++i)
       EXPECT_NEAR(other["translation"][i].get<double>(), from_log["translation"][i].get<double>(), 1e-9);
   EXPECT_EQ(from_files["pairs"], from_log["pairs"]);
 }
