@@ -1,6 +1,6 @@
 # Precompiled headers: what nearly every file includes is parsed once instead of five hundred times. Off by default: they
-# hide a missing #include, and ccache, where it is there, is faster. scripts/test turns them on where there is no ccache;
-# the sanitized build, the examples and the fuzzers are built without and find missing includes.
+# hide a missing #include, ccache is faster where it is there, and GCC 12 warns of bounds inside of precompiled standard
+# headers (a false alarm that it suppresses otherwise): not for builds whose warnings are errors.
 option(EGOCAL_PRECOMPILE "Precompile Eigen, the standard library and GoogleTest for builds from scratch" OFF)
 
 set(EGOCAL_PRECOMPILED_HEADERS <Eigen/Dense> <algorithm> <array> <cmath> <deque> <functional> <map> <memory> <optional>
