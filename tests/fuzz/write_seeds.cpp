@@ -10,6 +10,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "support/bag_writer.hpp"
 
@@ -60,6 +61,26 @@ calibration_t calibration() {
   answer.observability.hint = "turn";
   calibration_t message = bus::to_message(answer, problem());
   message.solver = "egocal-fast";
+  return message;
+}
+
+scale_problem_t scale_problem() {
+  ScaleProblem problem;
+  std::vector<MotionPair> pairs;
+  for (int i = 1; i < 40; ++i) pairs.push_back({pose(i).pose, pose(2 * i % 37).pose});
+  problem.blocks = scale_blocks(pairs);
+  scale_problem_t message = bus::to_message(problem);
+  message.utime = message.session = time_us;
+  message.sensor_a = "lidar";
+  message.sensor_b = "camera";
+  return message;
+}
+
+scale_t scale() {
+  const scale_problem_t problem = scale_problem();
+  const auto checked = bus::to_scale_problem(problem);
+  scale_t message = bus::to_message(solve_scale(checked.value->blocks, checked.value->options), problem);
+  message.solver = "egocal-global";
   return message;
 }
 
@@ -148,6 +169,8 @@ int main(int argc, char** argv) {
   write(folder / "calibration", "plain", calibration());
   write(folder / "status", "plain", status());
   write(folder / "verdict", "plain", verdict());
+  write(folder / "scale_problem", "plain", scale_problem());
+  write(folder / "scale", "plain", scale());
   command_t command{};
   command.to = "*";
   command.verb = "reset";
