@@ -24,6 +24,9 @@ constexpr const char* style = R"(<style>
 body { font: 15px/1.45 Helvetica, Arial, sans-serif; color: #1a1a1a; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.1rem; margin: 1.6rem 0 .4rem; border-bottom: 1px solid #bbb; }
 .verdict { font-size: 1.2rem; font-weight: bold; padding: .6rem .8rem; border-left: .5rem solid #0072b2; background: #f2f2f2; }
+.good { border-color: #009e73; }
+.doubtful { border-color: #e69f00; background: #fdf3dc; }
+.contradictory { border-color: #d55e00; background: #fbe6da; }
 table { border-collapse: collapse; } td, th { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top; }
 td.number { font-variant-numeric: tabular-nums; text-align: right; } code, pre { font-size: .9rem; }
 pre { overflow-x: auto; background: #f7f7f7; padding: .5rem; } .figures { display: flex; flex-wrap: wrap; gap: 1rem; }
@@ -242,7 +245,8 @@ std::string report_html(const ReportInput& input) {
       escaped(input.name_b) + " in " + escaped(input.name_a) + "</title>\n" + style +
       "</head>\n<body>\n<h1>Extrinsic calibration</h1>\n<p class='note'>" + escaped(input.name_b) +
       " in the frame of " + escaped(input.name_a) + "</p>\n";
-  out += "<p class='verdict'>" + escaped(input.verdict) + "</p>\n";
+  const std::string word = input.verdict.substr(0, input.verdict.find(':'));
+  out += "<p class='verdict " + escaped(word) + "'>" + escaped(input.verdict) + "</p>\n";
   for (const std::string& finding : input.findings) out += "<p>" + escaped(finding) + "</p>\n";
   out += section("Transform",
                  transform("T_a_b: pose of sensor b in sensor a, p_a = T_a_b p_b", calibration.T_a_b) +

@@ -18,7 +18,7 @@ struct ReportInput {
   CalibrationOptions options;
   Calibration calibration;
   std::string method;
-  std::string verdict;                ///< headline, in words
+  std::string verdict;                ///< headline: the word of the verdict, a colon, the reason
   std::vector<std::string> findings;  ///< what is wrong and its cure, one sentence each
   std::vector<std::string> warnings;  ///< about what was read
   std::string command;                ///< the command line
