@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "egocal/monitor/lines.hpp"
+#include "egocal/monitor/loops.hpp"
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
@@ -196,6 +198,77 @@ TEST_F(VerdictShown, InJson) {
   EXPECT_EQ(pair["goal"]["missing"][0], "z");
   EXPECT_EQ(pair["goal"]["seconds_left"], nullptr);
   EXPECT_EQ(pair["answer"]["certified"], true);
+}
+
+TEST_F(VerdictShown, AScaleThatIsLookedForIsShownWithItsProof) {
+  scale_t message{};
+  message.session = problem.session;
+  message.seq = problem.seq;
+  message.sensor_a = "lidar";
+  message.sensor_b = "camera";
+  bus::CheckedScale scale;
+  scale.sensor = "camera";
+  scale.session = problem.session;
+  scale.seq = problem.seq;
+  scale.verified = scale.solution.certified = true;
+  scale.solution.scale = 0.37;
+  scale.solution.stddev = 0.00037;
+  model.on_scale(message, scale, some_time);
+  EXPECT_THAT(pair_lines(model, Charset::ascii), HasSubstr("scale of camera not shown by the motions yet"));
+  scale.solution.observable = true;
+  model.on_scale(message, scale, some_time);
+  EXPECT_THAT(pair_lines(model, Charset::ascii),
+              HasSubstr("scale 0.370 of camera +-0.100 %, optimal (proven)"));
+  const nlohmann::json shown = nlohmann::json::parse(json_line(model))["pairs"][0]["scale"];
+  EXPECT_EQ(shown["sensor"], "camera");
+  EXPECT_EQ(shown["value"], 0.37);
+  EXPECT_EQ(shown["certified"], true);
+  message.session = scale.session = problem.session - 5;  // late, of an older session
+  scale.solution.scale = 1;
+  model.on_scale(message, scale, some_time);
+  EXPECT_EQ(model.pairs()[0].scale->solution.scale, 0.37);
+}
+
+TEST(LoopsShown, TheSensorThatAllOpenLoopsHaveInCommonIsNamed) {
+  const std::vector<std::string> names{"camera", "lidar", "radar", "tail"};
+  Model model;
+  const auto answer = [&](const std::string& a, const std::string& b, const Pose& T, std::int64_t step) {
+    const problem_t problem = test::problem_at(a, b, step, 10);
+    model.on_problem(problem, some_time);
+    calibration_t message = test::calibration_at(problem, true);
+    bus::set_pose(to_dual_quaternion(T), message.pos, message.quat);
+    for (int i = 0; i < 6; ++i) message.stddev[i] = i < 3 ? 0.001 : 0.0001;
+    model.on_calibration(message, some_time);
+  };
+  const auto mount = [](std::size_t i) {
+    const double x = static_cast<double>(i);
+    return Pose{rotation_exp({0.2 * x, -0.1 * x * x, 0.3}), {x, 0.5 - x, 0.2 * x * x}};
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = i + 1; k < 4; ++k) answer(names[i], names[k], inverse(mount(i)) * mount(k), 100);
+  ASSERT_EQ(loops_of(model).size(), 4u);
+  for (const Loop& loop : loops_of(model)) EXPECT_FALSE(loop.open());
+  EXPECT_EQ(sensor_to_blame(loops_of(model)), "");
+  model.tick(some_time);
+  EXPECT_THAT(text_lines(model, Charset::ascii),
+              HasSubstr("loop camera lidar radar: misfit 0.00 cm 0.000 deg, closed"));
+
+  constexpr double degree = 0.0174533;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Eigen::Vector3d off = Eigen::Vector3d::Zero();
+    off[static_cast<Eigen::Index>(i)] = degree;
+    answer(names[i], "tail", inverse(mount(i)) * mount(3) * Pose{rotation_exp(off), {0, 0, 0}}, 101);
+  }
+  model.tick(some_time);
+  EXPECT_EQ(sensor_to_blame(loops_of(model)), "tail");
+  const nlohmann::json shown = nlohmann::json::parse(json_line(model));
+  EXPECT_EQ(shown["blamed"], "tail");
+  EXPECT_EQ(shown["loops"].size(), 4u);
+  EXPECT_THAT(text_lines(model, Charset::ascii), HasSubstr("every open loop has tail"));
+  EXPECT_EQ(std::count_if(
+                model.events().begin(), model.events().end(),
+                [](const Event& event) { return event.text.find("does not close") != std::string::npos; }),
+            3);
 }
 
 }  // namespace
