@@ -9,7 +9,6 @@
 #include <fstream>
 #include <functional>
 #include <numbers>
-#include <sstream>
 
 #include "egocal/calibrate.hpp"
 #include "egocal/cli/cli.hpp"
@@ -214,15 +213,9 @@ int main(int argc, char** argv) {
   app.add_option("--write", write, "a page: put the tables in their places");
   if (const auto code = app.parse(argc, argv)) return *code;
 
-  const auto content = [](const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::stringstream all;
-    all << stream.rdbuf();
-    return all.str();
-  };
   int result = 0;
-  std::string page = write.empty() ? "" : content(write);
-  const std::string checked = check.empty() ? "" : content(check);
+  std::string page = write.empty() ? "" : bench::read_page(write);
+  const std::string checked = check.empty() ? "" : bench::read_page(check);
   for (const Part& part : {Part{"real", real_drives, true}, Part{"tampere", tampere, true},
                            Part{"hand-eye", hand_eye, true}, Part{"simulated", simulated, false}}) {
     if (!only.empty() && only != part.name) continue;

@@ -8,9 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -165,13 +163,6 @@ std::string part(int x, int of) {
   return std::to_string(x) + " of " + std::to_string(of);
 }
 
-std::string content(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream all;
-  all << stream.rdbuf();
-  return all.str();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -201,6 +192,6 @@ int main(int argc, char** argv) {
     right += tally.right;
   }
   std::printf("%s\n", bench::markdown(table).c_str());
-  if (!write.empty()) write_whole_file(write, bench::with_table(content(write), table));
+  if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
   return 10 * right < 9 * said ? 1 : 0;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -89,6 +90,13 @@ std::string markdown(const Table& table) {
     text += "\n";
   }
   return text;
+}
+
+std::string read_page(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream all;
+  all << stream.rdbuf();
+  return all.str();
 }
 
 std::string with_table(const std::string& page, const Table& table) {

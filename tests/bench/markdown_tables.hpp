@@ -15,6 +15,9 @@ struct Table {
 
 std::string markdown(const Table& table);
 
+/// The text of a page; empty where there is no such file.
+std::string read_page(const std::string& file);
+
 /// The page with the table in its place. Throws std::runtime_error where the page has no such place.
 std::string with_table(const std::string& page, const Table& table);
 

@@ -10,10 +10,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -182,13 +180,6 @@ Table clean(const Study& study, std::size_t series, int poses, Totals& totals) {
   return table;
 }
 
-std::string content(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream all;
-  all << stream.rdbuf();
-  return all.str();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -216,13 +207,13 @@ int main(int argc, char** argv) {
     if (study.only.empty())
       tables.push_back(clean(study, static_cast<std::size_t>(std::max(0, series)), poses, totals));
     if (!only_clean) tables.push_back(mistakes(study, totals));
-    std::string page = write.empty() ? "" : content(write);
+    std::string page = write.empty() ? "" : bench::read_page(write);
     bool same = true;
     for (const Table& table : tables) {
       std::printf("%s\n%s\n", table.name.c_str(), bench::markdown(table).c_str());
       if (!write.empty()) page = bench::with_table(page, table);
       if (check.empty()) continue;
-      for (const std::string& difference : bench::differences(content(check), table, 0)) {
+      for (const std::string& difference : bench::differences(bench::read_page(check), table, 0)) {
         std::printf("%s\n", difference.c_str());
         same = false;
       }

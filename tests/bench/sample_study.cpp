@@ -141,7 +141,8 @@ int main(int argc, char** argv) {
   app.add_option("--trials", trials, "per cell").check(egocal::cli::Check::range(1, 100000));
   app.add_option("--samples", sizes, "numbers of samples");
   app.add_option("--prior-log-ratio", options.prior_log_ratio, "of SampleOptions").show_default();
-  app.add_option("--time", timed, "only the time of a call, median of so many sets of each size");
+  app.add_option("--time", timed,
+                 "only the time of a call: the median over this number of sets of each size");
   app.add_flag("--check", check,
                "exit 1 where egocal is not better than the others on average over the cells, its deviations "
                "do not cover, or wrong samples are not found");

@@ -7,10 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -81,13 +79,6 @@ void add(const bench::StudyDrive& drive, int parts, Coverage& coverage) {
   }
 }
 
-std::string content(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream all;
-  all << stream.rdbuf();
-  return all.str();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -108,6 +99,6 @@ int main(int argc, char** argv) {
                                   std::to_string(coverage.all[k]));
   }
   std::printf("%s\n", bench::markdown(table).c_str());
-  if (!write.empty()) write_whole_file(write, bench::with_table(content(write), table));
+  if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
   return 0;
 }

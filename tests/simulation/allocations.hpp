@@ -9,7 +9,7 @@ namespace egocal::simulation {
 /// Whose memory is allocated from here on, until the end of the scope. One thread.
 class MemoryOwner {
  public:
-  /// 0: nobody's; what several processes share.
+  /// 0: memory that several processes share.
   explicit MemoryOwner(std::size_t owner);
   ~MemoryOwner();
   MemoryOwner(const MemoryOwner&) = delete;

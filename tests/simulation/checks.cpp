@@ -30,7 +30,8 @@ constexpr double remembered = 64;
 constexpr std::int64_t heard_us = 200'000;
 /// Of a process [bytes].
 constexpr std::size_t largest_memory = std::size_t{8} << 20;
-/// Arithmetic of 113 bits takes as long as all the rest of a short life: it looks at one answer of so many.
+/// Arithmetic of 113 bits takes as long as all the rest of a short life: one answer of this number is
+/// checked.
 constexpr std::uint64_t one_certificate_of = 32;
 
 std::string text(std::int64_t session, std::int64_t seq) {

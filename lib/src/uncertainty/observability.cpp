@@ -85,9 +85,9 @@ class Jackknife {
     return student * student * squares / count_;
   }
   /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
-  /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. Student's factor of about
-  /// so many degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the part
-  /// by which leaving out one of m says too much. One where all blocks hold alike.
+  /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
+  /// for about m degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the
+  /// part by which leaving out one of m says too much. One where all blocks hold alike.
   Vector6d concentration() const {
     Vector6d factor;
     for (int i = 0; i < 6; ++i) {

@@ -27,8 +27,8 @@ struct CongruenceOptions {
   /// Motions between estimates while the memory fills, and once it is full: one sixteenth of it is new then.
   /// Measured: the same answers as with 16 throughout, 940 -> 370 ms of pairing for 100,000 poses.
   std::uint64_t estimate_every = 16, estimate_every_when_full = 64;
-  /// Of the motions of doubtful poses one in so many is remembered: they may be wrong, or the beginning of
-  /// noisier seconds, in which seven of eight doubtful ones must not delay the estimate for ever.
+  /// One of this number of motions of doubtful poses is remembered: they may be wrong, or the beginning of
+  /// noisier seconds, which the estimate must follow after a while.
   std::uint64_t doubtful_remembered = 8;
   /// Noise that grows with the motion is at most this part of it: with more no odometry is left to compare.
   double most_growing = 0.2;

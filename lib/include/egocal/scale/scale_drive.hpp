@@ -23,7 +23,7 @@ struct ScaleDriveOptions {
   /// Motions that begin within the length of one. With four, a sum over blocks has a standard deviation that
   /// is 4 % larger than that of independent blocks.
   std::size_t starts = 4;
-  /// A motion that fits this many times worse than the median one is left out. Five standard deviations.
+  /// A motion that fits this many times worse than the median one is an outlier. Five standard deviations.
   double most_residual = 25;
   /// The newest motions are judged again at each solution, as many as this: two minutes. Older ones are
   /// judged once more and then part of the sums for good.
@@ -59,7 +59,7 @@ struct ScaleDriveState {
   std::uint64_t solved_left_out = 0;
   std::int64_t solved_us = 0;  ///< end of the newest motion in it [us]
   std::int64_t step_us = 0;    ///< length of the newest single step [us]
-  double limit = 0;            ///< residual beyond which a motion is left out; 0: unknown
+  double limit = 0;            ///< residual beyond which a motion is an outlier; 0: unknown
   std::optional<Balance> balance;
   std::optional<ScaleProblem> problem;  ///< of the newest solution
   ScaleSolution solution;
