@@ -174,6 +174,47 @@ TEST_F(Tables, EmptyFieldsOfATableAreCounted) {
   EXPECT_THAT(reading.losses.first_refused, HasSubstr("line 3"));
 }
 
+TEST_F(Tables, TimesMayBeDatesOfIso8601) {
+  const std::string pose = ",1,2,3,0,0,0.7071068,0.7071068\n", next = ",4,5,6,0,0,0.7071068,0.7071068\n";
+  expect_two_poses("t,x,y,z,qx,qy,qz,qw\n2001-09-09T01:46:40Z" + pose + "2001-09-09T01:46:40.1Z" + next);
+  expect_two_poses("2001-09-09 01:46:40.000" + pose + "2001-09-09 01:46:40.0999996" + next);
+  expect_two_poses("time [UTC],x,y,z,qx,qy,qz,qw\n2001-09-09T03:16:40+01:30" + pose +
+                   "2001-09-08T18:46:40.1-0700" + next);
+  const TrajectoryReading leap = read("t,x,y,yaw\n2000-02-29T23:59:59Z,0,0,0\n2000-03-01T00:00:00Z,1,0,0\n");
+  EXPECT_EQ(leap.trajectory[1].time_us - leap.trajectory[0].time_us, 1'000'000);
+  for (const char* wrong :
+       {"2001-02-29T00:00:00Z", "2001-13-01T00:00:00Z", "2001-09-09T24:00:00Z", "2001-09-09T01:60:00Z",
+        "2001-09-09T01:46:40X", "2001-09-09T01:46:40.", "2001-09-09T01:46:40+99:00", "2001-09-09"})
+    expect_error("t,x,y,yaw\n" + std::string(wrong) + ",0,0,0\n", ":2: time: expected a number");
+}
+
+TEST_F(Tables, PosesWithoutTimesHaveARate) {
+  ReadOptions options;
+  options.rate = 20;
+  const TrajectoryReading reading = read("1 2 3 0 0 0 1\n4 5 6 0 0 0.7071068 0.7071068\n", options);
+  ASSERT_EQ(reading.trajectory.size(), 2u);
+  EXPECT_EQ(reading.trajectory[1].time_us, 50'000);
+  EXPECT_LT((to_pose(reading.trajectory[1].pose).translation - Eigen::Vector3d(4, 5, 6)).norm(), 1e-12);
+  EXPECT_THAT(reading.notes, ::testing::Contains(HasSubstr("x y z qx qy qz qw")));
+  // seven numbers without a quaternion are no pose
+  expect_error("1 2 3 0.5 0 0 1\n", "expected 8 fields");
+}
+
+TEST_F(Tables, AHeadingIsOneOfACompass) {
+  const TrajectoryReading reading = read("t,x,y,heading[deg]\n0,0,0,90\n1,1,0,90\n");
+  EXPECT_LT(rotation_log(to_pose(reading.trajectory[0].pose).rotation).norm(), 1e-12);
+  EXPECT_THAT(reading.notes, ::testing::Contains(HasSubstr("clockwise from north")));
+  EXPECT_THAT(read("t,lat,lon,heading[deg]\n0,48,9,90\n1,48.1,9,90\n").notes,
+              ::testing::Not(::testing::Contains(HasSubstr("clockwise from north"))));
+}
+
+TEST_F(Tables, OtherKindsOfTextAreNamed) {
+  expect_error("[{\"t\": 1, \"x\": 2}]\n", "is JSON");
+  expect_error("\n<?xml version=\"1.0\"?>\n<gpx/>\n", "is XML");
+  expect_error("ply\nformat ascii 1.0\n", "is a point cloud");
+  expect_error("VERTEX_SE3:QUAT 0 1 2 3 0 0 0 1\n", "is a pose graph");
+}
+
 TEST_F(Tables, WhatIsNotUnderstoodIsSaid) {
   expect_error("time,a,b,c\n1,2,3,4\n", "no position");
   expect_error("time,x,y,z\n1,2,3,4\n", "no orientation");

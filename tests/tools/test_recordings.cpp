@@ -102,6 +102,45 @@ TEST_F(Recordings, EveryBagGivesTheAnswerOfTheTextFiles) {
               HasSubstr("/lidar (nav_msgs/Odometry, 400), /camera (geometry_msgs/PoseStamped, 400)"));
 }
 
+TEST_F(Recordings, ColumnsAndRateGoWithEveryCommand) {
+  const std::string a = folder.path("lidar.tum"), b = folder.path("camera.tum");
+  const json usual = parsed("solve --json " + a + " " + b);
+  // the same poses in another order of columns, for both and for one
+  const auto turned = [&](const std::string& name, const Trajectory& trajectory) {
+    std::stringstream text;
+    text.precision(17);
+    for (const StampedPose& stamped : trajectory) {
+      const Pose pose = to_pose(stamped.pose);
+      text << pose.rotation.w() << ' ' << pose.rotation.x() << ' ' << pose.rotation.y() << ' '
+           << pose.rotation.z() << ' ' << pose.translation.x() << ' ' << pose.translation.y() << ' '
+           << pose.translation.z() << '\n';
+    }
+    return folder.file(name, text.str());
+  };
+  const std::string own_a = turned("a.txt", drive[0]), own_b = turned("b.txt", drive[1]);
+  const std::string columns = " --columns qw,qx,qy,qz,x,y,z --rate 10";
+  const auto expect_usual = [&](const json& answer, const std::string& what) {
+    EXPECT_EQ(answer["pairs"], usual["pairs"]) << what;
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(answer["translation"][i].get<double>(), usual["translation"][i].get<double>(), 1e-6)
+          << what;
+  };
+  expect_usual(parsed("solve --json " + own_a + " " + own_b + columns), "both");
+  const json twice =
+      parsed("solve --json " + own_a + " " + own_b + columns + " --append " + own_a + " " + own_b);
+  EXPECT_GT(twice["pairs"].get<int>(), 1.8 * usual["pairs"].get<int>());
+  // the same file twice is the same stream: an answer that should not be used
+  const Outcome same = egocal("solve --json " + own_a + " " + own_b + " " + own_a + columns);
+  EXPECT_EQ(same.code, 3) << same.err;
+  const json rig = json::parse(same.out);
+  EXPECT_EQ(rig["extrinsics"].size(), 3u);
+  EXPECT_EQ(egocal("check " + own_a + " " + own_b + columns).code, 0);
+  EXPECT_EQ(egocal("align " + own_a + " " + own_b + columns).code, 0);
+  EXPECT_EQ(parsed("info --json " + own_a + columns)["streams"][0]["poses"], 400);
+  const Outcome none = egocal("solve " + own_a + " " + own_b);
+  EXPECT_NE(none.code, 0);
+}
+
 TEST_F(Recordings, InfoSaysWhatAFileHolds) {
   const json info = parsed("info --json " + folder.path("drive.mcap"));
   EXPECT_EQ(info["format"], "MCAP");

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "commands/commands.hpp"
+#include "commands/reading_options.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/alignment.hpp"
@@ -18,15 +19,13 @@ namespace egocal::tools {
 namespace {
 
 struct Options {
-  std::string a, b, times_a, times_b, out;
-  ReadOptions reading;
+  std::string a, b, out;
+  ReadingOptions reading;
   bool time_offset = false, json = false;
 };
 
-TrajectoryReading read(const Options& options, const std::string& name, const std::string& times) {
-  ReadOptions reading = options.reading;
-  reading.times_file = times;
-  TrajectoryReading result = read_any_trajectory(name, reading);
+TrajectoryReading read(const std::string& name, const ReadOptions& options) {
+  TrajectoryReading result = read_any_trajectory(name, options);
   for (const std::string& note : result.notes) fmt::print(stderr, "egocal: {}: {}\n", name, note);
   return result;
 }
@@ -43,8 +42,8 @@ std::string pose_text(const Pose& T) {
 }
 
 void run(const Options& options, const std::string& command_line) {
-  const Trajectory a = read(options, options.a, options.times_a).trajectory;
-  const Trajectory b = read(options, options.b, options.times_b).trajectory;
+  const Trajectory a = read(options.a, options.reading.of_a()).trajectory;
+  const Trajectory b = read(options.b, options.reading.of_b()).trajectory;
   CalibrationOptions calibration_options;
   calibration_options.estimate_time_offset = options.time_offset;
   const Calibration calibration = calibrate(a, b, calibration_options);
@@ -62,8 +61,10 @@ void run(const Options& options, const std::string& command_line) {
                                   {"rms_rotation_rad", alignment.rms_rotation},
                                   {"time_offset_s", calibration.time_offset_applied}};
     append_json(object, provenance_json(command_line));
-    object["files"] = files_json(
-        {{"a", options.a}, {"b", options.b}, {"times_a", options.times_a}, {"times_b", options.times_b}});
+    object["files"] = files_json({{"a", options.a},
+                                  {"b", options.b},
+                                  {"times_a", options.reading.of_a().times_file},
+                                  {"times_b", options.reading.of_b().times_file}});
     fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return;
   }
@@ -86,8 +87,7 @@ void add_align(cli::App program) {
       "align", "lays trajectory B over A: extrinsic, transform between the worlds, B in A's frames");
   command.add_option("A", options->a, "FILE or FILE:TOPIC of sensor a").required();
   command.add_option("B", options->b, "FILE or FILE:TOPIC of sensor b").required();
-  command.add_option("--times-a", options->times_a, "times of A, for KITTI poses");
-  command.add_option("--times-b", options->times_b, "times of B, for KITTI poses");
+  add_reading_options(command, options->reading);
   command.add_flag("--time-offset", options->time_offset, "estimates the offset of the clocks first");
   command.add_option("--out", options->out, "B as a trajectory of sensor a in the world of a, as TUM");
   command.add_flag("--json", options->json, "one JSON object on standard output");

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands/commands.hpp"
+#include "commands/reading_options.hpp"
 #include "offline/calibration.hpp"
 #include "offline/provenance.hpp"
 #include "offline/trust_report.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 struct Options {
   MotionSource source;
-  std::string times;
+  ReadingOptions reading;
   bool json = false;
 };
 
@@ -31,7 +32,8 @@ std::string tenths_text(const Fit& fit) {
 void run(const Options& options, const std::string& command_line) {
   SolveRequest request;
   request.source = options.source;
-  if (!options.times.empty()) request.source.times_a = request.source.times_b = options.times;
+  request.source.reading_a = options.reading.of_a();
+  request.source.reading_b = options.reading.of_b();
   const Calibration calibration = calibrate_offline(request).calibration;
   if (options.json) {
     nlohmann::ordered_json json = trust_json(calibration);
@@ -54,7 +56,7 @@ void add_check(cli::App program) {
   command.add_option("A", options->source.a, "trajectory of sensor a; with --log its channel").required();
   command.add_option("B", options->source.b, "trajectory of sensor b").required();
   command.add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
-  command.add_option("--times", options->times, "times of KITTI poses, one a line [s]");
+  add_reading_options(command, options->reading);
   command.add_flag("--json", options->json, "one JSON object on standard output");
   command.callback([options, command] { run(*options, command.command_line()); });
 }

@@ -46,8 +46,8 @@ void run(const Options& options, const std::string& command_line) {
     nlohmann::ordered_json json = provenance_json(command_line);
     json["files"] = files_json({{"a", options.source.file_a},
                                 {"b", options.source.file_b},
-                                {"times_a", options.source.times_a},
-                                {"times_b", options.source.times_b}});
+                                {"times_a", options.source.reading_a.times_file},
+                                {"times_b", options.source.reading_b.times_file}});
     json["pairs"] = data.pairs.size();
     json["methods"] = nlohmann::ordered_json::array();
     for (const ComparisonRow& row : rows) json["methods"].push_back(row_json(row));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/reading_options.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/stream_summary.hpp"
@@ -21,7 +22,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options {
-  std::string name, times;
+  std::string name;
   ReadOptions reading;
   bool json = false;
 };
@@ -41,10 +42,8 @@ struct Contents {
 
 /// One pass over the file; of a chain of transforms the resolved poses.
 Contents read_contents(const Options& options) {
-  ReadOptions reading = options.reading;
-  reading.times_file = options.times;
   const RecordingName name = parse_recording_name(options.name);
-  const std::unique_ptr<Recording> recording = open_any_recording(name.file, reading);
+  const std::unique_ptr<Recording> recording = open_any_recording(name.file, options.reading);
   Contents contents;
   if (!name.topic.empty()) {
     const TrajectoryReading trajectory = read_trajectory_of(*recording, name.topic);
@@ -161,10 +160,7 @@ void add_info(cli::App program) {
   const auto options = std::make_shared<Options>();
   cli::App command = program.add_subcommand("info", "what a recording holds: streams, poses, gaps, jumps");
   command.add_option("FILE", options->name, "any recording: FILE, or FILE:TOPIC for one stream").required();
-  command.add_option("--times", options->times, "times of KITTI poses [s]");
-  command.add_option("--columns", options->reading.columns,
-                     "names of a table's columns: t,x,y,z,qx,qy,qz,qw");
-  command.add_option("--rate", options->reading.rate, "of KITTI poses without times [Hz; 10]");
+  add_reading_options(command, options->reading);
   command.add_flag("--json", options->json, "one JSON object on standard output");
   command.callback([options, command] { run(*options, command.command_line()); });
 }

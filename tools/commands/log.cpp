@@ -9,6 +9,7 @@
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
+#include "commands/reading_options.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
@@ -23,7 +24,8 @@ namespace egocal::tools {
 namespace {
 
 struct CreateOptions {
-  std::string rig, out, times;
+  std::string rig, out;
+  ReadOptions reading;
   std::vector<std::string> from;
 };
 
@@ -42,9 +44,7 @@ void create(const CreateOptions& options) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) throw UsageError("--from: expected SENSOR=FILE, got '" + text + "'");
     const bus::Sensor& sensor = bus::sensor(rig, text.substr(0, equals));
-    ReadOptions reading;
-    reading.times_file = options.times;
-    TrajectoryReading read = read_any_trajectory(text.substr(equals + 1), reading);
+    TrajectoryReading read = read_any_trajectory(text.substr(equals + 1), options.reading);
     for (const std::string& note : read.notes)
       fmt::print(stderr, "egocal: {}: {}\n", text.substr(equals + 1), note);
     trajectories[k] = std::move(read.trajectory);
@@ -236,7 +236,7 @@ void add_create(cli::App log) {
   command.add_option("RIG", options->rig, "rig file: sensors, channels, types").required();
   command.add_option("--from", options->from, "SENSOR=FILE or SENSOR=FILE:TOPIC, once for each sensor")
       .required();
-  command.add_option("--times", options->times, "times of KITTI poses [s]");
+  add_reading_options(command, options->reading);
   command.add_option("--out", options->out, "the log").required();
   command.callback([options] { create(*options); });
 }

@@ -60,12 +60,9 @@ void read_samples(const RequestOptions& options, SolveRequest& request) {
 SolveRequest understood(const RequestOptions& options) {
   SolveRequest result;
   result.source = options.source;
-  result.source.reading_a.rate = result.source.reading_b.rate = options.rate;
+  result.source.reading_a = options.reading.of_a();
+  result.source.reading_b = options.reading.of_b();
   result.append = options.append;
-  if (!options.times.empty()) {
-    if (result.source.times_a.empty()) result.source.times_a = options.times;
-    if (result.source.times_b.empty()) result.source.times_b = options.times;
-  }
   const bool trajectories = options.source.pairs.empty();
   if (trajectories && (options.source.a.empty() || options.source.b.empty()))
     throw UsageError(options.source.log.empty() ? "expected two trajectory files A and B, or --pairs FILE"
@@ -132,13 +129,7 @@ void add_request_options(cli::App command, RequestOptions& options) {
   command.add_option("--log", options.source.log, "LCM log; A and B are names of its channels");
   command.add_option("--pairs", options.source.pairs,
                      "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
-  command.add_option("--times", options.times, "times of KITTI poses, one a line [s]");
-  command.add_option("--times-a", options.source.times_a, "times of A alone");
-  command.add_option("--times-b", options.source.times_b, "times of B alone");
-  command.add_option("--columns-a", options.source.reading_a.columns,
-                     "names of the columns of table A: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
-  command.add_option("--columns-b", options.source.reading_b.columns, "names of the columns of table B");
-  command.add_option("--rate", options.rate, "of KITTI poses without times [Hz; 10]");
+  add_reading_options(command, options.reading);
   command.add_option("--method", options.method, "solver, or a baseline of the paper")
       .check(cli::Check::one_of(
           {"global", "fast", "dual", "sdp", "sqp", "slsqp", "analytic", "matrix", "local"}))

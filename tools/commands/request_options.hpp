@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/reading_options.hpp"
 #include "egocal/cli/cli.hpp"
 #include "offline/calibration.hpp"
 
@@ -14,11 +15,11 @@ namespace egocal::tools {
 /// share.
 struct RequestOptions {
   MotionSource source;
-  std::string times;
+  ReadingOptions reading;
   std::string method = "global";
   bool planar = false;
   std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal, scale, scale_b;
-  double max_gap = 0.5, rate = 0;
+  double max_gap = 0.5;
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
   bool samples = false, eye_in_hand = false, eye_to_hand = false;

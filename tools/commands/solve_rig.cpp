@@ -43,9 +43,8 @@ void refuse_options_of_two(const RequestOptions& typed) {
   refuse(!typed.truth.empty(), "--truth");
   refuse(!typed.nominal.empty(), "--nominal");
   refuse(!typed.goal.empty(), "--goal");
-  refuse(!typed.source.times_a.empty() || !typed.source.times_b.empty(), "--times-a, --times-b");
-  refuse(!typed.source.reading_a.columns.empty() || !typed.source.reading_b.columns.empty(),
-         "--columns-a, --columns-b");
+  refuse(!typed.reading.a.times_file.empty() || !typed.reading.b.times_file.empty(), "--times-a, --times-b");
+  refuse(!typed.reading.a.columns.empty() || !typed.reading.b.columns.empty(), "--columns-a, --columns-b");
   refuse(typed.invert_a || typed.invert_b, "--invert-a, --invert-b");
   refuse(!typed.order_a.empty() || !typed.order_b.empty(), "--quaternion-order-a, --quaternion-order-b");
   refuse(!typed.time_offset.empty() && typed.time_offset != "auto", "--time-offset with a number");
@@ -67,7 +66,7 @@ RigRequest rig_request(const RequestOptions& typed, const RigOptionsTyped& rig) 
   RigRequest request;
   request.append = typed.append;
   request.log = typed.source.log;
-  request.times = typed.times;
+  request.reading = typed.reading.both;
   if (rig.rig.empty()) {
     request.sources = {typed.source.a, typed.source.b};
     request.sources.insert(request.sources.end(), rig.more.begin(), rig.more.end());

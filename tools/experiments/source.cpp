@@ -38,8 +38,8 @@ std::vector<std::string> drives_in(const std::string& text) {
 }
 
 std::vector<MotionPair> pairs_of_drive(const Source& source) {
-  const Trajectory a = read_trajectory(source.file_a, source.times_a);
-  const Trajectory b = read_trajectory(source.file_b, source.times_b);
+  const Trajectory a = read_trajectory_file(source.file_a, source.reading_a).trajectory;
+  const Trajectory b = read_trajectory_file(source.file_b, source.reading_b).trajectory;
   PairingOptions options;
   options.stride = source.stride;
   options.balance = Balance{};

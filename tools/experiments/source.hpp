@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "egocal/io/recording.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "experiments/data_set.hpp"
 
@@ -15,8 +16,8 @@ namespace egocal::tools {
 /// B1,B2), or a simulated drive where there are none.
 struct Source {
   std::string file_a{}, file_b{};
-  std::string times_a{}, times_b{};  ///< for KITTI files
-  std::optional<Pose> truth{};       ///< pose of sensor b in sensor a, where known
+  ReadOptions reading_a{}, reading_b{};
+  std::optional<Pose> truth{};  ///< pose of sensor b in sensor a, where known
   std::optional<GroundPlane> plane_a{}, plane_b{};
   Balance balance{};
   int stride = 1;          ///< steps of the slower stream in one motion

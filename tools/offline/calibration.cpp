@@ -41,14 +41,13 @@ Motions read_motions(const MotionSource& source) {
   if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
   if (source.log.empty()) {
     Motions motions;
-    const auto read = [&](const std::string& name, const std::string& times, ReadOptions options) {
-      options.times_file = times;
+    const auto read = [&](const std::string& name, const ReadOptions& options) {
       TrajectoryReading reading = read_any_trajectory(name, options);
       for (const std::string& note : reading.notes) motions.warnings.push_back(name + ": " + note);
       return std::move(reading.trajectory);
     };
-    motions.a = read(source.a, source.times_a, source.reading_a);
-    motions.b = read(source.b, source.times_b, source.reading_b);
+    motions.a = read(source.a, source.reading_a);
+    motions.b = read(source.b, source.reading_b);
     return motions;
   }
   LogTrajectory a = read_log_trajectory(source.log, source.a);
@@ -64,9 +63,13 @@ void append_drives(const SolveRequest& request, Motions& motions) {
   if (request.append.empty()) return;
   if (!request.source.pairs.empty()) throw UsageError("--append: goes with two trajectories");
   if (request.append.size() % 2 != 0) throw UsageError("--append: expected a file for A and one for B");
+  // columns and rate are those of the first drive; a file of times belongs to one drive
+  ReadOptions a = request.source.reading_a, b = request.source.reading_b;
+  a.times_file.clear();
+  b.times_file.clear();
   for (std::size_t i = 0; i < request.append.size(); i += 2)
-    append_drive({&motions.a, &motions.b}, {read_any_trajectory(request.append[i]).trajectory,
-                                            read_any_trajectory(request.append[i + 1]).trajectory});
+    append_drive({&motions.a, &motions.b}, {read_any_trajectory(request.append[i], a).trajectory,
+                                            read_any_trajectory(request.append[i + 1], b).trajectory});
 }
 
 Calibration calibrate_motions(const MotionSource& source, const Motions& motions,

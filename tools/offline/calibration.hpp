@@ -15,11 +15,10 @@ namespace egocal::tools {
 
 /// Where the motions come from: two trajectory files, two channels of an LCM log, or a file of motion pairs.
 struct MotionSource {
-  std::string a, b;              ///< files; with log: names of channels
-  std::string times_a, times_b;  ///< for KITTI files
+  std::string a, b;  ///< files; with log: names of channels
   std::string log;
   std::string pairs;
-  ReadOptions reading_a, reading_b;  ///< their times_file is not used
+  ReadOptions reading_a, reading_b;
 };
 
 /// What only sets of still poses need.

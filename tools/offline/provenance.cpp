@@ -47,8 +47,8 @@ ordered_json files_json(const SolveRequest& request) {
                                                          {"a", source.a},
                                                          {"b", source.b},
                                                          {"pairs", source.pairs},
-                                                         {"times_a", source.times_a},
-                                                         {"times_b", source.times_b}};
+                                                         {"times_a", source.reading_a.times_file},
+                                                         {"times_b", source.reading_b.times_file}};
   for (const std::string& file : request.append) files.emplace_back("append", file);
   return files_json(files);
 }

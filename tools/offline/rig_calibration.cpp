@@ -46,9 +46,7 @@ void take_from_rig(RigRequest& request, std::vector<GroundPlane>& planes) {
 }
 
 Trajectory read_one(const std::string& name, const RigRequest& request, RigReport& report) {
-  ReadOptions options;
-  options.times_file = request.times;
-  TrajectoryReading reading = read_any_trajectory(name, options);
+  TrajectoryReading reading = read_any_trajectory(name, request.reading);
   for (const std::string& note : reading.notes) report.warnings.push_back(name + ": " + note);
   return std::move(reading.trajectory);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "egocal/calibrate.hpp"
+#include "egocal/io/recording.hpp"
 #include "egocal/rig/rig.hpp"
 #include "egocal/rig/rig_moves.hpp"
 
@@ -18,7 +19,7 @@ struct RigRequest {
   std::string rig;                          ///< its name
   std::vector<std::string> from;            ///< NAME=FILE, for a rig
   std::string log;                          ///< sources are its channels
-  std::string times;                        ///< for KITTI files
+  ReadOptions reading;                      ///< of all files
   std::vector<std::string> append;          ///< further drives, one file a sensor by turns
   CalibrationOptions calibration;           ///< common to all pairs
 };

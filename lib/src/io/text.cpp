@@ -9,6 +9,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "io/text/calendar_time.hpp"
 
 namespace egocal::detail {
 
@@ -96,6 +97,11 @@ double number(const std::string& file, long line, const std::string& field, std:
 }
 
 std::int64_t time_us(const std::string& file, long line, std::string_view text, TimeUnit unit) {
+  if (const std::optional<std::int64_t> calendar = calendar_time_us(text)) {
+    if (!plausible_relative_time(*calendar))
+      throw error_at(file, line, "time", "out of range: " + quoted(text));
+    return *calendar;
+  }
   std::string_view digits = text;
   const bool negative = !digits.empty() && digits.front() == '-';
   if (negative) digits.remove_prefix(1);

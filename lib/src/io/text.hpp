@@ -35,7 +35,8 @@ std::string quoted(std::string_view text);
 
 /// Of the numbers in a column of times: the power of ten that makes microseconds of them.
 enum class TimeUnit { seconds = 6, milliseconds = 3, microseconds = 0, nanoseconds = -3 };
-/// A time in microseconds from its decimal text, rounded once. Throws Error naming file and line.
+/// A time in microseconds from its decimal text, rounded once, or from a date and time of ISO 8601, whatever
+/// the unit. Throws Error naming file and line.
 std::int64_t time_us(const std::string& file, long line, std::string_view text, TimeUnit unit);
 
 }  // namespace egocal::detail

@@ -15,6 +15,22 @@ namespace {
 
 constexpr std::size_t sniffed_bytes = 64 << 10;
 
+/// JSON, XML, point clouds and pose graphs are text, but no tables.
+void refuse_other_text(const std::string& file, std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  const std::string_view start = text.substr(begin, 16);
+  const auto begins = [&](std::string_view word) { return start.substr(0, word.size()) == word; };
+  const char* kind = begins("{") || begins("[")             ? "JSON"
+                     : begins("<")                          ? "XML"
+                     : begins("ply") || begins("# .PCD")    ? "a point cloud"
+                     : begins("VERTEX_") || begins("EDGE_") ? "a pose graph (g2o)"
+                                                            : nullptr;
+  if (kind)
+    throw error_at(file, 0, "",
+                   std::string("is ") + kind +
+                       ", not a trajectory; write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw");
+}
+
 /// The first lines of a file.
 struct Sniffed {
   std::vector<Line> comments;  ///< before the first data
@@ -37,6 +53,7 @@ Sniffed sniff(ByteSource& source) {
   if (text.rfind("version https://git-lfs", 0) == 0)
     throw error_at(source.file(), 0, "", "is a pointer of git-lfs, not the file itself: run `git lfs pull`");
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
+  refuse_other_text(source.file(), text);
   Sniffed sniffed;
   long number = 0;
   while (!text.empty()) {
@@ -99,6 +116,25 @@ void set_tum(TextLayout& layout) {
       {{"time", time}, {"tx", x}, {"ty", y}, {"tz", z}, {"qx", qx}, {"qy", qy}, {"qz", qz}, {"qw", qw}});
   layout.format = "TUM";
   layout.fields = 8;
+}
+
+/// Seven numbers a row and no time: a position and a quaternion of length one, x y z w.
+bool set_untimed(TextLayout& layout, const std::vector<std::string_view>& row) {
+  using enum Quantity;
+  if (row.size() != 7) return false;
+  double square = 0;
+  for (std::size_t i = 3; i < 7; ++i) {
+    double value = 0;
+    if (!parse_number(row[i], value)) return false;
+    square += value * value;
+  }
+  if (!(std::abs(square - 1) < 0.01)) return false;
+  set_columns(layout, {{"tx", x}, {"ty", y}, {"tz", z}, {"qx", qx}, {"qy", qy}, {"qz", qz}, {"qw", qw}});
+  layout.format = "TUM without times";
+  layout.fields = 7;
+  layout.times = false;
+  layout.notes.push_back("no header: columns are taken as x y z qx qy qz qw (name others with --columns)");
+  return true;
 }
 
 void set_euroc(TextLayout& layout) {
@@ -259,7 +295,8 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
                          sample.find('.') == std::string_view::npos;
   std::vector<std::string_view> row;
   split(sniffed.data.front().text, layout.separator, row);
-  if (!set_named(layout, sniffed, options, source.file()) && !set_matrix(layout, row)) {
+  if (!set_named(layout, sniffed, options, source.file()) && !set_matrix(layout, row) &&
+      !set_untimed(layout, row)) {
     if (layout.separator == ' ') {
       set_tum(layout);
     } else {
@@ -270,8 +307,7 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
       seconds ? set_tum(layout) : set_euroc(layout);
       if (seconds)
         layout.notes.push_back(
-            "no header: columns are taken as time x y z qx qy qz qw (name others with --columns-a, "
-            "--columns-b)");
+            "no header: columns are taken as time x y z qx qy qz qw (name others with --columns)");
     }
   }
   if (layout.times) set_time_unit(layout, sniffed);

@@ -70,6 +70,9 @@ TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions opt
     throw error_at(file_, 0, "--rate", "expected more than 0 and at most 1e6 Hz");
   if (options_.rate > 0) rate_ = options_.rate;
   find_angle_unit();
+  if (layout_.columns.has(Quantity::heading) && !layout_.columns.has_quaternion() &&
+      !layout_.columns.has(Quantity::yaw) && !layout_.columns.has_geodetic())
+    layout_.notes.push_back("heading is taken clockwise from north (y); call the column yaw if it is not");
 }
 
 void TextRecording::read_times() {

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/reading_options.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+ReadOptions either(const ReadOptions& own, const ReadOptions& common) {
+  ReadOptions result = common;
+  if (!own.times_file.empty()) result.times_file = own.times_file;
+  if (!own.columns.empty()) result.columns = own.columns;
+  return result;
+}
+
+}  // namespace
+
+ReadOptions ReadingOptions::of_a() const {
+  return either(a, both);
+}
+
+ReadOptions ReadingOptions::of_b() const {
+  return either(b, both);
+}
+
+void add_reading_options(cli::App command, ReadOptions& options) {
+  command.add_option("--times", options.times_file, "times of KITTI poses, one a line [s]");
+  command.add_option("--columns", options.columns,
+                     "names of the columns of tables: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
+  command.add_option("--rate", options.rate, "of poses without times [Hz; 10]");
+}
+
+void add_reading_options(cli::App command, ReadingOptions& options) {
+  add_reading_options(command, options.both);
+  command.add_option("--times-a", options.a.times_file, "times of A alone");
+  command.add_option("--times-b", options.b.times_file, "times of B alone");
+  command.add_option("--columns-a", options.a.columns, "columns of table A alone");
+  command.add_option("--columns-b", options.b.columns, "columns of table B alone");
+}
+
+}  // namespace egocal::tools

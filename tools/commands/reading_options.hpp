@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/cli/cli.hpp"
+#include "egocal/io/recording.hpp"
+
+namespace egocal::tools {
+
+/// What the files themselves do not say, as typed: for both files, and for one alone.
+struct ReadingOptions {
+  ReadOptions both, a, b;
+
+  /// Of one file: what was typed for it alone, else for both.
+  ReadOptions of_a() const;
+  ReadOptions of_b() const;
+};
+
+/// Adds --times, --columns and --rate. The struct must live until the command has run.
+void add_reading_options(cli::App command, ReadOptions& options);
+
+/// The same and --times-a, --times-b, --columns-a, --columns-b.
+void add_reading_options(cli::App command, ReadingOptions& options);
+
+}  // namespace egocal::tools
