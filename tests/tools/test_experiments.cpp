@@ -23,7 +23,6 @@
 #include "experiments/comparison.hpp"
 #include "experiments/figure.hpp"
 #include "experiments/globality.hpp"
-#include "experiments/noise.hpp"
 #include "experiments/online.hpp"
 #include "experiments/paper.hpp"
 #include "experiments/source.hpp"
@@ -129,56 +128,6 @@ TEST(Online, FallsBackOnTheGlobalSolverUntilTheFastOneIsVerified) {
   for (const OnlinePoint& point : points) EXPECT_TRUE(point.certified) << point.frame;
   EXPECT_LT(points.back().error->rotation, points[2].error->rotation);
   EXPECT_NEAR(points.back().time, 12, 1e-9);
-}
-
-TEST(Noise, ErrorsFallWithThePairsAndRiseWithTheNoise) {
-  NoiseOptions options;
-  options.levels = {0.01, 0.1};
-  options.most_pairs = 400;
-  options.sizes = 3;
-  options.sensors = 3;
-  options.repeats = 4;
-  const std::vector<NoisePoint> points = noise_experiment(options, {});
-  ASSERT_EQ(points.size(), 6u);
-  EXPECT_LT(points[2].rotation.median, points[0].rotation.median);
-  EXPECT_LT(points[2].rotation.median, points[5].rotation.median);
-  EXPECT_LE(points[2].rotation.lower_quartile, points[2].rotation.median);
-  EXPECT_LE(points[2].rotation.median, points[2].rotation.upper_quartile);
-  for (const NoisePoint& point : points) EXPECT_EQ(point.certified, point.runs);
-}
-
-TEST(Noise, SlopesAreTheMeanOfThoseOfTheRuns) {
-  std::vector<NoisePoint> points;
-  for (const int n : {50, 200, 400, 800}) {
-    NoisePoint point;
-    point.level = 0.1;
-    point.pairs = n;
-    // too few pairs are not looked at; one run falls with -0.4, one with -0.6
-    const double few = n < 100 ? 7 : 1;
-    point.translations = {few * 3 * std::pow(n, -0.4), few * 8 * std::pow(n, -0.6)};
-    point.rotations = {0.1 / n, 0.3 / n};
-    points.push_back(point);
-  }
-  const std::vector<NoiseSlope> found = slopes(points);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_NEAR(found[0].translation.mean, -0.5, 1e-9);
-  EXPECT_NEAR(found[0].translation.standard_error, 0.1, 1e-9);
-  EXPECT_NEAR(found[0].rotation.mean, -1, 1e-9);
-  EXPECT_NEAR(found[0].rotation.standard_error, 0, 1e-9);
-}
-
-TEST(Noise, ErrorsFallWithTheRootOfTheNumberOfPairs) {
-  NoiseOptions options;
-  options.levels = {0.02};
-  options.sizes = 15;
-  options.sensors = 8;
-  options.repeats = 12;
-  options.mixed = true;
-  const NoiseSlope found = slopes(noise_experiment(options, {})).front();
-  for (const Exponent& exponent : {found.translation, found.rotation}) {
-    EXPECT_LT(exponent.standard_error, 0.07);
-    EXPECT_NEAR(exponent.mean, -0.5, 0.05 + 2 * exponent.standard_error);
-  }
 }
 
 std::string content_of(const std::string& file) {

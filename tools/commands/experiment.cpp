@@ -11,7 +11,7 @@
 #include "commands/source_options.hpp"
 #include "experiments/figure.hpp"
 #include "experiments/globality.hpp"
-#include "experiments/noise.hpp"
+#include "experiments/noise_slopes.hpp"
 #include "experiments/online.hpp"
 #include "experiments/paper.hpp"
 
@@ -65,6 +65,10 @@ void add_noise(cli::App experiment) {
   command.add_option("--repeats", options->noise.repeats, "runs of each")
       .show_default()
       .check(cli::Check::range(1, 1000));
+  command
+      .add_option("--roughness", options->noise.roughness,
+                  "amplitude of the surface [m]; 1.8: 0.1 rad from pose to pose, as in V-A")
+      .show_default();
   command.add_flag("--mixed", options->noise.mixed,
                    "a number of pairs is a sample of the whole drive, not its beginning");
   command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
@@ -72,12 +76,7 @@ void add_noise(cli::App experiment) {
   command.callback([options] {
     const std::vector<NoisePoint> points = noise_experiment(options->noise, Progress{});
     finish(points, options->out, "noise");
-    for (const NoiseSlope& slope : slopes(points))
-      fmt::print(
-          "noise {:g} %: errors fall with n^({:.2f} +- {:.2f}) (translation), n^({:.2f} +- {:.2f}) "
-          "(rotation)\n",
-          100 * slope.level, slope.translation.mean, slope.translation.standard_error, slope.rotation.mean,
-          slope.rotation.standard_error);
+    fmt::print("\nexponents of n, mean of all runs where n > 100:\n\n{}", markdown(slopes(points)));
   });
 }
 

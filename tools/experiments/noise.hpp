@@ -15,13 +15,17 @@ namespace egocal::tools {
 /// apart.
 struct NoiseOptions {
   std::vector<double> levels = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5};  ///< relative to the mean motion
+  /// The drive moves 1 m and 0.1 rad from pose to pose, as in the example of V-A: the paper prints nothing
+  /// else about its path and surface, and the errors at one noise level depend on them.
+  double step = 1;         ///< along the path on the ground [m]
+  double roughness = 1.8;  ///< amplitude of the surface [m]
   int most_pairs = 1000;
   int sizes = 20;           ///< between 10 and most_pairs, evenly on a logarithmic scale
   bool even_sizes = false;  ///< on a linear one instead, from 4 on: 167 of them are 4, 10, 16, ..., 1000
   int sensors = 8;          ///< poses of sensor b
   int repeats = 8;          ///< runs of each
-  /// A number of pairs is a sample of the whole drive and not its beginning: every size sees the same kinds
-  /// of motion, and what is left is how noise averages (docs/paper.md).
+  /// A number of pairs is a random sample of the whole drive and not its beginning: every size sees the same
+  /// kinds of motion, and what is left is how noise averages (docs/paper.md).
   bool mixed = false;
   std::uint64_t seed = 1;
 };
@@ -34,8 +38,13 @@ struct NoisePoint {
     double median = 0, lower_quartile = 0, upper_quartile = 0, worst = 0;
   };
   Errors translation, rotation;
-  /// The errors themselves, run by run: sensors, and repeats of each.
-  std::vector<double> translations, rotations;
+  /// Of the error without what all runs of the same sensor pose share: without the bias (deviation.hpp).
+  Errors translation_spread, rotation_spread;
+  /// The same, run by run: sensors, and repeats of each.
+  std::vector<double> translations, rotations, translation_deviations, rotation_deviations;
+  /// The shared error of the translation: by which part of its length it comes out too short, mean over the
+  /// sensor poses.
+  double shortened = 0;
   int certified = 0, runs = 0;
   double solve_seconds = 0;  ///< of solving and proving, all runs together
 };
@@ -45,20 +54,8 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
                                          const std::function<void(double)>& progress);
 
 std::string csv(const std::vector<NoisePoint>& points);
-/// How the errors of one noise level fall with the number of pairs: exponents of n where n > 100 (all sizes
-/// where fewer than three are). Each run gives one, by the line through (log n, log error); this is their
-/// mean, so that near and far sensors count alike, and its standard error. -1/2 is what independent noise
-/// gives. The errors of one run are those of a growing set of motions: a single slope scatters by 0.3 to 0.4.
-struct Exponent {
-  double mean = 0, standard_error = 0;
-};
-struct NoiseSlope {
-  double level = 0;
-  Exponent translation, rotation;
-};
-std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points);
 
-/// Fig. 4, translation and rotation.
+/// Fig. 4, translation and rotation, and the spread of both.
 std::vector<Panel> panels(const std::vector<NoisePoint>& points);
 
 }  // namespace egocal::tools
