@@ -94,6 +94,29 @@ TEST(ScaleCourse, NoRealDriveWithAKnownScaleChanges) {
         << drive;
 }
 
+TEST(ScaleCourse, APlanarDriveHasSegmentsToo) {
+  for (const double factor : {1.0, 1.2}) {
+    SimulationOptions options = drive(5, Terrain::flat);
+    options.T_vehicle_sensor = {Pose{Eigen::Quaterniond::Identity(), {1, 0, 1.8}},
+                                Pose{rotation_exp({0, 0, 0.4}), {1.5, -0.4, 1.5}}};
+    const auto sensors = simulate(options);
+    const Trajectory a = stepped(sensors[0], 100, factor);
+    PairingOptions planar;
+    planar.mode = Mode::planar;
+    planar.plane_a = {{0, 0, 1}, -1.8};
+    planar.plane_b = {{0, 0, 1}, -1.5};
+    const ScaleSolution solution = estimate_scale(a, sensors[1], planar);
+    ASSERT_TRUE(solution.observable);
+    const ScaleCourse course = find_scale_course(a, sensors[1], planar, solution, Side::a);
+    ASSERT_EQ(course.segments.size(), factor == 1 ? 1u : 2u);
+    EXPECT_NEAR(course.segments[0].begin_scale, 1, 0.005);
+    EXPECT_NEAR(course.segments.back().begin_scale, factor, 0.005 * factor);
+    if (factor != 1) {
+      EXPECT_NEAR(1e-6 * static_cast<double>(course.segments[1].begin_us - a.front().time_us), 100, 3);
+    }
+  }
+}
+
 TEST(ScaleCourse, TooShortADriveHasOneScale) {
   const auto sensors = simulate(drive(1, Terrain::free, 60));
   const ScaleCourse course = course_of(sensors[0], sensors[1]);

@@ -91,11 +91,14 @@ ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const Pa
   const ScaleCourse unchanged = constant(solution.scale);
   ScaleCourse course = unchanged;
   PairingOptions pairing = given;
-  if (!solution.observable || pairing.mode == Mode::planar) return unchanged;
+  if (!solution.observable) return unchanged;
+  // the height of the scaled sensor's plane is not to be scaled
+  (side == Side::a ? pairing.plane_a : pairing.plane_b).distance = 0;
   const std::vector<MotionPair> pairs = motions_of(a, b, pairing, options.motion);
   if (pairs.size() < options.least_blocks * options.least_block) return unchanged;
   DriveScaleOptions scale;
   scale.scale.side = side;
+  scale.scale.mode = pairing.mode;
   scale.scale.balance = solution.balance;
   DualQuaternion q = solution.q;
   for (int round = 0; round < options.rounds; ++round) {
