@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "../support/random_motion.hpp"
 #include "egocal/cli/cli.hpp"
@@ -25,7 +26,8 @@ constexpr const char* noises[] = {"white", "heavy tails", "wandering"};
 
 struct Options {
   int drives = 500;
-  double before = 120, after = 15;  // [s]
+  double before = 120;                              // [s]
+  std::vector<double> after = {5, 10, 15, 20, 30};  // [s]
   double hours = 100;
   MovesOptions moves;
   std::uint64_t seed = 1;
@@ -61,12 +63,12 @@ MovesResult moves_of(const SimulationOptions& options, const MovesOptions& moves
   return find_moves_of_strides(strides, problem, moves);
 }
 
-/// The share of bumps that are found, and the mean error of their time.
-void find_bumps(const Options& options, Random& random) {
+/// The share of bumps that are found this long after them [s], and the mean error of their time.
+void find_bumps(const Options& options, double after, Random& random) {
   int found = 0, wrong = 0;
   double error = 0;
   for (int k = 0; k < options.drives; ++k) {
-    SimulationOptions simulation = drive(random, options.before + options.after, 0);
+    SimulationOptions simulation = drive(random, options.before + after, 0);
     const double degrees = std::numbers::pi / 180;
     const MountChange bump{options.before,
                            options.before,
@@ -75,7 +77,7 @@ void find_bumps(const Options& options, Random& random) {
     const MovesResult result = moves_of(simulation, options.moves);
     bool here = false;
     for (const Move& move : result.moves) {
-      const bool right = std::abs(move.time - options.before) < options.after;
+      const bool right = std::abs(move.time - options.before) < after;
       if (right && !here) error += std::abs(move.time - options.before);
       here = here || right;
       wrong += !right;
@@ -85,7 +87,7 @@ void find_bumps(const Options& options, Random& random) {
   std::printf(
       "bumps of 0.5 deg and 3 cm, %.0f s before the end: %d of %d found, %d at a wrong time, mean error %.1f "
       "s\n",
-      options.after, found, options.drives, wrong, found > 0 ? error / found : 0);
+      after, found, options.drives, wrong, found > 0 ? error / found : 0);
 }
 
 int count_alarms(const Options& options, Random& random) {
@@ -112,7 +114,7 @@ int main(int argc, char** argv) {
                    "where there is such an alarm");
   Options options;
   app.add_option("--drives", options.drives, "with a bump").show_default();
-  app.add_option("--after", options.after, "time between the bump and the end of the drive [s]")
+  app.add_option("--after", options.after, "times between the bump and the end of the drive [s]")
       .show_default();
   app.add_option("--before", options.before, "time before the bump [s]").show_default();
   app.add_option("--hours", options.hours, "of driving with a still mount").show_default();
@@ -123,6 +125,10 @@ int main(int argc, char** argv) {
   if (const auto code = app.parse(argc, argv)) return *code;
   options.moves.most_blocks = static_cast<std::size_t>(std::max(1, blocks));
   Random random(options.seed);
-  if (options.drives > 0) find_bumps(options, random);
+  if (options.drives > 0)
+    for (const double after : options.after) {
+      Random same(options.seed);  // the same drives, but for their length
+      find_bumps(options, after, same);
+    }
   return count_alarms(options, random) > 0 ? 1 : 0;
 }

@@ -9,10 +9,12 @@
 #include <numbers>
 
 #include "../support/paths.hpp"
+#include "../support/random_motion.hpp"
 #include "../support/real_drives.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/moves/find_moves.hpp"
+#include "egocal/online/answer.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal {
@@ -147,6 +149,88 @@ TEST(Moves, SlowCreepIsCalledThat) {
     const Eigen::Vector3d turned(move.change[3], move.change[4], move.change[5]);
     EXPECT_NEAR(turned.norm() * degrees, 2, 0.4);
   }
+}
+
+TEST(Moves, TwoDegreesOfCreepInAnHourAreTracked) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    SimulationOptions options = drive(terrain, 510, 1200);
+    options.faults[1].mount_changes = {{0, 3600, {rotation_exp({0, 2 / degrees, 0}), {0, 0, 0}}}};
+    const MovesResult result = moves_of(options);
+    ASSERT_EQ(result.moves.size(), 1u);
+    EXPECT_EQ(result.moves[0].kind, MoveKind::creep);
+    const std::array<double, 6>& change = result.moves[0].change;
+    EXPECT_NEAR(Eigen::Vector3d(change[3], change[4], change[5]).norm() * degrees, 2.0 / 3, 0.2);
+  }
+}
+
+/// A drive of a vehicle that goes straight on from one pose to another one: the poses of both sensors, b with
+/// its mount bumped at one of them, each with its own noise of 1 %.
+testing::Streams with_straight_part(std::uint64_t seed, std::size_t from, std::size_t to, std::size_t bumped,
+                                    const Pose& change) {
+  SimulationOptions options;
+  options.terrain = Terrain::rough;
+  options.seed = seed;
+  options.poses = 1201;
+  options.T_vehicle_sensor = {Pose{}};
+  const Trajectory vehicle = simulate(options)[0];
+  testing::Random random(seed);
+  testing::Streams streams;
+  DualQuaternion at, mount_b = to_dual_quaternion(testing::T_vehicle_b);
+  const DualQuaternion mount_a = to_dual_quaternion(testing::T_vehicle_a);
+  DualQuaternion a, b, mount_before = mount_b;
+  for (std::size_t i = 0; i < vehicle.size(); ++i) {
+    if (i > 0) {
+      const bool straight = i > from && i <= to;
+      const DualQuaternion step = straight
+                                      ? to_dual_quaternion(Pose{Eigen::Quaterniond::Identity(), {0.8, 0, 0}})
+                                      : conjugate(vehicle[i - 1].pose) * vehicle[i].pose;
+      if (i == bumped) mount_b = mount_b * to_dual_quaternion(change);
+      const auto noise = [&] {
+        return to_dual_quaternion(Pose{rotation_exp(random.normal3(0.0003)), random.normal3(0.006)});
+      };
+      a = normalized(a * (conjugate(mount_a) * step * mount_a) * noise());
+      b = normalized(b * (conjugate(mount_before) * step * mount_b) * noise());
+      mount_before = mount_b;
+    }
+    streams.a.push_back({vehicle[i].time_us, a});
+    streams.b.push_back({vehicle[i].time_us, b});
+  }
+  return streams;
+}
+
+TEST(Moves, ABumpWhileDrivingStraightIsFoundAtTheNextTurns) {
+  const Pose change{rotation_exp({0, 0.3 / degrees, 1 / degrees}), {0.06, 0, 0}};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const testing::Streams streams = with_straight_part(seed, 500, 700, 600, change);
+    const MovesResult result = moves_of(streams.a, streams.b);
+    ASSERT_EQ(result.moves.size(), 1u) << seed;
+    const Move& move = result.moves[0];
+    EXPECT_LT(std::abs(move.time - 60), 13) << seed;
+    EXPECT_LE(move.earliest, 61);
+    EXPECT_GE(move.latest, 59);
+    const testing::Streams still = with_straight_part(seed, 500, 700, 5000, change);
+    EXPECT_TRUE(moves_of(still.a, still.b).moves.empty()) << seed;
+  }
+}
+
+TEST(Moves, TheAnswerAfterItIsAsGoodAsThatOfANewDrive) {
+  double after = 0, anew = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SimulationOptions options = drive(seed % 2 ? Terrain::rough : Terrain::free, 1000 + seed);
+    options.faults[1].mount_changes = {bump(60.05, seed, 4)};
+    std::vector<Trajectory> sensors = simulate(options);
+    const MovesResult result = moves_of(sensors[0], sensors[1]);
+    ASSERT_EQ(result.moves.size(), 1u) << seed;
+    for (Trajectory& sensor : sensors)
+      std::erase_if(sensor, [](const StampedPose& pose) { return pose.time_us < 60'050'000; });
+    const DualQuaternion truth = to_dual_quaternion(true_extrinsic(options, 0, 1, 119));
+    const Problem problem = pair_motions({}, sensors[0], sensors[1]).drive.problem();
+    after += extrinsic_error(truth, result.moves[0].after).rotation;
+    anew += extrinsic_error(truth, solve(problem, Method::dual).T_a_b).rotation;
+  }
+  RecordProperty("after_deg", std::to_string(after / 6 * degrees));
+  RecordProperty("new_deg", std::to_string(anew / 6 * degrees));
+  EXPECT_LT(after, 1.3 * anew) << after / 6 * degrees << " deg against " << anew / 6 * degrees;
 }
 
 TEST(Moves, ALargeBumpHalfWayDoesNotHideBehindTheOutlierTest) {

@@ -79,6 +79,11 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
     finding.message = format("The mounting changed by %.2f deg and %.1f cm %s %.1f s after the start.",
                              length(move, 3) * 180 / std::numbers::pi, 100 * length(move, 0),
                              move.kind == MoveKind::creep ? "slowly, from" : "about", *finding.time);
+    const Pose before = to_pose(move.before);
+    finding.message +=
+        format(" Before it the answer is %.4f %.4f %.4f m, w x y z %.5f %.5f %.5f %.5f.",
+               before.translation.x(), before.translation.y(), before.translation.z(), before.rotation.w(),
+               before.rotation.x(), before.rotation.y(), before.rotation.z());
     finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
     findings.push_back(std::move(finding));
   }

@@ -3,6 +3,7 @@
 #include "moves/change_test.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -14,12 +15,6 @@ namespace egocal::detail {
 namespace {
 
 using Blocks = std::span<const LinearBlock>;
-
-/// Residuals longer than this many medians count as if they were this long: one wrong block is not a change.
-constexpr double longest_residual = 3;
-/// Curvature that one side lacks is taken from the whole, this part of it: without any, its own optimum is
-/// not defined.
-constexpr double borrowed = 1e-6;
 
 Parameters zero_vector(Blocks blocks) {
   return Parameters::Zero(blocks.front().g.size());
@@ -42,13 +37,13 @@ struct Division {
   Parameters x1, x2;                  ///< optima
 };
 
-Division divide(Blocks blocks, std::size_t split) {
+Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& options) {
   Division d;
   d.H1 = curvature(blocks.first(split));
   d.H2 = curvature(blocks.subspan(split));
   d.H = d.H1 + d.H2;
-  const Eigen::LDLT<ParameterMatrix> before(ParameterMatrix(d.H1 + borrowed * d.H));
-  const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + borrowed * d.H));
+  const Eigen::LDLT<ParameterMatrix> before(ParameterMatrix(d.H1 + options.borrowed_curvature * d.H));
+  const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + options.borrowed_curvature * d.H));
   for (const LinearBlock& block : blocks) d.gradients.push_back(block.g);
   d.residuals.resize(blocks.size());
   for (int pass = 0; pass < 3; ++pass) {
@@ -65,7 +60,7 @@ Division divide(Blocks blocks, std::size_t split) {
     std::vector<double> sorted = lengths;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                      sorted.end());
-    const double limit = longest_residual * sorted[sorted.size() / 2];
+    const double limit = options.longest_residual * sorted[sorted.size() / 2];
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const Parameters& x = i < split ? d.x1 : d.x2;
       if (lengths[i] > limit) d.residuals[i] *= limit / lengths[i];
@@ -75,11 +70,22 @@ Division divide(Blocks blocks, std::size_t split) {
   return d;
 }
 
-/// Covariance of the whitened residuals; two extrinsics were fitted.
+/// Covariance of the whitened residuals; two extrinsics were fitted. Its eigenvalues below their mean are
+/// raised to it: the noise has about the shape of the curvature, so what is smaller is so by chance, and
+/// chance must not be taken for a precise direction.
 ParameterMatrix residual_covariance(const Division& d) {
   ParameterMatrix sum = ParameterMatrix::Zero(d.x1.size(), d.x1.size());
   for (const Parameters& z : d.residuals) sum += z * z.transpose();
-  return sum / (static_cast<double>(d.residuals.size()) - 2);
+  sum /= static_cast<double>(d.residuals.size()) - 2;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);  // fixed bounds confuse g++ 12
+  const Eigen::VectorXd raised = eigen.eigenvalues().cwiseMax(eigen.eigenvalues().mean());
+  return eigen.eigenvectors() * raised.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+/// Chance of T^2 where nothing changes.
+double chance_of(double t2, Eigen::Index parameters, std::size_t blocks, const ChangeTestOptions& options) {
+  return hotelling_exceeded(t2, static_cast<double>(parameters),
+                            options.freedom * (static_cast<double>(blocks) - 2));
 }
 
 /// The evidence S, what one side's gradients lack to the common optimum, its variance and T^2 = S'V^-1 S.
@@ -110,8 +116,8 @@ Evidence evidence(Blocks blocks, std::size_t split, const Division& d) {
   return result;
 }
 
-/// How much more the sums of neighbouring residuals vary than those of independent ones would: noise that
-/// wanders shows here.
+/// How much more the sums of neighbouring residuals vary than those of independent ones would, less the
+/// standard deviation of that: noise that wanders shows here.
 double correlation_of(const Division& d, std::size_t split) {
   const std::size_t count = d.residuals.size();
   double single = 0;
@@ -119,13 +125,14 @@ double correlation_of(const Division& d, std::size_t split) {
   if (!(single > 0)) return 1;
   double largest = 1;
   for (std::size_t length = 2; 5 * length <= count; length *= 2) {
-    double grouped = 0, used = 0;
+    double grouped = 0, used = 0, groups = 0;
     const auto add_side = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i + length <= end; i += length) {
         Parameters sum = Parameters::Zero(d.x1.size());
         for (std::size_t k = i; k < i + length; ++k)
           sum += d.residuals[k], used += d.residuals[k].squaredNorm();
         grouped += sum.squaredNorm();
+        ++groups;
       }
     };
     add_side(0, split);
@@ -133,7 +140,8 @@ double correlation_of(const Division& d, std::size_t split) {
     if (!(used > 0)) continue;
     // the residuals of either side sum to about zero, which takes this part off the sums
     const double lost = 2.0 * static_cast<double>(length) / static_cast<double>(count);
-    largest = std::max(largest, grouped / used / (1 - std::min(0.5, lost)));
+    const double scatter = std::sqrt(2 / (groups * static_cast<double>(d.x1.size())));
+    largest = std::max(largest, grouped / used / (1 - std::min(0.5, lost)) * (1 - scatter));
   }
   return largest;
 }
@@ -141,7 +149,7 @@ double correlation_of(const Division& d, std::size_t split) {
 /// Reduction of the cost by an optimum of their own for blocks [from, to).
 class Gains {
  public:
-  Gains(Blocks blocks, const Division& d) {
+  Gains(Blocks blocks, const Division& d, double borrowed) : borrowed_(borrowed) {
     ParameterMatrix H = zero_matrix(blocks);
     Parameters g = zero_vector(blocks);
     H_.push_back(H);
@@ -152,12 +160,13 @@ class Gains {
     }
   }
   double of(std::size_t from, std::size_t to) const {
-    const ParameterMatrix H = H_[to] - H_[from] + borrowed * H_.back();
+    const ParameterMatrix H = H_[to] - H_[from] + borrowed_ * H_.back();
     const Parameters g = g_[to] - g_[from];
     return g.dot(H.ldlt().solve(g));
   }
 
  private:
+  double borrowed_;
   std::vector<ParameterMatrix> H_;
   std::vector<Parameters> g_;
 };
@@ -169,7 +178,8 @@ double time_of(std::size_t block, std::size_t count) {
 
 /// Least squares of an extrinsic that changes evenly from the first block to the last, x0 + t v, and the same
 /// test of v = 0 as of a step.
-void test_even_change(Blocks blocks, const Division& d, ChangeTest& test) {
+void test_even_change(Blocks blocks, const Division& d, const ChangeTestOptions& options, ChangeTest& test) {
+  const double borrowed = options.borrowed_curvature;
   const std::size_t count = blocks.size();
   ParameterMatrix Ht = zero_matrix(blocks), Htt = Ht;
   Parameters g = zero_vector(blocks), gt = g;
@@ -207,56 +217,54 @@ void test_even_change(Blocks blocks, const Division& d, ChangeTest& test) {
   if (factor.info() != Eigen::Success || !factor.isPositive()) return;
   const double t2 = S.dot(factor.solve(S)) / correlation;
   if (!std::isfinite(t2)) return;
-  test.even_false_alarm =
-      detail::hotelling_exceeded(t2, static_cast<double>(S.size()), static_cast<double>(count) - 2);
+  test.even_false_alarm = chance_of(t2, S.size(), count, options);
   test.even_covariance = 4 * correlation * slope.solve(slope.solve(V).transpose());
 }
 
 }  // namespace
 
-ChangeTest test_change(Blocks blocks, std::size_t least_side) {
+ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOptions& options) {
   ChangeTest test;
   const std::size_t count = blocks.size();
   if (count < 2 * least_side + 1 || least_side == 0) return test;
   double largest = 0;
   for (std::size_t split = least_side; split + least_side <= count; ++split) {
-    const double t2 = evidence(blocks, split, divide(blocks, split)).t2;
+    const double t2 = evidence(blocks, split, divide(blocks, split, options)).t2;
     if (t2 > largest) largest = t2, test.split = split;
   }
   if (test.split == 0) return test;
 
-  const Division d = divide(blocks, test.split);
+  const Division d = divide(blocks, test.split, options);
   const Evidence found = evidence(blocks, test.split, d);
   test.correlation = correlation_of(d, test.split);
-  const double p = static_cast<double>(d.x1.size());
   const double places = static_cast<double>(count + 1 - 2 * least_side);
-  test.false_alarm = std::min(
-      1.0, places * hotelling_exceeded(found.t2 / test.correlation, p, static_cast<double>(count) - 2));
+  test.false_alarm =
+      std::min(1.0, places * chance_of(found.t2 / test.correlation, d.x1.size(), count, options));
   test.change = d.x2 - d.x1;
   // S = M change with M = H1 inv(H) H2
   const ParameterMatrix M = d.H.ldlt().solve(d.H2);
-  const ParameterMatrix harmonic = d.H1 * M + borrowed * d.H;
+  const ParameterMatrix harmonic = d.H1 * M + options.borrowed_curvature * d.H;
   const Eigen::LDLT<ParameterMatrix> inverse(harmonic);
   test.covariance = test.correlation * inverse.solve(inverse.solve(found.V).transpose());
 
-  const Gains gains(blocks, d);
+  const Gains gains(blocks, d, options.borrowed_curvature);
   test.one_step = gains.of(0, test.split) + gains.of(test.split, count);
   for (std::size_t i = least_side; i + 2 * least_side <= count; ++i)
     for (std::size_t k = i + least_side; k + least_side <= count; ++k)
       test.two_steps = std::max(test.two_steps, gains.of(0, i) + gains.of(i, k) + gains.of(k, count));
-  test_even_change(blocks, d, test);
+  test_even_change(blocks, d, options, test);
   return test;
 }
 
-double chance_of_change_at(Blocks blocks, std::size_t split) {
-  const Division d = divide(blocks, split);
+double chance_of_change_at(Blocks blocks, std::size_t split, const ChangeTestOptions& options) {
+  const Division d = divide(blocks, split, options);
   const double t2 = evidence(blocks, split, d).t2 / correlation_of(d, split);
-  return hotelling_exceeded(t2, static_cast<double>(d.x1.size()), static_cast<double>(blocks.size()) - 2);
+  return chance_of(t2, d.x1.size(), blocks.size(), options);
 }
 
-double chance_of_even_change(Blocks blocks) {
+double chance_of_even_change(Blocks blocks, const ChangeTestOptions& options) {
   ChangeTest test;
-  test_even_change(blocks, divide(blocks, blocks.size() / 2), test);
+  test_even_change(blocks, divide(blocks, blocks.size() / 2, options), options, test);
   return test.even_false_alarm;
 }
 

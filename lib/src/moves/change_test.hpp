@@ -23,10 +23,12 @@ struct ChangeTest {
   ParameterMatrix even_covariance;  ///< of end - begin
 };
 
-ChangeTest test_change(std::span<const LinearBlock> blocks, std::size_t least_side);
+ChangeTest test_change(std::span<const LinearBlock> blocks, std::size_t least_side,
+                       const ChangeTestOptions& options);
 
 /// Chances of the evidence of a change before block `split`, and of an even one, where nothing changes.
-double chance_of_change_at(std::span<const LinearBlock> blocks, std::size_t split);
-double chance_of_even_change(std::span<const LinearBlock> blocks);
+double chance_of_change_at(std::span<const LinearBlock> blocks, std::size_t split,
+                           const ChangeTestOptions& options);
+double chance_of_even_change(std::span<const LinearBlock> blocks, const ChangeTestOptions& options);
 
 }  // namespace egocal::detail

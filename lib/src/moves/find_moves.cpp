@@ -22,10 +22,6 @@ using Pairs = std::span<const MotionPair>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The change is looked for where the cost of both answers together is within this of its least, in units of
-/// the noise of one parameter: three standard deviations.
-constexpr double time_interval = 9;
-
 /// From tangent coordinates to (dt, dtheta) in sensor a's frame [m, rad], with unit lengths of the block.
 detail::Vector6d in_frame_a(const Parameters& x, double length, const Problem& problem) {
   detail::Vector6d result = detail::Vector6d::Zero();
@@ -38,11 +34,17 @@ detail::Vector6d in_frame_a(const Parameters& x, double length, const Problem& p
   return result;
 }
 
+/// Blocks on each side of a change, at least.
+std::size_t least_side(std::size_t blocks, const MovesOptions& options) {
+  const double part = std::ceil(options.least_side * static_cast<double>(blocks));
+  return std::max({std::size_t{1}, options.least_side_blocks, static_cast<std::size_t>(part)});
+}
+
 class Finder {
  public:
   Finder(Pairs pairs, const Problem& problem, const MovesOptions& options)
       : pairs_(pairs),
-        problem_(detail::weighted_by_noise(pairs, problem)),
+        problem_(detail::weighted_by_noise(pairs, problem, options.test)),
         options_(options),
         overlap_(detail::overlap_of(pairs)) {}
 
@@ -77,9 +79,9 @@ class Finder {
     Found found;
     found.from = from;
     found.to = to;
-    found.stretch = detail::linearise(pairs_.subspan(from, to - from), problem_, count);
+    found.stretch = detail::linearise(pairs_.subspan(from, to - from), problem_, count, options_.test);
     if (found.stretch.blocks.empty()) return std::nullopt;
-    found.test = detail::test_change(found.stretch.blocks, options_.least_side_blocks);
+    found.test = detail::test_change(found.stretch.blocks, least_side(count, options_), options_.test);
     if (found.test.split == 0) return std::nullopt;
     found.creep = found.test.even_change > found.test.two_steps &&
                   found.test.even_false_alarm <= 0.5 * options_.false_alarms;
@@ -139,7 +141,7 @@ class Finder {
   /// Minimiser over pairs [from, to) (planar mode: T_p).
   DualQuaternion minimiser(std::size_t from, std::size_t to) const {
     const std::size_t count = std::clamp<std::size_t>((to - from) / 16, 1, options_.most_blocks);
-    return detail::gated_blocks(pairs_.subspan(from, to - from), problem_, count).q;
+    return detail::gated_blocks(pairs_.subspan(from, to - from), problem_, count, options_.test).q;
   }
   DualQuaternion extrinsic(const DualQuaternion& q) const {
     if (problem_.mode == Mode::spatial) return canonical_sign(q);
@@ -167,7 +169,7 @@ class Finder {
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                      sorted.end());
     const double median = sorted[sorted.size() / 2];
-    constexpr double longest = 25;
+    const double longest = options_.place_residual;
     double noise = 0;
     for (const double fit : fits) noise += std::min(fit, longest * median);
     const double parameters = problem_.mode == Mode::planar ? 3 : 6;
@@ -184,7 +186,7 @@ class Finder {
     const auto least = std::min_element(total.begin() + static_cast<std::ptrdiff_t>(margin),
                                         total.end() - static_cast<std::ptrdiff_t>(margin));
     const double limit =
-        *least + time_interval * noise * found.test.correlation * static_cast<double>(overlap_);
+        *least + options_.time_interval * noise * found.test.correlation * static_cast<double>(overlap_);
     Place result;
     result.at = found.from + static_cast<std::size_t>(least - total.begin());
     result.earliest = result.latest = result.at;
@@ -306,14 +308,15 @@ double chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::i
   if (pairs.size() < 2) return 1;
   const std::size_t least = std::max(options.least_block_pairs, 3 * detail::overlap_of(pairs));
   const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));
-  const std::size_t side = std::max<std::size_t>(1, options.least_side_blocks);
+  const std::size_t side = least_side(count, options);
   if (count < options.least_blocks || count < 2 * side + 1) return 1;
-  const Linearised stretch = detail::linearise(pairs, detail::weighted_by_noise(pairs, problem), count);
+  const Linearised stretch =
+      detail::linearise(pairs, detail::weighted_by_noise(pairs, problem, options.test), count, options.test);
   if (stretch.blocks.empty()) return 1;
-  if (kind == MoveKind::creep) return detail::chance_of_even_change(stretch.blocks);
+  if (kind == MoveKind::creep) return detail::chance_of_even_change(stretch.blocks, options.test);
   std::size_t split = 0;
   while (split < count && pairs[stretch.begin[split]].begin_us < time_us) ++split;
-  return detail::chance_of_change_at(stretch.blocks, std::clamp(split, side, count - side));
+  return detail::chance_of_change_at(stretch.blocks, std::clamp(split, side, count - side), options.test);
 }
 
 }  // namespace egocal

@@ -15,13 +15,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// A pair that fits this many times worse than the median of its block is an outlier: ten standard
-/// deviations, beyond the tails of odometry and below the jumps that matter.
-constexpr double most_residual = 100;
-
-/// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.
-constexpr double raised = 0.01;
-
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -50,13 +43,14 @@ double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Bala
          balance.translation * (a.dual - b.dual).squaredNorm();
 }
 
-Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& problem) {
+Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& problem,
+                          const ChangeTestOptions& options) {
   Problem result = problem;
   if (pairs.size() < 16) return result;
   const std::size_t count = std::clamp<std::size_t>(pairs.size() / 16, 1, 32);
   // once more with the better weights: the first answer may be far from where the second one is
   for (int pass = 0; pass < 2; ++pass) {
-    const DualQuaternion q = gated_blocks(pairs, result, count).q;
+    const DualQuaternion q = gated_blocks(pairs, result, count, options).q;
     std::vector<double> rotations, translations;
     for (const MotionPair& pair : pairs) {
       rotations.push_back(pair_residual(pair, q, {1, 0}));
@@ -81,7 +75,8 @@ std::size_t overlap_of(std::span<const MotionPair> pairs) {
   return counts.empty() ? 1 : static_cast<std::size_t>(median(counts));
 }
 
-Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count) {
+Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count,
+                   const ChangeTestOptions& options) {
   Gated result;
   result.blocks.resize(count);
   const auto begin = [&](std::size_t block) { return block * pairs.size() / count; };
@@ -94,7 +89,7 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
     for (std::size_t i = begin(k); i < begin(k + 1); ++i)
       residuals.push_back(pair_residual(pairs[i], result.q, problem.balance));
     if (residuals.size() < 5) continue;
-    const double limit = most_residual * median(residuals);
+    const double limit = options.most_residual * median(residuals);
     if (*std::max_element(residuals.begin(), residuals.end()) <= limit) continue;
     changed = true;
     result.blocks[k] = {};
@@ -105,9 +100,10 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
   return result;
 }
 
-Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count) {
+Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count,
+                     const ChangeTestOptions& options) {
   Linearised result;
-  const Gated gated = gated_blocks(pairs, problem, count);
+  const Gated gated = gated_blocks(pairs, problem, count, options);
   const Statistics all = sum_blocks(gated.blocks);
   const Matrix8d Q_metres = cost_matrix(all, problem.balance);
   if (!Q_metres.allFinite() || !(Q_metres.diagonal().maxCoeff() > 0)) return result;
@@ -126,7 +122,7 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
     LinearBlock block;
     block.g = share * (T.transpose() * (Q_block * v));
     block.H = share * (T.transpose() * lagrangian_matrix(Q_block, lambda) * T);
-    const ParameterMatrix shape = block.H + raised * H_mean;
+    const ParameterMatrix shape = block.H + options.raised_curvature * H_mean;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(shape);
     const double floor = std::max(1e-12 * H_mean.trace(), 1e-300);
     const Parameters roots = eigen.eigenvalues().cwiseMax(floor).cwiseSqrt();

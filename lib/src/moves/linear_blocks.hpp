@@ -36,7 +36,8 @@ double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Bala
 /// The problem with a balance by the inverse variances of both residuals. The balance that the jack-knife
 /// chooses on a drive with a moved mount hides the move; and noise in a gradient then has the shape of the
 /// curvature, as the test assumes. The given balance where there is no noise.
-Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& problem);
+Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& problem,
+                          const ChangeTestOptions& options);
 
 /// Pairs that share time with the next ones: how many motions one step overlaps with.
 std::size_t overlap_of(std::span<const MotionPair> pairs);
@@ -46,9 +47,11 @@ struct Gated {
   std::vector<Statistics> blocks;
   DualQuaternion q;  ///< minimiser (planar mode: T_p)
 };
-Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks);
+Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks,
+                   const ChangeTestOptions& options);
 
 /// Empty blocks where there is no motion.
-Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks);
+Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks,
+                     const ChangeTestOptions& options);
 
 }  // namespace egocal::detail

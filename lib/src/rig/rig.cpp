@@ -23,7 +23,7 @@ using detail::TimedPair;
 
 /// The answer that motions are compared with (planar mode: T_p).
 DualQuaternion minimiser_of(const RigPair& pair, std::size_t blocks) {
-  if (!pair.T_a_b) return detail::gated_blocks(pair.pairs, pair.problem, blocks).q;
+  if (!pair.T_a_b) return detail::gated_blocks(pair.pairs, pair.problem, blocks, {}).q;
   if (pair.problem.mode == Mode::spatial) return *pair.T_a_b;
   return planar_from_extrinsic(*pair.T_a_b, plane_frame(pair.problem.plane_a),
                                plane_frame(pair.problem.plane_b));

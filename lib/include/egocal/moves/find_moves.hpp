@@ -13,26 +13,57 @@
 
 namespace egocal {
 
+/// Tuning of the test of one division (docs/moves.md, "The test").
+struct ChangeTestOptions {
+  /// Residuals of blocks that are longer than this many medians count as if they were this long: one wrong
+  /// block is not a change.
+  double longest_residual = 3;
+  /// Curvature that one side lacks is taken from the whole, this part of it: without any, its own optimum is
+  /// not defined.
+  double borrowed_curvature = 1e-6;
+  /// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.
+  double raised_curvature = 0.01;
+  /// A pair that fits this many times worse than the median of its block is rejected: ten standard
+  /// deviations, beyond the tails of odometry and below the jumps that matter.
+  double most_residual = 100;
+  /// Degrees of freedom of the covariance, for each block, with its small eigenvalues raised to their mean.
+  /// Over 20 to 64 blocks and four shapes of noise the tail of T^2 is below that of Hotelling's with 2.5,
+  /// to chances of 2e-5 (docs/moves.md, "The test").
+  double freedom = 2.5;
+};
+
 struct MovesOptions {
-  /// Chance of a false alarm in one drive. The test's own statistics are approximate this far out
-  /// (docs/moves.md), hence a value far below what a user would accept.
-  double false_alarms = 1e-5;
+  /// Chance of a false alarm in one drive. The test's own statistics are approximate far out (docs/moves.md),
+  /// hence a value far below what a user would accept.
+  double false_alarms = 1e-4;
   /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
   /// systematic errors nearly as large that depend on where and how the vehicle drives (0.11 deg between two
   /// lidar odometries on KITTI 07, docs/moves.md).
   double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
   double least_translation = 0.01;                        ///< [m]
-  /// Blocks that a stretch of the drive is divided into; the test's work grows with their square.
-  std::size_t most_blocks = 64;
+  /// Blocks that a stretch of the drive is divided into; the test's work grows with their square. A change
+  /// between two ends of a block is found a little later: of bumps 15 s before the end of 135 s 35 of 40 are
+  /// found with 64 blocks, 38 with 128.
+  std::size_t most_blocks = 128;
   /// Fewer blocks say too little about the noise between them. Eight more than the parameters of two
   /// extrinsics.
   std::size_t least_blocks = 20;
   std::size_t least_block_pairs = 8;  ///< pairs of one block, and at least three motions that share no time
   std::size_t least_side_blocks = 2;  ///< blocks before and after a change
-  std::size_t most_moves = 16;        ///< a limit on time
+  /// And at least this part of the stretch: a few of many short blocks at its end are soon wrong by chance
+  /// where the noise has heavy tails.
+  double least_side = 1.0 / 32;
+  std::size_t most_moves = 16;  ///< a limit on time
   /// Chance of what the motions of the other strides show at the time of a move, at most. EuRoC's drone at
   /// rest before its landing looks moved to single steps alone (tests/lib/test_moves.cpp).
   double confirmation = 1e-2;
+  /// A pair's residual counts up to this many medians where the time of a change is looked for: five standard
+  /// deviations.
+  double place_residual = 25;
+  /// The change is looked for where the cost of both answers together is within this of its least, in units
+  /// of the noise of one parameter: three standard deviations.
+  double time_interval = 9;
+  ChangeTestOptions test;
 };
 
 enum class MoveKind {
