@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How soon a moved mount is found, and how often a still one is called moved (docs/moves.md). Drives end a
-// given time after a bump of half a degree and 3 cm about random axes; still ones last ten minutes, with
-// white, heavy-tailed and wandering noise. Exit code 1 where a still mount raises an alarm.
+// How soon a moved mount is found, and how often a still one is called moved (docs/moves.md). Every drive has
+// a seed of its own and is one line of a record, so that hours of driving add up over several runs. Exit code
+// 1 where a still mount raises an alarm.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/random_motion.hpp"
@@ -22,28 +26,80 @@ using namespace egocal;
 using testing::Random;
 
 constexpr double rate = 10;  // [Hz]
-constexpr const char* noises[] = {"white", "heavy tails", "wandering"};
+constexpr double degree = std::numbers::pi / 180;
 
-struct Options {
-  int drives = 500;
-  double before = 120;                              // [s]
-  std::vector<double> after = {5, 10, 15, 20, 30};  // [s]
-  double hours = 100;
-  MovesOptions moves;
-  std::uint64_t seed = 1;
+/// A sort of drive: how long it is, its noise, and what happens to the mount of its second sensor.
+struct Sort {
+  const char* name;
+  double seconds;
+  bool heavy_tails = false, wandering = false;
+  std::vector<double> bumps{};       ///< [s]
+  double tolerance = 15;             ///< of a bump's time [s]
+  double creep = 0;                  ///< [deg/h]
+  bool jumps = false;                ///< the odometry's own
+  Terrain terrain = Terrain::rough;  ///< or free, by turns, but for flat
 };
 
-SimulationOptions drive(Random& random, double seconds, int noise) {
+std::vector<Sort> sorts() {
+  std::vector<Sort> all = {{"still-white", 600}, {"still-heavy", 600}, {"still-wandering", 600}};
+  all[1].heavy_tails = all[2].wandering = true;
+  all.push_back({"still-flat", 600});
+  all.back().terrain = Terrain::flat;
+  all.push_back({"still-jumps", 600});
+  all.back().jumps = true;
+  for (const auto& [name, seconds] :
+       {std::pair{"still-30s", 30.0}, std::pair{"still-60s", 60.0}, std::pair{"still-120s", 120.0}})
+    all.push_back({name, seconds});
+  for (const auto& [name, after] : {std::pair{"bump-5s", 5.0}, std::pair{"bump-10s", 10.0},
+                                    std::pair{"bump-15s", 15.0}, std::pair{"bump-20s", 20.0}}) {
+    all.push_back({name, 120 + after});
+    all.back().bumps = {120};
+    all.back().tolerance = after;
+  }
+  for (const auto& [name, part] :
+       {std::pair{"bump-20%", 0.2}, std::pair{"bump-50%", 0.5}, std::pair{"bump-80%", 0.8}}) {
+    all.push_back({name, 240});
+    all.back().bumps = {240 * part};
+  }
+  all.push_back({"three-bumps", 400});
+  all.back().bumps = {100, 200, 300};
+  all.push_back({"creep", 1200});
+  all.back().creep = 2;
+  return all;
+}
+
+/// What one drive showed.
+struct Outcome {
+  int bumps = 0, found = 0, wrong = 0, creeps = 0;
+  double error = 0;   ///< of the times of those found, their sum [s]
+  double chance = 1;  ///< of the strongest evidence
+};
+
+SimulationOptions drive(const Sort& sort, Random& random) {
   SimulationOptions options;
-  options.terrain = random.uniform() < 0.5 ? Terrain::rough : Terrain::free;
-  options.poses = static_cast<int>(rate * seconds) + 1;
+  options.terrain = sort.terrain == Terrain::flat ? Terrain::flat
+                    : random.uniform() < 0.5      ? Terrain::rough
+                                                  : Terrain::free;
+  options.poses = static_cast<int>(rate * sort.seconds) + 1;
   options.rate = rate;
   options.relative_noise = 0.01;
-  options.heavy_tails = noise == 1;
-  options.random_walk = noise == 2;
+  options.heavy_tails = sort.heavy_tails;
+  options.random_walk = sort.wandering;
   options.seed = random.bits();
   options.T_vehicle_sensor = {Pose{}, to_pose(testing::random_extrinsic(random, 1))};
   options.faults.resize(2);
+  std::vector<MountChange>& changes = options.faults[1].mount_changes;
+  for (const double time : sort.bumps)
+    changes.push_back(
+        {time, time, {rotation_exp(0.5 * degree * random.direction()), 0.03 * random.direction()}});
+  if (sort.creep > 0)
+    changes.push_back({0, 3600, {rotation_exp(sort.creep * degree * random.direction()), {0, 0, 0}}});
+  if (sort.jumps)
+    for (int i = 0; i < 3; ++i) {
+      const double time = random.uniform(0, sort.seconds);
+      const Pose jump{rotation_exp(random.normal3(0.1)), random.normal3(0.5)};
+      options.faults[1].jumps.push_back({time, jump});
+    }
   return options;
 }
 
@@ -63,47 +119,107 @@ MovesResult moves_of(const SimulationOptions& options, const MovesOptions& moves
   return find_moves_of_strides(strides, problem, moves);
 }
 
-/// The share of bumps that are found this long after them [s], and the mean error of their time.
-void find_bumps(const Options& options, double after, Random& random) {
-  int found = 0, wrong = 0;
-  double error = 0;
-  for (int k = 0; k < options.drives; ++k) {
-    SimulationOptions simulation = drive(random, options.before + after, 0);
-    const double degrees = std::numbers::pi / 180;
-    const MountChange bump{options.before,
-                           options.before,
-                           {rotation_exp(0.5 * degrees * random.direction()), 0.03 * random.direction()}};
-    simulation.faults[1].mount_changes = {bump};
-    const MovesResult result = moves_of(simulation, options.moves);
-    bool here = false;
-    for (const Move& move : result.moves) {
-      const bool right = std::abs(move.time - options.before) < after;
-      if (right && !here) error += std::abs(move.time - options.before);
-      here = here || right;
-      wrong += !right;
+Outcome outcome_of(const Sort& sort, Random random, const MovesOptions& options) {
+  const MovesResult result = moves_of(drive(sort, random), options);
+  Outcome outcome;
+  outcome.bumps = static_cast<int>(sort.bumps.size());
+  outcome.chance = result.chance;
+  std::vector<bool> seen(sort.bumps.size());
+  for (const Move& move : result.moves) {
+    if (sort.creep > 0 && move.kind == MoveKind::creep) {
+      ++outcome.creeps;
+      continue;
     }
-    found += here;
+    bool right = false;
+    for (std::size_t i = 0; i < sort.bumps.size() && !right; ++i) {
+      const double error = std::abs(move.time - sort.bumps[i]);
+      if (seen[i] || error > sort.tolerance) continue;
+      seen[i] = right = true;
+      ++outcome.found;
+      outcome.error += error;
+    }
+    outcome.wrong += !right;
   }
-  std::printf(
-      "bumps of 0.5 deg and 3 cm, %.0f s before the end: %d of %d found, %d at a wrong time, mean error %.1f "
-      "s\n",
-      after, found, options.drives, wrong, found > 0 ? error / found : 0);
+  return outcome;
 }
 
-int count_alarms(const Options& options, Random& random) {
-  constexpr double seconds = 600;
-  int alarms = 0;
-  for (int noise = 0; noise < 3; ++noise) {
-    const int drives = static_cast<int>(std::ceil(options.hours * 3600 / seconds / 3));
-    int here = 0;
-    for (int k = 0; k < drives; ++k)
-      here += static_cast<int>(moves_of(drive(random, seconds, noise), options.moves).moves.size());
-    std::printf("still mounts, %s noise: %d alarms in %.1f hours\n", noises[noise], here,
-                drives * seconds / 3600);
-    std::fflush(stdout);
-    alarms += here;
+/// The lines of earlier runs, and where new ones go.
+class Record {
+ public:
+  /// settings: must be the same for all lines of a file.
+  Record(const std::string& path, const std::string& settings) : path_(path) {
+    if (path.empty()) return;
+    std::ifstream in(path);
+    std::string line;
+    if (std::getline(in, line)) {
+      if (line != settings) {
+        std::fprintf(stderr, "moves_study: %s: has other settings: %s\n", path.c_str(), line.c_str());
+        std::exit(2);
+      }
+      char name[32];
+      int index = 0;
+      Outcome o;
+      while (std::getline(in, line))
+        if (std::sscanf(line.c_str(), "%31s %d %d %d %d %d %lf %lf", name, &index, &o.bumps, &o.found,
+                        &o.wrong, &o.creeps, &o.error, &o.chance) == 8)
+          known_[{name, index}] = o;
+      in.close();
+      out_.open(path, std::ios::app);
+    } else {
+      out_.open(path);
+      out_ << settings << '\n';
+    }
   }
-  return alarms;
+  const Outcome* known(const std::string& name, int index) const {
+    const auto found = known_.find({name, index});
+    return found == known_.end() ? nullptr : &found->second;
+  }
+  void add(const std::string& name, int index, const Outcome& o) {
+    if (path_.empty()) return;
+    char line[160];
+    std::snprintf(line, sizeof line, "%s %d %d %d %d %d %.3f %.6g\n", name.c_str(), index, o.bumps, o.found,
+                  o.wrong, o.creeps, o.error, o.chance);
+    out_ << line << std::flush;
+  }
+
+ private:
+  std::string path_;
+  std::map<std::pair<std::string, int>, Outcome> known_;
+  std::ofstream out_;
+};
+
+/// One seed for every drive, whichever others are run.
+Random random_of(std::uint64_t seed, std::size_t sort, int index) {
+  Random of_sort(seed + 1000003 * sort);
+  Random one(of_sort.bits() + 0xd1b54a32d192ed03ULL * static_cast<std::uint64_t>(index));
+  return Random(one.bits());
+}
+
+/// Number of false alarms.
+int report(const Sort& sort, const std::vector<Outcome>& outcomes) {
+  int bumps = 0, found = 0, wrong = 0, creeps = 0, below[3] = {};
+  double error = 0;
+  for (const Outcome& o : outcomes) {
+    bumps += o.bumps;
+    found += o.found;
+    wrong += o.wrong;
+    creeps += o.creeps > 0;
+    error += o.error;
+    below[0] += o.chance < 0.1;
+    below[1] += o.chance < 0.01;
+    below[2] += o.chance < 0.001;
+  }
+  const int drives = static_cast<int>(outcomes.size());
+  std::printf("%-16s %4d drives, %6.1f h: ", sort.name, drives, drives * sort.seconds / 3600);
+  if (bumps > 0)
+    std::printf("%d of %d bumps found, mean error %.1f s, %d at a wrong time\n", found, bumps,
+                found > 0 ? error / found : 0, wrong);
+  else if (sort.creep > 0)
+    std::printf("%d called creeping, %d bumps\n", creeps, wrong);
+  else
+    std::printf("%d alarms; evidence below 0.1, 0.01, 0.001 in %d, %d, %d\n", wrong, below[0], below[1],
+                below[2]);
+  return bumps > 0 || sort.creep > 0 ? 0 : wrong;
 }
 
 }  // namespace
@@ -112,23 +228,45 @@ int main(int argc, char** argv) {
   cli::Program app("moves_study",
                    "how soon a moved mount is found, and how often a still one is called moved; exit code 1 "
                    "where there is such an alarm");
-  Options options;
-  app.add_option("--drives", options.drives, "with a bump").show_default();
-  app.add_option("--after", options.after, "times between the bump and the end of the drive [s]")
+  MovesOptions moves;
+  int drives = 500, blocks = static_cast<int>(moves.most_blocks);
+  double hours = 100;
+  std::vector<std::string> only;
+  std::string path;
+  std::uint64_t seed = 1;
+  app.add_option("--drives", drives, "of each sort whose mount moves").show_default();
+  app.add_option("--hours", hours,
+                 "of driving with a still mount: a quarter of each noise and flat, and as "
+                 "much as one of them with an odometry that jumps")
       .show_default();
-  app.add_option("--before", options.before, "time before the bump [s]").show_default();
-  app.add_option("--hours", options.hours, "of driving with a still mount").show_default();
-  int blocks = static_cast<int>(options.moves.most_blocks);
+  app.add_option("--only", only, "sorts of drives, such as still-white bump-15s creep");
   app.add_option("--blocks", blocks, "at most, that a drive is divided into").show_default();
-  app.add_option("--chance", options.moves.false_alarms, "of a false alarm in a drive").show_default();
-  app.add_option("--seed", options.seed, "of the drives").show_default();
+  app.add_option("--chance", moves.false_alarms, "of a false alarm in a drive").show_default();
+  app.add_option("--seed", seed, "of the drives").show_default();
+  app.add_option("--record", path, "file of one line a drive, which is continued");
   if (const auto code = app.parse(argc, argv)) return *code;
-  options.moves.most_blocks = static_cast<std::size_t>(std::max(1, blocks));
-  Random random(options.seed);
-  if (options.drives > 0)
-    for (const double after : options.after) {
-      Random same(options.seed);  // the same drives, but for their length
-      find_bumps(options, after, same);
+  moves.most_blocks = static_cast<std::size_t>(std::max(1, blocks));
+  Record record(path, "moves_study seed " + std::to_string(seed) + " blocks " + std::to_string(blocks) +
+                          " chance " + std::to_string(moves.false_alarms));
+
+  int alarms = 0;
+  const std::vector<Sort> all = sorts();
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    const Sort& sort = all[s];
+    if (!only.empty() && std::find(only.begin(), only.end(), sort.name) == only.end()) continue;
+    const bool still = sort.bumps.empty() && sort.creep == 0;
+    const int count = still ? static_cast<int>(std::ceil(hours / 4 * 3600 / sort.seconds)) : drives;
+    std::vector<Outcome> outcomes;
+    for (int k = 0; k < count; ++k) {
+      if (const Outcome* known = record.known(sort.name, k)) {
+        outcomes.push_back(*known);
+        continue;
+      }
+      outcomes.push_back(outcome_of(sort, random_of(seed, s, k), moves));
+      record.add(sort.name, k, outcomes.back());
     }
-  return count_alarms(options, random) > 0 ? 1 : 0;
+    alarms += report(sort, outcomes);
+    std::fflush(stdout);
+  }
+  return alarms > 0 ? 1 : 0;
 }

@@ -107,6 +107,22 @@ TEST(Rig, WhatIsMissingIsNamed) {
   EXPECT_THROW(solve_rig(3, rig.pairs), Error);
 }
 
+TEST(Rig, NoMotionCrossesTheGapBetweenTwoDrives) {
+  Trajectory sensor;
+  for (int i = 0; i < 40; ++i) {
+    const std::int64_t time = 100'000 * i + (i < 20 ? 0 : 3'600'000'000);
+    const double x = i < 20 ? i : -i;
+    sensor.push_back({time, testing::displacement({0, 0, 0.01 * x}, {x, 0, 0})});
+  }
+  const Trajectory sensors[] = {sensor, sensor};
+  RigMotionsOptions options;
+  options.stride = 3;
+  const std::vector<RigPair> pairs = rig_motions(sensors, options);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].pairs.size(), 2u * 17);
+  for (const MotionPair& motion : pairs[0].pairs) EXPECT_EQ(motion.end_us - motion.begin_us, 300'000);
+}
+
 TEST(Rig, TangoClosesItsLoop) {
   if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives at " << paths::data_dir();
   const Trajectory sensors[] = {testing::real_trajectory("eth_tango_easy/caligula.tum"),

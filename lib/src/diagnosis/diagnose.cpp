@@ -81,7 +81,7 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
     findings.push_back(std::move(finding));
     return;
   }
-  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options.mount);
+  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
   // a mount that moved looks like many things
   if (!moves.empty()) findings = std::move(moves);
 }

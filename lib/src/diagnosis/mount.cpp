@@ -14,18 +14,20 @@ namespace egocal::detail {
 
 namespace {
 
-/// Motion pairs of the stride that was answered with, of all instants; in planar mode as seen from the
-/// planes.
+/// Motion pairs of one stride, none across a gap; in planar mode as seen from the planes.
 std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered,
-                                 const MountCheckOptions& options, std::size_t steps) {
+                                 const DiagnosisOptions& options, std::size_t steps) {
   const bool planar = answered.problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(answered.problem.plane_a) : DualQuaternion{};
   const DualQuaternion G_b = planar ? plane_frame(answered.problem.plane_b) : DualQuaternion{};
   std::vector<MotionPair> pairs;
   // overlapping motions of a long drive say little that is new
-  const std::size_t each = std::clamp<std::size_t>(instants.time.size() / options.most_motions, 1, steps);
+  const std::size_t each =
+      std::clamp<std::size_t>(instants.time.size() / options.mount.most_motions, 1, steps);
+  const double longest = options.motions.most_stretched * static_cast<double>(steps) * instants.period;
   for (std::size_t i = 0; i + steps < instants.time.size(); i += each) {
     const std::size_t k = i + steps;
+    if (instants.time[k] - instants.time[i] > longest) continue;
     MotionPair pair{canonical_sign(normalized(conjugate(instants.a(i)) * instants.a(k))),
                     canonical_sign(normalized(conjugate(instants.b(i)) * instants.b(k))),
                     std::llround(1e6 * instants.time[i]), std::llround(1e6 * instants.time[k]), 1};
@@ -44,11 +46,12 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
 /// The shortest motions that a long drive is looked at with, and longer ones that must confirm what they
 /// show.
 std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const Answered& answered,
-                                                const MountCheckOptions& options) {
-  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * options.blocks));
-  const std::size_t steps = std::min(
-      longest, std::max(options.least_stride, static_cast<std::size_t>(std::max(1, answered.stride))));
-  const std::size_t shortest = std::clamp<std::size_t>(instants.time.size() / options.most_motions, 1, steps);
+                                                const DiagnosisOptions& options) {
+  const MountCheckOptions& mount = options.mount;
+  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * mount.blocks));
+  const std::size_t steps =
+      std::min(longest, std::max(mount.least_stride, static_cast<std::size_t>(std::max(1, answered.stride))));
+  const std::size_t shortest = std::clamp<std::size_t>(instants.time.size() / mount.most_motions, 1, steps);
   std::vector<std::vector<MotionPair>> strides = {pairs_of(instants, answered, options, shortest)};
   if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, steps));
   return strides;
@@ -64,7 +67,7 @@ double length(const Move& move, std::size_t first) {
 }  // namespace
 
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
-                                 const MountCheckOptions& options) {
+                                 const DiagnosisOptions& options) {
   const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options);
   const MovesResult result = find_moves_of_strides(strides, answered.problem);
   std::vector<Finding> findings;

@@ -11,6 +11,6 @@ namespace egocal::detail {
 
 /// Findings mount_moved, one for each change of the mounting (moves/find_moves.hpp), in the order of time.
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
-                                 const MountCheckOptions& options);
+                                 const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

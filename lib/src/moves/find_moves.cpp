@@ -53,6 +53,7 @@ class Finder {
     if (blocks_in(0, pairs_.size()) < options_.least_blocks) return result;
     result.tested = true;
     search(0, pairs_.size());
+    result.chance = std::min(1.0, chance_);
     settle();
     for (const Found& found : found_) result.moves.push_back(described(found));
     return result;
@@ -73,7 +74,7 @@ class Finder {
   }
 
   /// The best change within the stretch, if it is significant and large enough to report.
-  std::optional<Found> best(std::size_t from, std::size_t to) const {
+  std::optional<Found> best(std::size_t from, std::size_t to) {
     const std::size_t count = blocks_in(from, to);
     if (count < options_.least_blocks) return std::nullopt;
     Found found;
@@ -83,6 +84,7 @@ class Finder {
     if (found.stretch.blocks.empty()) return std::nullopt;
     found.test = detail::test_change(found.stretch.blocks, least_side(count, options_), options_.test);
     if (found.test.split == 0) return std::nullopt;
+    chance_ = std::min({chance_, found.test.false_alarm, 2 * found.test.even_false_alarm});
     found.creep = found.test.even_change > found.test.two_steps &&
                   found.test.even_false_alarm <= 0.5 * options_.false_alarms;
     if (found.creep) {
@@ -262,8 +264,30 @@ class Finder {
   Problem problem_;
   const MovesOptions& options_;
   std::size_t overlap_;
+  double chance_ = 1;  ///< of the strongest evidence
   std::vector<Found> found_;
 };
+
+/// The motions from the move before number k to the one after it: others would pass for noise. Times of moves
+/// are counted from origin_us.
+Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k, std::int64_t origin_us) {
+  const auto at = [&](const Move& move) { return origin_us + static_cast<std::int64_t>(1e6 * move.time); };
+  std::size_t from = 0, to = pairs.size();
+  if (k > 0 && moves[k - 1].kind == MoveKind::bump)
+    while (from < to && pairs[from].begin_us < at(moves[k - 1])) ++from;
+  if (k + 1 < moves.size())
+    while (to > from && pairs[to - 1].end_us > at(moves[k + 1])) --to;
+  return pairs.subspan(from, to - from);
+}
+
+/// False: the motions were tested and do not show it.
+bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_t origin_us,
+              const MovesOptions& options) {
+  const std::int64_t time_us = origin_us + static_cast<std::int64_t>(1e6 * move.time);
+  const double chance = chance_of_move(pairs, problem, move.kind, time_us, options);
+  const bool tested = chance < 1;
+  return !tested || chance <= options.confirmation;
+}
 
 }  // namespace
 
@@ -277,9 +301,10 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
   MovesOptions options = given;
   options.false_alarms /= static_cast<double>(std::max<std::size_t>(1, strides.size()));
   MovesResult best;
-  double least = 1;
+  double least = 1, least_chance = 1;
   for (std::size_t i = 0; i < strides.size(); ++i) {
     MovesResult result = find_moves(strides[i], problem, options);
+    least_chance = std::min(least_chance, static_cast<double>(strides.size()) * result.chance);
     double chance = 1;
     for (const Move& move : result.moves) chance = std::min(chance, move.false_alarm);
     const bool first = !best.tested && result.tested;
@@ -289,17 +314,17 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
     best.stride = i;
   }
   // a mount that moved shows in motions of every length; errors of one length only are those of an odometry
-  std::erase_if(best.moves, [&](const Move& move) {
-    const std::int64_t time_us =
-        strides[best.stride].front().begin_us + static_cast<std::int64_t>(1e6 * move.time);
-    for (std::size_t i = 0; i < strides.size(); ++i) {
-      if (i == best.stride) continue;
-      const double chance = chance_of_move(strides[i], problem, move.kind, time_us, given);
-      const bool tested = chance < 1;
-      if (tested && chance > given.confirmation) return true;
-    }
-    return false;
-  });
+  std::vector<Move> confirmed;
+  for (std::size_t k = 0; k < best.moves.size(); ++k) {
+    bool shown = true;
+    for (std::size_t i = 0; i < strides.size() && shown; ++i)
+      shown = i == best.stride ||
+              shown_by(between_neighbours(strides[i], best.moves, k, strides[best.stride].front().begin_us),
+                       problem, best.moves[k], strides[best.stride].front().begin_us, given);
+    if (shown) confirmed.push_back(best.moves[k]);
+  }
+  best.moves = std::move(confirmed);
+  best.chance = least_chance;
   return best;
 }
 

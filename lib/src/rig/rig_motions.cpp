@@ -57,6 +57,23 @@ std::vector<Instant> instants_of(std::span<const Trajectory> sensors, double max
   return instants;
 }
 
+/// For each instant, the number of gaps before it: a motion across one is not measured. A sensor that is slow
+/// all through the drive has no gaps.
+std::vector<int> gaps_before(const std::vector<Instant>& instants, double max_gap) {
+  std::vector<std::int64_t> periods;
+  for (std::size_t i = 1; i < instants.size(); ++i)
+    periods.push_back(instants[i].time_us - instants[i - 1].time_us);
+  if (periods.empty()) return std::vector<int>(instants.size(), 0);
+  std::vector<std::int64_t> sorted = periods;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double limit = std::max(1e6 * max_gap, 1.5 * static_cast<double>(*middle));
+  std::vector<int> gaps = {0};
+  for (const std::int64_t period : periods)
+    gaps.push_back(gaps.back() + (static_cast<double>(period) > limit ? 1 : 0));
+  return gaps;
+}
+
 DualQuaternion motion(const Instant& begin, const Instant& end, std::size_t sensor) {
   return canonical_sign(normalized(conjugate(begin.poses[sensor]) * end.poses[sensor]));
 }
@@ -80,7 +97,9 @@ std::vector<RigPair> rig_motions(std::span<const Trajectory> sensors, const RigM
   const std::vector<Instant> instants = instants_of(sensors, options.max_gap);
   const auto stride = static_cast<std::size_t>(std::max(1, options.stride));
   const std::size_t count = instants.size() > stride ? instants.size() - stride : 0;
+  const std::vector<int> gaps = gaps_before(instants, options.max_gap);
   std::vector<bool> wrong(count, false);
+  for (std::size_t i = 0; i < count; ++i) wrong[i] = gaps[i] != gaps[i + stride];
   for (std::size_t a = 0; a < sensors.size(); ++a)
     for (std::size_t b = a + 1; b < sensors.size(); ++b) {
       RigPair pair{a, b, {}, {}, {}};

@@ -14,7 +14,9 @@ namespace egocal {
 struct RigMotionsOptions {
   int stride = 1;  ///< instants of the slowest sensor in one motion
   Balance balance;
-  double max_gap = 0.5;             ///< poses further apart are not interpolated between [s]
+  /// Poses further apart are not interpolated between [s], and no motion spans a pause between instants that
+  /// is longer, unless all are.
+  double max_gap = 0.5;
   std::vector<GroundPlane> planes;  ///< one a sensor: planar mode; empty: 3-D
   ScreeningOptions screening;       ///< a motion that is not congruent in one pair is left out of all
 };
