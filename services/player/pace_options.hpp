@@ -15,8 +15,8 @@ struct PaceOptions {
   std::size_t most_in_flight = 64;
   /// At full speed one turn of the loop sends no more than this before it listens.
   int most_at_once = 64;
-  /// Without a pairing process by then the log is played to any listener [us]. A process starts within
-  /// one.
+  /// Without a pairing process by then the log is played to any listener [us]: a process starts within a
+  /// second, and nothing is sent before one is heard.
   std::int64_t wait_for_pairing_us = 3'000'000;
   /// What was not acknowledged is sent again after this time [us]: pairing acknowledges within
   /// milliseconds, or has lost it.

@@ -208,8 +208,8 @@ void Player::wait_until(std::int64_t mono_us) {
 void Player::play() {
   if (timer_) loop_.cancel(*timer_);
   timer_.reset();
-  // at any speed but that of the recording it waits for a pairing to keep in step with
-  const bool waits_for_pairing = !in_flight_.heard() && !alone_ && options_.speed != 1 && !step_;
+  // what is sent before any pairing process was heard could not be sent again if that process dies
+  const bool waits_for_pairing = !in_flight_.heard() && !alone_ && !step_;
   for (int sent = 0; next_ && (!paused_ || step_) && !waits_for_pairing; ++sent) {
     if (in_flight_.count() >= options_.pace.most_in_flight) return;  // goes on with the next acknowledgement
     const double speed = options_.speed == 0 && alone_ ? 1 : options_.speed;
@@ -259,11 +259,9 @@ void Player::watch_over() {
   show_progress(false);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {
     alone_ = true;
-    if (options_.speed != 1) {
-      say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
-          (options_.speed == 0 ? ", at the recorded speed" : ""));
-      if (next_) anchor(paused_ ? anchor_us_ : next_->time_us);
-    }
+    say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
+        (options_.speed == 0 ? ", at the recorded speed" : ""));
+    if (next_) anchor(paused_ ? anchor_us_ : next_->time_us);
     play();
   }
   if (in_flight_.count() > 0 && now - progress_mono_us_ > options_.pace.stall_us &&

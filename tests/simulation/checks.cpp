@@ -213,7 +213,6 @@ void Checks::status_sent(const Process& from, const status_t& status) {
                     std::to_string(acknowledgement.utime - HostClock::start_of_all_us) + " us");
     lineage.acknowledged[acknowledgement.channel] = acknowledgement.utime;
   }
-  acknowledged_ = acknowledged_ || !status.acknowledgements.empty();
   lineage.counters.clear();
   for (const counter_t& counter : status.counters) lineage.counters[counter.name] = counter.value;
 }
@@ -255,7 +254,6 @@ void Checks::started(const Process& process) {
 
 void Checks::ended(const Process& process, const Process::Ending& ending) {
   if (ending.exit_code > 0) fail('f', process.spec().name + " ended by itself: " + ending.error);
-  if (process.spec().part == Part::pairing && !acknowledged_) died_unheard_ = true;
   if (ending.next == tools::Restarts::Next::hopeless) fail('f', process.spec().name + " is given up");
 }
 

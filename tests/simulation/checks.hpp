@@ -105,10 +105,6 @@ class Checks {
       begun_before_;  // sessions, where the log began anew behind all that is known
   std::int64_t answered_until_us_ = -1, answers_missing_since_us_ = -1;
   std::int64_t last_start_us_ = 0;
-  bool acknowledged_ = false;  // anything, by pairing
-  /// Pairing died before it acknowledged anything: a player at the speed of the recording, which does not
-  /// wait for that, does not know what it has to send again.
-  bool died_unheard_ = false;
   int compared_ = 0;
 };
 
