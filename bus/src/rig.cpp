@@ -4,7 +4,9 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -349,7 +351,8 @@ Rig read_rig(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text(max_file_size + 1, '\0');
   if (in.is_open()) in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in.is_open() || in.bad()) throw error_at(file, 0, "", "cannot be read as a rig file");
+  if (!in.is_open() || in.bad())
+    throw error_at(file, 0, "", std::string("cannot be read as a rig file: ") + std::strerror(errno));
   text.resize(static_cast<std::size_t>(in.gcount()));
   return parse_rig(text, file);
 }

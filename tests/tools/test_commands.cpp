@@ -185,6 +185,10 @@ TEST_F(Commands, BadTrajectoriesAreRefused) {
     expect_refusal(egocal("solve " + good + " " + bad), 1, "bad.tum" + part);
   };
   expect_refusal(egocal("solve " + good + " " + path("none.tum")), 1, "none.tum: cannot be opened");
+  expect_refusal(egocal("solve --rig " + path("none.toml") + " --from a=" + good), 1,
+                 "none.toml: cannot be read as a rig file: No such file");
+  expect_refusal(egocal("solve --pairs " + path("none.txt")), 1,
+                 "none.txt: cannot be opened for reading: No such");
   refused("", ": holds no data");
   refused(good_line + "1001 0 0 x1 0 0 0 1\n", ":2: field 4 (tz): expected a number, got 'x1'");
   refused(good_line + "1001 0 nan 0 0 0 0 1\n", ":2: field 3 (ty): expected a finite number");

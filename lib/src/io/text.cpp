@@ -3,8 +3,10 @@
 #include "io/text.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 #include "egocal/error.hpp"
@@ -31,7 +33,8 @@ std::string quoted(std::string_view text) {
 
 std::vector<Line> read_lines(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw error_at(file, 0, "", "cannot be opened for reading");
+  if (!stream)
+    throw error_at(file, 0, "", std::string("cannot be opened for reading: ") + std::strerror(errno));
   std::vector<Line> lines;
   std::string text;
   for (long number = 1; std::getline(stream, text); ++number) {
