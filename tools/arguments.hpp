@@ -11,7 +11,7 @@
 #include "egocal/diagnosis/verdict.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/problem/ground_plane.hpp"
+#include "egocal/problem/problem.hpp"
 
 namespace egocal::tools {
 

@@ -6,7 +6,7 @@
 
 #include "egocal/bus/check.hpp"
 #include "egocal/certificate/certificate.hpp"
-#include "egocal/problem/ground_plane.hpp"
+#include "egocal/problem/problem.hpp"
 
 namespace egocal::bus {
 

@@ -12,21 +12,17 @@
 
 namespace egocal::bus {
 
-namespace {
-constexpr std::chrono::seconds period{1};
-constexpr std::int64_t least_distance_us = 50'000;  // of statuses caused by changes
-constexpr std::size_t max_counters = 60;
-}  // namespace
-
-Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds timeout)
+Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds timeout,
+                     const HeartbeatOptions& options)
     : loop_(loop),
       identity_(std::move(identity)),
+      options_(options),
       timeout_us_(std::chrono::duration_cast<std::chrono::microseconds>(timeout).count()),
       unsettled_us_(loop.mono_us()),
       run_(loop.wall_us()) {
   if (identity_.pid == 0) identity_.pid = static_cast<std::int32_t>(getpid());
   loop_.subscribe<status_t>(status_channel, [this](const status_t& status, const Arrival&) { hear(status); });
-  loop_.every(period, [this] { publish(); });
+  loop_.every(options_.period, [this] { publish(); });
   // after the owner's constructor: its first status is complete
   loop_.after(std::chrono::nanoseconds{0}, [this] { publish(); });
 }
@@ -48,7 +44,7 @@ void Heartbeat::reject(const std::string& reason) {
   if (known != counters_.end())
     ++known->second;
   else
-    ++counters_[counters_.size() < max_counters ? name : "rejected: other"];
+    ++counters_[counters_.size() < options_.most_counters ? name : "rejected: other"];
 }
 
 void Heartbeat::set_state(State state) {
@@ -67,7 +63,7 @@ void Heartbeat::set_error(const std::string& error) {
 void Heartbeat::change() {
   if (change_pending_) return;
   change_pending_ = true;
-  const std::int64_t wait = published_us_ + least_distance_us - loop_.mono_us();
+  const std::int64_t wait = published_us_ + options_.least_distance_us - loop_.mono_us();
   loop_.after(std::chrono::microseconds(std::max<std::int64_t>(wait, 0)), [this] {
     if (change_pending_) publish();
   });
@@ -120,7 +116,7 @@ void Heartbeat::hear(const status_t& status) {
   const bool namesake = status.name == identity_.name && status.state != state_name(State::ended);
   const bool is_new = peers_.hear(status, now);
   if (is_new && status.version != identity_.version) ++counters_["other versions heard"];
-  if (namesake && now - published_us_ > least_distance_us)
+  if (namesake && now - published_us_ > options_.least_distance_us)
     publish();
   else if (namesake && is_new)
     change();  // it waits for an answer before it sends anything

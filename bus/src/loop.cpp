@@ -24,16 +24,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Longest that messages are handled before timers, signals and the work on the newest ones get their turn.
-constexpr std::int64_t batch_ns = 5'000'000;
-/// And most messages, where the clock stands still meanwhile.
-constexpr int batch_messages = 10'000;
-/// The transport's own buffer is emptied into the queue this often meanwhile: a slow handler of one channel
-/// does not cost messages of another.
-constexpr std::int64_t drain_ns = 1'000'000;
-constexpr std::chrono::seconds network_period{1};
-constexpr std::size_t max_undecodable = 64;
-
 }  // namespace
 
 struct Loop::Impl {
@@ -48,8 +38,9 @@ struct Loop::Impl {
     Callback callback;
   };
 
-  Impl(std::unique_ptr<Transport> bus, const Clock& time, const LoopOptions& options)
-      : signals(options.handle_signals),
+  Impl(std::unique_ptr<Transport> bus, const Clock& time, const LoopOptions& given)
+      : options(given),
+        signals(options.handle_signals),
         transport(std::move(bus)),
         clock(time),
         host(options.host.empty() ? host_name() : options.host) {
@@ -65,15 +56,15 @@ struct Loop::Impl {
   }
 
   void handle_messages() {
-    const std::int64_t end = clock.mono_ns() + batch_ns;
+    const std::int64_t end = clock.mono_ns() + options.longest_batch.count();
     std::int64_t next_drain = 0;
     int handled = 0;
     for (std::int64_t now = clock.mono_ns(); !stopped; now = clock.mono_ns()) {
       if (queue.empty() || now >= next_drain) {
         queue.fill(*transport);
-        next_drain = now + drain_ns;
+        next_drain = now + options.drain_period.count();
       }
-      if (queue.empty() || now >= end || handled++ == batch_messages) break;
+      if (queue.empty() || now >= end || handled++ == options.most_in_batch) break;
       queue.handle_one();
     }
     for (const auto& callback : batch_callbacks) callback(queue.empty());
@@ -116,6 +107,7 @@ struct Loop::Impl {
     return next_timer++;
   }
 
+  LoopOptions options;
   EndingSignals signals;
   std::unique_ptr<Transport> transport;
   const Clock& clock;
@@ -138,7 +130,7 @@ Loop::Loop(const std::string& url, const LoopOptions& options)
 
 Loop::Loop(std::unique_ptr<Transport> transport, const Clock& clock, const LoopOptions& options)
     : impl_(std::make_unique<Impl>(std::move(transport), clock, options)) {
-  every(network_period, [this] {
+  every(options.network_period, [this] {
     impl_->transport->check_network();
     impl_->watch_network();
   });
@@ -167,7 +159,7 @@ void Loop::subscribe_others(Handler handler, std::function<bool()> wanted, int q
 }
 
 void Loop::count_undecodable(const std::string& channel) {
-  const bool known = undecodable_.size() < max_undecodable || undecodable_.contains(channel);
+  const bool known = undecodable_.size() < impl_->options.most_undecodable || undecodable_.contains(channel);
   ++undecodable_[known ? channel : "other"];
 }
 

@@ -33,7 +33,7 @@ std::string described(const HeardStream& stream) {
 std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
   std::vector<const HeardStream*> streams;
   for (const auto& [channel, stream] : watch.others())
-    if (mono_us - stream.last_mono_us <= StreamWatch::silent_us) streams.push_back(&stream);
+    if (mono_us - stream.last_mono_us <= watch.options().silent_us) streams.push_back(&stream);
   std::stable_sort(streams.begin(), streams.end(), [](const HeardStream* x, const HeardStream* y) {
     return x->is_odometry && !y->is_odometry;
   });
@@ -47,7 +47,7 @@ std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
 StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::int64_t mono_us) {
   const Sensor& sensor = stream.sensor;
   const std::string begin = sensor.name + ": " + printable(sensor.channel, 63) + ", ";
-  const bool silent = !stream.heard || mono_us - stream.heard->last_mono_us > StreamWatch::silent_us;
+  const bool silent = !stream.heard || mono_us - stream.heard->last_mono_us > watch.options().silent_us;
   if (silent) {
     const std::string instead = heard_instead(watch, mono_us);
     const std::string text =

@@ -15,12 +15,6 @@ namespace egocal::bus {
 
 namespace {
 
-constexpr std::int64_t rate_window_us = 2'000'000;
-/// Times of a stream are compared with the clock after this long.
-constexpr std::int64_t pace_window_us = 3'000'000;
-/// Messages in a row with the same time: five are no accident.
-constexpr std::int64_t most_at_same_time = 5;
-
 Refusal* known(std::vector<Refusal>& refusals, const std::string& reason) {
   for (Refusal& refusal : refusals)
     if (refusal.reason == reason) return &refusal;
@@ -28,12 +22,13 @@ Refusal* known(std::vector<Refusal>& refusals, const std::string& reason) {
 }
 
 /// The first of its kind, to be reported.
-std::optional<Refusal> add(HeardStream& stream, const std::string& reason, const std::string& cure) {
+std::optional<Refusal> add(HeardStream& stream, std::size_t most_refusals, const std::string& reason,
+                           const std::string& cure) {
   if (Refusal* refusal = known(stream.refusals, reason)) {
     ++refusal->count;
     return std::nullopt;
   }
-  if (stream.refusals.size() >= StreamWatch::most_refusals) return std::nullopt;
+  if (stream.refusals.size() >= most_refusals) return std::nullopt;
   stream.refusals.push_back({reason, cure, 1});
   return stream.refusals.back();
 }
@@ -46,17 +41,18 @@ const char* wrong_unit(double pace) {
 
 }  // namespace
 
-StreamWatch::StreamWatch(const std::vector<Sensor>& sensors) : counting_(sensors.size()) {
+StreamWatch::StreamWatch(const std::vector<Sensor>& sensors, const StreamWatchOptions& options)
+    : options_(options), counting_(sensors.size()) {
   for (const Sensor& sensor : sensors) sensors_.push_back({sensor, std::nullopt});
 }
 
-void StreamWatch::count(HeardStream& stream, Counting& counting, std::int64_t mono_us) {
+void StreamWatch::count(HeardStream& stream, Counting& counting, std::int64_t mono_us) const {
   ++stream.messages;
   ++counting.in_window;
   if (stream.messages == 1) counting.window_begin_us = mono_us;
   stream.last_mono_us = mono_us;
   const std::int64_t elapsed = mono_us - counting.window_begin_us;
-  if (elapsed < rate_window_us) return;
+  if (elapsed < options_.rate_window_us) return;
   // the message that begins a window belongs to the one before
   stream.rate = 1e6 * static_cast<double>(counting.in_window - 1) / static_cast<double>(elapsed);
   counting.window_begin_us = mono_us;
@@ -66,14 +62,16 @@ void StreamWatch::count(HeardStream& stream, Counting& counting, std::int64_t mo
 std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& counting, const Sensor& sensor,
                                             Bytes bytes, std::int64_t mono_us) {
   const ReceivedOdometry odometry = decode_odometry(sensor, bytes);
-  if (!odometry.decoded) return add(stream, "not decodable", cure_of("not decodable", sensor.type, bytes));
+  if (!odometry.decoded)
+    return add(stream, options_.most_refusals, "not decodable", cure_of("not decodable", sensor.type, bytes));
   if (!odometry.pose)
-    return add(stream, odometry.pose.reason, cure_of(odometry.pose.reason, sensor.type, bytes));
+    return add(stream, options_.most_refusals, odometry.pose.reason,
+               cure_of(odometry.pose.reason, sensor.type, bytes));
   const std::int64_t time = odometry.pose.value->time_us;
   counting.at_same_time = time == counting.last_time_us ? counting.at_same_time + 1 : 0;
   counting.last_time_us = time;
-  if (counting.at_same_time >= most_at_same_time)
-    return add(stream, "the same time again",
+  if (counting.at_same_time >= options_.most_at_same_time)
+    return add(stream, options_.most_refusals, "the same time again",
                "the time stands still at " + std::to_string(time) +
                    " us: fill utime with the time of the measurement.");
   if (counting.first_mono_us == 0 || time < counting.first_time_us) {
@@ -81,7 +79,7 @@ std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& count
     counting.first_time_us = time;
   }
   const std::int64_t elapsed = mono_us - counting.first_mono_us;
-  if (elapsed < pace_window_us) return std::nullopt;
+  if (elapsed < options_.pace_window_us) return std::nullopt;
   const double pace = static_cast<double>(time - counting.first_time_us) / static_cast<double>(elapsed);
   counting.first_mono_us = mono_us;
   counting.first_time_us = time;
@@ -90,7 +88,7 @@ std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& count
   char text[200];
   std::snprintf(text, sizeof text, "its time runs %.2g times as fast as the clock: %s? Send microseconds.",
                 pace, unit);
-  return add(stream, "unit of time", text);
+  return add(stream, options_.most_refusals, "unit of time", text);
 }
 
 std::optional<Refusal> StreamWatch::hear(const std::string& channel, Bytes bytes, std::int64_t mono_us) {
@@ -104,7 +102,7 @@ std::optional<Refusal> StreamWatch::hear(const std::string& channel, Bytes bytes
   }
   if (channel.starts_with("EGOCAL_")) return std::nullopt;
   const auto entry = others_.find(channel);
-  if (entry == others_.end() && others_.size() >= most_others) return std::nullopt;
+  if (entry == others_.end() && others_.size() >= options_.most_others) return std::nullopt;
   HeardStream& stream = others_[channel];
   stream.channel = channel;
   stream.type = type_name(bytes);
@@ -115,7 +113,7 @@ std::optional<Refusal> StreamWatch::hear(const std::string& channel, Bytes bytes
 
 bool StreamWatch::misses_any(std::int64_t mono_us) const {
   return sensors_.empty() || std::any_of(sensors_.begin(), sensors_.end(), [&](const SensorStream& stream) {
-           return !stream.heard || mono_us - stream.heard->last_mono_us > silent_us;
+           return !stream.heard || mono_us - stream.heard->last_mono_us > options_.silent_us;
          });
 }
 

@@ -8,8 +8,10 @@
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
 #include "egocal/pairing/congruence.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/outlier_choice.hpp"
 #include "egocal/pairing/selection.hpp"
+#include "egocal/robust/prove_outliers.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 #include "egocal/scale/estimate_scale.hpp"
 
@@ -245,19 +247,47 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   return judged(result, diagnose(given, answered(result, result.problem), options.diagnosis));
 }
 
+struct Calibrator::Impl {
+  CalibrationOptions options;
+  MotionPairing pairing;
+};
+
+namespace {
+
+PairingOptions pairing_options(const CalibrationOptions& options) {
+  PairingOptions pairing = options.pairing;
+  if (options.estimate_time_offset) pairing.track_time_offset = true;
+  return pairing;
+}
+
+}  // namespace
+
 Calibrator::Calibrator(CalibrationOptions options)
-    : options_(std::move(options)), pairing_([this] {
-        PairingOptions pairing = options_.pairing;
-        if (options_.estimate_time_offset) pairing.track_time_offset = true;
-        return pairing;
-      }()) {}
+    : impl_(new Impl{options, MotionPairing(pairing_options(options))}) {}
+Calibrator::~Calibrator() = default;
+Calibrator::Calibrator(Calibrator&&) noexcept = default;
+Calibrator& Calibrator::operator=(Calibrator&&) noexcept = default;
+
+void Calibrator::add(Side side, const StampedPose& pose) {
+  impl_->pairing.push(side, pose);
+}
+
+void Calibrator::finish() {
+  impl_->pairing.finish();
+}
+
+PairingCounts Calibrator::counts() const {
+  return impl_->pairing.counts();
+}
 
 std::optional<Calibration> Calibrator::answer() const {
-  Problem problem = pairing_.problem();
+  const MotionPairing& pairing = impl_->pairing;
+  Problem problem = pairing.problem();
   if (problem.blocks.empty()) return std::nullopt;
-  Calibration result = solved(std::move(problem), pairing_.choice(), pairing_.counts(), options_.method);
-  result.time_offset_applied = pairing_.time_offset().value_or(0);
-  return judged(result, diagnose(answered(result, pairing_.single_stride_problem()), options_.diagnosis));
+  Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), impl_->options.method);
+  result.time_offset_applied = pairing.time_offset().value_or(0);
+  return judged(result,
+                diagnose(answered(result, pairing.single_stride_problem()), impl_->options.diagnosis));
 }
 
 }  // namespace egocal

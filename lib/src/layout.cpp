@@ -5,8 +5,8 @@
 #include "egocal/online/algorithm1.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/trajectory.hpp"
-#include "egocal/rig/consistent_set.hpp"
-#include "egocal/samples/pose_sample.hpp"
+#include "egocal/rig/rig.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 
 #define EGOCAL_DEFINE_LAYOUT(Type) \
   template <>                      \

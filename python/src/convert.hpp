@@ -11,7 +11,7 @@
 #include "egocal/geometry/dual_quaternion.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/pairing/trajectory.hpp"
-#include "egocal/problem/ground_plane.hpp"
+#include "egocal/problem/problem.hpp"
 
 namespace egocal::python {
 

@@ -6,7 +6,7 @@
 #include "convert.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal::python {
 

@@ -11,10 +11,6 @@ namespace egocal::services {
 
 namespace {
 const std::string held_back_prefix = "held back: ";
-/// A status can be forged: names of channels that are remembered.
-constexpr std::size_t most_channels = 256;
-/// After this many attempts without success pairing takes it that there is nothing to fill the gap with.
-constexpr int most_tries = 2;
 }  // namespace
 
 std::optional<std::int64_t> utime_of(const bus::LogEvent& event) {
@@ -62,7 +58,7 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
       channel.next_try = acknowledgement.count;
     }
     if (held_back.contains(acknowledgement.channel) && !channel.messages.empty() &&
-        channel.sent_again < most_tries && acknowledgement.count >= channel.next_try) {
+        channel.sent_again < options_.most_tries && acknowledgement.count >= channel.next_try) {
       ++channel.sent_again;
       channel.next_try = acknowledgement.count + static_cast<std::int64_t>(channel.messages.size());
       progress.send_again = true;
@@ -74,12 +70,12 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
 
 /// Among many names that nothing was sent on the true ones come again with the next true status.
 bool InFlight::make_room_for(const std::string& channel) {
-  if (channels_.size() < most_channels || channels_.contains(channel)) return true;
+  if (channels_.size() < options_.most_channels || channels_.contains(channel)) return true;
   const auto unused = std::find_if(channels_.begin(), channels_.end(),
                                    [](const auto& entry) { return !entry.second.was_sent; });
   if (unused == channels_.end()) return false;
   channels_.erase(unused);
-  EGOCAL_CHECK(channels_.size() < most_channels, "the number of channels in flight is bounded");
+  EGOCAL_CHECK(channels_.size() < options_.most_channels, "the number of channels in flight is bounded");
   return true;
 }
 

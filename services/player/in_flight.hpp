@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -14,11 +15,21 @@
 
 namespace egocal::services {
 
+/// Study: tests/services/player/test_in_flight.cpp, tests/e2e/test_lossy_network.cpp.
+struct InFlightOptions {
+  /// Names of channels that are remembered: a status can be forged. Four times the sensors of a large rig.
+  std::size_t most_channels = 256;
+  /// After this many attempts without success pairing takes it that there is nothing to fill the gap with.
+  int most_tries = 2;
+};
+
 /// The messages that pairing has not acknowledged yet, of the channels that it acknowledges. What is lost on
 /// the way, or was sent to a pairing process that died, is still here to be sent again. Pure: no clock, no
 /// LCM.
 class InFlight {
  public:
+  explicit InFlight(const InFlightOptions& options = {}) : options_(options) {}
+
   /// Takes note of a message that was sent. Of channels that pairing does not listen to nothing is kept.
   void sent(const bus::LogEvent& event);
   struct Progress {
@@ -51,6 +62,7 @@ class InFlight {
     std::deque<Message> messages;
   };
   bool make_room_for(const std::string& channel);
+  InFlightOptions options_;
   std::map<std::string, Channel> channels_;
   std::optional<std::int64_t> run_;  ///< of the pairing process
   std::uint64_t order_ = 0;

@@ -11,9 +11,7 @@ namespace egocal::services {
 
 namespace {
 
-constexpr std::int64_t disorder_us = 1'000'000;  // events of several sources are not exactly in order
-constexpr double largest_time_us = 9e18;         // fits an int64; times that are damaged may be anything
-constexpr std::int64_t longest_gap_us = 3'600'000'000;  // where only one neighbour says what to believe
+constexpr double largest_time_us = 9e18;  // fits an int64; times that are damaged may be anything
 
 /// a - b is more than that; times that are damaged may be anything.
 bool later(std::int64_t a, std::int64_t b, std::int64_t by) {
@@ -34,7 +32,7 @@ std::regex compiled(const std::string& expression) {
 Tape::Tape(const std::string& file, const TapeOptions& options) : log_(file), options_(options) {
   if (!options.channel.empty()) channel_ = compiled(options.channel);
   look_ahead();
-  mend_time();
+  repair_time();
   begin_us_ = ahead_.front().time_us;
   rewind(options.start);
   if (!next()) {
@@ -71,20 +69,22 @@ void Tape::look_ahead() {
 }
 
 /// That of the next event.
-void Tape::mend_time() {
+void Tape::repair_time() {
   const std::int64_t time = ahead_[0].time_us;
   std::int64_t corrected = time;
   if (last_us_ && ahead_.size() > 1) {
     const std::int64_t after = ahead_[1].time_us;
-    const bool goes_on = !later(*last_us_, after, disorder_us);  // a clock set back stays back
-    if (goes_on && (later(time, after, disorder_us) || later(*last_us_, time, disorder_us)))
+    const bool goes_on = !later(*last_us_, after, options_.disorder_us);  // a clock set back stays back
+    if (goes_on && (later(time, after, options_.disorder_us) || later(*last_us_, time, options_.disorder_us)))
       corrected = *last_us_;
   } else if (last_us_) {
-    if (later(*last_us_, time, disorder_us) || later(time, *last_us_, longest_gap_us)) corrected = *last_us_;
+    if (later(*last_us_, time, options_.disorder_us) || later(time, *last_us_, options_.longest_gap_us))
+      corrected = *last_us_;
   } else if (ahead_.size() > 2) {
     const std::int64_t second = ahead_[1].time_us, third = ahead_[2].time_us;
-    const bool in_order = !later(second, third, disorder_us);
-    if (in_order && (later(time, second, disorder_us) || later(second, time, longest_gap_us)))
+    const bool in_order = !later(second, third, options_.disorder_us);
+    if (in_order &&
+        (later(time, second, options_.disorder_us) || later(second, time, options_.longest_gap_us)))
       corrected = second;
   }
   if (corrected == time) return;
@@ -103,7 +103,7 @@ std::optional<bus::LogEvent> Tape::next() {
   while (true) {
     look_ahead();
     if (ahead_.empty()) return std::nullopt;
-    mend_time();
+    repair_time();
     bus::LogEvent event = std::move(ahead_.front());
     ahead_.pop_front();
     last_us_ = event.time_us;

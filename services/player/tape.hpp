@@ -18,6 +18,11 @@ struct TapeOptions {
   /// Regular expression: only these channels. Empty: all but those that egocal itself sends on (EGOCAL_*):
   /// answers and acknowledgements of another day would be taken for today's.
   std::string channel;
+  // Study of both: tests/services/player/test_tape.cpp.
+  /// Events of several sources are not exactly in order: up to this is no damage [us].
+  std::int64_t disorder_us = 1'000'000;
+  /// Where only one neighbour says what to believe, a longer gap is damage [us].
+  std::int64_t longest_gap_us = 3'600'000'000;
 };
 
 /// The events of a log that are to be played, in the order of the file. A time that fits neither the event
@@ -41,7 +46,7 @@ class Tape {
 
  private:
   void look_ahead();
-  void mend_time();
+  void repair_time();
   bool wanted(const std::string& channel);
 
   bus::LogReader log_;

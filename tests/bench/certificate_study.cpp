@@ -21,8 +21,7 @@
 
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "extended_reference.hpp"

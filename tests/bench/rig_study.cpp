@@ -10,7 +10,7 @@
 
 #include "../support/random_rig.hpp"
 #include "egocal/cli/cli.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "rig/joint.hpp"
 
 namespace {

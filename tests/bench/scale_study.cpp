@@ -11,8 +11,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/scale/solve_scale.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "extended_reference.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "egocal/problem/constraints.hpp"
+#include "egocal/problem/cost.hpp"
 
 namespace egocal::bench {
 

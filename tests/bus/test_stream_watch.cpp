@@ -118,7 +118,7 @@ TEST_F(Watch, TimesInAnotherUnitThatAreNoDateYetAreSeenByTheirPace) {
 TEST_F(Watch, IsBoundedWhateverArrives) {
   for (int i = 0; i < 10'000; ++i)
     watch.hear("FLOOD_" + std::to_string(i), std::vector<std::byte>(10), 1000 + i);
-  EXPECT_EQ(watch.others().size(), StreamWatch::most_others);
+  EXPECT_EQ(watch.others().size(), watch.options().most_others);
   EXPECT_LT(stream_lines(watch, 11'000).size(), 5u);
 }
 

@@ -10,7 +10,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/problem/problem.hpp"
 #include "egocal/simulation/simulation.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 // Eigen's code for 4 x 4 matrices, compiled with this project's flags, beside the library's.
 double least_eigenvalue(const Eigen::Matrix4d& M) {

@@ -9,8 +9,7 @@
 #include "certificate/proof.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 namespace {

@@ -11,8 +11,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sqp.hpp"
 
 namespace egocal {

@@ -4,9 +4,8 @@
 
 #include "../support/random_motion.hpp"
 #include "egocal/problem/blocks.hpp"
-#include "egocal/problem/constraints.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 namespace {

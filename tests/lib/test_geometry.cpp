@@ -6,7 +6,7 @@
 
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/problem/ground_plane.hpp"
+#include "egocal/problem/problem.hpp"
 
 namespace egocal {
 namespace {

@@ -12,7 +12,7 @@
 #include "../support/paths.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 
 namespace egocal {

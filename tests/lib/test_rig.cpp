@@ -11,7 +11,6 @@
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/rig/rig.hpp"
-#include "egocal/rig/rig_motions.hpp"
 
 namespace egocal {
 namespace {

@@ -15,8 +15,7 @@
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/scale/solve_scale.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 namespace {

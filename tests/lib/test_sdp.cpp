@@ -9,7 +9,7 @@
 
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 namespace {

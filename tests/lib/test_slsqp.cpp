@@ -9,8 +9,7 @@
 
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 namespace {

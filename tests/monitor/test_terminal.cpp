@@ -374,7 +374,8 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
     tmux.keys("x");
     ASSERT_TRUE(until([&] { return tmux.shows("Write the answer"); }));
     tmux.keys(key);
-    ASSERT_TRUE(until([&] { return tmux.shows(std::string("wrote ") + file); })) << tmux.screen();
+    ASSERT_TRUE(until([&, name = file] { return tmux.shows(std::string("wrote ") + name); }))
+        << tmux.screen();
     EXPECT_THAT(read_text(tmux.folder() / file), HasSubstr("lidar")) << file;
   }
   tmux.keys("?");

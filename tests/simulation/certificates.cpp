@@ -10,7 +10,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/decode.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "simulation/checks_common.hpp"
 

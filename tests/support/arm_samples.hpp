@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "egocal/samples/pose_sample.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 #include "random_motion.hpp"
 
 namespace egocal::testing {

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "egocal/samples/pose_sample.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 
 namespace egocal::testing {
 

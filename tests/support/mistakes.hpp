@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "egocal/diagnosis/reading.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "egocal/pairing/trajectory.hpp"
 #include "random_motion.hpp"
 #include "simulated_drive.hpp"
 

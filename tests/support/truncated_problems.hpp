@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "egocal/robust/outlier_proof.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/robust/prove_outliers.hpp"
+#include "egocal/solvers/global.hpp"
 #include "random_motion.hpp"
 
 namespace egocal::testing {

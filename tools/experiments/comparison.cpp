@@ -11,8 +11,7 @@
 
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/certificate/certificate.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"

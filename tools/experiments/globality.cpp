@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal::tools {
 

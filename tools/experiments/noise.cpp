@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "egocal/certificate/certificate.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "experiments/deviation.hpp"
 #include "experiments/noisy_drive.hpp"
 

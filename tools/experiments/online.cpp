@@ -11,7 +11,7 @@
 
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/blocks.hpp"
-#include "egocal/problem/ground_plane.hpp"
+#include "egocal/problem/problem.hpp"
 
 namespace egocal::tools {
 

@@ -7,7 +7,7 @@
 #include "arguments.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
-#include "egocal/rig/rig_motions.hpp"
+#include "egocal/rig/rig.hpp"
 #include "offline/append.hpp"
 #include "offline/log_trajectory.hpp"
 #include "offline/rig_findings.hpp"

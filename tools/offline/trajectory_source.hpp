@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
 namespace egocal::tools {

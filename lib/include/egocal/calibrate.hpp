@@ -2,19 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "egocal/diagnosis/options.hpp"
-#include "egocal/diagnosis/reading.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/pairing/motion_pairing.hpp"
+#include "egocal/pairing/options.hpp"
+#include "egocal/pairing/outcome.hpp"
 #include "egocal/pairing/time_offset.hpp"
+#include "egocal/pairing/trajectory.hpp"
 #include "egocal/robust/outlier_proof.hpp"
-#include "egocal/scale/solve_scale.hpp"
+#include "egocal/scale/scale_solution.hpp"
 
 namespace egocal {
 
@@ -68,21 +70,24 @@ class Calibrator {
  public:
   /// Throws Error where the options contradict each other.
   explicit Calibrator(CalibrationOptions options = {});
+  ~Calibrator();
+  Calibrator(Calibrator&&) noexcept;
+  Calibrator& operator=(Calibrator&&) noexcept;
 
   /// Takes the next pose of one sensor. The two streams may interleave in any way.
-  void add(Side side, const StampedPose& pose) { pairing_.push(side, pose); }
+  void add(Side side, const StampedPose& pose);
 
-  /// No more poses will come: pairs what a drive too short to tell its slower stream has held back.
-  void finish() { pairing_.finish(); }
+  /// No more poses will come: pairs what a drive too short to show its slower stream has held back.
+  void finish();
 
   /// The answer from all poses so far; empty while there is no motion pair. A few microseconds.
   std::optional<Calibration> answer() const;
 
-  PairingCounts counts() const { return pairing_.counts(); }
+  PairingCounts counts() const;
 
  private:
-  CalibrationOptions options_;
-  MotionPairing pairing_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// The rejections of a pairing in words, for messages: "rejected: 3 gap, 1 out of order", or "none rejected".

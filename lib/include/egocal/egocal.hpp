@@ -14,6 +14,5 @@
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/version.hpp"

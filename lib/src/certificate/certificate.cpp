@@ -5,8 +5,7 @@
 #include "certificate/assess.hpp"
 #include "certificate/verify.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal {

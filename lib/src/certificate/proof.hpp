@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "egocal/arithmetic.hpp"
+#include "egocal/layout.hpp"
 
 namespace egocal::detail {
 

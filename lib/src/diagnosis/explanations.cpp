@@ -173,9 +173,6 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   return result;
 }
 
-/// Instants that each trial of a clock looks at, about: ten for each motion that is compared.
-constexpr std::size_t clock_instants = 7000;
-
 /// Clock offset, and drift if that explains more, on top of an explanation.
 std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation& best,
                                     const DiagnosisOptions& options) {
@@ -186,7 +183,7 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   streams.motion_length = evidence.stride * evidence.instants.period;
   // a long drive has more instants than a clock needs: a few in each motion
   streams.each =
-      std::clamp<std::size_t>(evidence.instants.time.size() / clock_instants, 1,
+      std::clamp<std::size_t>(evidence.instants.time.size() / options.clock.instants, 1,
                               std::max<std::size_t>(1, static_cast<std::size_t>(evidence.stride) / 8));
   std::vector<Explanation> result;
   const auto take = [&](const char* code, const std::optional<ClockFit>& fit, const Explained& against) {

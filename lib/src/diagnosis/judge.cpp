@@ -25,10 +25,6 @@ constexpr double confidence_one_sided = 1.645;
 /// 95 % of the length of three equal, independent components.
 constexpr double length_of_three = 2.79;
 
-/// Half of the motions may contradict the answer where outliers do: the better third then fits as well as
-/// noise of a tenth of every motion allows (0.2). Clean drives of the study stay below 0.25 in the median.
-constexpr double half_contradicts = 0.5, not_outliers = 0.25;
-
 /// How far another answer is, as a part of the tolerance, in the directions that are known.
 double shift(const Finding& finding, const Answered& answered, const DiagnosisOptions& options) {
   if (!finding.T_a_b) return finding.certain ? INFINITY : 0;
@@ -133,7 +129,7 @@ Opinion of_fit(const Misfit& misfit, const Answered& answered, const DiagnosisOp
             format("These motions contradict each other: %.0f %% of the typical motion is not explained.",
                    100 * misfit.at_answer)};
   }
-  if (misfit.median > half_contradicts && misfit.at_answer > not_outliers)
+  if (misfit.median > options.half_contradicts && misfit.at_answer > options.not_outliers)
     return {Verdict::doubtful,
             format("These motions agree badly: half of them leave more than %.0f %% unexplained.",
                    100 * misfit.median)};

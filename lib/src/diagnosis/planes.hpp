@@ -6,7 +6,7 @@
 
 #include "diagnosis/motions.hpp"
 #include "egocal/diagnosis/options.hpp"
-#include "egocal/problem/ground_plane.hpp"
+#include "egocal/problem/problem.hpp"
 
 namespace egocal::detail {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "egocal/diagnosis/reading.hpp"
+#include "egocal/pairing/trajectory.hpp"
 
 namespace egocal::detail {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal::detail {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal::detail {
 

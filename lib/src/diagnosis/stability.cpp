@@ -5,8 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "diagnosis/wording.hpp"
-#include "egocal/samples/pose_sample.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 
 namespace egocal::detail {
 

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
 #include "egocal/uncertainty/observability.hpp"
 #include "online/solve_and_verify.hpp"

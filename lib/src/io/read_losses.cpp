@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/io/read_losses.hpp"
+#include "egocal/io/trajectory_file.hpp"
 
 namespace egocal {
 

@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/problem/constraints.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/problem/cost.hpp"
+#include "egocal/solvers/global.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

@@ -4,8 +4,7 @@
 
 #include "certificate/verify.hpp"
 #include "egocal/online/answer.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"

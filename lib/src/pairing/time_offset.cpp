@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/pairing/time_offset.hpp"
+#include "egocal/pairing/time_offset_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,8 @@ struct TimeOffsetSearch::Impl {
     step_us = static_cast<std::int64_t>(std::max(
         std::clamp(period, options.finest_grid * second_us, options.coarsest_grid * second_us), period / 4));
     max_gap_us = static_cast<std::int64_t>(std::clamp(options.max_gap * second_us, 3 * period, 20 * period));
-    for (Stream* stream : {&a, &b}) stream->poses = dense_part(stream->poses, max_gap_us);
+    for (Stream* stream : {&a, &b})
+      stream->poses = dense_part(stream->poses, max_gap_us, options.most_sparse);
     if (!long_enough()) return;
     // several times: of neighbouring glitches only the furthest one is found at once
     for (int round = 0; round < options.glitch_rounds; ++round)
@@ -77,9 +78,8 @@ struct TimeOffsetSearch::Impl {
     schedule.add_range(stream.poses.size(), [&stream](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) stream.detours[i] = detour(stream.poses, i);
     });
-    schedule.add(stream.poses.size() / 4, [this, &stream] {
-      stream.poses = without_glitches(stream.poses, stream.detours, options.outlier);
-    });
+    schedule.add(stream.poses.size() / 4,
+                 [this, &stream] { stream.poses = without_glitches(stream.poses, stream.detours, options); });
   }
 
   void sample_angles() {

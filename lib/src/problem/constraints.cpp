@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/problem/constraints.hpp"
+#include "egocal/problem/cost.hpp"
 
 namespace egocal {
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/rig/consistent_set.hpp"
+#include "egocal/rig/rig.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "rig/joint.hpp"
 
 namespace egocal {

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "egocal/problem/constraints.hpp"
 #include "egocal/problem/cost.hpp"
 
 namespace egocal::detail {

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "certificate/proof.hpp"
-#include "egocal/problem/constraints.hpp"
 #include "egocal/problem/cost.hpp"
 #include "rig/joint.hpp"
 

@@ -8,8 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 

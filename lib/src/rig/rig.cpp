@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "moves/linear_blocks.hpp"
 #include "rig/loops.hpp"
 

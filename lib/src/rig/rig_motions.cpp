@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/rig/rig_motions.hpp"
+#include "egocal/rig/rig.hpp"
 
 #include <algorithm>
 #include <cmath>

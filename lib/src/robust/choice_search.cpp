@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "certificate/assess.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "robust/residual_limit.hpp"
 
 namespace egocal {

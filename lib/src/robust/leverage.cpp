@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "certificate/assess.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {

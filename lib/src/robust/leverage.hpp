@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "egocal/robust/outlier_proof.hpp"
+#include "egocal/robust/prove_outliers.hpp"
 
 namespace egocal::detail {
 

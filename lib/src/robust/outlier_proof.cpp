@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/robust/outlier_proof.hpp"
+#include "egocal/robust/prove_outliers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include "diagnosis/reading.hpp"
 #include "diagnosis/wording.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal::detail {

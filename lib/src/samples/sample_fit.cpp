@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "egocal/problem/problem.hpp"
-#include "egocal/samples/pose_sample.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 #include "samples/sample_sums.hpp"
 
 namespace egocal::detail {

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "egocal/certificate/certificate.hpp"
-#include "egocal/solvers/dual.hpp"
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "certificate/assess.hpp"
-#include "egocal/solvers/solution.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal::detail {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "egocal/geometry/dual_quaternion.hpp"
-#include "egocal/problem/constraints.hpp"
+#include "egocal/problem/cost.hpp"
 
 namespace egocal::detail {
 

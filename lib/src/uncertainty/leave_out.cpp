@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/uncertainty/leave_out.hpp"
 
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
 #include "uncertainty/tangent_form.hpp"

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "egocal/solvers/planar.hpp"
+#include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"

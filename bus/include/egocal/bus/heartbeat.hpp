@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -24,12 +25,23 @@ struct Identity {
   std::int32_t pid = 0;  ///< 0: of this process
 };
 
-/// Sends status_t once a second and on change (at most every 50 ms), and receives those of the others. A
-/// namesake is answered at once, so that two processes of one name learn of each other within milliseconds.
-/// Where a status cannot be sent the next one reports it; nothing here ever ends the process.
+/// Study: tests/bus/test_loop.cpp; docs/processes.md has what a rig of 20 sensors sends.
+struct HeartbeatOptions {
+  std::chrono::nanoseconds period{1'000'000'000};  ///< between statuses: what a person who watches expects
+  /// Least time between statuses that changes cause [us]: twenty a second are more than any eye follows.
+  std::int64_t least_distance_us = 50'000;
+  /// Counters of one process; further reasons are counted as "rejected: other". A status of 60 fits one
+  /// datagram.
+  std::size_t most_counters = 60;
+};
+
+/// Sends status_t every period and on change (at most every least_distance_us), and receives those of the
+/// others. A namesake is answered at once, so that two processes of one name learn of each other within
+/// milliseconds. Where a status cannot be sent the next one reports it; nothing here ever ends the process.
 class Heartbeat {
  public:
-  Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds timeout);
+  Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds timeout,
+            const HeartbeatOptions& options = {});
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
   /// end(), without before_publish().
@@ -42,7 +54,7 @@ class Heartbeat {
 
   /// A count that goes out with every status; stays valid.
   std::int64_t& counter(const std::string& name) { return counters_[name]; }
-  /// "rejected: <reason>", bounded in number: beyond 60 reasons they are counted as "rejected: other".
+  /// "rejected: <reason>", bounded in number: beyond most_counters they are counted as "rejected: other".
   void reject(const std::string& reason);
 
   void set_state(State state);
@@ -71,6 +83,7 @@ class Heartbeat {
 
   Loop& loop_;
   Identity identity_;
+  HeartbeatOptions options_;
   std::int64_t timeout_us_;
   std::int64_t unsettled_us_;  ///< when the network was away last, or the start
   std::int64_t run_;

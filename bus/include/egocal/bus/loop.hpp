@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -31,6 +32,20 @@ struct LoopOptions {
   bool require_network = true;
   /// Name of this host in messages; empty: the machine's own.
   std::string host{};
+
+  // Study of these: bench_processes and tests/bus/test_loop.cpp; docs/processes.md.
+  /// Longest that messages are handled before timers, signals and the work on the newest ones get their turn.
+  std::chrono::nanoseconds longest_batch{5'000'000};
+  /// And most messages, where the clock stands still meanwhile.
+  int most_in_batch = 10'000;
+  /// The transport's own buffer is emptied into the queue this often meanwhile: a slow handler of one channel
+  /// does not cost messages of another.
+  std::chrono::nanoseconds drain_period{1'000'000};
+  /// The network is looked at this often: a cable that is plugged in again is noticed as fast as a person
+  /// looks up.
+  std::chrono::nanoseconds network_period{1'000'000'000};
+  /// Channels whose undecodable messages are counted by name; a forger can invent any number of them.
+  std::size_t most_undecodable = 64;
 };
 
 /// What the loop could not deliver, since it was made.
@@ -90,7 +105,8 @@ class Loop {
         queue_capacity);
   }
 
-  /// Messages that were not what their channel promises, by channel; beyond 64 channels under "other".
+  /// Messages that were not what their channel promises, by channel; beyond LoopOptions::most_undecodable
+  /// under "other".
   const std::map<std::string, std::int64_t>& undecodable() const { return undecodable_; }
   void count_undecodable(const std::string& channel);
 

@@ -10,7 +10,6 @@
 #include "egocal/geometry/dual_quaternion.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/problem/ground_plane.hpp"
 #include "egocal/problem/problem.hpp"
 
 namespace egocal::bus {

@@ -45,11 +45,23 @@ struct StreamLine {
   std::string text;
 };
 
+/// Study: tests/bus/test_stream_watch.cpp.
+struct StreamWatchOptions {
+  std::int64_t rate_window_us = 2'000'000;  ///< the rate is counted over this: two messages of 1 Hz [us]
+  /// Times of a stream are compared with the clock after this long [us]: a wrong unit is off by a thousand.
+  std::int64_t pace_window_us = 3'000'000;
+  /// Messages in a row with the same time: five are no accident.
+  std::int64_t most_at_same_time = 5;
+  std::int64_t silent_us = 2'000'000;  ///< a stream not heard for this long is silent [us]
+  std::size_t most_others = 64;        ///< channels that no sensor names: a bound on memory
+  std::size_t most_refusals = 16;      ///< kinds, of one channel: a bound on memory
+};
+
 /// Watches the channels of a rig, and others that carry odometry where a sensor is missed. Bounded in memory
 /// whatever arrives. Times are those of the loop's clock [us].
 class StreamWatch {
  public:
-  explicit StreamWatch(const std::vector<Sensor>& sensors);
+  explicit StreamWatch(const std::vector<Sensor>& sensors, const StreamWatchOptions& options = {});
 
   /// A message of any channel. Returns a refusal that is the first of its kind on a sensor's channel.
   std::optional<Refusal> hear(const std::string& channel, Bytes bytes, std::int64_t mono_us);
@@ -60,9 +72,7 @@ class StreamWatch {
   /// Some sensor has not been heard for silent_us: what others send is worth a look.
   bool misses_any(std::int64_t mono_us) const;
 
-  static constexpr std::size_t most_others = 64;
-  static constexpr std::size_t most_refusals = 16;  ///< kinds, of one channel
-  static constexpr std::int64_t silent_us = 2'000'000;
+  const StreamWatchOptions& options() const { return options_; }
 
  private:
   struct Counting {
@@ -70,10 +80,11 @@ class StreamWatch {
     std::int64_t first_time_us = 0, first_mono_us = 0, last_time_us = -1;
     std::int64_t at_same_time = 0;
   };
-  static void count(HeardStream& stream, Counting& counting, std::int64_t mono_us);
+  void count(HeardStream& stream, Counting& counting, std::int64_t mono_us) const;
   std::optional<Refusal> examine(HeardStream& stream, Counting& counting, const Sensor& sensor, Bytes bytes,
                                  std::int64_t mono_us);
 
+  StreamWatchOptions options_;
   std::vector<SensorStream> sensors_;
   std::vector<Counting> counting_;  ///< of the sensors
   std::map<std::string, HeardStream> others_;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string_view>
 
-#include "egocal/problem/constraints.hpp"
+#include "egocal/problem/cost.hpp"
 
 namespace egocal {
 

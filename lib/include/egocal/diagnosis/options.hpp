@@ -33,6 +33,8 @@ struct RobustFitOptions {
 /// Search for the clock of b.
 struct ClockSearchOptions {
   std::size_t grid = 1200;  ///< points of the turning rates that are correlated, at most
+  /// Instants that each trial of a clock looks at, about: ten for each motion that is compared.
+  std::size_t instants = 7000;
   double widest = 60;       ///< offsets up to this are looked for, and up to a quarter of the drive [s]
   std::size_t pieces = 6;   ///< of the drive, whose own offsets show the rate
   double most_rate = 0.02;  ///< a clock that is wrong by more is not believed [s/s]; crystals are within 1e-4
@@ -105,6 +107,11 @@ struct DiagnosisOptions {
   /// Residual at the answer as a part of the typical motion. Clean drives with a noise of a tenth of every
   /// single motion stay below 0.35; streams that do not belong together are at 1 and more.
   double doubtful_misfit = 0.45, contradictory_misfit = 0.7;
+  /// Half of the motions may contradict the answer where outliers do: the better third then fits as well as
+  /// noise of a tenth of every motion allows (0.2). An answer is doubtful where more than half_contradicts of
+  /// the median motion is unexplained, and more than not_outliers of the motions at the answer. Clean drives
+  /// of the study stay below 0.25 in the median.
+  double half_contradicts = 0.5, not_outliers = 0.25;
   /// Correlation of the turning of both streams below which they are called unrelated, where nothing fits
   /// either.
   double unrelated_correlation = 0.5;

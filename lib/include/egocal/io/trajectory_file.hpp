@@ -6,10 +6,34 @@
 #include <string>
 #include <vector>
 
-#include "egocal/io/recording.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal {
+
+/// What a file itself does not say. The defaults need no setting for most files.
+struct ReadOptions {
+  std::string times_file;  ///< KITTI: one time a line [s]
+  /// Names of the columns of a table, in order and separated by commas, where it has no header or one that is
+  /// not understood: t x y z qw qx qy qz, or roll pitch yaw, yaw, latitude longitude height; `-` skips one.
+  /// A unit may follow in brackets: t[ns], yaw[deg].
+  std::string columns;
+  double rate = 0;  ///< poses without times: their rate [Hz]; 0: 10 is assumed and reported in the notes
+};
+
+/// What a recording has lost: nothing is dropped without being counted here.
+struct ReadLosses {
+  std::uint64_t regions = 0;  ///< damaged places that were skipped
+  std::uint64_t bytes = 0;    ///< in them, as far as they could be counted
+  bool truncated = false;     ///< the file ends in the middle of a record: a recorder that was killed
+  bool checksum = false;      ///< the checksum of the whole data differs, and nothing shows where
+  std::uint64_t refused = 0;  ///< messages or rows that could be read but hold no pose: NaN, zero quaternion
+  std::string first_refused;  ///< why the first of them was refused, and where
+
+  bool any() const { return regions > 0 || truncated || checksum || refused > 0; }
+};
+
+/// "2 damaged regions (381 bytes) skipped, the end is cut off"; empty where nothing was lost.
+std::string losses_in_words(const ReadLosses& losses);
 
 /// A trajectory with what had to be assumed, repaired or dropped to get it.
 struct TrajectoryReading {
@@ -30,14 +54,8 @@ struct TrajectoryReading {
 /// topic where several streams hold poses it names them all.
 TrajectoryReading read_trajectory_file(const std::string& name, const ReadOptions& options = {});
 
-/// The same of a recording that is open already.
-TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic);
-
 /// The poses alone. times_file: for KITTI.
 Trajectory read_trajectory(const std::string& name, const std::string& times_file = "");
-
-/// Sorts by time and keeps the first of equal times; counts both.
-void put_in_order(TrajectoryReading& reading);
 
 /// Writes TUM. The file appears whole or not at all.
 void write_tum(const std::string& file, const Trajectory& trajectory);

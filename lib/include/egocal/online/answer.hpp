@@ -10,7 +10,7 @@
 
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/problem.hpp"
-#include "egocal/solvers/solution.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 
 #include "egocal/pairing/trajectory.hpp"
@@ -39,6 +39,16 @@ struct TimeOffsetOptions {
   /// Spacing of the grid on which the angles of both streams are correlated: the period of the slower stream,
   /// within these bounds, and at least a quarter of that period [s]. The refinement does the rest.
   double finest_grid = 0.05, coarsest_grid = 0.25;
+  /// The stamps of the slower stream give the instants of the refinement: those of a only where b's period is
+  /// below this part of a's. Streams of one rate jitter by a few percent.
+  double least_period_ratio = 0.9;
+  /// Differences of angles and lengths that are rounding alone [rad, m], as CongruenceOptions has them.
+  double angle_floor = 1e-6, length_floor = 1e-5;
+  /// A pose is a glitch only where the way over it is longer by more than this part of the way past it.
+  double least_detour = 0.5;
+  /// Stamps that are further apart than the known time of the drive times this are damaged: only the part
+  /// with most poses is looked at, so that memory does not grow with the span of the stamps.
+  std::int64_t most_sparse = 16;
   /// Rounds in which glitches are removed: of neighbouring ones only the furthest is found in each.
   int glitch_rounds = 4;
   /// Parts of a long drive that are searched one after the other, outwards from the best [s], and how fast
@@ -80,33 +90,8 @@ std::int64_t on_clock_of_a(const TimeOffset& offset, std::int64_t time_us);
 /// The poses of b with stamps on the clock of a.
 Trajectory on_clock_of_a(const TimeOffset& offset, Trajectory b);
 
-/// The search for a time offset in small pieces, so that it can be spread over the poses of a live stream.
-/// The result depends on the trajectories and options alone, not on how the work is divided.
-///
-/// The angle that a rigid body turns by between two instants is the same for every sensor on it, whatever the
-/// extrinsic: correlated over all offsets at which the streams overlap, it finds the offset of clocks that
-/// share nothing. Then the certified minimum of the cost (18) as a function of offset and drift is minimised
-/// over motions that are not outliers. Time and memory are bounded by the number of poses (n log n), never by
-/// the span of their stamps.
-class TimeOffsetSearch {
- public:
-  /// Poses that are not valid, or whose stamps do not increase, are skipped.
-  TimeOffsetSearch(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options = {});
-  ~TimeOffsetSearch();
-  TimeOffsetSearch(TimeOffsetSearch&&) noexcept;
-  TimeOffsetSearch& operator=(TimeOffsetSearch&&) noexcept;
-
-  /// Does the next pieces of work, of about `work` poses together. Returns whether the search is finished.
-  bool step(std::size_t work);
-  /// Does what is left. Empty where the streams are too short, never turn or do not match.
-  std::optional<TimeOffset> finish();
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-/// The whole search at once.
+/// The time offset of two trajectories. Empty where they are too short, never turn or do not match.
+/// Deterministic. Thread-safe.
 std::optional<TimeOffset> estimate_time_offset(const Trajectory& a, const Trajectory& b,
                                                const TimeOffsetOptions& options = {});
 

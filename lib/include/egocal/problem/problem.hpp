@@ -5,10 +5,35 @@
 #include <optional>
 #include <vector>
 
+#include "egocal/geometry/dual_quaternion.hpp"
 #include "egocal/problem/cost.hpp"
-#include "egocal/problem/ground_plane.hpp"
 
 namespace egocal {
+
+/// The ground seen from a sensor in Hesse normal form: normal . x = distance, the unit normal pointing up, so
+/// distance is minus the mounting height [m].
+struct GroundPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double distance = 0;
+};
+EGOCAL_SAME_LAYOUT(GroundPlane)
+
+/// Throws Error where the normal is not of length one (to 1e-3; it is then normalised) or a value is not
+/// finite.
+GroundPlane validated(const GroundPlane& plane);
+
+/// G of (23): the pose of the plane's frame (z up, origin on the ground below the sensor) in the sensor's
+/// frame, with the least rotation that takes e_z to the normal.
+DualQuaternion plane_frame(const GroundPlane& plane);
+
+/// V_p = G^-1 V G of (24a), (24b): the motion as seen from the plane's frame.
+DualQuaternion planar_motion(const DualQuaternion& motion, const DualQuaternion& G);
+/// T = G_a T_p G_b^-1 of (27), T_p the pose of plane frame b in plane frame a.
+DualQuaternion extrinsic_from_planar(const DualQuaternion& T_p, const DualQuaternion& G_a,
+                                     const DualQuaternion& G_b);
+/// T_p = G_a^-1 T G_b of (24c), with the parts (25) sets to zero set to zero.
+DualQuaternion planar_from_extrinsic(const DualQuaternion& T, const DualQuaternion& G_a,
+                                     const DualQuaternion& G_b);
 
 enum class Mode {
   spatial,  ///< six degrees of freedom

@@ -10,10 +10,38 @@
 #include <vector>
 
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/pairing/options.hpp"
+#include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/problem.hpp"
-#include "egocal/rig/consistent_set.hpp"
 
 namespace egocal {
+
+/// The motions of two sensors of a rig as a cost matrix. Sensors are numbered from 0.
+struct RigEdge {
+  std::size_t a = 0, b = 0;
+  Matrix8d Q;  ///< cost_matrix() of T_a_b, 3-D, lengths in metres, any weight
+};
+EGOCAL_SAME_LAYOUT(RigEdge)
+
+/// Poses of all sensors that fit all pairs best.
+struct ConsistentSet {
+  /// False where the pairs do not connect all sensors, or a cost matrix is not usable; nothing else is set.
+  bool solved = false;
+  std::vector<DualQuaternion> poses;  ///< of every sensor in sensor 0
+  /// Sum over the pairs of J / J_min: each pair's own minimum counts 1, so that noisy pairs count less.
+  double cost = 0;
+  /// What the pairs would cost one by one, less a margin: `cost` lies above by what the loops do not close.
+  double pairwise_bound = 0;
+  /// No set of poses has a lower cost than this. Equal to pairwise_bound where nothing better is proven.
+  double lower_bound = 0;
+  double rounding = 0;  ///< of the cost: what double precision cannot tell apart
+  /// Globally optimal: cost - lower_bound is at most twice the rounding (docs/rigs.md has the proof).
+  bool certified = false;
+};
+
+/// The joint minimum over all pairs and its proof. A certificate needs a pair of sensor 0 with every other
+/// sensor, and motions that show all directions. Deterministic, thread-safe, throws nothing.
+ConsistentSet solve_consistent_set(std::size_t sensors, std::span<const RigEdge> edges);
 
 /// The motions of two sensors of a rig. Sensors are numbered from 0.
 struct RigPair {
@@ -71,5 +99,20 @@ struct RigSolution {
 /// All pairs, all loops of three, and the one consistent set of extrinsics that fits all pairs best. Throws
 /// Error where a sensor has no pair with sensor 0, or a pair has no motions. Deterministic.
 RigSolution solve_rig(std::size_t sensors, std::span<const RigPair> pairs, const RigOptions& options = {});
+
+struct RigMotionsOptions {
+  int stride = 1;  ///< instants of the slowest sensor in one motion
+  Balance balance;
+  /// Poses further apart are not interpolated between [s], and no motion spans a pause between instants that
+  /// is longer, unless all are.
+  double max_gap = 0.5;
+  std::vector<GroundPlane> planes;  ///< one a sensor: planar mode; empty: 3-D
+  ScreeningOptions screening;       ///< a motion that is not congruent in one pair is left out of all
+};
+
+/// All pairs of a rig, with motions between the same instants for all of them: those of the slowest sensor,
+/// the other poses interpolated. The errors of the pairwise answers are then nearly dependent, and the loops
+/// close to second order. Trajectories: in the order of time, on one clock.
+std::vector<RigPair> rig_motions(std::span<const Trajectory> sensors, const RigMotionsOptions& options = {});
 
 }  // namespace egocal

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "egocal/io/read_losses.hpp"
+#include "egocal/io/trajectory_file.hpp"
 #include "io/bytes/byte_source.hpp"
 
 namespace egocal::detail {

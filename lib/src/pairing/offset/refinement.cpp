@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "egocal/pairing/instant.hpp"
-#include "egocal/solvers/dual.hpp"
+#include "egocal/solvers/global.hpp"
 #include "pairing/offset/turning.hpp"
 
 namespace egocal::detail {
@@ -83,7 +83,7 @@ Refinement::Refinement(const Trajectory& a, const Trajectory& b, const TimeOffse
       done_(std::move(done)) {
   const auto period_a = static_cast<double>(median_period_us(a_)),
              period_b = static_cast<double>(median_period_us(b_));
-  keys_are_b_ = period_b >= 0.9 * period_a;
+  keys_are_b_ = period_b >= options_.least_period_ratio * period_a;
   period_us_ = std::max(period_a, period_b);
 }
 
@@ -180,11 +180,11 @@ void Refinement::find_outliers() {
   best_of_three([this](std::size_t which, std::size_t k) {
     return std::abs(motions_[k].angle - others_[which][k].angle);
   });
-  mark_outliers(sizes, differences, options_.outlier, 1e-6, inlier_);
+  mark_outliers(sizes, differences, options_.outlier, options_.angle_floor, inlier_);
   if (!q_) return;
   const Balance balance{1, options_.translation_weight};
   best_of_three([&](std::size_t which, std::size_t k) { return residual(pair(which, k), balance, *q_); });
-  mark_outliers(sizes, differences, options_.outlier, 1e-6, inlier_);
+  mark_outliers(sizes, differences, options_.outlier, options_.angle_floor, inlier_);
 }
 
 void Refinement::accumulate(std::size_t begin, std::size_t end) {

@@ -69,7 +69,7 @@ Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us) {
   return result;
 }
 
-Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us) {
+Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us, std::int64_t most_sparse) {
   std::int64_t known_us = 0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const std::int64_t gap = trajectory[i].time_us - trajectory[i - 1].time_us;
@@ -77,7 +77,7 @@ Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us) {
   }
   std::size_t begin = 0, best_begin = 0, best_end = 0;
   for (std::size_t end = 1; end <= trajectory.size(); ++end) {
-    while (trajectory[end - 1].time_us - trajectory[begin].time_us > 16 * known_us) ++begin;
+    while (trajectory[end - 1].time_us - trajectory[begin].time_us > most_sparse * known_us) ++begin;
     if (end - begin > best_end - best_begin) {
       best_begin = begin;
       best_end = end;
@@ -103,18 +103,20 @@ Detour detour(const Trajectory& trajectory, std::size_t i) {
 }
 
 Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Detour>& detours,
-                            double outlier) {
+                            const TimeOffsetOptions& options) {
   std::vector<double> angles, lengths;
   for (const Detour& one : detours) {
     angles.push_back(one.angle);
     lengths.push_back(one.length);
   }
   if (angles.size() < 3) return trajectory;
-  const double angle = outlier * median(angles), length = outlier * median(lengths);
+  const double angle = options.outlier * median(angles), length = options.outlier * median(lengths);
   // below 1 how far a pose is off by angle or length, whichever is further
   const auto excess = [&](const Detour& one) {
-    const double by_angle = one.angle / std::max({angle, 0.5 * one.past_angle, 1e-6});
-    const double by_length = one.length / std::max({length, 0.5 * one.past_length, 1e-5});
+    const double by_angle =
+        one.angle / std::max({angle, options.least_detour * one.past_angle, options.angle_floor});
+    const double by_length =
+        one.length / std::max({length, options.least_detour * one.past_length, options.length_floor});
     return std::max(by_angle, by_length);
   };
   Trajectory result;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "egocal/pairing/time_offset.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "pairing/offset/correlation.hpp"
 
@@ -18,9 +19,9 @@ std::int64_t median_period_us(const Trajectory& trajectory);
 /// poses.
 Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us);
 
-/// The part with most poses among those that last no longer than 16 times what is known: a stray stamp far
-/// away does not make a grid longer. Known is what lies between poses at most max_gap_us apart.
-Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us);
+/// The part with most poses among those that last no longer than most_sparse times what is known: a stray
+/// stamp far away does not make a grid longer. Known is what lies between poses at most max_gap_us apart.
+Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us, std::int64_t most_sparse);
 
 /// How much longer the way over a pose is than the way past it.
 struct Detour {
@@ -30,9 +31,10 @@ struct Detour {
 /// Of pose i of the trajectory; zero for the first and the last.
 Detour detour(const Trajectory& trajectory, std::size_t i);
 
-/// Without the single poses that lie far off the way of their neighbours: `outlier` times further than is
-/// typical, and more than half of what the sensor moved past them.
-Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Detour>& detours, double outlier);
+/// Without the single poses that lie far off the way of their neighbours: options.outlier times further than
+/// is typical, and more than options.least_detour of what the sensor moved past them.
+Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Detour>& detours,
+                            const TimeOffsetOptions& options);
 
 /// Number of points of a grid over the trajectory.
 std::size_t grid_size(const Trajectory& trajectory, std::int64_t step_us);

@@ -5,7 +5,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+
+#include "egocal/problem/cost.hpp"
 
 namespace egocal {
 
@@ -29,6 +32,28 @@ struct Rejections {
   void add(Rejection reason, std::uint64_t count = 1) {
     by_reason[static_cast<std::size_t>(reason)] += count;
   }
+};
+
+/// What became of the poses.
+struct PairingCounts {
+  std::uint64_t poses_a = 0, poses_b = 0;  ///< handed in
+  std::uint64_t synchronised = 0;          ///< instants for which both poses are known
+  std::uint64_t matched = 0;               ///< motion pairs in the statistics (of the chosen stride)
+  std::uint64_t outliers =
+      0;  ///< motion pairs (of the chosen stride) that contradict the others; may come back
+  /// Steps across which an odometry jumps, as a sum over strides finds them (Choice): no motion spans them.
+  std::uint64_t jumps = 0;
+  std::array<std::uint64_t, static_cast<std::size_t>(Rejection::count_)> rejected{};
+};
+
+/// The setting that is in force and why.
+struct Choice {
+  int stride = 1;   ///< the best single one
+  Balance balance;  ///< of that stride
+  /// The problem is a sum of motions of many strides, each weighted by its residuals. So long they are in the
+  /// mean [steps]; 0: the motions of `stride` alone.
+  double mean_stride = 0;
+  std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
 };
 
 }  // namespace egocal

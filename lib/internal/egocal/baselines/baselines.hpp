@@ -6,7 +6,7 @@
 #include <string>
 
 #include "egocal/problem/cost.hpp"
-#include "egocal/solvers/solution.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "egocal/pairing/counts.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
+#include "egocal/pairing/outcome.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal {

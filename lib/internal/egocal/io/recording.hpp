@@ -9,20 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "egocal/io/read_losses.hpp"
+#include "egocal/io/trajectory_file.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal {
-
-/// What a file itself does not say. The defaults need no setting for most files.
-struct ReadOptions {
-  std::string times_file;  ///< KITTI: one time a line [s]
-  /// Names of the columns of a table, in order and separated by commas, where it has no header or one that is
-  /// not understood: t x y z qw qx qy qz, or roll pitch yaw, yaw, latitude longitude height; `-` skips one.
-  /// A unit may follow in brackets: t[ns], yaw[deg].
-  std::string columns;
-  double rate = 0;  ///< poses without times: their rate [Hz]; 0: 10 is assumed and reported in the notes
-};
 
 /// One stream of a recording: a topic of a bag, one transform of a tf topic, a channel of a log, or the only
 /// one of a text file.
@@ -77,5 +67,11 @@ struct RecordingName {
   std::string file, topic;
 };
 RecordingName parse_recording_name(const std::string& text);
+
+/// As read_trajectory_file(), of a recording that is open already.
+TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic);
+
+/// Sorts by time and keeps the first of equal times; counts both.
+void put_in_order(TrajectoryReading& reading);
 
 }  // namespace egocal

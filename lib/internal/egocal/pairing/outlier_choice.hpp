@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "egocal/pairing/motion_pairing.hpp"
-#include "egocal/robust/outlier_proof.hpp"
+#include "egocal/robust/prove_outliers.hpp"
 
 namespace egocal {
 

@@ -9,25 +9,14 @@
 
 #include "egocal/pairing/accumulator.hpp"
 #include "egocal/pairing/clock_offset.hpp"
-#include "egocal/pairing/counts.hpp"
 #include "egocal/pairing/options.hpp"
+#include "egocal/pairing/outcome.hpp"
 #include "egocal/pairing/screening.hpp"
 #include "egocal/pairing/synchroniser.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/problem.hpp"
 
 namespace egocal {
-
-struct PairingCounts {
-  std::uint64_t poses_a = 0, poses_b = 0;  ///< handed in
-  std::uint64_t synchronised = 0;          ///< instants for which both poses are known
-  std::uint64_t matched = 0;               ///< motion pairs in the statistics (of the chosen stride)
-  std::uint64_t outliers =
-      0;  ///< motion pairs (of the chosen stride) that contradict the others; may come back
-  /// Steps across which an odometry jumps, as a sum over strides finds them (Choice): no motion spans them.
-  std::uint64_t jumps = 0;
-  std::array<std::uint64_t, static_cast<std::size_t>(Rejection::count_)> rejected{};
-};
 
 /// Everything that a MotionPairing remembers: the state of each stage. Bounded whatever the length of the
 /// drive. Continuing from a copy gives the same bits as never having stopped.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "egocal/pairing/options.hpp"
-#include "egocal/pairing/time_offset.hpp"
+#include "egocal/pairing/time_offset_search.hpp"
 
 namespace egocal {
 

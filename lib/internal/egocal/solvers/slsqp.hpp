@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "egocal/solvers/solution.hpp"
+#include "egocal/solvers/global.hpp"
 
 namespace egocal {
 

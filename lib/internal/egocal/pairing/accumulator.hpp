@@ -9,23 +9,13 @@
 #include <vector>
 
 #include "egocal/estimation/stride_sums.hpp"
-#include "egocal/pairing/counts.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
+#include "egocal/pairing/outcome.hpp"
 #include "egocal/problem/problem.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 
 namespace egocal {
-
-/// The setting that is in force and why.
-struct Choice {
-  int stride = 1;   ///< the best single one
-  Balance balance;  ///< of that stride
-  /// The problem is a sum of motions of many strides, each weighted by its residuals. So long they are in the
-  /// mean [steps]; 0: the motions of `stride` alone.
-  double mean_stride = 0;
-  std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
-};
 
 /// All that an Accumulator remembers. Bounded; continuing from a copy gives the same bits.
 struct AccumulatorState {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "egocal/problem/problem.hpp"
+#include "egocal/scale/scale_solution.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 
 namespace egocal {
@@ -33,30 +34,6 @@ struct ScaleOptions {
   /// The scale counts as observable where noise explains at most this part of what shows it. A quarter leaves
   /// a bias below 13 % with noise on both sides.
   double most_noise_share = 0.25;
-};
-
-/// The scale and the extrinsic that minimise the cost together.
-struct ScaleSolution {
-  double scale = 1;  ///< what the translations of `side` are multiplied by
-  DualQuaternion q;  ///< the minimiser of (18) at that scale: T_a_b (planar mode: T_p)
-  double cost = 0;   ///< J
-  Balance balance;   ///< in force at that scale: the q above minimises cost_matrix(at_scale(...), balance)
-  double lower_bound = 0;  ///< no scale in the range and no extrinsic has a cost below it, up to rounding
-  double gap = 0;          ///< cost - lower_bound, >= 0
-  double rounding = 0;     ///< costs that differ by less than this are equal
-  /// No scale outside of these two has as low a cost.
-  double least_scale = 0, most_scale = 0;
-  bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale
-  bool at_limit = false;   ///< the best scale is the end of the range
-  double stddev = 0;       ///< by the jack-knife over blocks, with `attenuation`; infinite where unknown
-  /// Errors in variables: the true scale lies within this part of the scale of it, if all translation noise
-  /// is in one sensor or the other; with noise as ScaleOptions::noise assumes nothing of it is left.
-  double attenuation = 0;
-  /// Curvature of the cost over the scale against that at a fixed extrinsic, in [0, 1]: 0 shows no scale
-  /// (pure rotation, or one circle at constant speed, where another lever arm explains another scale).
-  double observability = 0;
-  bool observable = false;
-  int solves = 0;  ///< certified solves of the branch and bound
 };
 
 /// Global minimum over scale and extrinsic by branch and bound over the scale (docs/scale.md has the proof).

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "egocal/pairing/congruence.hpp"
-#include "egocal/pairing/counts.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
+#include "egocal/pairing/outcome.hpp"
 
 namespace egocal {
 
