@@ -155,8 +155,8 @@ Table hand_eye() {
                                         {"visp_to-hand", "2.3 mm"},
                                         {"aubo32", "3.7 mm"},
                                         {"scara", "fail"}}) {
-    const auto read = [&](const char* file) {
-      return testing::real_trajectory(std::string("hand_eye/") + name + "/" + file);
+    const auto read = [&, set = name](const char* file) {
+      return testing::real_trajectory(std::string("hand_eye/") + set + "/" + file);
     };
     const SampleCalibration found =
         calibrate_samples(match_samples(read("hand.tum"), read("eye.tum")).samples);
