@@ -35,8 +35,14 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
 
 /// single: motions of one stride, which the diagnosis takes apart.
 Answered answered(const Calibration& calibration, Problem single) {
-  return {to_dual_quaternion(calibration.T_a_b), calibration.observability, calibration.counts,
-          std::move(single), calibration.choice.stride};
+  Answered result;
+  result.T_a_b = to_dual_quaternion(calibration.T_a_b);
+  result.observability = calibration.observability;
+  result.counts = calibration.counts;
+  result.problem = std::move(single);
+  result.stride = calibration.choice.stride;
+  result.minimised = calibration.problem;
+  return result;
 }
 
 Calibration judged(Calibration calibration, Diagnosis diagnosis) {

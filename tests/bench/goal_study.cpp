@@ -74,6 +74,8 @@ std::vector<Look> looks_at(const Kind& kind, std::uint64_t seed, int poses, int 
     look.answered.T_a_b = answer.T_a_b;
     look.answered.observability = answer.observability;
     look.answered.problem = pairing.single_stride_problem();
+    look.answered.minimised = problem;
+    look.answered.platform = kind.terrain == Terrain::free ? Platform::handheld : Platform::car;
     look.answered.seconds = look.seconds;
     const detail::Vector6d error = detail::frame_a_difference(streams.T, answer.T_a_b);
     for (std::size_t k = 0; k < 6; ++k) look.error[k] = error[static_cast<Eigen::Index>(k)];
@@ -93,10 +95,21 @@ Six rms_at(const std::vector<std::vector<Look>>& drives, std::size_t look) {
   return rms;
 }
 
-bool within(const Six& x, const GoalOptions& goal, double factor) {
+/// What is called true: the error of every direction is within 1.96 goals.
+constexpr double interval = 1.96;
+
+bool within(const Six& x, const GoalOptions& goal) {
   for (std::size_t k = 0; k < 6; ++k)
-    if (!(std::abs(x[k]) <= factor * (k < 3 ? goal.translation : goal.rotation))) return false;
+    if (!(std::abs(x[k]) <= interval * (k < 3 ? goal.translation : goal.rotation))) return false;
   return true;
+}
+
+/// How probable that is where the errors are normal and have these standard deviations.
+double chance_within(const Six& stddev, const GoalOptions& goal) {
+  double chance = 1;
+  for (std::size_t k = 0; k < 6; ++k)
+    chance *= std::erf(interval * (k < 3 ? goal.translation : goal.rotation) / (stddev[k] * std::sqrt(2.0)));
+  return chance;
 }
 
 Goal goal_at(const Look& look, const GoalOptions& goal) {
@@ -136,9 +149,11 @@ Tally study(const Kind& kind, int count, int poses, int looks, bool verbose) {
   const GoalOptions goal{*std::max_element(reached.begin() + 3, reached.end()),
                          *std::max_element(reached.begin(), reached.begin() + 3),
                          {}};
-  // the first time from which on the errors of all drives keep within the goal
-  std::size_t first_true = half;
-  while (first_true > 0 && within(rms_at(drives, first_true - 1), goal, 1)) --first_true;
+  // It became true when it is to be expected in 95 % of the drives.
+  std::size_t first_true = 0;
+  while (first_true + 1 < static_cast<std::size_t>(looks) &&
+         chance_within(rms_at(drives, first_true), goal) < 0.95)
+    ++first_true;
   Tally tally;
   for (const std::vector<Look>& drive : drives) {
     ++tally.drives;
@@ -147,7 +162,7 @@ Tally study(const Kind& kind, int count, int poses, int looks, bool verbose) {
     while (said < drive.size() && !goal_at(drive[said], goal).reached) ++said;
     if (said == drive.size()) continue;
     ++tally.said;
-    tally.right += within(drive[said].error, goal, 1.96);
+    tally.right += within(drive[said].error, goal);
     tally.in_time += drive[said].seconds <= 1.5 * drive[first_true].seconds;
     if (said < 3) continue;
     const Look& middle = drive[(said + 1) / 2 - 1];

@@ -3,9 +3,11 @@
 #include "diagnosis/goal.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/goal_spread.hpp"
 #include "diagnosis/manoeuvres.hpp"
 
 namespace egocal {
@@ -15,8 +17,8 @@ namespace detail {
 namespace {
 
 /// Spreads fall with this power of the time: faster than with the square root, as longer motions count with
-/// time. 0.6 to 0.8 in the drives of tests/bench/goal_study.cpp.
-constexpr double spread_exponent = 2.0 / 3;
+/// time. With it the median of the estimated to the real time left is one in tests/bench/goal_study.cpp.
+constexpr double spread_exponent = 0.63;
 
 }  // namespace
 
@@ -28,11 +30,12 @@ bool expected(const Answered& answered, std::size_t direction) {
 
 Goal goal_of(const Answered& answered, const GoalOptions& options) {
   constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+  const std::array<double, 6> spread = goal_spread(answered);
   std::vector<std::pair<double, std::size_t>> missing;
   for (std::size_t i = 0; i < 6; ++i) {
     if (!expected(answered, i)) continue;
     const double wanted = i < 3 ? options.translation : options.rotation;
-    const double stddev = answered.observability.observable[i] ? answered.observability.stddev[i] : INFINITY;
+    const double stddev = answered.observability.observable[i] ? spread[i] : INFINITY;
     if (!(stddev <= wanted)) missing.emplace_back(stddev / wanted, i);
   }
   std::sort(missing.begin(), missing.end(), [](const auto& x, const auto& y) {

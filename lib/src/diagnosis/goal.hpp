@@ -10,8 +10,8 @@ namespace egocal::detail {
 /// come from the ground planes.
 bool expected(const Answered& answered, std::size_t direction);
 
-/// Which directions are not known well enough yet, how long that takes at this driving (spreads fall with the
-/// square root of time), and the manoeuvre that helps most.
+/// Which directions are not known well enough yet, how long that takes at this driving, and the manoeuvre
+/// that helps most.
 Goal goal_of(const Answered& answered, const GoalOptions& options);
 
 }  // namespace egocal::detail

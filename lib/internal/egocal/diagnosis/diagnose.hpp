@@ -19,6 +19,7 @@ struct Answered {
   int stride = 1;                     ///< of its motions, in instants
   double seconds = 0;                 ///< that the motions took; 0: unknown
   Platform platform = Platform::car;  ///< where the goal names none
+  Problem minimised{};                ///< by T_a_b, where that is not `problem`; no blocks: it is
 };
 
 /// Whether the answer can be used, and if not, why: tries other readings of the streams, scale, clock, ground
