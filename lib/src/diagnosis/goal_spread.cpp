@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "egocal/problem/constraints.hpp"
+#include "egocal/problem/cost.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
 #include "uncertainty/frame_a.hpp"
 
