@@ -27,6 +27,16 @@ double quantile(std::vector<double>& values, double part) {
   return *at;
 }
 
+/// By which both sensors turn at least [rad].
+double smaller_angle(const Step& step) {
+  const double sine_a = step.a.real.tail<3>().norm(), sine_b = step.b.real.tail<3>().norm();
+  const DualQuaternion& smaller = sine_a < sine_b ? step.a : step.b;
+  // the sine of half an angle grows with the angle as long as that is below a half turn
+  if (step.a.real[0] > 0.5 && step.b.real[0] > 0.5)
+    return 2 * std::atan2(std::min(sine_a, sine_b), smaller.real[0]);
+  return std::min(screw_of(step.a).angle, screw_of(step.b).angle);
+}
+
 /// One component (rotation or translation) of all steps.
 struct Component {
   std::vector<double> size;      ///< the smaller of the two sensors', for a jump makes one of them large
@@ -72,7 +82,7 @@ class Judge {
   Judge(std::span<const Step> steps, const JumpOptions& options) : steps_(steps), options_(options) {
     for (const Step& step : steps) {
       const Pose a = to_pose(step.a), b = to_pose(step.b);
-      rotation_.size.push_back(std::min(screw_of(step.a).angle, screw_of(step.b).angle));
+      rotation_.size.push_back(smaller_angle(step));
       translation_.size.push_back(std::min(a.translation.norm(), b.translation.norm()));
       a_.push_back(a);
       b_.push_back(b);

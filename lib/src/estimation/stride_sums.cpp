@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "egocal/robust/consensus.hpp"
+#include "pairing/motions_between.hpp"
 
 namespace egocal {
 
@@ -49,8 +50,8 @@ StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& t
 }
 
 Step StrideSums::step(const JudgedInstant& from, const JudgedInstant& to) const {
-  Step result{motion_between(from.instant.a, to.instant.a), motion_between(from.instant.b, to.instant.b),
-              from.instant.chain == to.instant.chain};
+  const detail::MotionsOfBoth motions = detail::motions_between(from.instant, to.instant);
+  Step result{motions.a, motions.b, from.instant.chain == to.instant.chain};
   const double longest_us = options_.accumulator.stretch * static_cast<double>(to.index - from.index) *
                             static_cast<double>(state_.period_us);
   if (static_cast<double>(to.instant.time_us - from.instant.time_us) > longest_us) result.usable = false;

@@ -3,6 +3,7 @@
 #include "egocal/estimation/weighted_blocks.hpp"
 
 #include "egocal/estimation/stride_blocks.hpp"
+#include "problem/motion_square.hpp"
 
 namespace egocal {
 
@@ -25,14 +26,16 @@ void WeightedBlocks::add(std::uint64_t first_index, std::uint64_t last_index, co
   const auto first = static_cast<std::size_t>(first_index / state_.block_length);
   const auto last = static_cast<std::size_t>(last_index / state_.block_length);
   if (state_.left_out[first] != 0 || state_.left_out[last] != 0) return;
-  StrideCell cell;
-  (rotation_only ? cell.rotations : cell.motions).add(a, b);
-  Statistics motion;
-  add_weighted(motion, cell, weights.rotation, weights.translation);
-  state_.blocks[first] += motion;
+  const detail::MotionSquare motion =
+      detail::MotionSquare(a, b).weighted(weights.rotation, weights.translation, rotation_only);
+  const auto add = [&](Statistics& sum) {
+    motion.add_to(sum.dual_rows);
+    sum.weight += weights.translation;
+  };
+  add(state_.blocks[first]);
   if (first == last) return;
-  state_.blocks[last] += motion;
-  state_.shared += motion;
+  add(state_.blocks[last]);
+  add(state_.shared);
 }
 
 void WeightedBlocks::fill(Problem& problem) const {

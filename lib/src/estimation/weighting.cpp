@@ -29,6 +29,9 @@ constexpr double most_imbalance = 1e6;
 constexpr std::uint64_t least_motions = 6;
 /// Spreads below these are rounding: nothing is to be gained [rad, m].
 constexpr double least_rotation_spread = 1e-9, least_translation_spread = 1e-8;
+/// A motion of 128 steps with this part of the weight of a single step adds less than rounding to the sum,
+/// even where it is 128 times as long.
+constexpr double negligible_part = 1e-22;
 constexpr int rounds = 4;
 /// The same where a minimiser is known already.
 constexpr int later_rounds = 2;
@@ -130,11 +133,14 @@ double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
   return lambda;
 }
 
-/// Per motion, before rotation and translation are balanced.
+/// Per motion, before rotation and translation are balanced. Strides whose motions are lost in the rounding
+/// of the others are left out: most of them, where noise adds up from step to step.
 std::vector<double> shape(const Ladder& ladder, double lambda, const std::vector<double>& counts) {
   std::vector<double> weights;
-  for (std::size_t i = 0; i < ladder.size(); ++i)
-    weights.push_back(counts[i] > 0 ? ladder.width[i] * std::pow(lambda, ladder.strides[i] - 1) : 0);
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    const double part = std::pow(lambda, ladder.strides[i] - 1);
+    weights.push_back(counts[i] > 0 && part > negligible_part ? ladder.width[i] * part : 0);
+  }
   return weights;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "egocal/pairing/selection.hpp"
+#include "pairing/motions_between.hpp"
 
 namespace egocal {
 
@@ -97,8 +98,9 @@ std::optional<MotionPair> Accumulator::motion(const Instant& from, const Instant
     rejections.add(Rejection::gap);
     return std::nullopt;
   }
-  MotionPair pair{motion_between(from.a, to.a), motion_between(from.b, to.b), from.time_us, to.time_us, 1};
-  if (std::max(screw_of(pair.a).angle, screw_of(pair.b).angle) > options_.accumulator.most_rotation) {
+  const detail::MotionsOfBoth motions = detail::motions_between(from, to);
+  MotionPair pair{motions.a, motions.b, from.time_us, to.time_us, 1};
+  if (std::min(pair.a.real[0], pair.b.real[0]) < std::cos(0.5 * options_.accumulator.most_rotation)) {
     rejections.add(Rejection::too_much_rotation);
     return std::nullopt;
   }

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "statistics/order_statistic.hpp"
+
 namespace egocal {
 
 namespace {
@@ -37,68 +39,83 @@ Difference difference(const DualQuaternion& a, const DualQuaternion& b, const Co
 /// Of a normal distribution: its standard deviation by the lower quartile and by the median of absolute
 /// values.
 constexpr double deviations_per_quartile = 3.1386, deviations_per_median = 1.4826;
+/// A deviation is expected within these multiples of one that is known already.
+constexpr double lower = 0.7, upper = 1.4;
 
 /// Standard deviation of most of the values (absolute ones). It begins with a lower quartile: where a fifth
 /// of the poses is wrong, more than a third of the motions are, and nearly two thirds of interpolated ones.
 /// Then the median of what is near.
-double robust_deviation(std::vector<double> values) {
-  const auto at = [&values](std::size_t count, std::size_t place) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(place),
-                     values.begin() + static_cast<std::ptrdiff_t>(count));
-    return values[place];
-  };
-  double deviation = deviations_per_quartile * at(values.size(), values.size() / 4);
-  for (std::size_t i = 0, before = 0; i < 3; ++i) {
-    // the same order statistics as of sorted values, in linear time
-    const auto end = std::partition(values.begin(), values.end(),
-                                    [limit = 4 * deviation](double value) { return value <= limit; });
-    const auto near = static_cast<std::size_t>(end - values.begin());
-    if (near == before) break;  // the same values, and the same median
-    before = near;
-    deviation = deviations_per_median * at(near, near / 2);
+/// before: what it was the last time, to find it faster.
+double robust_deviation(std::span<const double> values, double before) {
+  const detail::Expected quartile{lower * before / deviations_per_quartile,
+                                  upper * before / deviations_per_quartile};
+  double deviation = deviations_per_quartile * detail::order_statistic(values, values.size() / 4, quartile);
+  for (std::size_t i = 0, last = 0; i < 3; ++i) {
+    std::size_t near = 0;
+    for (const double value : values) near += static_cast<unsigned>(value <= 4 * deviation);
+    if (near == last) break;  // the same values, and the same median
+    last = near;
+    const detail::Expected median{lower * deviation / deviations_per_median,
+                                  upper * deviation / deviations_per_median};
+    deviation = deviations_per_median * detail::order_statistic(values, near / 2, median);
   }
   return deviation;
 }
 
-/// The smaller half of the motions, then the larger.
-std::pair<std::vector<Seen>, std::vector<Seen>> halves(const std::deque<Seen>& newest) {
-  std::vector<Seen> small(newest.begin(), newest.end());
-  const auto half = small.begin() + static_cast<std::ptrdiff_t>(small.size() / 2);
-  std::nth_element(small.begin(), half, small.end(),
-                   [](const Seen& x, const Seen& y) { return x.size < y.size; });
-  std::vector<Seen> large(half, small.end());
-  small.erase(half, small.end());
-  return {std::move(small), std::move(large)};
-}
+/// The smaller half of the motions and the larger one, each in the order of time.
+struct Halves {
+  std::vector<double> small, large;  ///< differences
+  std::vector<double> large_sizes;
 
-double robust_deviation(const std::vector<Seen>& seen) {
-  std::vector<double> differences;
-  differences.reserve(seen.size());
-  for (const Seen& one : seen) differences.push_back(one.difference);
-  return robust_deviation(std::move(differences));
-}
+  explicit Halves(const std::deque<Seen>& newest) {
+    std::vector<double> sizes, differences;
+    for (const Seen& one : newest) {
+      sizes.push_back(one.size);
+      differences.push_back(one.difference);
+    }
+    const std::size_t half = sizes.size() / 2;
+    const double least_large = detail::order_statistic(sizes, half);
+    std::size_t below = 0;
+    for (const double size : sizes) below += size < least_large ? 1 : 0;
+    std::size_t equal_small = half - below;  // of equal ones the oldest are the small ones
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      if (sizes[i] < least_large || (sizes[i] == least_large && equal_small > 0)) {
+        if (sizes[i] == least_large) --equal_small;
+        small.push_back(differences[i]);
+      } else {
+        large.push_back(differences[i]);
+        large_sizes.push_back(sizes[i]);
+      }
+    }
+  }
+};
 
 /// The smaller half shows what there is without motion, the larger half what grows with it.
 void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
   if (typical.newest.size() < 4) return;
-  const auto [small, large] = halves(typical.newest);
+  const Halves halves(typical.newest);
+  const double before_small = typical.constant,
+               before_large = typical.constant + typical.growing * typical.large;
   typical.large = 0;
-  for (const Seen& one : large) typical.large += one.size / static_cast<double>(large.size());
-  typical.constant = robust_deviation(small);
-  typical.growing = typical.large > 0
-                        ? std::clamp((robust_deviation(large) - typical.constant) / typical.large, 0.0,
-                                     options.most_growing)
-                        : 0;
+  for (const double size : halves.large_sizes)
+    typical.large += size / static_cast<double>(halves.large_sizes.size());
+  typical.constant = robust_deviation(halves.small, before_small);
+  typical.growing =
+      typical.large > 0
+          ? std::clamp((robust_deviation(halves.large, before_large) - typical.constant) / typical.large, 0.0,
+                       options.most_growing)
+          : 0;
 }
 
 /// From the motions that turn more than others: three times the median covers the directions in between.
 double arm_of(const TypicalDifference& lever, double longest) {
+  if (lever.newest.empty()) return 0;
+  const Halves halves(lever.newest);
   std::vector<double> arms;
-  for (const Seen& one : halves(lever.newest).second)
-    if (one.size > 0) arms.push_back(one.difference / one.size);
+  for (std::size_t i = 0; i < halves.large.size(); ++i)
+    if (halves.large_sizes[i] > 0) arms.push_back(halves.large[i] / halves.large_sizes[i]);
   if (arms.empty()) return 0;
-  std::nth_element(arms.begin(), arms.begin() + static_cast<std::ptrdiff_t>(arms.size() / 2), arms.end());
-  return std::min(longest, 3 * arms[arms.size() / 2]);
+  return std::min(longest, 3 * detail::order_statistic(arms, arms.size() / 2));
 }
 
 void remember(const Seen& seen, TypicalDifference& typical, const CongruenceOptions& options) {

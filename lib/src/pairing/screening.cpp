@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pairing/motions_between.hpp"
+
 namespace egocal {
 
 namespace {
@@ -27,14 +29,14 @@ double steps(const Instant& from, const Instant& to, double period_us) {
 /// How far the motion is from congruent, in standard deviations; noise grows with the root of the steps.
 double difference(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
                   const CongruenceOptions& options) {
-  return incongruence(motion_between(from.a, to.a), motion_between(from.b, to.b), scale, options) /
-         std::sqrt(steps(from, to, period_us));
+  const detail::MotionsOfBoth motions = detail::motions_between(from, to);
+  return incongruence(motions.a, motions.b, scale, options) / std::sqrt(steps(from, to, period_us));
 }
 
 bool grossly_different(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
                        const CongruenceOptions& options) {
-  return grossly_incongruent(motion_between(from.a, to.a), motion_between(from.b, to.b),
-                             steps(from, to, period_us), scale, options);
+  const detail::MotionsOfBoth motions = detail::motions_between(from, to);
+  return grossly_incongruent(motions.a, motions.b, steps(from, to, period_us), scale, options);
 }
 
 }  // namespace
@@ -96,8 +98,8 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
     return difference(from, to, period_us, state_.congruence, options_.congruence) <= options_.doubtful;
   };
   const auto remember_from = [&](const Instant& from, bool motion_is_doubtful) {
-    update_congruence(motion_between(from.a, instant.a), motion_between(from.b, instant.b),
-                      motion_is_doubtful, state_.congruence, options_.congruence);
+    const detail::MotionsOfBoth motions = detail::motions_between(from, instant);
+    update_congruence(motions.a, motions.b, motion_is_doubtful, state_.congruence, options_.congruence);
   };
   const Instant newest = *state_.accepted;
   if (agree(newest, instant)) {

@@ -3,6 +3,7 @@
 #include "egocal/problem/cost.hpp"
 
 #include "egocal/problem/problem.hpp"
+#include "problem/motion_square.hpp"
 
 namespace egocal {
 
@@ -13,81 +14,75 @@ Matrix8d pair_cost(const DualQuaternion& a, const DualQuaternion& b, const Vecto
 
 namespace {
 
-/// E = R(q_b) - L(q_a) of (10) is s I + K with K = [0 -u'; u -[w]x] antisymmetric: scalars' difference,
-/// vectors' difference and sum.
-struct Difference {
-  double s, u[3], w[3];
+using detail::QuaternionDifference;
 
-  Difference(const QuaternionVector& a, double sign_a, const QuaternionVector& b, double sign_b) {
-    s = sign_b * b[0] - sign_a * a[0];
-    for (int i = 0; i < 3; ++i) {
-      u[i] = sign_b * b[i + 1] - sign_a * a[i + 1];
-      w[i] = sign_b * b[i + 1] + sign_a * a[i + 1];
-    }
+/// Where entry (i, j) of a symmetric 8 x 8 matrix and its mirror image go.
+struct Symmetric {
+  double* values;
+
+  void set(int i, int j, double value) const {
+    values[8 * j + i] = value;
+    values[8 * i + j] = value;
   }
 };
 
-double dot(const double (&x)[3], const double (&y)[3]) {
-  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-}
-/// Entry i of x cross y.
-double cross(const double (&x)[3], const double (&y)[3], int i) {
-  const int j = (i + 1) % 3, k = (i + 2) % 3;
-  return x[j] * y[k] - x[k] * y[j];
-}
-
-/// Adds eta E'E = eta (s^2 I - K^2), number by number: a temporary matrix costs more than the arithmetic.
-void add_square(Matrix8d& sum, int corner, const Difference& e, double eta) {
-  const auto add = [&](int i, int j, double value) { sum(corner + i, corner + j) += eta * value; };
-  const double ss = e.s * e.s, ww = dot(e.w, e.w);
-  add(0, 0, ss + dot(e.u, e.u));
-  for (int i = 0; i < 3; ++i) {
-    const double mixed = cross(e.w, e.u, i);
-    add(0, i + 1, mixed);
-    add(i + 1, 0, mixed);
-    add(i + 1, i + 1, ss + ww + e.u[i] * e.u[i] - e.w[i] * e.w[i]);
-    for (int j = i + 1; j < 3; ++j) {
-      const double value = e.u[i] * e.u[j] - e.w[i] * e.w[j];
-      add(i + 1, j + 1, value);
-      add(j + 1, i + 1, value);
-    }
-  }
+/// E'E = s^2 I - K^2 as the symmetric block with its first entry at (corner, corner). Number by number, as
+/// temporary matrices and loops over three axes cost more than the arithmetic.
+void set_square(const Symmetric& to, int corner, const QuaternionDifference& e) {
+  const double ss = e.s * e.s, u0 = e.u[0], u1 = e.u[1], u2 = e.u[2], w0 = e.w[0], w1 = e.w[1], w2 = e.w[2];
+  const double sw = ss + (w0 * w0 + w1 * w1 + w2 * w2);
+  to.set(corner, corner, ss + (u0 * u0 + u1 * u1 + u2 * u2));
+  to.set(corner, corner + 1, w1 * u2 - w2 * u1);
+  to.set(corner, corner + 2, w2 * u0 - w0 * u2);
+  to.set(corner, corner + 3, w0 * u1 - w1 * u0);
+  to.set(corner + 1, corner + 1, sw + u0 * u0 - w0 * w0);
+  to.set(corner + 2, corner + 2, sw + u1 * u1 - w1 * w1);
+  to.set(corner + 3, corner + 3, sw + u2 * u2 - w2 * w2);
+  to.set(corner + 1, corner + 2, u0 * u1 - w0 * w1);
+  to.set(corner + 1, corner + 3, u0 * u2 - w0 * w2);
+  to.set(corner + 2, corner + 3, u1 * u2 - w1 * w2);
 }
 
-/// Adds eta E_d' E_r = eta (s_d I - K_d)(s_r I + K_r) to the upper right block, and its transpose to the
-/// lower left.
-void add_product(Matrix8d& sum, const Difference& d, const Difference& r, double eta) {
-  const auto add = [&](int i, int j, double value) {
-    sum(i, j + 4) += eta * value;
-    sum(j + 4, i) += eta * value;
-  };
-  double u[3], w[3];
-  for (int i = 0; i < 3; ++i) {
-    u[i] = d.s * r.u[i] - r.s * d.u[i];
-    w[i] = d.s * r.w[i] - r.s * d.w[i];
-  }
-  const double ss = d.s * r.s, ww = dot(d.w, r.w);
-  add(0, 0, ss + dot(d.u, r.u));
-  for (int i = 0; i < 3; ++i) {
-    add(0, i + 1, cross(r.w, d.u, i) - u[i]);
-    add(i + 1, 0, u[i] + cross(d.w, r.u, i));
-    add(i + 1, i + 1, ss + ww + d.u[i] * r.u[i] - r.w[i] * d.w[i]);
-    const int j = (i + 1) % 3, k = (i + 2) % 3;  // -[w]x holds +w_i at (j, k) and -w_i at (k, j)
-    add(j + 1, k + 1, d.u[j] * r.u[k] - r.w[j] * d.w[k] + w[i]);
-    add(k + 1, j + 1, d.u[k] * r.u[j] - r.w[k] * d.w[j] - w[i]);
-  }
+/// E_d' E_r = (s_d I - K_d)(s_r I + K_r) as the upper right block, its transpose as the lower left one.
+void set_product(const Symmetric& to, const QuaternionDifference& d, const QuaternionDifference& r) {
+  const double d0 = d.u[0], d1 = d.u[1], d2 = d.u[2], r0 = r.u[0], r1 = r.u[1], r2 = r.u[2];
+  const double dw0 = d.w[0], dw1 = d.w[1], dw2 = d.w[2], rw0 = r.w[0], rw1 = r.w[1], rw2 = r.w[2];
+  const double u0 = d.s * r0 - r.s * d0, u1 = d.s * r1 - r.s * d1, u2 = d.s * r2 - r.s * d2;
+  const double w0 = d.s * rw0 - r.s * dw0, w1 = d.s * rw1 - r.s * dw1, w2 = d.s * rw2 - r.s * dw2;
+  const double ss = d.s * r.s, sw = ss + (dw0 * rw0 + dw1 * rw1 + dw2 * rw2);
+  to.set(0, 4, ss + (d0 * r0 + d1 * r1 + d2 * r2));
+  to.set(0, 5, (rw1 * d2 - rw2 * d1) - u0);
+  to.set(0, 6, (rw2 * d0 - rw0 * d2) - u1);
+  to.set(0, 7, (rw0 * d1 - rw1 * d0) - u2);
+  to.set(1, 4, u0 + (dw1 * r2 - dw2 * r1));
+  to.set(2, 4, u1 + (dw2 * r0 - dw0 * r2));
+  to.set(3, 4, u2 + (dw0 * r1 - dw1 * r0));
+  to.set(1, 5, sw + d0 * r0 - rw0 * dw0);
+  to.set(2, 6, sw + d1 * r1 - rw1 * dw1);
+  to.set(3, 7, sw + d2 * r2 - rw2 * dw2);
+  // -[w]x holds +w_i at (j, k) and -w_i at (k, j)
+  to.set(2, 7, d1 * r2 - rw1 * dw2 + w0);
+  to.set(3, 6, d2 * r1 - rw2 * dw1 - w0);
+  to.set(3, 5, d2 * r0 - rw2 * dw0 + w1);
+  to.set(1, 7, d0 * r2 - rw0 * dw2 - w1);
+  to.set(1, 6, d0 * r1 - rw0 * dw1 + w2);
+  to.set(2, 5, d1 * r0 - rw1 * dw0 - w2);
 }
 
 }  // namespace
 
-void Statistics::add(const DualQuaternion& a, const DualQuaternion& b, double eta) {
+detail::MotionSquare::MotionSquare(const DualQuaternion& a, const DualQuaternion& b) {
   // The dual rows of Q_b^r - Q_a^l are [E_d E_r] (10), for both signs scalar >= 0.
-  const double sa = a.real[0] < 0 ? -1 : 1;
-  const double sb = b.real[0] < 0 ? -1 : 1;
-  const Difference real(a.real, sa, b.real, sb), dual(a.dual, sa, b.dual, sb);
-  add_square(dual_rows, 0, dual, eta);
-  add_product(dual_rows, dual, real, eta);
-  add_square(dual_rows, 4, real, eta);
+  const double sa = positive_sign(a), sb = positive_sign(b);
+  const QuaternionDifference real(a.real, sa, b.real, sb), dual(a.dual, sa, b.dual, sb);
+  const Symmetric values{values_.data()};
+  set_square(values, 0, dual);
+  set_product(values, dual, real);
+  set_square(values, 4, real);
+}
+
+void Statistics::add(const DualQuaternion& a, const DualQuaternion& b, double eta) {
+  detail::MotionSquare(a, b).add_to(dual_rows, eta);
   weight += eta;
   ++count;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "egocal/solvers/global.hpp"
+#include "problem/motion_square.hpp"
 #include "robust/residual_limit.hpp"
 
 namespace egocal {
@@ -361,6 +362,19 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
 double detail::residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale) {
   const double size = squared_size(cost_matrix(part, balance));
   return limit(part.count) * std::max(scale.absolute, size * std::max(scale.relative, least_relative));
+}
+
+double detail::disagreement(const DualQuaternion& a, const DualQuaternion& b, const Balance& balance,
+                            const Agreement& agreement) {
+  const double sign_a = positive_sign(a), sign_b = positive_sign(b);
+  const QuaternionDifference real(a.real, sign_a, b.real, sign_b), dual(a.dual, sign_a, b.dual, sign_b);
+  const double rotation = real.squared_size();
+  const double size = balance.translation * dual.squared_size() + balance.rotation * rotation;
+  if (!(size > 0)) return 0;
+  const DualQuaternion& q = agreement.q;
+  const double residual = balance.translation * (dual.times(q.real) + real.times(q.dual)).squaredNorm() +
+                          balance.rotation * real.times(q.real).squaredNorm();
+  return excess(residual, size, agreement.scale) / limit(1);
 }
 
 double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement) {

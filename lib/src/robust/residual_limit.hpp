@@ -9,4 +9,8 @@ namespace egocal::detail {
 /// The mean squared residual (16) above which find_consensus() leaves a part out.
 double residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale);
 
+/// disagreement() of a single motion.
+double disagreement(const DualQuaternion& a, const DualQuaternion& b, const Balance& balance,
+                    const Agreement& agreement);
+
 }  // namespace egocal::detail

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "robust/residual_limit.hpp"
+
 namespace egocal {
 
 namespace {
@@ -28,7 +30,7 @@ void RobustStatistics::add_unjudged(const MotionPair& pair) {
 void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int overlap) {
   ++state_.given;
   const bool disagrees =
-      state_.agreement && disagreement(of_one(pair), problem.balance, *state_.agreement) > 1;
+      state_.agreement && detail::disagreement(pair.a, pair.b, problem.balance, *state_.agreement) > 1;
   if (disagrees) {
     state_.waiting.push_back(pair);
     if (state_.waiting.size() > most_waiting) {

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "egocal/problem/cost.hpp"
+
+namespace egocal::detail {
+
+/// Unit quaternions a and b before their signs are made equal: the factor of each that makes its scalar >= 0.
+inline double positive_sign(const DualQuaternion& motion) {
+  return motion.real[0] < 0 ? -1 : 1;
+}
+
+/// E = R(q_b) - L(q_a) of (10) is s I + K with K = [0 -u'; u -[w]x] antisymmetric: scalars' difference,
+/// vectors' difference and sum.
+struct QuaternionDifference {
+  double s, u[3], w[3];
+
+  QuaternionDifference(const QuaternionVector& a, double sign_a, const QuaternionVector& b, double sign_b) {
+    s = sign_b * b[0] - sign_a * a[0];
+    for (int i = 0; i < 3; ++i) {
+      u[i] = sign_b * b[i + 1] - sign_a * a[i + 1];
+      w[i] = sign_b * b[i + 1] + sign_a * a[i + 1];
+    }
+  }
+
+  /// Trace of E'E.
+  double squared_size() const {
+    const double uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2], ww = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+    return 4 * s * s + 2 * (uu + ww);
+  }
+  /// E x.
+  QuaternionVector times(const QuaternionVector& x) const {
+    return {s * x[0] - (u[0] * x[1] + u[1] * x[2] + u[2] * x[3]),
+            s * x[1] + u[0] * x[0] - (w[1] * x[3] - w[2] * x[2]),
+            s * x[2] + u[1] * x[0] - (w[2] * x[1] - w[0] * x[3]),
+            s * x[3] + u[2] * x[0] - (w[0] * x[2] - w[1] * x[1])};
+  }
+};
+
+/// M_d'M_d over the dual rows M_d = [E_d E_r] of one motion pair (14), both triangles. Computed
+/// once, added to several sums.
+class MotionSquare {
+ public:
+  /// For the signs of a and b that make their scalars >= 0.
+  MotionSquare(const DualQuaternion& a, const DualQuaternion& b);
+
+  /// Adds it, multiplied by eta.
+  void add_to(Matrix8d& sum, double eta = 1) const { sum += eta * values_; }
+  /// translation times this, and rotation times its lower right block (the rotation part D) added to the
+  /// upper left one. rotation_only: the latter alone.
+  MotionSquare weighted(double rotation, double translation, bool rotation_only) const {
+    MotionSquare result;
+    result.values_ = (rotation_only ? 0.0 : translation) * values_;
+    result.values_.topLeftCorner<4, 4>() += rotation * values_.bottomRightCorner<4, 4>();
+    return result;
+  }
+
+ private:
+  MotionSquare() = default;
+
+  Matrix8d values_;
+};
+
+}  // namespace egocal::detail

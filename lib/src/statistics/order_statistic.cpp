@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statistics/order_statistic.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace egocal::detail {
+
+namespace {
+
+/// Values that are sorted first, to know about where the wanted one is; of fewer than `few` in all it is not
+/// worth it. It is looked for this many places of the sample to either side.
+constexpr std::size_t sample_size = 32, few = 128, margin = 5;
+
+double by_partition(std::vector<double>& values, std::size_t place) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+double order_statistic(std::span<const double> values, std::size_t place, const Expected& expected) {
+  std::vector<double> kept(values.size());
+  const auto [low, high] = expected;
+  std::size_t below = 0, within = 0;
+  for (const double value : values) {  // without a branch that the processor could guess wrongly
+    const auto from_low = static_cast<unsigned>(value >= low), to_high = static_cast<unsigned>(value <= high);
+    kept[within] = value;
+    within += from_low & to_high;
+    below += 1 - from_low;
+  }
+  if (place >= below && place - below < within) {
+    kept.resize(within);
+    return by_partition(kept, place - below);
+  }
+  std::copy(values.begin(), values.end(), kept.begin());
+  return by_partition(kept, place);
+}
+
+double order_statistic(std::span<const double> values, std::size_t place) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Expected expected{-infinity, infinity};
+  if (values.size() >= few) {
+    std::array<double, sample_size> sample;
+    for (std::size_t i = 0; i < sample_size; ++i) sample[i] = values[i * values.size() / sample_size];
+    std::sort(sample.begin(), sample.end());
+    const std::size_t about = place * sample_size / values.size();
+    if (about >= margin) expected.low = sample[about - margin];
+    if (about + margin < sample_size) expected.high = sample[about + margin];
+  }
+  return order_statistic(values, place, expected);
+}
+
+}  // namespace egocal::detail

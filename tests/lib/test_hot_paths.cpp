@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What every pose goes through many times is written for speed; it must say the same as the plain way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../support/random_motion.hpp"
+#include "pairing/motions_between.hpp"
+#include "robust/residual_limit.hpp"
+#include "statistics/order_statistic.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::displacement;
+using testing::Random;
+
+DualQuaternion random_pose(Random& random) {
+  const DualQuaternion pose = displacement(random.normal3(2), random.normal3(100));
+  return random.below(2) == 0 ? pose : -pose;
+}
+
+TEST(MotionsBetween, HasTheBitsOfTheMotionOfEachSensor) {
+  Random random(1);
+  for (int i = 0; i < 2000; ++i) {
+    Instant from, to;
+    from.a = random_pose(random);
+    from.b = random_pose(random);
+    to.a = random_pose(random);
+    to.b = i % 10 == 0 ? from.b : random_pose(random);
+    if (i % 7 == 0) to.a = from.a * DualQuaternion{QuaternionVector(0, 1, 0, 0), {}};  // a half turn
+    const detail::MotionsOfBoth motions = detail::motions_between(from, to);
+    EXPECT_EQ(motions.a.vec(), motion_between(from.a, to.a).vec()) << i;
+    EXPECT_EQ(motions.b.vec(), motion_between(from.b, to.b).vec()) << i;
+  }
+}
+
+TEST(OrderStatistic, IsTheValueAtThePlaceOfSortedValues) {
+  Random random(2);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<double> values(1 + random.below(i % 3 == 0 ? 100 : 1024));
+    for (double& value : values)  // sorted, heavy-tailed, few different ones
+      value = i % 5 == 0   ? static_cast<double>(&value - values.data())
+              : i % 5 == 1 ? std::floor(random.uniform(0, 4))
+                           : std::exp(5 * random.normal());
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    for (const std::size_t place :
+         {std::size_t{0}, values.size() / 4, values.size() / 2, values.size() - 1}) {
+      EXPECT_EQ(detail::order_statistic(values, place), sorted[place]) << i;
+      const double wanted = sorted[place] * random.uniform(0.5, 1.5);  // expected near there, or wrongly
+      EXPECT_EQ(detail::order_statistic(values, place, {0.8 * wanted, 1.2 * wanted}), sorted[place]) << i;
+    }
+  }
+}
+
+TEST(Disagreement, OfAMotionIsThatOfItsStatistics) {
+  Random random(3);
+  const DualQuaternion T = displacement({0.3, -1.2, 2}, {0.5, -0.2, 1});
+  for (const MotionPair& pair :
+       testing::random_pairs(T, {.pairs = 200, .noise = 0.05, .flip_signs = true}, random)) {
+    Statistics part;
+    part.add(pair);
+    const Balance balance{random.log_uniform(0.01, 100), random.log_uniform(0.01, 100)};
+    const Agreement agreement{T, {random.log_uniform(1e-6, 1), random.log_uniform(1e-6, 1)}};
+    const double expected = disagreement(part, balance, agreement);
+    EXPECT_NEAR(detail::disagreement(pair.a, pair.b, balance, agreement), expected, 1e-9 * expected);
+    EXPECT_GT(expected, 0);
+  }
+}
+
+}  // namespace
+}  // namespace egocal
