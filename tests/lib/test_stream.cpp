@@ -86,6 +86,20 @@ TEST(Stream, ALogThatStartsAgainBeginsANewTimelineAndLosesNothing) {
   EXPECT_EQ(stream.counts().jump, 0);
 }
 
+TEST(Stream, CopiesOfTheFirstMessagesOfALogThatStartsAgainLoseNothing) {
+  for (const int copied : {0, 1}) {
+    Stream stream;
+    feed(stream, {sample(100, 1000), sample(101, 1001), sample(102, 1002)});
+    std::vector<std::int64_t> steps;
+    for (const int step : {0, 1, 2, 3})
+      for (int copies = step == copied ? 2 : 1; copies > 0; --copies)
+        for (const std::int64_t out : feed(stream, {sample(step, step)})) steps.push_back(out);
+    EXPECT_THAT(steps, ElementsAre(-1, 0, 1, 2, 3)) << "two of message " << copied;
+    EXPECT_EQ(stream.counts().duplicate, 1);
+    EXPECT_EQ(stream.counts().jump, 0);
+  }
+}
+
 TEST(Stream, AGapInTheLogIsNoNewTimeline) {
   Stream stream;
   feed(stream, {sample(0, -1), sample(1, -1)});

@@ -76,6 +76,7 @@ class Checks {
   bool peaceful() const;
   bool keeps_order() const;
   bool forgets() const;
+  bool is_foreign(bus::Bytes message) const;
   bool corrupts() const;
   void check_wishes(const Process& from, const std::string& channel, std::int64_t session, std::int64_t seq);
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);

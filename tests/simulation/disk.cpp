@@ -31,6 +31,7 @@ class Disk::Medium final : public services::StateMedium {
     if (life_.over()) return;
     if (life_.ends_here()) return life_.stop();
     refuse_where_full();
+    disk_.waited_us_ += disk_.delay_us_;
     open_ = std::make_shared<File>();
     open_->bytes.assign(bytes.begin(), bytes.end());
     open_->synced = bytes.size();
@@ -41,6 +42,11 @@ class Disk::Medium final : public services::StateMedium {
   void add(std::span<const std::byte> bytes) override {
     if (life_.over()) return;
     const bool killed = life_.ends_here();
+    if (disk_.read_only_ && !killed) {
+      open_.reset();
+      refuse_where_full();
+    }
+    disk_.waited_us_ += disk_.delay_us_;
     const bool torn = killed || disk_.full_;
     if (torn) bytes = bytes.first(random_.below(bytes.size() + 1));
     open_->bytes.insert(open_->bytes.end(), bytes.begin(), bytes.end());
@@ -58,6 +64,7 @@ class Disk::Medium final : public services::StateMedium {
   }
 
   std::string keep_aside() override {
+    if (disk_.read_only_) refuse_where_full();
     std::string aside = name_ + ".refused";
     for (int n = 2; disk_.files_.contains(aside); ++n) aside = name_ + ".refused-" + std::to_string(n);
     disk_.files_[aside] = disk_.files_.at(name_);
@@ -67,6 +74,7 @@ class Disk::Medium final : public services::StateMedium {
 
  private:
   void refuse_where_full() const {
+    if (disk_.read_only_) throw error_at(name_, 0, "", "cannot be written: Read-only file system");
     if (disk_.full_) throw error_at(name_, 0, "", "cannot be written: No space left on device");
   }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "egocal/bus/clock.hpp"
@@ -27,6 +28,11 @@ class Disk {
 
   void set_full(bool full) { full_ = full; }
   bool full() const { return full_; }
+  void set_read_only(bool read_only) { read_only_ = read_only; }
+  /// Of every write from now on [us].
+  void set_delay_us(std::int64_t delay_us) { delay_us_ = delay_us; }
+  /// What the writes since the last call have taken [us].
+  std::int64_t take_waited_us() { return std::exchange(waited_us_, 0); }
   void power_cut(testing::Random& random);
 
   struct File {
@@ -37,13 +43,16 @@ class Disk {
   /// Null: none.
   std::shared_ptr<const File> find(const std::string& name) const;
   std::size_t files() const { return files_.size(); }
+  /// Puts content of another time back.
+  void restore(const std::string& name, const File& file) { files_[name] = std::make_shared<File>(file); }
 
  private:
   class Medium;
   const bus::Clock& clock_;
   std::map<std::string, std::shared_ptr<File>> files_;
   std::map<std::string, const Life*> holders_;
-  bool full_ = false;
+  bool full_ = false, read_only_ = false;
+  std::int64_t delay_us_ = 0, waited_us_ = 0;
 };
 
 }  // namespace egocal::simulation

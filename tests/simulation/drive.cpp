@@ -15,6 +15,9 @@ namespace egocal::simulation {
 
 namespace {
 
+/// Two degrees and five centimetres.
+const Pose bump{rotation_exp({0, 0.035, 0}), {0.05, 0, 0}};
+
 constexpr std::uint32_t log_sync = 0xEDA1DA01;
 
 void big_endian(std::vector<std::byte>& out, std::uint64_t value, int bytes) {
@@ -77,6 +80,10 @@ Drive make_drive(const Plan& plan) {
     options.T_vehicle_sensor.push_back({rotation_exp(random.normal3(0.8)), random.normal3(1)});
     SensorFaults& faults = options.faults.emplace_back();
     faults.phase = random.uniform(0, 0.5 / plan.rate_hz);
+    if (i != 1) continue;
+    faults.scale = plan.scale;
+    faults.clock_drift = plan.clock_drift;
+    if (plan.bump_s > 0) faults.mount_changes = {{plan.bump_s, 0, bump}};
   }
   std::vector<Trajectory> trajectories = simulate(options);
   for (std::size_t i = 1; i < trajectories.size(); ++i)

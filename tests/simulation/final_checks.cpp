@@ -97,12 +97,14 @@ void Checks::compare_with_undisturbed() {
     const auto entry = lineage.counters.find(name);
     return entry == lineage.counters.end() ? 0 : entry->second;
   };
-  std::int64_t distinct = 0, held_back = 0;
+  std::int64_t distinct = 0, held_back = 0, not_decodable = 0;
   for (const auto& [channel, numbers] : times) distinct += static_cast<std::int64_t>(numbers.size());
   for (const auto& [name, value] : lineage.counters)
     if (name.starts_with("held back")) held_back += value;
+  for (const bus::Sensor& sensor : surroundings_.drive.rig.sensors)
+    not_decodable += count("rejected: not decodable on " + sensor.channel);
   const std::int64_t used = count("in") - count("rejected: duplicate") - count("rejected: too late") -
-                            count("rejected: time or number jumps") - held_back;
+                            count("rejected: time or number jumps") - not_decodable - held_back;
   // a player sends again what is missing; after a restart it begins another session with all of it
   const bool in_place = plan.numbered || plan.network.jitter_us == 0;
   const bool all_promised = plan.input == Input::player && peaceful() &&

@@ -49,6 +49,7 @@ struct Inbox {
   std::deque<Waiting> waiting;
   std::size_t bytes = 0;
   std::int64_t overflow = 0;
+  int burst_left = 0;                               ///< datagrams that are still to be lost
   std::map<std::string, bool, std::less<>> wanted;  ///< as its process said last
 };
 
@@ -189,6 +190,14 @@ PacketPtr Network::corrupted(const PacketPtr& packet) {
   return changed;
 }
 
+bool Network::is_in_burst(Inbox& inbox) {
+  if (faults_.burst > 0 && inbox.burst_left == 0 && random_.uniform() < faults_.burst)
+    inbox.burst_left = faults_.burst_length;
+  if (inbox.burst_left == 0) return false;
+  inbox.burst_left = faults_.burst > 0 ? inbox.burst_left - 1 : 0;
+  return true;
+}
+
 void Network::spread(const PacketPtr& packet, int from_host) {
   for (const std::weak_ptr<Inbox>& listener : inboxes_) {
     const std::shared_ptr<Inbox> inbox = listener.lock();
@@ -210,6 +219,7 @@ void Network::deliver(const PacketPtr& original, int from_host, const std::weak_
              &to = links_[static_cast<std::size_t>(to_host)];
   if (from_host != to_host && (from.apart || to.apart || to.away)) return;
   if (faults_.lost > 0 && random_.uniform() < faults_.lost) return;
+  if (is_in_burst(*listener.lock())) return;
   const PacketPtr packet = corrupted(original);
   std::int64_t delay_us = faults_.delay_us;
   if (faults_.jitter_us > 0)

@@ -75,6 +75,7 @@ class Network {
   void spread(const PacketPtr& packet, int from_host);
   void deliver(const PacketPtr& packet, int from_host, const std::weak_ptr<struct Inbox>& inbox);
   PacketPtr corrupted(const PacketPtr& packet);
+  bool is_in_burst(struct Inbox& inbox);
 
   Schedule& schedule_;
   std::vector<std::unique_ptr<Host>>& hosts_;

@@ -15,8 +15,9 @@ namespace {
 using testing::Random;
 
 constexpr const char* names[incident_kinds] = {
-    "kill",      "stop",      "end",         "twin",    "away",  "partition", "clog",   "set the date",
-    "disk full", "power cut", "old version", "hostile", "flood", "swap",      "command"};
+    "kill",           "stop",      "end",         "twin",    "away",  "partition", "clog",    "set the date",
+    "disk full",      "power cut", "old version", "hostile", "flood", "swap",      "command", "foreign",
+    "disk read-only", "slow disk", "old state"};
 
 constexpr const char* estimations[] = {"plain", "robust", "automatic"};
 
@@ -34,6 +35,8 @@ bool of_a_host(IncidentKind kind) {
     case IncidentKind::set_date:
     case IncidentKind::disk_full:
     case IncidentKind::power_cut:
+    case IncidentKind::read_only:
+    case IncidentKind::slow_disk:
       return true;
     default:
       return false;
@@ -76,8 +79,9 @@ namespace {
 /// have all that costs.
 class Draw {
  public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {
+  explicit Draw(std::uint64_t seed) : random_(seed), later_(seed ^ 0x6a09e667f3bcc908) {
     random_.bits();
+    later_.bits();
     plan_.seed = seed;
   }
 
@@ -87,7 +91,10 @@ class Draw {
     network();
     if (chance(0.3)) clocks();
     incidents();
-    if (plan_.input == Input::player && chance(0.03)) play_again();
+    if (plan_.input == Input::player && chance(0.03))
+      play_again();
+    else
+      later_faults();
     return std::move(plan_);
   }
 
@@ -153,7 +160,7 @@ class Draw {
 
   /// Which kinds there are in this life, and how often each.
   void incidents() {
-    for (int k = 0; k < incident_kinds; ++k) {
+    for (int k = 0; k <= static_cast<int>(IncidentKind::command); ++k) {
       const auto kind = static_cast<IncidentKind>(k);
       // in few lives: little is promised then
       const bool alters = kind == IncidentKind::hostile || kind == IncidentKind::flood ||
@@ -162,8 +169,29 @@ class Draw {
       const std::int64_t count = between(1, 4);
       for (std::int64_t i = 0; i < count; ++i) plan_.incidents.push_back(incident(kind));
     }
+    sort_incidents();
+  }
+  void sort_incidents() {
     std::stable_sort(plan_.incidents.begin(), plan_.incidents.end(),
                      [](const Incident& x, const Incident& y) { return x.at_us < y.at_us; });
+  }
+
+  /// Faults that joined later have random numbers of their own: most seeds still mean what they meant.
+  void later_faults() {
+    std::swap(random_, later_);
+    if (chance(0.05)) {
+      plan_.network.burst = random_.log_uniform(0.001, 0.02);
+      plan_.network.burst_length = static_cast<int>(log_between(2, 100));
+    }
+    if (!plan_.diagnosed) {
+      if (chance(0.05)) plan_.bump_s = 1e-6 * static_cast<double>(between(500'000, plan_.disturbed_us));
+      if (chance(0.05)) plan_.scale = random_.log_uniform(0.5, 2);
+      if (chance(0.05)) plan_.clock_drift = random_.uniform(-1e-3, 1e-3);
+    }
+    for (const IncidentKind kind :
+         {IncidentKind::foreign, IncidentKind::read_only, IncidentKind::slow_disk, IncidentKind::old_state})
+      if (chance(0.05)) plan_.incidents.push_back(incident(kind));
+    sort_incidents();
   }
 
   /// The player dies late in its log and begins anew, before all that pairing knows again.
@@ -208,7 +236,11 @@ class Draw {
         break;
       case IncidentKind::hostile:
       case IncidentKind::flood:
+      case IncidentKind::foreign:
         incident.amount = log_between(1, 1000);
+        break;
+      case IncidentKind::slow_disk:
+        incident.amount = log_between(1000, 500'000);
         break;
       case IncidentKind::command:
         incident.text = chance(0.5) ? "reset" : chance(0.5) ? "pause" : "resume";
@@ -221,7 +253,7 @@ class Draw {
     return incident;
   }
 
-  Random random_;
+  Random random_, later_;
   Plan plan_;
 };
 
@@ -250,6 +282,7 @@ std::vector<Simpler> simpler(const Plan& plan) {
          [i](Plan& p) { p.incidents.erase(p.incidents.begin() + static_cast<std::ptrdiff_t>(i)); });
   const NetworkFaults& network = plan.network;
   if (network.lost > 0) with("loss", [](Plan& p) { p.network.lost = 0; });
+  if (network.burst > 0) with("bursts of loss", [](Plan& p) { p.network.burst = 0; });
   if (network.duplicated > 0) with("duplicates", [](Plan& p) { p.network.duplicated = 0; });
   if (network.late > 0) with("late messages", [](Plan& p) { p.network.late = 0; });
   if (network.truncated > 0) with("truncation", [](Plan& p) { p.network.truncated = 0; });
@@ -265,6 +298,9 @@ std::vector<Simpler> simpler(const Plan& plan) {
   if (plan.estimation != Estimation::plain)
     with("choices of the estimation", [](Plan& p) { p.estimation = Estimation::plain; });
   if (plan.diagnosed && plan.mistake == 0) with("diagnosis", [](Plan& p) { p.diagnosed = false; });
+  if (plan.bump_s > 0) with("the bump", [](Plan& p) { p.bump_s = 0; });
+  if (plan.scale != 1) with("the scale", [](Plan& p) { p.scale = 1; });
+  if (plan.clock_drift != 0) with("the sensor's clock drift", [](Plan& p) { p.clock_drift = 0; });
   if (plan.hosts > 1) with("hosts", [](Plan& p) { p.hosts = 1; });
   if (plan.sensors > 2) with("sensors", [](Plan& p) { p.sensors = 2; });
   if (plan.global_always) with("--always", [](Plan& p) { p.global_always = false; });
@@ -282,7 +318,7 @@ std::string describe(const Plan& plan, const Incident& incident) {
            (incident.target < 0 ? "all" : process_name(plan, incident.target)) +
            (incident.amount == 0 ? " for all pairs" : " for pair " + std::to_string(incident.amount));
   if (incident.kind == IncidentKind::hostile || incident.kind == IncidentKind::flood ||
-      incident.kind == IncidentKind::old_version)
+      incident.kind == IncidentKind::foreign || incident.kind == IncidentKind::old_version)
     return text + ", " + std::to_string(incident.amount) + " datagrams, " + seconds(incident.duration_us);
   if (of_a_host(incident.kind))
     text += " host-" + std::to_string(incident.target % plan.hosts);
@@ -302,6 +338,10 @@ std::string describe(const Plan& plan, const Incident& incident) {
       return text + " for " + seconds(incident.duration_us) + (incident.amount == 1 ? ", then killed" : "");
     case IncidentKind::set_date:
       return text + " by " + seconds(incident.amount);
+    case IncidentKind::slow_disk:
+      return text + " for " + seconds(incident.duration_us) + ", " + seconds(incident.amount) + " a write";
+    case IncidentKind::old_state:
+      return text + ", from " + seconds(incident.duration_us) + " before";
     default:
       return text + " for " + seconds(incident.duration_us);
   }
@@ -321,9 +361,19 @@ std::string describe(const Plan& plan) {
       (plan.mistake > 0 ? ", " + testing::mistakes()[static_cast<std::size_t>(plan.mistake)].name : "") +
       "\nfaults until " + seconds(plan.disturbed_us) + ", then quiet for " + seconds(plan.quiet_us) +
       "\nnetwork: delay " + seconds(plan.network.delay_us);
+  if (plan.bump_s > 0 || plan.scale != 1 || plan.clock_drift != 0) {
+    char drive[120];
+    std::snprintf(drive, sizeof drive,
+                  "\nthe second sensor: bump at %.6g s (0: none), scale %.6g, clock drift %.6g", plan.bump_s,
+                  plan.scale, plan.clock_drift);
+    text += drive;
+  }
   const NetworkFaults& network = plan.network;
   if (network.jitter_us > 0) text += ", jitter " + seconds(network.jitter_us);
   if (network.lost > 0) text += ", lost " + percent(network.lost);
+  if (network.burst > 0)
+    text += ", bursts of " + std::to_string(network.burst_length) + " lost from " + percent(network.burst) +
+            " on";
   if (network.duplicated > 0) text += ", duplicated " + percent(network.duplicated);
   if (network.late > 0) text += ", " + percent(network.late) + " late by " + seconds(network.late_by_us);
   if (network.truncated > 0) text += ", truncated " + percent(network.truncated);

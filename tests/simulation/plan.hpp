@@ -16,6 +16,8 @@ namespace egocal::simulation {
 /// Of every datagram on its way to one listener, each by itself.
 struct NetworkFaults {
   double lost = 0;                      ///< share
+  double burst = 0;                     ///< share with which a burst of losses begins
+  int burst_length = 0;                 ///< datagrams of a burst
   double duplicated = 0;                ///< share; the copy takes another delay
   double late = 0;                      ///< share that takes late_by longer: what comes after it overtakes it
   std::int64_t late_by_us = 0;          ///< [us]
@@ -25,9 +27,6 @@ struct NetworkFaults {
   std::int64_t jitter_us = 0;           ///< uniform, added to it: reorders what is closer together [us]
   std::int64_t buffer_bytes = 212'992;  ///< that a listener's kernel holds; what comes then is dropped
 
-  bool harmless() const {
-    return lost == 0 && duplicated == 0 && late == 0 && truncated == 0 && flipped == 0 && jitter_us == 0;
-  }
   bool corrupts() const { return truncated > 0 || flipped > 0; }
 };
 
@@ -55,8 +54,12 @@ enum class IncidentKind {
   swap,     ///< a solver of another method takes the place of one, started before (amount 1) or after its end
   command,  ///< a verb for a process (its number is the target, -1: all), of pair number amount (0: all
             ///< pairs)
+  foreign,  ///< amount sound messages of other programs, on their channels and on ours, during the duration
+  read_only,  ///< a host's disk refuses every change
+  slow_disk,  ///< every write on a host takes the amount [us]
+  old_state,  ///< pairing is killed, and finds the state that it had the duration before
 };
-constexpr int incident_kinds = static_cast<int>(IncidentKind::command) + 1;
+constexpr int incident_kinds = static_cast<int>(IncidentKind::old_state) + 1;
 const char* name(IncidentKind kind);
 
 struct Incident {
@@ -97,7 +100,10 @@ struct Plan {
   std::int64_t disturbed_us = 6'000'000;  ///< of the drive, with faults
   std::int64_t quiet_us = 6'000'000;      ///< of the drive after them
   bool free_motion = true;                ///< else a road vehicle on rough ground
-  bool numbered = true;                   ///< odometry_t; else bot_core.pose_t
+  double bump_s = 0;  ///< the second sensor's mount is turned and moved at this time of the drive [s]; 0: not
+  double scale = 1;   ///< of the second sensor: its lengths must be multiplied by it to be metres
+  double clock_drift = 0;  ///< of the second sensor's stamps [s/s]
+  bool numbered = true;    ///< odometry_t; else bot_core.pose_t
   Estimation estimation = Estimation::plain;
   Input input = Input::player;
   double speed = 1;        ///< of the player

@@ -157,7 +157,8 @@ std::optional<Process::Ending> Process::turn() {
   const std::optional<std::int64_t> due = loop.next_timer_ns();
   const Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
   wake_ns_ = due ? host.clock.schedule_ns(*due) : Schedule::never;
-  busy_until_ns_ = surroundings_.schedule.now_ns() + 1000 * burden_us();
+  Disk& disk = surroundings_.hosts[static_cast<std::size_t>(spec_.host)]->disk;
+  busy_until_ns_ = surroundings_.schedule.now_ns() + 1000 * (burden_us() + disk.take_waited_us());
   return std::nullopt;
 }
 

@@ -180,6 +180,8 @@ class World {
   void cut_power(int host, std::int64_t duration_us);
   void damage_something();
   void flood(std::int64_t count);
+  void send_foreign();
+  void go_back_to_state(std::int64_t by_us);
   void command(const std::string& to, const std::string& verb, std::int64_t pair);
   void calm_down();
   void watch_answers() {
@@ -242,6 +244,22 @@ void World::happens(const Incident& incident) {
       host.disk.set_full(true);
       later([&host] { host.disk.set_full(false); });
       return;
+    case IncidentKind::read_only:
+      host.disk.set_read_only(true);
+      later([&host] { host.disk.set_read_only(false); });
+      return;
+    case IncidentKind::slow_disk:
+      host.disk.set_delay_us(incident.amount);
+      later([&host] { host.disk.set_delay_us(0); });
+      return;
+    case IncidentKind::old_state:
+      return go_back_to_state(incident.duration_us);
+    case IncidentKind::foreign:
+      for (std::int64_t i = 0; i < incident.amount; ++i)
+        schedule_.after_us(
+            static_cast<std::int64_t>(random_.below(static_cast<std::uint64_t>(incident.duration_us) + 1)),
+            [this] { send_foreign(); });
+      return;
     case IncidentKind::twin:
       return add_twin(victim, incident);
     case IncidentKind::power_cut:
@@ -301,7 +319,9 @@ void World::cut_power(int number, std::int64_t duration_us) {
   for (std::size_t i = 0; i < processes_.size(); ++i)
     if (processes_[i]->spec().host == number) ended(*processes_[i], processes_[i]->kill());
   host.disk.power_cut(random_);
-  schedule_.after_us(duration_us, [&host] {
+  // the end of the faults is the end of the cut at the latest
+  const std::int64_t left_us = plan_.disturbed_us - schedule_.now_us();
+  schedule_.after_us(std::min(duration_us, left_us), [&host] {
     host.down = false;
     ++host.boots;
     host.clock.boot();
@@ -323,6 +343,34 @@ void World::flood(std::int64_t count) {
   const PacketPtr original = network_->recent(random_);
   if (!original) return;
   for (std::int64_t i = 0; i < count; ++i) network_->inject(*original);
+}
+
+/// Another user of the group: its own channels and types, and now and then its types on our channels.
+void World::send_foreign() {
+  const bus::PairConfig& pair = drive_.rig.pairs.front();
+  const std::string ours[] = {drive_.rig.sensors.front().channel, bus::problem_channel(pair.a, pair.b),
+                              bus::calibration_channel(pair.a, pair.b), bus::status_channel,
+                              bus::command_channel};
+  const std::uint64_t choice = random_.below(2 * std::size(ours));
+  const std::string channel = choice < std::size(ours) ? ours[choice] : "CAMERA_" + std::to_string(choice);
+  std::vector<std::byte> message(8 + random_.below(3000));
+  for (std::byte& byte : message) byte = std::byte(random_.below(256));
+  network_->send_from_outside(channel, message);
+}
+
+/// Somebody puts a backup back: what is kept now is what the file holds that long from now.
+void World::go_back_to_state(std::int64_t by_us) {
+  Process& pairing = process(0);
+  const std::string name = pairing.spec().state_file;
+  Host& host = *hosts_[static_cast<std::size_t>(pairing.spec().host)];
+  const std::shared_ptr<const Disk::File> now = name.empty() ? nullptr : host.disk.find(name);
+  if (!now) return;
+  schedule_.after_us(by_us, [this, &pairing, &host, name, backup = *now] {
+    if (schedule_.now_us() >= plan_.disturbed_us) return;
+    ended(pairing, pairing.kill());
+    host.disk.restore(name, backup);
+    tell("-- the state is that of a backup");
+  });
 }
 
 void World::command(const std::string& to, const std::string& verb, std::int64_t pair) {
@@ -348,7 +396,10 @@ void World::calm_down() {
     network_->set_away(i, false);
     network_->set_partition(i, false);
     network_->set_clogged_until(i, 0);
-    hosts_[static_cast<std::size_t>(i)]->disk.set_full(false);
+    Disk& disk = hosts_[static_cast<std::size_t>(i)]->disk;
+    disk.set_full(false);
+    disk.set_read_only(false);
+    disk.set_delay_us(0);
   }
   for (const auto& one : processes_) {
     one->set_stopped(false);

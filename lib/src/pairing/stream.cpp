@@ -286,6 +286,14 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
     return {};
   }
   if (!plausible(sample)) {
+    // a copy, which the network made, contradicts nothing
+    const auto same = [&](const NumberedPose& candidate) {
+      return candidate.pose.time_us == sample.pose.time_us && candidate.seq == sample.seq;
+    };
+    if (std::any_of(state_.candidates.begin(), state_.candidates.end(), same)) {
+      ++state_.counts.duplicate;
+      return {};
+    }
     if (!state_.candidates.empty() && !follows(state_.candidates.back(), sample)) {
       state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
       state_.candidates.clear();
