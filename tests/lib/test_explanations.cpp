@@ -146,6 +146,27 @@ TEST(Explanations, AStreamGivenTwiceIsNamedAndNotGood) {
   EXPECT_NE(find(calibration, "same_stream"), nullptr);
 }
 
+TEST(Explanations, StreamsThatAreInOneFrameAlreadyAreNamed) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    testing::Streams streams = drive(terrain);
+    EXPECT_EQ(find(calibrate(streams.a, streams.b), "same_stream"), nullptr);
+    streams.b = testing::seen_from(streams.b, streams.T);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    const Finding* finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_FALSE(finding->certain);  // cameras may sit side by side
+    EXPECT_LT(calibration.verdict, Verdict::doubtful);
+  }
+}
+
+TEST(Explanations, ALeftHandedStreamIsNotGood) {
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free}) {
+    testing::Streams streams = drive(terrain);
+    streams.b = testing::mirrored(streams.b);
+    EXPECT_NE(calibrate(streams.a, streams.b).verdict, Verdict::good);
+  }
+}
+
 TEST(Explanations, APartOfAnotherDriveIsFoundAtItsTime) {
   testing::Streams streams = drive(Terrain::free, 1);
   const testing::Streams other = drive(Terrain::free, 9);

@@ -123,6 +123,104 @@ inline Trajectory with_inverse_positions(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) { return Pose{pose.rotation, inverse(pose).translation}; });
 }
 
+/// Of a left-handed world and body: y is on the other side.
+inline Trajectory mirrored(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) {
+    const Eigen::Quaterniond& q = pose.rotation;
+    const Eigen::Vector3d& t = pose.translation;
+    return Pose{Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), {t.x(), -t.y(), t.z()}};
+  });
+}
+
+/// Rotation vectors in degrees, read as radians.
+inline Trajectory with_angles_in_degrees(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) {
+    const Eigen::Vector3d turned = 180 / std::numbers::pi * rotation_log(pose.rotation);
+    return Pose{rotation_exp(turned), pose.translation};
+  });
+}
+
+/// Roll, pitch and yaw applied in the opposite order.
+inline Trajectory with_angles_in_another_order(const Trajectory& trajectory) {
+  return changed(trajectory, [](const Pose& pose) {
+    const Eigen::Matrix3d R = pose.rotation.toRotationMatrix();
+    const double roll = std::atan2(R(2, 1), R(2, 2)), yaw = std::atan2(R(1, 0), R(0, 0));
+    const double pitch = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2)));
+    const Eigen::Quaterniond q =
+        rotation_exp({roll, 0, 0}) * rotation_exp({0, pitch, 0}) * rotation_exp({0, 0, yaw});
+    return Pose{q.normalized(), pose.translation};
+  });
+}
+
+/// Stamps rounded down to whole multiples [us], as a number with few digits keeps them.
+inline Trajectory with_rounded_stamps(Trajectory trajectory, std::int64_t multiple) {
+  const std::int64_t first = trajectory.front().time_us;
+  for (StampedPose& pose : trajectory) pose.time_us -= (pose.time_us - first) % multiple;
+  Trajectory result;
+  for (const StampedPose& pose : trajectory)
+    if (result.empty() || pose.time_us > result.back().time_us) result.push_back(pose);
+  return result;
+}
+
+/// Every n-th pose, and between them what a straight line says.
+inline Trajectory interpolated(Trajectory trajectory, std::size_t n) {
+  for (std::size_t i = 0; i + n < trajectory.size(); i += n) {
+    const Pose from = to_pose(trajectory[i].pose), to = to_pose(trajectory[i + n].pose);
+    for (std::size_t k = 1; k < n; ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(n);
+      const Eigen::Quaterniond q0 = from.rotation, q1 = to.rotation;
+      const Eigen::Vector3d position = (1 - part) * from.translation + part * to.translation;
+      trajectory[i + k].pose = canonical_sign(to_dual_quaternion({q0.slerp(part, q1), position}));
+    }
+  }
+  return trajectory;
+}
+
+/// The scale of each motion grows evenly by `growth` over the drive.
+inline Trajectory with_growing_scale(const Trajectory& trajectory, double growth) {
+  Trajectory result = trajectory;
+  Eigen::Vector3d position = to_pose(trajectory.front().pose).translation;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const Pose before = to_pose(trajectory[i - 1].pose), pose = to_pose(trajectory[i].pose);
+    const double part = static_cast<double>(i) / static_cast<double>(trajectory.size());
+    position += (1 + growth * part) * (pose.translation - before.translation);
+    result[i].pose = canonical_sign(to_dual_quaternion({pose.rotation, position}));
+  }
+  return result;
+}
+
+/// From the middle of the drive on, stamps later by so much [us].
+inline Trajectory late_from_the_middle(Trajectory trajectory, std::int64_t later) {
+  for (std::size_t i = trajectory.size() / 2; i < trajectory.size(); ++i) trajectory[i].time_us += later;
+  return trajectory;
+}
+
+/// The odometry starts anew in the middle of the drive. No mistake, but a motion that is none.
+inline Trajectory restarted(Trajectory trajectory) {
+  const DualQuaternion there = conjugate(trajectory[trajectory.size() / 2].pose);
+  for (std::size_t i = trajectory.size() / 2; i < trajectory.size(); ++i)
+    trajectory[i].pose = canonical_sign(normalized(there * trajectory[i].pose));
+  return trajectory;
+}
+
+/// A road drive of another vehicle, with the stamps of this one.
+inline Trajectory of_another_vehicle(const Trajectory& trajectory) {
+  SimulationOptions options;
+  options.poses = static_cast<int>(trajectory.size());
+  options.relative_noise = 0.01;
+  options.seed = 4711;
+  Trajectory other = simulated_drive(options).b;
+  for (std::size_t i = 0; i < other.size(); ++i) other[i].time_us = trajectory[i].time_us;
+  return other;
+}
+
+/// The motions as another frame of the same body has them.
+inline Trajectory seen_from(const Trajectory& trajectory, const DualQuaternion& T) {
+  Trajectory result = trajectory;
+  for (StampedPose& pose : result) pose.pose = canonical_sign(normalized(T * pose.pose * conjugate(T)));
+  return result;
+}
+
 struct Mistake {
   std::string name;
   std::string code;  ///< of the finding that names it; empty: none has to
@@ -188,6 +286,17 @@ inline std::vector<Mistake> mistakes() {
            while (t->size() > 2 && t->back().time_us > end) t->pop_back();
          }
        }},
+      {"b left-handed", "", [](Streams& s) { s.b = mirrored(s.b); }},
+      {"angles of b in degrees", "", [](Streams& s) { s.b = with_angles_in_degrees(s.b); }},
+      {"roll, pitch, yaw of b in another order", "",
+       [](Streams& s) { s.b = with_angles_in_another_order(s.b); }},
+      {"stamps of b rounded to 0.25 s", "", [](Streams& s) { s.b = with_rounded_stamps(s.b, 250'000); }},
+      {"every 10th pose of b, interpolated", "", [](Streams& s) { s.b = interpolated(s.b, 10); }},
+      {"scale of b grows by 10 %", "", [](Streams& s) { s.b = with_growing_scale(s.b, 0.1); }},
+      {"b 0.3 s late from the middle on", "", [](Streams& s) { s.b = late_from_the_middle(s.b, 300'000); }},
+      {"odometry of b starts anew", "", [](Streams& s) { s.b = restarted(s.b); }},
+      {"b of another vehicle", "", [](Streams& s) { s.b = of_another_vehicle(s.b); }},
+      {"b already in the frame of a", "same_stream", [](Streams& s) { s.b = seen_from(s.b, s.T); }},
   };
 }
 

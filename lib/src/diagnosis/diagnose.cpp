@@ -121,6 +121,9 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain || one.code == "samples"; });
   if (!explained) look_further(evidence, answered, misfit, options, result.findings);
+  if (std::none_of(result.findings.begin(), result.findings.end(),
+                   [](const Finding& one) { return one.certain; }))
+    for (Finding& finding : in_one_frame(answered)) result.findings.push_back(std::move(finding));
   judge(result, answered, misfit, options);
   return result;
 }

@@ -82,7 +82,7 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
 /// Not another reading: what is wrong with the poses themselves. Pairing rejects those that stand still.
 bool stream_fault(const Finding& finding) {
   return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
-         finding.code == "flat_b" || finding.code == "same_stream";
+         finding.code == "flat_b" || (finding.code == "same_stream" && finding.certain);
 }
 
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.

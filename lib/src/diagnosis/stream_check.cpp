@@ -9,6 +9,7 @@
 
 #include "diagnosis/wording.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
 
@@ -220,6 +221,32 @@ std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOpt
       "drive: another recording, a clock that jumped, or an odometry that was lost.",
       first->begin, last->end);
   finding.remedy = "Use the part of the drive where the streams belong together.";
+  return {finding};
+}
+
+std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOptions& options) {
+  const Vector6d x = frame_a_difference({}, answered.T_a_b);
+  const Observability& seen = answered.observability;
+  int known_translations = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const bool known =
+        seen.observable[i] && seen.stddev[i] < (i < 3 ? options.known_translation : options.known_rotation);
+    if (!known && i < 3) continue;
+    if (!known || !(std::abs(x[static_cast<Eigen::Index>(i)]) <=
+                    std::max(i < 3 ? options.close : options.parallel, 3 * seen.stddev[i])))
+      return {};
+    if (i < 3) ++known_translations;
+  }
+  if (known_translations < 2) return {};
+  Finding finding;
+  finding.code = "same_stream";
+  finding.message = format(
+      "The answer is the identity to %.2f deg and %.1f cm: both streams may be of one frame, such as that of "
+      "the vehicle.",
+      x.tail<3>().norm() * 180 / std::numbers::pi, 100 * x.head<3>().norm());
+  finding.remedy =
+      "Give the poses of the sensors themselves, not moved to a common frame; ignore this where the sensors "
+      "really sit side by side and look the same way.";
   return {finding};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/motions.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal::detail {
@@ -24,6 +25,11 @@ struct StreamCheckOptions {
   double least_turning = 0.3;  ///< of the typical motion; a window that turns less says nothing
   double flat = 1e-6;          ///< of the longest extent: a coordinate that changes by less never changes
   double least_tilt = 0.0175;  ///< of a stream with a flat coordinate: a degree [rad]; level ground is within
+  /// An answer this close to the identity, or within three standard deviations of it [rad, m]: frames of two
+  /// sensors that are bolted to one vehicle differ by more, but for stereo cameras.
+  double parallel = 0.0087, close = 0.2;
+  double known_rotation = 0.0175,
+         known_translation = 0.3;  ///< standard deviations up to here say so [rad, m]
 };
 
 /// flat_a, flat_b, frozen_a, frozen_b, same_stream, samples.
@@ -32,5 +38,9 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
 
 /// unrelated, with the time from which on: part of the drive does not turn together, the rest does.
 std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOptions& options = {});
+
+/// same_stream, uncertain: the answer is the identity, as far as it is known. Both streams are then of one
+/// frame; where poses were moved to the vehicle's frame before, the answer is not the mounting.
+std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOptions& options = {});
 
 }  // namespace egocal::detail
