@@ -11,6 +11,7 @@
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/problem/blocks.hpp"
+#include "wire_checks.hpp"
 
 namespace egocal::bus {
 
@@ -26,11 +27,6 @@ bool finite(const double (&values)[n]) {
   return std::all_of(values, values + n, [](double v) { return std::isfinite(v); });
 }
 
-/// Numbers that may be infinite but mean nothing when negative or NaN.
-bool not_negative(double value) {
-  return value >= 0;
-}
-
 Checked<StampedPose> stamped(std::int64_t utime, const double (&pos)[3], const double (&quat)[4]) {
   if (!plausible_time(utime)) return {{}, "time out of range"};
   const Checked<DualQuaternion> pose = to_dual_quaternion(pos, quat);
@@ -43,15 +39,12 @@ std::string fault(const Statistics& block) {
   if (!std::isfinite(block.weight) || block.weight <= 0)
     return "statistics with a weight that is not positive";
   const Eigen::VectorXd diagonal = block.dual_rows.diagonal();
-  if (!block.dual_rows.allFinite() || block.dual_rows.cwiseAbs().maxCoeff() > 1e30)
+  if (!block.dual_rows.allFinite() || block.dual_rows.cwiseAbs().maxCoeff() > largest_entry)
     return "statistics that are not finite";
   if (diagonal.minCoeff() < 0) return "statistics that are not a sum of squares";
-  for (int row = 0; row < 8; ++row)
-    for (int column = 0; column < row; ++column)
-      if (std::abs(block.dual_rows(row, column)) >
-          (1 + 1e-9) * std::sqrt(diagonal(row) * diagonal(column)) + 1e-12 * diagonal.sum())
-        return "statistics that are not a sum of squares";
-  return {};
+  return bounded_by_diagonal(block.dual_rows, 1e-12 * diagonal.sum())
+             ? ""
+             : "statistics that are not a sum of squares";
 }
 
 /// What a certificate says about itself: the gap is that between cost and bound, no cost is negative by more
@@ -266,10 +259,10 @@ Checked<Answer> to_answer(const calibration_t& message) {
   const std::optional<Optimality> optimality = optimality_from_wire(message.status);
   if (!optimality) return {{}, "unknown status"};
   if (!std::isfinite(message.cost) || std::isnan(message.lower_bound)) return {{}, "cost not finite"};
-  for (const double value :
-       {message.gap, message.scaled_gap, message.reach_translation, message.reach_rotation})
-    if (!not_negative(value)) return {{}, "certificate out of range"};
-  if (!std::all_of(message.stddev, message.stddev + 6, not_negative))
+  if (!not_negative({message.gap, message.scaled_gap, message.reach_translation, message.reach_rotation}))
+    return {{}, "certificate out of range"};
+  const auto& stddev = message.stddev;
+  if (!not_negative({stddev[0], stddev[1], stddev[2], stddev[3], stddev[4], stddev[5]}))
     return {{}, "standard deviation out of range"};
   if (contradicts_itself(message)) return {{}, "answer that contradicts itself"};
   if (message.solve_ns < 0 || message.verify_ns < 0 || message.latency_us < -1)

@@ -8,6 +8,7 @@
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/limits.hpp"
+#include "wire_checks.hpp"
 
 namespace egocal::bus {
 
@@ -19,7 +20,6 @@ constexpr double least_scale = 1e-9, most_scale = 1e9;
 /// Two solutions of one problem agree to this: the same program finds the same to the bit, others may round
 /// in another order.
 constexpr double same_scale = 1e-6;
-constexpr double largest_entry = 1e30;
 
 using Block = ScaleStatistics::Block;
 
@@ -60,13 +60,7 @@ std::string fault(const ScaleStatistics& block) {
   const double scale = block.square_a > 0 ? std::sqrt(block.square_b / block.square_a) : 0;
   const Matrix8d rows = at_scale(block, std::isfinite(scale) ? scale : 0).dual_rows;
   const double size = rows.diagonal().cwiseAbs().sum() + 2 * block.square_b;
-  for (int row = 0; row < 8; ++row)
-    for (int column = 0; column <= row; ++column) {
-      const double bound = std::max(0.0, rows(row, row)) * std::max(0.0, rows(column, column));
-      if (std::abs(rows(row, column)) > (1 + 1e-9) * std::sqrt(bound) + 1e-9 * size)
-        return "statistics that are not a sum of squares";
-    }
-  return {};
+  return bounded_by_diagonal(rows, 1e-9 * size) ? "" : "statistics that are not a sum of squares";
 }
 
 std::int8_t wire_noise(ScaleNoise noise) {
@@ -175,10 +169,9 @@ Checked<ScaleSolution> to_scale(const scale_t& message) {
   if (std::string reason = fault_of_head(message); !reason.empty()) return {{}, std::move(reason)};
   if (!plausible_name(message.solver)) return {{}, "solver name"};
   if (!scale_in_range(message.scale)) return {{}, "scale out of range"};
-  for (const double value : {message.stddev, message.least_scale, message.most_scale, message.gap,
-                             message.attenuation, message.observability})
-    if (!(value >= 0)) return {{}, "scale that contradicts itself"};
-  if (!std::isfinite(message.cost) || !(message.lower_bound <= message.cost) || message.observability > 1 ||
+  if (!not_negative({message.stddev, message.least_scale, message.most_scale, message.gap,
+                     message.attenuation, message.observability}) ||
+      !std::isfinite(message.cost) || !(message.lower_bound <= message.cost) || message.observability > 1 ||
       message.least_scale > message.scale || message.most_scale < message.scale ||
       (message.certified && (message.at_limit || !std::isfinite(message.gap))) ||
       (message.observable && message.at_limit))

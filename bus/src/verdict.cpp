@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <string_view>
 #include <utility>
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/limits.hpp"
+#include "wire_checks.hpp"
 
 namespace egocal::bus {
 
@@ -18,10 +18,6 @@ namespace {
 constexpr std::string_view directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 /// Characters of a reason or a remedy: two long sentences.
 constexpr std::size_t max_sentence = 400;
-
-bool not_negative(std::initializer_list<double> values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v >= 0; });
-}
 
 /// What cannot be a number on the wire is none.
 double finite_or_zero(double value) {
@@ -55,7 +51,7 @@ finding_t to_message(const Finding& finding, std::int64_t begin_us) {
 Checked<Finding> to_finding(const finding_t& message, std::int64_t begin_us) {
   if (!plausible_name(message.code)) return {{}, "finding without a code"};
   if (!sentence(message.message) || !sentence(message.remedy)) return {{}, "text of a finding"};
-  if (!not_negative({message.improvement}) || !std::isfinite(message.value))
+  if (!finite_not_negative({message.improvement}) || !std::isfinite(message.value))
     return {{}, "finding out of range"};
   if (message.utime != 0 && !plausible_time(message.utime)) return {{}, "time of a finding out of range"};
   Finding finding;
@@ -76,9 +72,10 @@ Checked<Finding> to_finding(const finding_t& message, std::int64_t begin_us) {
 
 Checked<Fit> to_fit(const fit_t& message) {
   if (!plausible_count(message.poses) ||
-      !not_negative({message.motion_seconds, message.rotation_median, message.rotation_95,
-                     message.translation_median, message.translation_95, message.translation_relative_median,
-                     message.length_ratio, message.turning_ratio}))
+      !finite_not_negative({message.motion_seconds, message.rotation_median, message.rotation_95,
+                            message.translation_median, message.translation_95,
+                            message.translation_relative_median, message.length_ratio,
+                            message.turning_ratio}))
     return {{}, "fit out of range"};
   Fit fit;
   fit.motion_seconds = message.motion_seconds;

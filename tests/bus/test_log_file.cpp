@@ -12,39 +12,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <lcm/lcm-cpp.hpp>
-#include <new>
 
+#include "damaged_log_test.hpp"
 #include "egocal/error.hpp"
 #include "support/damaged_log.hpp"
 #include "support/in_memory_file.hpp"
-
-namespace {
-std::size_t largest_allocation = 0;
-void* allocate(std::size_t size) {
-  largest_allocation = std::max(largest_allocation, size);
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return allocate(size);
-}
-void* operator new[](std::size_t size) {
-  return allocate(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "support/largest_allocation.hpp"
 
 namespace egocal::bus {
 namespace {
@@ -54,71 +27,6 @@ using test::Damage;
 using test::DamagedLog;
 using test::SmallLog;
 using ::testing::HasSubstr;
-
-class LogFile : public ::testing::Test {
- protected:
-  LogFile()
-      : folder(std::filesystem::temp_directory_path() / ("egocal_log_" + std::to_string(getpid()))),
-        file((std::filesystem::create_directories(folder), folder / "damaged.log")),
-        log(test::small_log(folder / "good.log", 30)) {}
-  ~LogFile() override { std::filesystem::remove_all(folder); }
-
-  struct Read {
-    struct Event {
-      std::size_t at;  ///< in the file
-      LogEvent event;
-    };
-    std::vector<Event> events;
-    LogDamage damage;
-  };
-  Read read(const std::string& bytes) const {
-    memory.set(bytes.data(), bytes.size());
-    LogReader reader(memory.name());
-    Read result;
-    while (auto event = reader.next()) {
-      const std::size_t size = test::log_header_size + event->channel.size() + event->data.size();
-      result.events.push_back({reader.position() - size, std::move(*event)});
-    }
-    result.damage = reader.damage();
-    return result;
-  }
-  /// Everything that is whole was read, from where it stands now, and every byte is accounted for.
-  void expect_whole(const DamagedLog& damaged, const Read& read) const {
-    std::size_t next = 0, bytes = 0;
-    for (const Read::Event& event : read.events) {
-      const std::size_t size = test::log_header_size + event.event.channel.size() + event.event.data.size();
-      bytes += size;
-      while (next < damaged.whole.size() && damaged.whole[next].at < event.at) {
-        ADD_FAILURE() << "event " << damaged.whole[next].event << " was not read";
-        ++next;
-      }
-      if (next == damaged.whole.size() || damaged.whole[next].at != event.at) continue;
-      EXPECT_EQ(event.event.number, static_cast<std::int64_t>(damaged.whole[next].event));
-      const std::size_t from = log.begin[damaged.whole[next].event];
-      EXPECT_EQ(size, log.begin[damaged.whole[next].event + 1] - from);
-      const std::size_t data = from + test::log_header_size + event.event.channel.size();
-      EXPECT_EQ(
-          log.bytes.compare(data, event.event.data.size(),
-                            reinterpret_cast<const char*>(event.event.data.data()), event.event.data.size()),
-          0);
-      ++next;
-    }
-    EXPECT_EQ(next, damaged.whole.size()) << "the last ones were not read";
-    EXPECT_EQ(bytes + read.damage.bytes, damaged.bytes.size());
-  }
-  std::string with_field(std::size_t event, std::size_t offset, std::uint32_t value) const {
-    std::string bytes = log.bytes;
-    for (std::size_t k = 0; k < 4; ++k)
-      bytes[log.begin[event] + offset + k] = static_cast<char>(value >> (24 - 8 * k));
-    return bytes;
-  }
-  std::size_t size_of(std::size_t event) const { return log.begin[event + 1] - log.begin[event]; }
-
-  std::filesystem::path folder;
-  std::string file;
-  test::InMemoryFile memory;
-  SmallLog log;
-};
 
 TEST_F(LogFile, AWholeLogHasNoDamageAndLiblcmReadsIt) {
   const Read result = read(log.bytes);
@@ -138,7 +46,7 @@ TEST_F(LogFile, AWholeLogHasNoDamageAndLiblcmReadsIt) {
 
 TEST_F(LogFile, TenThousandDamagedCopiesCostNoMoreThanWhatWasDamaged) {
   testing::Random random(6);
-  largest_allocation = 0;
+  test::largest_allocation = 0;
   std::size_t unreadable = 0, wrong_counts = 0, counts = 0;
   for (int i = 0; i < 10'000; ++i) {
     const Damage damage = test::all_damages[static_cast<std::size_t>(i) % std::size(test::all_damages)];
@@ -169,7 +77,7 @@ TEST_F(LogFile, TenThousandDamagedCopiesCostNoMoreThanWhatWasDamaged) {
     }
     if (HasFailure()) break;
   }
-  EXPECT_LT(largest_allocation, 1u << 20) << "a length field of a small file asked for much memory";
+  EXPECT_LT(test::largest_allocation, 1u << 20) << "a length field of a small file asked for much memory";
   // a single event after a piece that was cut out or swapped: nothing bears its number out
   std::printf("%zu copies without an event; fewer lost events counted than there were in %zu of %zu\n",
               unreadable, wrong_counts, counts);
@@ -420,42 +328,6 @@ TEST_F(LogFile, WhatIsNoLogIsRefusedInOneLine) {
     EXPECT_THROW(read(bytes), Error);
   EXPECT_THROW(LogReader(folder.string()), Error);
   EXPECT_THROW(LogReader((folder / "none").string()), Error);
-}
-
-/// Nothing in it but holes: a file of any size that takes no room.
-void extend(const std::string& file, std::uint64_t size) {
-  std::filesystem::resize_file(file, size);
-}
-
-TEST_F(LogFile, NoEventTakesMoreThan64MiB) {
-  constexpr std::uint32_t limit = 64 << 20;
-  for (const std::uint32_t size : {limit, limit + 1, 150u << 20}) {
-    test::write_bytes(file, log.bytes + with_field(5, 24, size).substr(log.begin[5], size_of(5)));
-    extend(file, 200 << 20);
-    largest_allocation = 0;
-    const auto begin = std::chrono::steady_clock::now();
-    LogReader reader(file);
-    std::size_t events = 0;
-    while (reader.next()) ++events;
-    EXPECT_EQ(events, log.events() + (size <= limit ? 1 : 0));
-    EXPECT_LE(largest_allocation, std::size_t{limit} + 4096);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
-  }
-}
-
-TEST_F(LogFile, AHostileFileTakesNoLongerThanItsSize) {
-  // headers in a row that all claim the 64 MiB after them
-  const std::string header = with_field(0, 24, 64 << 20).substr(0, test::log_header_size + 13);
-  std::string bytes = log.bytes;
-  for (int i = 0; i < 50'000; ++i) bytes += header;
-  test::write_bytes(file, bytes);
-  extend(file, 200 << 20);
-  const auto begin = std::chrono::steady_clock::now();
-  LogReader reader(file);
-  while (reader.next()) {
-  }
-  EXPECT_EQ(reader.position(), reader.size());
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
 }
 
 TEST_F(LogFile, AWriterLeavesTheWholeFileOrNone) {

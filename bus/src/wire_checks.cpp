@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "wire_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace egocal::bus {
+
+bool not_negative(std::initializer_list<double> values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value >= 0; });
+}
+
+bool finite_not_negative(std::initializer_list<double> values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return std::isfinite(value) && value >= 0; });
+}
+
+bool bounded_by_diagonal(const Matrix8d& matrix, double slack) {
+  for (int row = 0; row < 8; ++row)
+    for (int column = 0; column <= row; ++column) {
+      const double bound = std::max(0.0, matrix(row, row)) * std::max(0.0, matrix(column, column));
+      if (std::abs(matrix(row, column)) > (1 + 1e-9) * std::sqrt(bound) + slack) return false;
+    }
+  return true;
+}
+
+}  // namespace egocal::bus

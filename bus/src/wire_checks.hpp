@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What several messages are checked for before their numbers are believed.
+#pragma once
+
+#include <initializer_list>
+
+#include "egocal/geometry/dual_quaternion.hpp"
+
+namespace egocal::bus {
+
+/// Largest entry of statistics: products of two stay far from overflow.
+inline constexpr double largest_entry = 1e30;
+
+/// No value is negative or NaN. Infinity may be meant: unknown.
+bool not_negative(std::initializer_list<double> values);
+
+/// The same, and all are finite.
+bool finite_not_negative(std::initializer_list<double> values);
+
+/// Of a sum of M'M the diagonal bounds the rest (Cauchy-Schwarz), up to `slack` [the matrix's own unit].
+bool bounded_by_diagonal(const Matrix8d& matrix, double slack);
+
+}  // namespace egocal::bus

@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// `egocal up` with the real processes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <thread>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/convert.hpp"
+#include "egocal/bus/log_file.hpp"
+#include "egocal/bus/loop.hpp"
+#include "egocal/error.hpp"
+#include "supervised.hpp"
+#include "supervision/output_file.hpp"
+#include "supervision/supervisor.hpp"
+#include "support/child_process.hpp"
+#include "support/network_namespace.hpp"
+#include "support/paths.hpp"
+
+namespace egocal {
+namespace {
+
+using namespace std::chrono_literals;
+using test::ChildProcess;
+using test::children;
+using test::lines;
+using test::read;
+using test::runs;
+using test::Supervision;
+using test::until;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The real thing.
+class Up : public Supervision {
+ protected:
+  Up() : rig(path("drive.toml")), log(path("drive.log")) {
+    const int code = ChildProcess({paths::bin_dir() + "/egocal", "simulate", "--out", log, "--rig-out", rig,
+                                   "--poses", "400", "--noise", "0.001"})
+                         .wait(60s);
+    EXPECT_EQ(code, 0);
+  }
+  ChildProcess up(std::vector<std::string> more) const {
+    static int port = 7780;
+    std::vector<std::string> arguments{paths::bin_dir() + "/egocal",
+                                       "up",
+                                       rig,
+                                       "--output-dir",
+                                       path("out"),
+                                       "--lcm-url",
+                                       "udpm://239.255.76.67:" + std::to_string(++port) + "?ttl=0"};
+    if (std::find(more.begin(), more.end(), "--lcm-url") != more.end())
+      arguments.resize(arguments.size() - 2);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ChildProcess(arguments, path("said"));
+  }
+  static pid_t child(pid_t parent, const std::string& name) {
+    for (const auto& [pid, its_name] : children(parent))
+      if (its_name == name) return pid;
+    return -1;
+  }
+  /// All of these run; /proc knows the first 15 characters of a name.
+  static bool all_run(pid_t parent, const std::vector<std::string>& names) {
+    return std::all_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return child(parent, name.substr(0, 15)) > 0; });
+  }
+  const std::vector<std::string> calibrating{"egocal-pairing", "egocal-fast", "egocal-global",
+                                             "egocal-diagnosis"};
+
+  std::string rig, log;
+};
+
+TEST_F(Up, PlaysALogToItsEndAndEndsAll) {
+  ChildProcess egocal = up({"--log", log, "--speed", "0", "--follow", "--report"});
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  const std::string page = read(path("out/report-lidar-camera.html"));
+  EXPECT_THAT(page, HasSubstr("good: "));
+  EXPECT_THAT(page, HasSubstr("</html>"));
+  for (const char* name :
+       {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-diagnosis", "egocal-player"})
+    EXPECT_TRUE(std::filesystem::exists(path("out/" + std::string(name) + ".out"))) << name;
+  EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven)"));
+}
+
+TEST_F(Up, AnAnswerThatShouldNotBeUsedEndsWithThree) {
+  ASSERT_EQ(ChildProcess({paths::bin_dir() + "/egocal", "simulate", "--out", log, "--rig-out", rig, "--poses",
+                          "400", "--noise", "0.001", "--terrain", "free", "--scale", "camera=2.7"})
+                .wait(60s),
+            0);
+  ChildProcess egocal = up({"--log", log, "--speed", "20"});
+  EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: contradictory: "));
+  EXPECT_THAT(read(path("said")), HasSubstr("Cure: "));
+  EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven), "));
+}
+
+TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
+  ChildProcess egocal = up({});
+  const pid_t self = egocal.pid();
+  for (const std::string name : {"egocal-fast", "egocal-pairing", "egocal-global"}) {
+    ASSERT_TRUE(until([&] { return child(self, name) > 0; })) << name;
+    const pid_t before = child(self, name);
+    kill(before, SIGKILL);
+    ASSERT_TRUE(until([&] {
+      const pid_t now = child(self, name);
+      return now > 0 && now != before;
+    })) << name;
+    EXPECT_THAT(read(path("said")), HasSubstr(name + " ended (killed by signal 9"));
+  }
+  ASSERT_TRUE(until([&] { return all_run(self, calibrating); }));
+  const auto all = children(self);
+  egocal.signal(SIGINT);
+  EXPECT_EQ(egocal.wait(30s), 0);
+  for (const auto& [id, name] : all) EXPECT_FALSE(runs(id)) << name;
+  EXPECT_THAT(read(path("said")), Not(HasSubstr("did not end")));
+}
+
+TEST_F(Up, AKilledPairingCostsNothing) {
+  const auto last_problem = [&](bool killed) {
+    const std::string url = "udpm://239.255.76.67:" + std::to_string(killed ? 7751 : 7752) + "?ttl=0";
+    bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+    problem_t problem{};
+    loop.subscribe<problem_t>(bus::problem_channel("lidar", "camera"),
+                              [&](const problem_t& message, const bus::Arrival&) { problem = message; });
+    ChildProcess egocal = up({"--log", log, "--speed", "40", "--lcm-url", url});
+    bool done = false;
+    EXPECT_TRUE(until(
+        [&] {
+          loop.run_once(5ms);
+          if (killed && problem.seq > 150) {
+            kill(child(egocal.pid(), "egocal-pairing"), SIGKILL);
+            killed = false;
+          }
+          return done = done || egocal.wait(0ms) == 0;
+        },
+        60s))
+        << read(path("said"));
+    return problem;
+  };
+  const problem_t expected = last_problem(false), found = last_problem(true);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing ended (killed by signal 9"));
+  EXPECT_EQ(expected.seq, 399);
+  EXPECT_EQ(found.seq, expected.seq);
+  EXPECT_EQ(found.session, expected.session);
+  EXPECT_EQ(found.matched, expected.matched);
+  ASSERT_EQ(found.blocks.size(), expected.blocks.size());
+  for (std::size_t i = 0; i < found.blocks.size(); ++i)
+    EXPECT_EQ(bus::encode(found.blocks[i]), bus::encode(expected.blocks[i]));
+  for (const auto& entry : std::filesystem::directory_iterator(path("out")))
+    EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("state")));
+}
+
+TEST_F(Up, TheirProcessesCanBeTold) {
+  const std::string url = "udpm://239.255.76.67:7753?ttl=0";
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  std::string state;
+  std::int64_t out = 0;
+  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    if (status.name != "egocal-player") return;
+    state = status.state;
+    for (const counter_t& counter : status.counters)
+      if (counter.name == "out") out = counter.value;
+  });
+  const auto tell = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {paths::bin_dir() + "/egocal", "tell", "--lcm-url", url});
+    std::filesystem::remove(path("told"));
+    return ChildProcess(words, path("told")).wait(30s);
+  };
+  EXPECT_EQ(tell({"egocal-player", "pause"}), 1);
+  EXPECT_EQ(lines(path("told")).size(), 1u);
+  EXPECT_EQ(tell({"egocal-player", "dance"}), 2);
+  EXPECT_EQ(tell({"egocal-player", "seek"}), 2);
+  EXPECT_EQ(tell({"egocal-player", "seek", "x"}), 2);
+  EXPECT_EQ(tell({"egocal-player", "pause", "1"}), 2);
+  ChildProcess egocal = up({"--log", log, "--lcm-url", url});
+  const auto seen = [&](const std::function<bool()>& condition) {
+    return until([&] {
+      loop.run_once(5ms);
+      return condition();
+    });
+  };
+  ASSERT_TRUE(seen([&] { return state == "running"; }));
+  EXPECT_EQ(tell({"egocal-player", "pause"}), 0);
+  ASSERT_TRUE(seen([&] { return state == "paused"; }));
+  EXPECT_EQ(tell({"egocal-player", "seek", "3.5"}), 0);
+  const std::int64_t before = out;
+  EXPECT_EQ(tell({"egocal-player", "step"}), 0);
+  EXPECT_TRUE(seen([&] { return out > before; }));
+  EXPECT_EQ(tell({"egocal-player", "speed", "0"}), 0);
+  EXPECT_EQ(tell({"egocal-player", "resume"}), 0);
+  EXPECT_EQ(egocal.wait(60s), 0);
+}
+
+TEST_F(Up, LeavesNoOrphans) {
+  ChildProcess egocal = up({"--log", log});
+  const pid_t self = egocal.pid();
+  ASSERT_TRUE(until([&] { return all_run(self, calibrating) && child(self, "egocal-player") > 0; }));
+  const auto all = children(self);
+  egocal.signal(SIGKILL);
+  for (const auto& [id, name] : all) EXPECT_TRUE(until([id = id] { return !runs(id); })) << name;
+}
+
+TEST_F(Up, SaysInOneLineWhatIsWrong) {
+  const auto refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {paths::bin_dir() + "/egocal", "up"});
+    std::filesystem::remove(path("said"));
+    EXPECT_EQ(ChildProcess(arguments, path("said")).wait(30s), 1);
+    EXPECT_EQ(lines(path("said")).size(), 1u) << read(path("said"));
+  };
+  refused({rig, "--lcm-url", "udpm://nowhere:1"});
+  refused({rig, "--log", path("none.log")});
+  refused({path("none.toml")});
+  refused({rig, "--output-dir", rig + "/in"});
+  refused({rig, "--state", "/nonexistent/x"});
+  refused({rig, "--state", path("")});
+}
+
+TEST_F(Up, ChecksTheLogBeforeItPlaysIt) {
+  {
+    bus::LogWriter writer(path("other.log"));
+    StampedPose pose;
+    pose.time_us = 1'700'000'000'000'000;
+    writer.write(pose.time_us, "SOMETHING_ELSE", bus::encode(bus::to_message(pose, 0)));
+    writer.close();
+  }
+  ChildProcess other = up({"--log", path("other.log")});
+  EXPECT_EQ(other.wait(30s), 1);
+  EXPECT_EQ(lines(path("said")).size(), 1u) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("is not in the log; there are: SOMETHING_ELSE"));
+}
+
+TEST_F(Up, FailsWhereNothingWasCalibrated) {
+  {
+    bus::LogReader all(log);
+    bus::LogWriter writer(path("short.log"));
+    for (int i = 0; i < 2; ++i)
+      if (const auto event = all.next()) writer.write(event->time_us, event->channel, event->data);
+    writer.close();
+  }
+  ChildProcess egocal = up({"--log", path("short.log"), "--speed", "0"});
+  EXPECT_EQ(egocal.wait(60s), 1) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("nothing was calibrated"));
+}
+
+TEST_F(Up, ASecondOneOnTheSameBusRefusesUnlessItIsToJoin) {
+  const std::string url = "udpm://239.255.76.67:7754?ttl=0";
+  ChildProcess first = up({"--lcm-url", url});
+  ASSERT_TRUE(until([&] { return child(first.pid(), "egocal-pairing") > 0; }));
+  std::this_thread::sleep_for(500ms);
+  std::filesystem::remove(path("said"));
+  ChildProcess second = up({"--lcm-url", url});
+  EXPECT_EQ(second.wait(30s), 1);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing (pid "));
+  ChildProcess joined = up({"--lcm-url", url, "--join"});
+  EXPECT_TRUE(until([&] { return child(joined.pid(), "egocal-pairing") > 0; }));
+  for (ChildProcess* egocal : {&joined, &first}) {
+    egocal->signal(SIGINT);
+    EXPECT_EQ(egocal->wait(30s), 0);
+  }
+}
+
+TEST_F(Up, WhatWasAccumulatedIsKeptWhenItDidNotEndAsItShould) {
+  ChildProcess egocal = up({"--log", log, "--speed", "40"});
+  ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
+  egocal.signal(SIGKILL);
+  egocal.wait(10s);
+  ChildProcess next = up({"--log", log, "--speed", "0"});
+  EXPECT_EQ(next.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("are kept in " + path("out/pairing-1.state")));
+  EXPECT_TRUE(std::filesystem::exists(path("out/pairing-1.state")));
+  EXPECT_FALSE(std::filesystem::exists(path("out/pairing-2.state")));
+}
+
+}  // namespace
+}  // namespace egocal
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  if (!testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
+  return RUN_ALL_TESTS();
+}
