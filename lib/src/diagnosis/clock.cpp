@@ -6,14 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "pairing/offset/correlation.hpp"
+#include "pairing/offset/line_fit.hpp"
+
 namespace egocal::detail {
 
 namespace {
 
 /// Turning rate of one stream in each cell of a grid [rad/s]; negative where unknown.
-std::vector<double> turning_rates(const Trajectory& trajectory, std::span<const double> turning,
-                                  std::int64_t origin_us, double shift, double step, std::size_t count) {
-  std::vector<double> turned(count, 0.0), covered(count, 0.0);
+Series turning_rates(const Trajectory& trajectory, std::span<const double> turning, std::int64_t origin_us,
+                     double shift, double step, std::size_t count) {
+  Series turned(count, 0.0);
+  std::vector<double> covered(count, 0.0);
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const double t0 = 1e-6 * static_cast<double>(trajectory[i - 1].time_us - origin_us) + shift;
     const double t1 = 1e-6 * static_cast<double>(trajectory[i].time_us - origin_us) + shift;
@@ -35,34 +39,15 @@ std::vector<double> turning_rates(const Trajectory& trajectory, std::span<const 
   return turned;
 }
 
-/// Pearson's correlation of x and y shifted to the right by lag, over cells first .. last of x.
-double correlation(const std::vector<double>& x, const std::vector<double>& y, std::ptrdiff_t lag,
-                   std::size_t first, std::size_t last) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(i) - lag;
-    if (k < 0 || k >= static_cast<std::ptrdiff_t>(y.size())) continue;
-    const double u = x[i], v = y[static_cast<std::size_t>(k)];
-    if (u < 0 || v < 0) continue;
-    n += 1;
-    sx += u;
-    sy += v;
-    sxx += u * u;
-    syy += v * v;
-    sxy += u * v;
-  }
-  if (n < 20) return 0;
-  const double variance = (sxx - sx * sx / n) * (syy - sy * sy / n);
-  // few common cells correlate by chance
-  return variance > 0 ? std::sqrt(n) * (sxy - sx * sy / n) / std::sqrt(variance) : 0;
-}
-
 /// Lag in cells with the largest correlation within most_lag of zero, refined by a parabola.
-std::optional<double> best_lag(const std::vector<double>& x, const std::vector<double>& y,
-                               std::ptrdiff_t most_lag, std::size_t first, std::size_t last) {
+std::optional<double> best_lag(const Series& x, const Series& y, std::ptrdiff_t most_lag, std::size_t first,
+                               std::size_t last, std::size_t least_cells) {
   std::vector<double> values;
-  for (std::ptrdiff_t lag = -most_lag; lag <= most_lag; ++lag)
-    values.push_back(correlation(x, y, lag, first, last));
+  for (std::ptrdiff_t lag = -most_lag; lag <= most_lag; ++lag) {
+    const Correlation here = correlation_at(y, x, first, last, -lag, least_cells);
+    // few common cells correlate by chance
+    values.push_back(here.value * std::sqrt(here.count));
+  }
   const auto best = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
   if (!(values[best] > 0)) return std::nullopt;
   double lag = static_cast<double>(best) - static_cast<double>(most_lag);
@@ -87,37 +72,30 @@ std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel&
   const ClockSearchOptions& options = streams.options.clock;
   const std::int64_t origin_us = streams.a.front().time_us;
   const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - origin_us);
-  const double step = std::max(0.1, span / static_cast<double>(options.grid));
+  const double step = std::max(streams.grid.finest, span / static_cast<double>(options.grid));
   const auto count = static_cast<std::size_t>(span / step);
-  if (count < 40) return std::nullopt;
-  const std::vector<double> x = turning_rates(streams.a, streams.turning_a, origin_us, 0, step, count);
-  const std::vector<double> y =
-      turning_rates(streams.b, streams.turning_b, origin_us, start.offset, step, count);
+  if (count < 2 * streams.grid.least_cells) return std::nullopt;
+  const Series x = turning_rates(streams.a, streams.turning_a, origin_us, 0, step, count);
+  const Series y = turning_rates(streams.b, streams.turning_b, origin_us, start.offset, step, count);
   const auto most_lag =
       static_cast<std::ptrdiff_t>(std::min(options.widest / step, 0.25 * static_cast<double>(count)));
-  const std::optional<double> lag = best_lag(x, y, most_lag, 0, count);
+  const std::optional<double> lag = best_lag(x, y, most_lag, 0, count, streams.grid.least_cells);
   if (!lag) return std::nullopt;
   ClockModel clock{start.offset + *lag * step, 0, 0.5 * span};
   if (!with_rate) return clock;
-  const std::vector<double> aligned =
-      turning_rates(streams.b, streams.turning_b, origin_us, clock.offset, step, count);
+  const Series aligned = turning_rates(streams.b, streams.turning_b, origin_us, clock.offset, step, count);
   const auto near = static_cast<std::ptrdiff_t>(std::ceil(0.5 * options.most_rate * span / step)) + 2;
-  double n = 0, st = 0, so = 0, stt = 0, sto = 0;
+  LineFit drift;
   for (std::size_t piece = 0; piece < options.pieces; ++piece) {
     const std::size_t first = piece * count / options.pieces, last = (piece + 1) * count / options.pieces;
-    const std::optional<double> own = best_lag(x, aligned, std::min(near, most_lag), first, last);
+    const std::optional<double> own =
+        best_lag(x, aligned, std::min(near, most_lag), first, last, streams.grid.least_cells);
     if (!own) continue;
-    const double t = 0.5 * static_cast<double>(first + last) * step - clock.middle;
-    n += 1;
-    st += t;
-    so += *own * step;
-    stt += t * t;
-    sto += t * *own * step;
+    drift.add(0.5 * static_cast<double>(first + last) * step - clock.middle, *own * step);
   }
-  const double determinant = n * stt - st * st;
-  if (n < 3 || !(determinant > 0)) return clock;
-  clock.rate = std::clamp((n * sto - st * so) / determinant, -options.most_rate, options.most_rate);
-  clock.offset += (so - clock.rate * st) / n;
+  if (drift.points() < 3 || !drift.determined()) return clock;
+  clock.rate = std::clamp(drift.slope(), -options.most_rate, options.most_rate);
+  clock.offset += drift.level(clock.rate);
   return clock;
 }
 

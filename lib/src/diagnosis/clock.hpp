@@ -10,6 +10,12 @@
 
 namespace egocal::detail {
 
+/// The grid of turning rates that shows a clock coarsely. Study: tests/bench/mistake_study.cpp.
+struct ClockGridOptions {
+  double finest = 0.1;           ///< distance of its points, at least [s]: two poses of a slow sensor
+  std::size_t least_cells = 20;  ///< points that both streams have in common: fewer correlate by chance
+};
+
 /// What the streams are, apart from their clocks.
 struct Streams {
   const Trajectory& a;
@@ -21,6 +27,7 @@ struct Streams {
   /// From each pose to the next, see turning_of() [rad].
   std::span<const double> turning_a, turning_b;
   std::size_t each = 1;  ///< every such pose of the slower stream is looked at
+  ClockGridOptions grid{};
 };
 
 /// The angle from each pose to the next [rad].

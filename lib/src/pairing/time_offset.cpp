@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pairing/offset/correlation.hpp"
+#include "pairing/offset/line_fit.hpp"
 #include "pairing/offset/refinement.hpp"
 #include "pairing/offset/schedule.hpp"
 #include "pairing/offset/turning.hpp"
@@ -25,18 +26,12 @@ struct WindowOffset {
   double offset = 0;  ///< [grid steps]
 };
 
-/// offset = level + slope * time, by least squares. Needs two different times.
+/// offset = level + slope * time. Needs two different times.
 std::pair<double, double> line_through(const std::vector<WindowOffset>& points) {
-  double n = 0, t = 0, y = 0, tt = 0, ty = 0;
-  for (const WindowOffset& point : points) {
-    n += 1;
-    t += point.time;
-    y += point.offset;
-    tt += point.time * point.time;
-    ty += point.time * point.offset;
-  }
-  const double slope = (n * ty - t * y) / (n * tt - t * t);
-  return {(y - slope * t) / n, slope};
+  LineFit line;
+  for (const WindowOffset& point : points) line.add(point.time, point.offset);
+  const double slope = line.slope();
+  return {line.level(slope), slope};
 }
 
 }  // namespace

@@ -20,12 +20,12 @@ struct Sums {
 /// least: variances (times n) below these are rounding.
 Correlation correlation_of(const Sums& s, std::ptrdiff_t lag, std::size_t least_count, double least_a = 0,
                            double least_b = 0) {
-  if (s.n < static_cast<double>(std::max<std::size_t>(4, least_count))) return {0, 0, lag};
+  if (s.n < static_cast<double>(std::max<std::size_t>(4, least_count))) return {0, 0, lag, s.n};
   const double va = s.aa - s.a * s.a / s.n, vb = s.bb - s.b * s.b / s.n;
   // what is left of numbers that cancel to rounding is no variance
-  if (!(va > 1e-9 * s.aa && vb > 1e-9 * s.bb && va > least_a && vb > least_b)) return {0, 0, lag};
+  if (!(va > 1e-9 * s.aa && vb > 1e-9 * s.bb && va > least_a && vb > least_b)) return {0, 0, lag, s.n};
   const double r = std::clamp((s.ab - s.a * s.b / s.n) / std::sqrt(va * vb), -0.9999999, 0.9999999);
-  return {r, std::atanh(r) * std::sqrt(s.n - 3), lag};
+  return {r, std::atanh(r) * std::sqrt(s.n - 3), lag, s.n};
 }
 
 }  // namespace

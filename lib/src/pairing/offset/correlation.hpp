@@ -17,6 +17,7 @@ struct Correlation {
   double value = 0;
   double significance = 0;  ///< in standard deviations of chance, taking every point as independent
   std::ptrdiff_t lag = 0;   ///< grid points by which b was shifted to the right
+  double count = 0;         ///< points that are known in both
 };
 
 /// Of a and the points [begin, end) of b, shifted by `lag`. Zero where fewer than least_count points are
