@@ -11,6 +11,10 @@ double seconds(std::int64_t from_us, std::int64_t to_us) {
   return (static_cast<double>(to_us) - static_cast<double>(from_us)) * 1e-6;
 }
 
+std::string bounded(const std::string& text) {
+  return text.substr(0, Model::max_text);
+}
+
 double scale_of(int direction) {
   return direction < 3 ? centimetres_per_metre : degrees_per_radian;
 }

@@ -19,7 +19,10 @@ inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double centimetres_per_metre = 100.0;
 inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
+/// From one time to another [s]; no overflow, whatever a sender says.
 double seconds(std::int64_t from_us, std::int64_t to_us);
+/// What is kept of a text from a sender: its first Model::max_text bytes.
+std::string bounded(const std::string& text);
 /// From SI to what is shown, by direction (x y z roll pitch yaw).
 double scale_of(int direction);
 /// In planar mode the ground planes say what the motions cannot.

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "answer_text.hpp"
 #include "egocal/bus/answer_check.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/monitor/loops.hpp"
 #include "egocal/online/algorithm1.hpp"
-#include "sender_values.hpp"
 
 namespace egocal::monitor {
 namespace {

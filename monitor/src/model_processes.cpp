@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "answer_text.hpp"
 #include "egocal/monitor/model.hpp"
-#include "sender_values.hpp"
 
 namespace egocal::monitor {
 

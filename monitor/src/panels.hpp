@@ -16,6 +16,7 @@ void draw_title(const Pane& pane, const std::string& title, Charset charset);
 // pair_panels.cpp
 void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selected, bool paused,
                     Charset charset);
+// pair_table.cpp
 void draw_pair_table(const Pane& pane, const Model& model, int selected, bool header, Charset charset);
 
 void draw_processes(const Pane& pane, const Model& model, bool title, Charset charset);
