@@ -16,12 +16,6 @@ namespace egocal::monitor {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-// A verdict or a fallback must have lasted this long before its end is an event: solvers alternate, people do
-// not.
-constexpr double settle_s = 1.0;             // [s]
-constexpr double longest_s = 366 * 86400.0;  // [s] no session lasts longer: a time beyond it is none
-constexpr double many_outliers = 0.05;       // more than this says that a sensor is at fault
-constexpr double repeat_s = 30.0;            // [s] the same event again within this time is only counted
 
 std::string rounded(double value, int decimals) {
   char buffer[64];
@@ -100,7 +94,7 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
   for (std::size_t i = 1; i <= recent; ++i) {
     Event& event = events_[events_.size() - i];
     if (event.subject != subject) continue;
-    if (event.text == text && seconds(event.at.mono_us, now.mono_us) < repeat_s) {
+    if (event.text == text && seconds(event.at.mono_us, now.mono_us) < options_.repeat) {
       ++event.repeated;
       return;
     }
@@ -145,7 +139,7 @@ void Model::on_problem(const problem_t& message, Now now) {
     }
   }
   if (pair->paused && message.seq > pair->problem.seq && message.session == pair->problem.session &&
-      seconds(pair->paused_mono_us, now.mono_us) > settle_s)
+      seconds(pair->paused_mono_us, now.mono_us) > options_.settle)
     pair->paused = false;  // it was resumed, or the command was lost
   if (pair->silent) note(Severity::good, name, "the stream is back", now);
   const bool chosen_anew = pair->has_problem && pair->problem.stride != message.stride;
@@ -166,12 +160,12 @@ void Model::on_problem(const problem_t& message, Now now) {
          now);
 
   const double share = share_left_out(kept);
-  if (share > many_outliers && share > 2 * pair->reported_left_out) {
+  if (share > options_.many_outliers && share > 2 * pair->reported_left_out) {
     pair->reported_left_out = share;
     note(Severity::warning, name,
          rounded(100 * share, 0) + " % of the motions contradict the others and are rejected as outliers",
          now);
-  } else if (share < 0.5 * many_outliers) {
+  } else if (share < 0.5 * options_.many_outliers) {
     pair->reported_left_out = 0;
   }
 
@@ -243,7 +237,7 @@ void Model::watch_certificate(PairState& pair, Now now) {
     if (!pair.certified) note(Severity::good, name, "optimal (proven), by " + answer->solver, now);
     pair.certified = true;
     pair.certified_mono_us = now.mono_us;
-  } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > settle_s) {
+  } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > options_.settle) {
     pair.certified = false;
     note(Severity::bad, name,
          answer->status == 1 ? "proof lost: a better answer is known" : "proof lost: too imprecise to decide",
@@ -315,7 +309,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
       note(Severity::warning, name, "fallback: " + solver + " asked for the global solver", now);
     pair->fallback = true;
     pair->fallback_mono_us = now.mono_us;
-  } else if (pair->fallback && seconds(pair->fallback_mono_us, now.mono_us) > settle_s) {
+  } else if (pair->fallback && seconds(pair->fallback_mono_us, now.mono_us) > options_.settle) {
     pair->fallback = false;
     note(Severity::good, name, "only the fast solver runs again", now);
   }
@@ -335,7 +329,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   values[scaled_gap] = own_solution ? message.scaled_gap : not_a_number;
   values[execution_time] =
       (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
-  if (time >= 0 && time < longest_s) track->history.add(time, values);
+  if (time >= 0 && time < options_.longest_session) track->history.add(time, values);
   count_answer(*pair, now);
 }
 

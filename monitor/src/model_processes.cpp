@@ -46,7 +46,7 @@ void Model::on_status(const status_t& message, Now now) {
     } else if (process->status.state != state_text) {
       const bool healthy = ended || state == bus::State::running || state == bus::State::standby;
       note(healthy ? Severity::info : Severity::warning, name,
-           "is " + state_text + ", was " + process->status.state, now);
+           "changed from " + process->status.state + " to " + state_text, now);
     }
     if (error != process->status.last_error && !error.empty()) note(Severity::warning, name, error, now);
     process->alive = !ended;

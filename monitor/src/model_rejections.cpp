@@ -9,7 +9,6 @@ namespace egocal::monitor {
 
 namespace {
 
-constexpr std::size_t most_reasons = 64;
 const std::string prefix = "rejected: ";
 
 }  // namespace
@@ -23,7 +22,7 @@ void Model::watch_rejections(ProcessState& process, const status_t& message, Now
                                     [&](const bus::Refusal& refusal) { return refusal.reason == reason; });
     if (known != process.rejections.end()) {
       known->count = counter.value;
-    } else if (process.rejections.size() < most_reasons) {
+    } else if (process.rejections.size() < options_.most_reasons) {
       process.rejections.push_back({reason, bus::cure_of_rejection(reason), counter.value});
       const std::string& cure = process.rejections.back().cure;
       note(Severity::info, process.status.name, "rejects: " + reason + (cure.empty() ? "" : ": " + cure),

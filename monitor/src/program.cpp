@@ -29,11 +29,6 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr std::int64_t drain_us = 50000;    // taking in batches keeps the load low
-constexpr std::int64_t redraw_us = 100000;  // ten redraws a second
-constexpr std::int64_t tick_us = 200000;
-constexpr std::int64_t notice_us = 8000000;  // the outcome of a key is shown this long
-
 volatile std::sig_atomic_t stop_flag = 0;
 extern "C" void on_stop(int) {
   stop_flag = 1;
@@ -175,24 +170,24 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
   std::int64_t drained = 0, drawn = 0, ticked = 0, noticed = 0;
   bool changed = true;
   for (;;) {
-    const std::int64_t next =
-        std::min(drained + drain_us, changed ? drawn + redraw_us / 4 : drawn + redraw_us);
+    const std::int64_t next = std::min(drained + options.drain_us,
+                                       changed ? drawn + options.redraw_us / 4 : drawn + options.redraw_us);
     source.wait(static_cast<int>(std::clamp<std::int64_t>((next - bus::mono_us() + 999) / 1000, 0, 100)));
     const Interrupts interrupts = terminal->interrupts();
     if (interrupts.quit) return 0;
     if (interrupts.resized) changed = true;
 
     std::int64_t mono = bus::mono_us();
-    if (mono - drained >= drain_us) {
+    if (mono - drained >= options.drain_us) {
       drained = mono;
       const Now now = source.advance();
       for (const std::string& line : terminal->captured()) model.note(Severity::warning, "stderr", line, now);
-      if (mono - ticked >= tick_us) {
+      if (mono - ticked >= options.tick_us) {
         ticked = mono;
         model.tick(now);
         if (source.at_end() && model.messages() == 0)
           view.notice = no_session(source.name());
-        else if (mono - noticed > notice_us)
+        else if (mono - noticed > options.notice_us)
           view.notice.clear();
       }
     }
@@ -209,7 +204,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
     if (options.duration_s > 0 && static_cast<double>(mono - begin) * 1e-6 > options.duration_s) return 0;
 
     mono = bus::mono_us();
-    if (mono - drawn >= redraw_us || (changed && mono - drawn >= redraw_us / 4)) {
+    if (mono - drawn >= options.redraw_us || (changed && mono - drawn >= options.redraw_us / 4)) {
       drawn = mono;
       changed = false;
       view.height = terminal->height();

@@ -127,8 +127,8 @@ TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
   for (const std::string& text : drive.texts())
     if (text.starts_with("egocal-fast: ")) about.push_back(text.substr(13));
   EXPECT_THAT(about, ElementsAre("process is there (running)", "process is gone: no heartbeat for 3 s",
-                                 "process is back", "process was restarted", "is paused, was running",
-                                 "no global solver", "is ended, was paused"));
+                                 "process is back", "process was restarted", "changed from running to paused",
+                                 "no global solver", "changed from paused to ended"));
 }
 
 TEST(ModelEvents, SessionResetForgetsTheOldOne) {

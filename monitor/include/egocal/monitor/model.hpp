@@ -36,6 +36,15 @@ struct ModelOptions {
   double heartbeat_timeout = 3.0;  ///< [s] a process silent for longer counts as gone
   double stream_timeout = 2.0;     ///< [s] likewise the problems of a pair and the answers of a solver
   double max_gap = 0.5;            ///< [s] of measured time between two problems; more is reported as a gap
+  // Study of these: tests/monitor/test_model.cpp.
+  /// A certificate, a fallback or a pause must have lasted this long before its end is an event [s]: solvers
+  /// alternate, people do not.
+  double settle = 1;
+  double repeat = 30;           ///< the same event again within this time is only counted [s]
+  double many_outliers = 0.05;  ///< a larger part of the motions says that a sensor is at fault
+  /// No session lasts longer: a time beyond it is not drawn [s]. A leap year.
+  double longest_session = 366 * 86400.0;
+  std::size_t most_reasons = 64;  ///< for which a process rejects messages: a bound on memory
 };
 
 enum class Severity { info, good, warning, bad };
@@ -126,7 +135,7 @@ struct ProcessState {
   bool alive = true;
   double rate_in = 0, rate_out = 0;  ///< [1/s]; negative: unknown
   std::int64_t in = 0, out = 0, lost = 0, rejected = 0;
-  std::vector<bus::Refusal> rejections;  ///< by reason, with its cure where one is known; at most 64
+  std::vector<bus::Refusal> rejections;  ///< by reason, with its cure where one is known
   std::int64_t rate_mono_us = 0, rate_in_count = 0, rate_out_count = 0;
 };
 
