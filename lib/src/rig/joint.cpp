@@ -47,18 +47,10 @@ Block second_order(const Column& g) {
   return M;
 }
 
-/// Far from the minimum the Hessian may be indefinite; it is raised by these parts of its size until it is
-/// not.
-constexpr double first_raise = 1e-9, raise_factor = 100, most_raise = 1e6;
-/// A step that is halved this often reaches nothing lower: rounding decides.
-constexpr int most_halvings = 20;
-constexpr int most_iterations = 50;
-/// Steps below this [half radians, units of length] change nothing but rounding.
-constexpr double least_step = 1e-13;
-
-Eigen::VectorXd downhill_step(const JointDerivatives& here) {
+Eigen::VectorXd downhill_step(const JointDerivatives& here, const JointOptions& options) {
   const double size = here.hessian.diagonal().cwiseAbs().maxCoeff();
-  for (double raise = 0; raise<most_raise; raise = raise> 0 ? raise_factor * raise : first_raise) {
+  for (double raise = 0;
+       raise<options.most_raise; raise = raise> 0 ? options.raise_factor * raise : options.first_raise) {
     Eigen::MatrixXd H = here.hessian;
     H.diagonal().array() += raise * size;
     const Eigen::LLT<Eigen::MatrixXd> factor(H);
@@ -121,16 +113,16 @@ std::vector<DualQuaternion> moved(const std::vector<DualQuaternion>& poses, cons
 }  // namespace
 
 std::vector<DualQuaternion> minimise_joint(std::span<const JointPair> pairs,
-                                           std::vector<DualQuaternion> poses) {
+                                           std::vector<DualQuaternion> poses, const JointOptions& options) {
   if (poses.size() < 2) return poses;
   double best = joint_cost(pairs, poses);
   JointDerivatives here = joint_derivatives(pairs, poses);
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const Eigen::VectorXd step = downhill_step(here);
+  for (int iteration = 0; iteration < options.most_iterations; ++iteration) {
+    const Eigen::VectorXd step = downhill_step(here, options);
     if (step.size() == 0) return poses;
     bool lower = false;
     double part = 1;
-    for (int halving = 0; halving < most_halvings && !lower; ++halving, part *= 0.5) {
+    for (int halving = 0; halving < options.most_halvings && !lower; ++halving, part *= 0.5) {
       std::vector<DualQuaternion> next = moved(poses, part * step);
       const double value = joint_cost(pairs, next);
       if (!(value < best)) continue;
@@ -144,7 +136,7 @@ std::vector<DualQuaternion> minimise_joint(std::span<const JointPair> pairs,
       return joint_derivatives(pairs, next).gradient.norm() < here.gradient.norm() ? next : poses;
     }
     here = joint_derivatives(pairs, poses);
-    if (step.norm() < least_step) return poses;
+    if (step.norm() < options.least_step) return poses;
   }
   return poses;
 }

@@ -34,9 +34,22 @@ struct JointDerivatives {
 JointDerivatives joint_derivatives(std::span<const JointPair> pairs,
                                    const std::vector<DualQuaternion>& poses);
 
+/// Newton's method for the joint minimum. Study: tests/bench/rig_study.cpp.
+struct JointOptions {
+  /// Far from the minimum the Hessian may be indefinite; it is raised by these parts of its size until it is
+  /// not.
+  double first_raise = 1e-9, raise_factor = 100, most_raise = 1e6;
+  /// A step that is halved this often reaches nothing lower: rounding decides.
+  int most_halvings = 20;
+  int most_iterations = 50;  ///< a limit: five to ten are the rule
+  /// Steps below this [half radians, units of length] change nothing but rounding.
+  double least_step = 1e-13;
+};
+
 /// The local minimum that Newton's method reaches from these poses.
 std::vector<DualQuaternion> minimise_joint(std::span<const JointPair> pairs,
-                                           std::vector<DualQuaternion> poses);
+                                           std::vector<DualQuaternion> poses,
+                                           const JointOptions& options = {});
 
 /// What docs/rigs.md proves of a joint minimum.
 struct JointProof {

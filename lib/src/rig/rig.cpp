@@ -28,9 +28,8 @@ DualQuaternion minimiser_of(const RigPair& pair, std::size_t blocks) {
                                plane_frame(pair.problem.plane_b));
 }
 
-/// Which motions fit the answer 25 times worse than the median one does (five standard deviations).
-std::vector<bool> unfit(const RigPair& pair) {
-  constexpr double most_residual = 25;
+/// Which motions fit the answer most_residual times worse than the median one does.
+std::vector<bool> unfit(const RigPair& pair, double most_residual) {
   std::vector<bool> result(pair.pairs.size(), false);
   if (pair.pairs.size() < 16) return result;
   const std::size_t blocks = std::clamp<std::size_t>(pair.pairs.size() / 16, 1, 32);
@@ -56,9 +55,9 @@ bool of_same_intervals(std::span<const RigPair> pairs) {
 }
 
 /// Motions to reject, of every pair; with the same intervals in all of them, the same ones.
-std::vector<std::vector<bool>> rejected_motions(std::span<const RigPair> pairs) {
+std::vector<std::vector<bool>> rejected_motions(std::span<const RigPair> pairs, double most_residual) {
   std::vector<std::vector<bool>> rejected;
-  for (const RigPair& pair : pairs) rejected.push_back(unfit(pair));
+  for (const RigPair& pair : pairs) rejected.push_back(unfit(pair, most_residual));
   if (!of_same_intervals(pairs)) return rejected;
   for (const std::vector<bool>& one : std::vector(rejected))
     for (std::vector<bool>& other : rejected)
@@ -66,7 +65,7 @@ std::vector<std::vector<bool>> rejected_motions(std::span<const RigPair> pairs) 
   return rejected;
 }
 
-std::vector<TimedPair> in_blocks(std::span<const RigPair> pairs, std::size_t count) {
+std::vector<TimedPair> in_blocks(std::span<const RigPair> pairs, const RigOptions& options) {
   std::int64_t begin = std::numeric_limits<std::int64_t>::max(), end = 0;
   const auto middle = [](const MotionPair& motion) {
     return motion.begin_us + (motion.end_us - motion.begin_us) / 2;
@@ -76,17 +75,17 @@ std::vector<TimedPair> in_blocks(std::span<const RigPair> pairs, std::size_t cou
       begin = std::min(begin, middle(motion));
       end = std::max(end, middle(motion));
     }
-  const double width = std::max(1.0, static_cast<double>(end - begin)) / static_cast<double>(count);
+  const double width = std::max(1.0, static_cast<double>(end - begin)) / static_cast<double>(options.blocks);
   std::vector<TimedPair> result;
-  const std::vector<std::vector<bool>> rejected = rejected_motions(pairs);
+  const std::vector<std::vector<bool>> rejected = rejected_motions(pairs, options.most_residual);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     TimedPair timed;
-    timed.blocks.resize(count);
+    timed.blocks.resize(options.blocks);
     for (std::size_t i = 0; i < pairs[k].pairs.size(); ++i) {
       if (rejected[k][i]) continue;
       const MotionPair& motion = pairs[k].pairs[i];
       const auto index = static_cast<std::size_t>(static_cast<double>(middle(motion) - begin) / width);
-      timed.blocks[std::min(index, count - 1)].add(motion);
+      timed.blocks[std::min(index, options.blocks - 1)].add(motion);
     }
     timed.all = sum_blocks(timed.blocks);
     result.push_back(std::move(timed));
@@ -181,7 +180,7 @@ RigSolution solve_rig(std::size_t sensors, std::span<const RigPair> pairs, const
   options.blocks = std::max<std::size_t>(2, options.blocks);
   check(sensors, pairs);
   RigSolution solution;
-  const std::vector<TimedPair> timed = in_blocks(pairs, options.blocks);
+  const std::vector<TimedPair> timed = in_blocks(pairs, options);
   for (std::size_t i = 0; i < pairs.size(); ++i) solution.pairs.push_back(answer_of(pairs[i], timed[i].all));
   solution.loops = detail::loops_of(sensors, pairs, timed, options);
   solution.noise = noise_of(sensors, solution.pairs);

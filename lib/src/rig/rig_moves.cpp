@@ -94,14 +94,14 @@ std::vector<RigMove> find_rig_moves(std::size_t sensors, std::span<const RigPair
     const double from = k > 0 ? result[k - 1].latest : 0;
     const double to =
         k + 1 < result.size() ? result[k + 1].earliest : std::numeric_limits<double>::infinity();
-    constexpr double most_decades = 30;
     std::vector<double> decades;
     for (const RigPair& pair : pairs) {
       const auto part = part_of(pair, std::min(from, result[k].time), std::max(to, result[k].time));
       const double chance =
           chance_of_move(part, pair.problem, result[k].kind,
                          pair.pairs.front().begin_us + std::llround(1e6 * result[k].time), options.moves);
-      decades.push_back(chance > 0 ? std::min(most_decades, -std::log10(chance)) : most_decades);
+      decades.push_back(chance > 0 ? std::min(options.most_decades, -std::log10(chance))
+                                   : options.most_decades);
     }
     result[k].sensor = moved_sensor(sensors, pairs, decades, options.least_lead);
   }

@@ -61,6 +61,8 @@ struct RigOptions {
   /// repeat in every part of a drive (0.5 cm between three Tango devices, docs/rigs.md).
   double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
   double least_translation = 0.01;                        ///< [m]
+  /// A motion that fits this many times worse than the median one is rejected: five standard deviations.
+  double most_residual = 25;
   /// A sensor is blamed where its noise (variance) is this many times that of every other one.
   double blame_ratio = 3;
 };

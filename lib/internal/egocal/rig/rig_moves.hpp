@@ -18,6 +18,8 @@ struct RigMovesOptions {
   /// A sensor is named where the evidence of its pairs exceeds that of every other sensor's by this many
   /// decades of chance. Two: one in a hundred.
   double least_lead = 2;
+  /// Evidence of one pair counts up to this many decades: smaller chances are rounding.
+  double most_decades = 30;
 };
 
 /// One change of the rig, as its pairs see it.
