@@ -85,12 +85,12 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   choice.reason = "fixed";
   if (options.balance) return choice;
   std::vector<Candidate> candidates;
-  for (const double translation : {1.0, 0.1, 0.01, 0.001})
+  for (const double translation : options.accumulator.balances)
     candidates.push_back({1, {1, translation}, problem.blocks});
   choice.reason = "too few motions to choose";
   if (const auto selection = select_candidate(problem, candidates, std::nullopt)) {
     choice.balance = candidates[selection->index].balance;
-    choice.reason = "smallest jack-knife spread of 4 balances";
+    choice.reason = "smallest jack-knife spread of " + std::to_string(candidates.size()) + " balances";
   }
   return choice;
 }

@@ -12,22 +12,13 @@ namespace egocal {
 
 namespace {
 
-/// Parts of the drive that the jack-knife leaves out: at least this many, each at least two motions long, or
-/// else neighbouring parts share motions and their spread says too little.
-constexpr std::size_t least_parts = 8;
-
-/// Spreads below these are rounding, all alike [rad, m]: the logarithm of one is a draw.
-constexpr double least_rotation = 1e-9, least_translation = 1e-8;
-/// What the spread does not see (stamps, interpolation) weighs less in longer motions. Not where there is no
-/// noise: single steps are then as good, and judge outliers one by one.
-constexpr double longer = 0.075;
-
-double score(const Spread& spread, int stride) {
+double score(const Spread& spread, int stride, const SelectionOptions& options) {
   double sum = 0;
-  if (spread.rotation > 0) sum += std::log(std::max(spread.rotation, least_rotation));
-  if (spread.translation > 0) sum += std::log(std::max(spread.translation, least_translation));
-  const bool noise = spread.rotation > least_rotation || spread.translation > least_translation;
-  return noise ? sum - longer * std::log2(stride) : sum;
+  if (spread.rotation > 0) sum += std::log(std::max(spread.rotation, options.least_rotation));
+  if (spread.translation > 0) sum += std::log(std::max(spread.translation, options.least_translation));
+  const bool noise =
+      spread.rotation > options.least_rotation || spread.translation > options.least_translation;
+  return noise ? sum - options.longer * std::log2(stride) : sum;
 }
 
 }  // namespace
@@ -47,16 +38,17 @@ std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std:
   return parts;
 }
 
-std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride) {
+std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride,
+                                           const SelectionOptions& options) {
   const auto steps = static_cast<std::uint64_t>(stride);
   std::vector<Statistics> long_ones = merge_blocks(blocks, 4 * steps);
-  return long_ones.size() >= least_parts ? long_ones : merge_blocks(blocks, 2 * steps);
+  return long_ones.size() >= options.least_parts ? long_ones : merge_blocks(blocks, 2 * steps);
 }
 
-std::optional<Spread> answer_spread(const Problem& problem, int stride) {
+std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options) {
   Problem parts = problem;
   parts.blocks = merge_blocks(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
-  if (parts.blocks.size() < least_parts) return std::nullopt;
+  if (parts.blocks.size() < options.least_parts) return std::nullopt;
   const Matrix8d Q = cost_matrix(parts);
   const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
   const Observability known = assess_observability(parts, Q, answer.T_a_b, ErrorCorrelation::independent);
@@ -74,17 +66,18 @@ std::optional<Spread> answer_spread(const Problem& problem, int stride) {
 }
 
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
-                                          std::optional<std::size_t> current) {
-  constexpr double hysteresis = 0.1;
+                                          std::optional<std::size_t> current,
+                                          const SelectionOptions& options) {
   std::optional<Selection> best;
   double best_score = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Problem trial = problem;
     trial.balance = candidates[i].balance;
     trial.blocks = candidates[i].blocks;
-    const std::optional<Spread> here = answer_spread(trial, candidates[i].stride);
+    const std::optional<Spread> here = answer_spread(trial, candidates[i].stride, options);
     if (!here) continue;
-    const double here_score = score(*here, candidates[i].stride) - (current == i ? 2 * hysteresis : 0);
+    const double here_score =
+        score(*here, candidates[i].stride, options) - (current == i ? 2 * options.hysteresis : 0);
     const bool better = !best || here->directions > best->spread.directions ||
                         (here->directions == best->spread.directions && here_score < best_score);
     if (!better) continue;

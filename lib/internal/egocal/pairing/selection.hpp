@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,12 +19,29 @@ struct Candidate {
   std::vector<Statistics> blocks;
 };
 
-/// The blocks, neighbours joined until each has at least so many pairs.
+/// Tuning of the choice between settings. Study: tests/bench/accuracy_benchmark.cpp, docs/accuracy.md.
+struct SelectionOptions {
+  /// Parts of the drive that the jack-knife leaves out: at least this many, each at least two motions long,
+  /// or else neighbouring parts share motions and their spread says too little.
+  std::size_t least_parts = 8;
+  /// Spreads below these are rounding, all alike [rad, m]: the logarithm of one is a draw.
+  double least_rotation = 1e-9, least_translation = 1e-8;
+  /// Errors that the spread does not show (stamps, interpolation) weigh less in longer motions: taken off the
+  /// logarithm of the spread for each doubling of the stride. Not where there is no noise: single steps are
+  /// then as good, and show outliers one by one.
+  double longer = 0.075;
+  /// Another setting replaces the one in force where its spreads are smaller by this part: settings do not
+  /// flap.
+  double hysteresis = 0.1;
+};
+
+/// The blocks, neighbours joined until each has at least `least_pairs` pairs.
 std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std::uint64_t least_pairs);
 
-/// Blocks so long that what neighbours share (motions of so many steps overlap) hardly matters to the
+/// Blocks so long that what neighbours share (motions of `stride` steps overlap) hardly matters to the
 /// jack-knife: four motions, or two where that would leave too few blocks.
-std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride);
+std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride,
+                                           const SelectionOptions& options = {});
 
 /// Spread of the answers when each of several consecutive parts of the drive is left out.
 struct Spread {
@@ -31,16 +50,18 @@ struct Spread {
   int directions = 0;      ///< observable ones
 };
 /// Empty where too few parts of at least two strides' length are there, or nothing is observable.
-std::optional<Spread> answer_spread(const Problem& problem, int stride);
+std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options = {});
 
 /// The candidate with the smallest spread, in rotation and translation together (their product: it has no
-/// unit to choose). One that shows more directions beats one that shows fewer. `current` (an index) keeps its
-/// place unless another is better by a tenth: settings do not flap. Empty where no candidate has a spread.
+/// unit to choose). One that shows more directions beats one that shows fewer. `current` (an index) stays
+/// in force unless another is clearly better (SelectionOptions::hysteresis). Empty where no candidate has a
+/// spread.
 struct Selection {
   std::size_t index = 0;
   Spread spread;
 };
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
-                                          std::optional<std::size_t> current);
+                                          std::optional<std::size_t> current,
+                                          const SelectionOptions& options = {});
 
 }  // namespace egocal
