@@ -16,21 +16,6 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-/// Best trimmed fits that are followed until they settle, and steps of each start before.
-constexpr std::size_t most_followed = 6;
-constexpr int first_steps = 2, steps_from_all = 3, last_steps = 10;
-/// Rounds of a fit on the way: only the last one has to be exact.
-constexpr int rounds_on_the_way = 3;
-/// A sample that noise explains this often is taken in without a second look.
-constexpr double unremarkable = 0.01;
-/// From this many samples on the noise of the rotations is known without an answer (congruent_noise()), to a
-/// third.
-constexpr std::size_t least_for_congruence = 12;
-/// Samples that agree need no search from triples where they are most of all, their rotations are as good as
-/// the angles of the motions allow, and the positions of the best 60 % are no better than a normal
-/// distribution has it (0.63 of the variance).
-constexpr double most_samples = 0.8, as_good = 1.5, least_trimmed = 0.35;
-
 Indices all_of(const SampleSet& set) {
   Indices indices(set.size());
   std::iota(indices.begin(), indices.end(), std::size_t{0});
@@ -57,23 +42,25 @@ struct Trimmed {
 
 class Search {
  public:
-  Search(const SampleSet& set, const SampleOptions& options) : set_(set), options_(options) {
+  Search(const SampleSet& set, const SampleOptions& options, const AgreeingOptions& tuning)
+      : set_(set), options_(options), tuning_(tuning) {
     const auto part =
         static_cast<std::size_t>(std::ceil(options.least_agreeing * static_cast<double>(set.size())));
     kept_ = std::max<std::size_t>(4, part);
   }
 
   /// The samples that fit best, beginning with the fit of all.
-  Trimmed from_all() const { return concentrated(first_fit(all_of(set_)), steps_from_all); }
+  Trimmed from_all() const { return concentrated(first_fit(all_of(set_)), tuning_.steps_from_all); }
 
   Trimmed best() const {
     std::vector<Trimmed> found;
-    for (const Indices& start : starts()) found.push_back(concentrated(first_fit(start), first_steps));
+    for (const Indices& start : starts())
+      found.push_back(concentrated(first_fit(start), tuning_.first_steps));
     const auto smaller = [](const Trimmed& x, const Trimmed& y) { return x.size < y.size; };
     std::stable_sort(found.begin(), found.end(), smaller);
     Trimmed best = found.front();
-    for (std::size_t i = 0; i < std::min(most_followed, found.size()); ++i) {
-      Trimmed here = concentrated(found[i].fit, last_steps);
+    for (std::size_t i = 0; i < std::min(tuning_.most_followed, found.size()); ++i) {
+      Trimmed here = concentrated(found[i].fit, tuning_.last_steps);
       if (here.size < best.size) best = std::move(here);
     }
     return best;
@@ -84,7 +71,7 @@ class Search {
     FitSettings settings = settings_of(options_);
     // two motions say nothing of noise
     settings.noise = SampleNoise{1, set_.length() * set_.length()};
-    settings.most_rounds = rounds_on_the_way;
+    settings.most_rounds = tuning_.rounds_on_the_way;
     settings.precision = FitPrecision::on_the_way;
     return fit_samples(set_, start, settings);
   }
@@ -129,7 +116,7 @@ class Search {
       trimmed.chosen = std::move(chosen);
       FitSettings settings = settings_of(options_);
       settings.start = fit;
-      settings.most_rounds = rounds_on_the_way;
+      settings.most_rounds = tuning_.rounds_on_the_way;
       settings.precision = FitPrecision::on_the_way;
       fit = fit_samples(set_, trimmed.chosen, settings);
     }
@@ -148,6 +135,7 @@ class Search {
 
   const SampleSet& set_;
   const SampleOptions& options_;
+  const AgreeingOptions& tuning_;
   std::size_t kept_ = 0;
 };
 
@@ -163,18 +151,17 @@ struct Added {
   double squares = 0;      ///< in variances of the noise
 };
 
-Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit, std::size_t one) {
+Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit, std::size_t one,
+               const AgreeingOptions& tuning) {
   FitSettings settings;
   settings.start = fit;
   settings.noise = fit.noise;
-  settings.most_rounds = rounds_on_the_way;
+  settings.most_rounds = tuning.rounds_on_the_way;
   settings.precision = FitPrecision::on_the_way;
   const SampleFit more = fit_samples(set, with(chosen, one), settings);
   const double dof = more.dof - fit.dof;
   if (!(dof > 0) || !(fit.dof > 0)) return {};
-  // the noise of exact samples is that of rounding (SampleFit::noise), whatever is left of them
-  constexpr double least_variance = 1e-3;
-  const double squares = (more.cost - fit.cost) / std::max(fit.cost / fit.dof, least_variance);
+  const double squares = (more.cost - fit.cost) / std::max(fit.cost / fit.dof, tuning.least_variance);
   return {f_exceeded(squares / dof, dof, fit.dof), squares};
 }
 
@@ -191,10 +178,12 @@ double underestimated(const SampleSet& set, const SampleFit& fit) {
 }
 
 /// Does noise explain the sample by its residual alone? A fit with it is no worse than this one.
-bool plainly_agrees(const SampleSet& set, const SampleFit& fit, std::size_t one) {
+bool plainly_agrees(const SampleSet& set, const SampleFit& fit, std::size_t one,
+                    const AgreeingOptions& tuning) {
   constexpr double dof = 6;
   if (!(fit.dof > 0) || !(fit.cost > 0)) return false;
-  return f_exceeded(in_variances(set, one, fit) / dof / (fit.cost / fit.dof), dof, fit.dof) > unremarkable;
+  return f_exceeded(in_variances(set, one, fit) / dof / (fit.cost / fit.dof), dof, fit.dof) >
+         tuning.unremarkable;
 }
 
 Indices others(const SampleSet& set, const Indices& chosen) {
@@ -205,16 +194,17 @@ Indices others(const SampleSet& set, const Indices& chosen) {
 }
 
 /// Samples to take in next: those that noise explains, else the nearest one; empty where that is wrong.
-Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options) {
+Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options,
+                     const AgreeingOptions& tuning) {
   const Indices candidates = others(set, agreeing.chosen);
   Indices plain;
   for (const std::size_t i : candidates)
-    if (plainly_agrees(set, agreeing.fit, i)) plain.push_back(i);
+    if (plainly_agrees(set, agreeing.fit, i, tuning)) plain.push_back(i);
   if (!plain.empty()) return plain;
   std::optional<std::pair<Added, std::size_t>> nearest;
   for (const std::size_t i : candidates) {
-    const Added added = added_by(set, agreeing.chosen, agreeing.fit, i);
-    if (added.probability > unremarkable) plain.push_back(i);
+    const Added added = added_by(set, agreeing.chosen, agreeing.fit, i, tuning);
+    if (added.probability > tuning.unremarkable) plain.push_back(i);
     if (!nearest || added.squares < nearest->first.squares) nearest = {added, i};
   }
   const double tail = options.heaviest_tail * options.heaviest_tail * underestimated(set, agreeing.fit);
@@ -224,12 +214,13 @@ Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, cons
 }
 
 /// Takes samples in, best first, as long as noise explains them.
-AgreeingSamples taken_in(const SampleSet& set, const Trimmed& trimmed, const SampleOptions& options) {
+AgreeingSamples taken_in(const SampleSet& set, const Trimmed& trimmed, const SampleOptions& options,
+                         const AgreeingOptions& tuning) {
   AgreeingSamples result{trimmed.chosen, trimmed.fit};
   FitSettings settings = settings_of(options);
   settings.precision = FitPrecision::on_the_way;
   while (result.chosen.size() < set.size()) {
-    const Indices next = next_samples(set, result, options);
+    const Indices next = next_samples(set, result, options, tuning);
     if (next.empty()) break;
     for (const std::size_t i : next) result.chosen = with(result.chosen, i);
     settings.start = result.fit;
@@ -264,28 +255,30 @@ double congruent_noise(const SampleSet& set) {
 }
 
 /// Is it sure that a search from triples of samples would find nothing better?
-bool beyond_doubt(const SampleSet& set, const Trimmed& trimmed, const AgreeingSamples& agreeing) {
-  if (static_cast<double>(agreeing.chosen.size()) < most_samples * static_cast<double>(set.size()))
+bool beyond_doubt(const SampleSet& set, const Trimmed& trimmed, const AgreeingSamples& agreeing,
+                  const AgreeingOptions& tuning) {
+  if (static_cast<double>(agreeing.chosen.size()) < tuning.most_samples * static_cast<double>(set.size()))
     return false;
   const SampleNoise& noise = agreeing.fit.noise;
-  return std::sqrt(noise.rotation) <= as_good * congruent_noise(set) &&
-         trimmed.fit.noise.translation >= least_trimmed * noise.translation;
+  return std::sqrt(noise.rotation) <= tuning.as_good * congruent_noise(set) &&
+         trimmed.fit.noise.translation >= tuning.least_trimmed * noise.translation;
 }
 
 }  // namespace
 
-AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options) {
+AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options,
+                              const AgreeingOptions& tuning) {
   if (!options.robust || set.size() < options.least_to_judge) {
     const Indices all = all_of(set);
     return {all, fit_samples(set, all, settings_of(options))};
   }
-  const Search search(set, options);
-  if (set.size() >= least_for_congruence) {
+  const Search search(set, options, tuning);
+  if (set.size() >= tuning.least_for_congruence) {
     const Trimmed trimmed = search.from_all();
-    AgreeingSamples agreeing = taken_in(set, trimmed, options);
-    if (beyond_doubt(set, trimmed, agreeing)) return agreeing;
+    AgreeingSamples agreeing = taken_in(set, trimmed, options, tuning);
+    if (beyond_doubt(set, trimmed, agreeing, tuning)) return agreeing;
   }
-  return taken_in(set, search.best(), options);
+  return taken_in(set, search.best(), options, tuning);
 }
 
 }  // namespace egocal::detail
