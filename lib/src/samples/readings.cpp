@@ -17,20 +17,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// Fewer samples fit many readings.
-constexpr std::size_t least_samples = 4;
-/// A reading is another one where it makes the squared residuals this many times smaller: a wrong one leaves
-/// residuals as large as the motions, a hundred times those of a right one and more.
-constexpr double least_improvement = 10;
-/// A first look takes this many samples. A reading is dropped there whose rotations alone, at their best,
-/// have this many times the variance, or that does not make the squared residuals this many times smaller.
-constexpr std::size_t most_at_first = 32;
-constexpr double most_worse_rotation = 10, least_at_first = 2;
-/// Probability of a scale other than 1 by chance.
-constexpr double scale_by_chance = 1e-6;
-/// A power of ten to this part is a unit.
-constexpr double unit_tolerance = 0.05;
-
 struct Alternative {
   const char* code;
   Reading a, b;
@@ -74,8 +60,9 @@ double rotation_variance(std::span<const PoseSample> samples) {
 }
 
 /// Samples spread over those that count.
-std::vector<PoseSample> some(std::span<const PoseSample> samples, const std::vector<std::size_t>& chosen) {
-  const std::size_t step = (chosen.size() + most_at_first - 1) / most_at_first;
+std::vector<PoseSample> some(std::span<const PoseSample> samples, const std::vector<std::size_t>& chosen,
+                             const SampleReadingOptions& search) {
+  const std::size_t step = (chosen.size() + search.most_at_first - 1) / search.most_at_first;
   std::vector<PoseSample> result;
   for (std::size_t k = 0; k < chosen.size(); k += step) result.push_back(samples[chosen[k]]);
   return result;
@@ -89,14 +76,15 @@ double improvement(const SampleFit& given, const SampleFit& other) {
 
 /// Cannot this reading of some samples be better than the given one by least_improvement? Rotations do not
 /// tell quaternions of another order in both lists: they exchange X and Y.
-bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given) {
-  if (rotation_variance(few) > most_worse_rotation * given.noise.rotation) return true;
+bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given,
+              const SampleReadingOptions& search) {
+  if (rotation_variance(few) > search.most_worse_rotation * given.noise.rotation) return true;
   std::vector<std::size_t> all(few.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   FitSettings settings;
   settings.precision = FitPrecision::on_the_way;
   settings.most_rounds = 4;
-  return improvement(given, fit_samples(SampleSet(few), all, settings)) < least_at_first;
+  return improvement(given, fit_samples(SampleSet(few), all, settings)) < search.least_at_first;
 }
 
 PoseReading full(const Reading& reading) {
@@ -125,9 +113,10 @@ struct FoundScale {
   Pose X;
 };
 
-std::optional<FoundScale> find_scale(std::span<const PoseSample> samples, const AgreeingSamples& given) {
+std::optional<FoundScale> find_scale(std::span<const PoseSample> samples, const AgreeingSamples& given,
+                                     const SampleReadingOptions& search) {
   const auto n = static_cast<Eigen::Index>(given.chosen.size());
-  if (n < static_cast<Eigen::Index>(least_samples)) return std::nullopt;
+  if (n < static_cast<Eigen::Index>(search.least_samples)) return std::nullopt;
   // rotations alone: a tiny weight of the positions, in their own unit, keeps the solver's problem regular
   const Rotation R_X = to_pose(solve_dual(cost_matrix(given.fit.statistics,
                                                       {1, 1e-9 * balance_of(given.fit.noise).translation}))
@@ -159,10 +148,10 @@ std::optional<FoundScale> find_scale(std::span<const PoseSample> samples, const 
                     {R_X, x.head<3>()}};
 }
 
-bool is_unit(double scale) {
+bool is_unit(double scale, const SampleReadingOptions& search) {
   const double decades = std::log10(scale);
   return std::abs(decades) > 0.5 &&
-         std::abs(scale / std::pow(10.0, std::round(decades)) - 1) < unit_tolerance;
+         std::abs(scale / std::pow(10.0, std::round(decades)) - 1) < search.unit_tolerance;
 }
 
 }  // namespace
@@ -177,13 +166,13 @@ std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Readin
 }
 
 std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, const AgreeingSamples& given,
-                                         const SampleOptions& options) {
+                                         const SampleOptions& options, const SampleReadingOptions& search) {
   std::vector<Finding> findings;
-  if (given.chosen.size() < least_samples) return findings;
+  if (given.chosen.size() < search.least_samples) return findings;
   std::optional<Finding> best;
-  const std::vector<PoseSample> few = some(samples, given.chosen);
+  const std::vector<PoseSample> few = some(samples, given.chosen, search);
   for (const Alternative& other : alternatives()) {
-    if (hopeless(reread(few, other.a, other.b), given.fit)) continue;
+    if (hopeless(reread(few, other.a, other.b), given.fit, search)) continue;
     const std::vector<PoseSample> read = reread(samples, other.a, other.b);
     const AgreeingSamples fit = find_agreeing(SampleSet(read), options);
     if (fit.chosen.size() < given.chosen.size()) continue;
@@ -191,17 +180,17 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
     finding.code = other.code;
     finding.certain = true;
     finding.improvement = improvement(given.fit, fit.fit);
-    if (finding.improvement < least_improvement || (best && finding.improvement <= best->improvement))
+    if (finding.improvement < search.least_improvement || (best && finding.improvement <= best->improvement))
       continue;
     finding.T_a_b = to_pose(fit.fit.X);
     word(finding, other);
     best = std::move(finding);
   }
   if (best) return {*best};
-  const std::optional<FoundScale> scale = find_scale(samples, given);
-  if (scale && scale->by_chance < scale_by_chance && scale->improvement > least_improvement) {
+  const std::optional<FoundScale> scale = find_scale(samples, given, search);
+  if (scale && scale->by_chance < search.scale_by_chance && scale->improvement > search.least_improvement) {
     Finding finding;
-    finding.code = is_unit(scale->scale) ? "units" : "scale";
+    finding.code = is_unit(scale->scale, search) ? "units" : "scale";
     finding.certain = true;
     finding.improvement = scale->improvement;
     finding.value = scale->scale;

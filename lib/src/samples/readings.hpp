@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,25 @@ namespace egocal::detail {
 std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Reading& read_a,
                                const Reading& read_b);
 
+/// Numbers of the search for other readings. Study: tests/bench/sample_study.cpp, mistakes in real and
+/// simulated sets.
+struct SampleReadingOptions {
+  std::size_t least_samples = 4;  ///< fewer fit many readings
+  /// A reading is another one where it makes the squared residuals this many times smaller: a wrong one
+  /// leaves residuals as large as the motions, a hundred times those of a right one and more.
+  double least_improvement = 10;
+  /// A first look takes this many samples. A reading is dropped there whose rotations alone, at their best,
+  /// have this many times the variance, or that does not make the squared residuals this many times smaller.
+  std::size_t most_at_first = 32;
+  double most_worse_rotation = 10, least_at_first = 2;
+  double scale_by_chance = 1e-6;  ///< probability of a scale other than 1 by chance, below which it is named
+  double unit_tolerance = 0.05;   ///< a power of ten to this part is a unit
+};
+
 /// Readings of the poses under which they fit far better than as given: one list inverted, another order of
 /// the quaternion, another unit of length.
 std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, const AgreeingSamples& given,
-                                         const SampleOptions& options);
+                                         const SampleOptions& options,
+                                         const SampleReadingOptions& search = {});
 
 }  // namespace egocal::detail
