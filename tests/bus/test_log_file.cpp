@@ -294,7 +294,7 @@ TEST_F(LogFile, WhereTheSameBytesAreTwoLogsTheOneWithMoreEventsIsRead) {
   }
 }
 
-TEST_F(LogFile, AnEventThatEndsWithAnotherOneIsBetrayedByWhatItSwallows) {
+TEST_F(LogFile, AnEventThatIncludesAnotherOneIsFoundByTheInnerOne) {
   // All as long as each other, as from one sensor: a length off by one bit ends at another event.
   std::string good;
   std::vector<std::size_t> begin;

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   cli::Program app(
       "egocal_lossy_relay",
       "Hands messages on from one LCM URL to another: loses, doubles, reorders and damages some.");
-  app.footer("Prints its exact counts when it is ended by SIGINT or SIGTERM.");
+  app.footer("Prints its exact counts on SIGINT and SIGTERM.");
   app.add_option("--from", from, "LCM URL").required();
   app.add_option("--to", to, "LCM URL").required();
   app.add_option("--channel", channels, "name; one or more").required();

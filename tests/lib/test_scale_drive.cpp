@@ -62,7 +62,7 @@ TEST(ScaleDrive, FindsScaleAndExtrinsicOfASimulatedCamera) {
         EXPECT_LT(error.translation, terrain == Terrain::free ? 0.05 : 0.3);
         const ScaleProblem& problem = *scale_drive.scale_problem();
         EXPECT_EQ(solve_scale(problem.blocks, problem.options).scale, solution.scale)
-            << "anybody can check it";
+            << "every receiver can check it";
       }
   EXPECT_GE(within, drives - 1);
 }

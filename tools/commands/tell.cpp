@@ -38,7 +38,7 @@ void run(const Options& options) {
     throw UsageError("tell: expected the name of a process, or '*'");
   const bus::Rig rig = options.rig.empty() ? bus::Rig{} : bus::read_rig(options.rig);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
-  // LCM does not say whether anybody listens; every process says once a second that it is there
+  // LCM does not report whether a message was received; every process sends a status once a second
   bool heard = false;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
     heard = heard || ((options.to == "*" || status.name == options.to) && status.state != "ended");

@@ -145,8 +145,8 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  std::optional<AnswerWitness> witness;
-  if (!options.log.empty()) witness.emplace(rig, url);
+  std::optional<AnswerListener> listener;
+  if (!options.log.empty()) listener.emplace(rig, url);
   const int code = supervise(programs, supervisor);
   if (code == 0 && passing) passing->discard();
   if (code != 0) {
@@ -155,8 +155,8 @@ void run(const Options& options) {
                  passing->file());
     throw cli::Exit{1};
   }
-  if (!witness) return;
-  const Outcome outcome = witness->outcome();
+  if (!listener) return;
+  const Outcome outcome = listener->outcome();
   if (!outcome.answered)
     throw Error("up: nothing was calibrated: no solver answered; see " +
                 (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));

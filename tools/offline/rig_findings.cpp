@@ -49,37 +49,37 @@ RigFinding moved(const RigReport& report, const RigMove& move, double begin) {
 }
 
 /// A finding of a pair that it is certain of, and which of its sensors it names.
-struct Witness {
+struct PairFinding {
   std::size_t pair = 0;
   std::optional<std::size_t> sensor;
   const Finding* finding = nullptr;
 };
 
 /// Findings by code, without the _a and _b that name a sensor already.
-std::map<std::string, std::vector<Witness>> witnesses_of(const RigReport& report) {
-  std::map<std::string, std::vector<Witness>> result;
+std::map<std::string, std::vector<PairFinding>> findings_by_code(const RigReport& report) {
+  std::map<std::string, std::vector<PairFinding>> result;
   for (std::size_t i = 0; i < report.pairs.size(); ++i)
     for (const Finding& finding : report.pairs[i].findings) {
       if (!finding.certain || finding.code == "mount_moved") continue;
-      Witness witness{i, std::nullopt, &finding};
+      PairFinding found{i, std::nullopt, &finding};
       std::string code = finding.code;
       const RigPairAnswer& answer = report.solution.pairs[i];
-      if (code.ends_with("_a")) witness.sensor = answer.a;
-      if (code.ends_with("_b")) witness.sensor = answer.b;
-      if (witness.sensor) code.resize(code.size() - 2);
-      result[code].push_back(witness);
+      if (code.ends_with("_a")) found.sensor = answer.a;
+      if (code.ends_with("_b")) found.sensor = answer.b;
+      if (found.sensor) code.resize(code.size() - 2);
+      result[code].push_back(found);
     }
   return result;
 }
 
-/// The one sensor that every witness names or has; empty where there is none or more than one.
-std::optional<std::size_t> common_sensor(const RigReport& report, const std::vector<Witness>& witnesses) {
+/// The one sensor that every finding names or has; empty where there is none or more than one.
+std::optional<std::size_t> common_sensor(const RigReport& report, const std::vector<PairFinding>& of_code) {
   if (report.names.size() < 3) return std::nullopt;
   std::vector<std::size_t> common;
   for (std::size_t s = 0; s < report.names.size(); ++s)
-    if (std::all_of(witnesses.begin(), witnesses.end(), [&](const Witness& witness) {
-          const RigPairAnswer& answer = report.solution.pairs[witness.pair];
-          return witness.sensor ? *witness.sensor == s : answer.a == s || answer.b == s;
+    if (std::all_of(of_code.begin(), of_code.end(), [&](const PairFinding& found) {
+          const RigPairAnswer& answer = report.solution.pairs[found.pair];
+          return found.sensor ? *found.sensor == s : answer.a == s || answer.b == s;
         }))
       common.push_back(s);
   if (common.size() != 1) return std::nullopt;
@@ -88,13 +88,14 @@ std::optional<std::size_t> common_sensor(const RigReport& report, const std::vec
 
 std::vector<RigFinding> of_pairs(const RigReport& report) {
   std::vector<RigFinding> findings;
-  for (const auto& [code, witnesses] : witnesses_of(report)) {
-    const Witness& best = *std::max_element(
-        witnesses.begin(), witnesses.end(),
-        [](const Witness& i, const Witness& k) { return i.finding->improvement < k.finding->improvement; });
+  for (const auto& [code, of_code] : findings_by_code(report)) {
+    const PairFinding& best =
+        *std::max_element(of_code.begin(), of_code.end(), [](const PairFinding& i, const PairFinding& k) {
+          return i.finding->improvement < k.finding->improvement;
+        });
     RigFinding finding;
     finding.code = code;
-    finding.sensor = common_sensor(report, witnesses);
+    finding.sensor = common_sensor(report, of_code);
     finding.value = best.finding->value;
     finding.message = fmt::format("{}: {}", who(report, finding.sensor, best.pair), best.finding->message);
     finding.remedy = best.finding->remedy;

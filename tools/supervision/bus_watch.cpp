@@ -101,7 +101,7 @@ void write_all(int out, const std::string& text) {
 
 }  // namespace
 
-AnswerWitness::AnswerWitness(const bus::Rig& rig, const std::string& url) {
+AnswerListener::AnswerListener(const bus::Rig& rig, const std::string& url) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw Error(std::string("pipe: ") + std::strerror(errno));
   const pid_t parent = getpid();
@@ -120,12 +120,12 @@ AnswerWitness::AnswerWitness(const bus::Rig& rig, const std::string& url) {
   throw Error(std::string("fork: ") + std::strerror(errno));
 }
 
-AnswerWitness::~AnswerWitness() {
+AnswerListener::~AnswerListener() {
   end();
   close(pipe_);
 }
 
-void AnswerWitness::end() {
+void AnswerListener::end() {
   if (pid_ < 0) return;
   kill(pid_, SIGTERM);
   // what it still writes must not block it
@@ -137,7 +137,7 @@ void AnswerWitness::end() {
   }
 }
 
-Outcome AnswerWitness::outcome() {
+Outcome AnswerListener::outcome() {
   kill(pid_, SIGTERM);
   std::string text;
   char part[4096];

@@ -24,12 +24,12 @@ struct Outcome {
 
 /// Listens to the answers and verdicts of a rig while this object lives: a process of its own, so that the
 /// supervisor has no threads. Ends with us.
-class AnswerWitness {
+class AnswerListener {
  public:
-  AnswerWitness(const bus::Rig& rig, const std::string& url);
-  ~AnswerWitness();
-  AnswerWitness(const AnswerWitness&) = delete;
-  AnswerWitness& operator=(const AnswerWitness&) = delete;
+  AnswerListener(const bus::Rig& rig, const std::string& url);
+  ~AnswerListener();
+  AnswerListener(const AnswerListener&) = delete;
+  AnswerListener& operator=(const AnswerListener&) = delete;
 
   /// Stops listening. Once.
   Outcome outcome();

@@ -17,7 +17,7 @@ bool empty(const StrideCell& cell) {
   return cell.motions.count + cell.rotations.count == 0;
 }
 
-/// Blocks between the ends of a motion of so many steps, at least.
+/// Blocks between the ends of a motion of `stride` steps, at least.
 std::size_t offset(int stride, std::uint64_t block_length) {
   return static_cast<std::size_t>(static_cast<std::uint64_t>(stride) / block_length);
 }

@@ -14,7 +14,7 @@ namespace egocal {
 namespace {
 
 constexpr std::size_t least_parts = 16;
-/// A part is left out when its mean squared residual is so many times the typical one, by both scales. Real
+/// A part is an outlier when its mean squared residual is this many times the typical one, by both scales. Real
 /// odometry has heavy tails that belong to it; what is grossly wrong is wrong by the size of the motion. The
 /// mean of many is steadier than one.
 double limit(std::uint64_t motions) {
@@ -265,7 +265,7 @@ std::vector<double> only(std::size_t parts, std::size_t first, std::size_t last)
   return factors;
 }
 
-/// Fits of each of so many contiguous pieces.
+/// Fits of each of `pieces` contiguous pieces.
 void fit_pieces(const Search& search, std::size_t pieces, std::vector<Fit>& fits) {
   const std::size_t n = search.size();
   for (std::size_t k = 0; k < pieces; ++k)

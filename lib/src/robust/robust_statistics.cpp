@@ -11,7 +11,7 @@ namespace egocal {
 
 namespace {
 
-/// So many pairs in a row that disagree, and every doubling of it, are worth a look.
+/// The consensus is looked for anew after this many pairs in a row that disagree, and at every doubling.
 constexpr std::uint64_t suspicious_run = 4;
 
 Statistics of_one(const MotionPair& pair) {
