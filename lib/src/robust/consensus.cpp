@@ -14,9 +14,9 @@ namespace egocal {
 namespace {
 
 constexpr std::size_t least_parts = 16;
-/// A part is an outlier when its mean squared residual is this many times the typical one, by both scales. Real
-/// odometry has heavy tails that belong to it; what is grossly wrong is wrong by the size of the motion. The
-/// mean of many is steadier than one.
+/// A part is an outlier when its mean squared residual is this many times the typical one, by both scales.
+/// Real odometry has heavy tails that belong to it; what is grossly wrong is wrong by the size of the motion.
+/// The mean of many is steadier than one.
 double limit(std::uint64_t motions) {
   constexpr double of_many = 6, of_one = 200;
   return of_many + (of_one - of_many) / static_cast<double>(motions);
