@@ -172,6 +172,31 @@ TEST(Accumulator, ContinuesFromItsStateBitForBit) {
   EXPECT_EQ(whole.choice().stride, parts.choice().stride);
 }
 
+TEST(Accumulator, SpreadsLooksForOutliersAndChoicesOverPoses) {
+  Accumulator accumulator{PairingOptions{}};
+  accumulator.begin(period_us);
+  AccumulatorState before = accumulator.state();
+  std::size_t looks = 0, choices = 0;
+  for (const Instant& instant : instants_of(simulated(700))) {
+    accumulator.add(instant);
+    const AccumulatorState now = accumulator.state();
+    std::size_t here = 0;
+    for (std::size_t i = 0; i < now.strides.size(); ++i)
+      if (now.strides[i].statistics.state().next_look != before.strides[i].statistics.state().next_look)
+        ++here;
+    EXPECT_LE(here, 2u) << "pose " << instant.number;  // the stride in force looks more often
+    looks += here;
+    const bool chose = now.next_choice != before.next_choice;
+    ASSERT_TRUE(now.sums);
+    const bool chose_sums = now.sums->next_choice != before.sums->next_choice;
+    EXPECT_FALSE(chose && chose_sums) << "pose " << instant.number;
+    choices += (chose ? 1 : 0) + (chose_sums ? 1 : 0);
+    before = now;
+  }
+  EXPECT_GT(looks, 40u);
+  EXPECT_GT(choices, 15u);
+}
+
 TEST(PairingOptions, OutOfTheirRangeAreRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = HUGE_VAL;
   const auto refused = [](const PairingOptions& options, const std::string& name) {

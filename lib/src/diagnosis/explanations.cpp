@@ -34,14 +34,20 @@ std::vector<Candidate> common_mistakes() {
           {"quaternion_order_both", xyzw, xyzw}};
 }
 
-Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
-                      const DiagnosisOptions& options) {
+/// By motions of this number of instants.
+Explanation explained(const Evidence& evidence, int stride, const char* code, const PoseReading& a,
+                      const PoseReading& b, const DiagnosisOptions& options) {
   Explanation result{code, a, b, evidence.clock, 1, {}};
   result.explained.motions =
-      motions_of(evidence.instants, a, b, evidence.stride, options.motions.most, options.motions);
+      motions_of(evidence.instants, a, b, stride, options.motions.most, options.motions);
   if (!result.explained.motions.all.empty())
     result.explained.fit = robust_fit(result.explained.motions, options.fit);
   return result;
+}
+
+Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
+                      const DiagnosisOptions& options) {
+  return explained(evidence, evidence.stride, code, a, b, options);
 }
 
 Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& options) {
@@ -228,14 +234,13 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
 /// The order of the quaternions wrong in both streams alike: where both sensors move in nearly the same way
 /// that is nearly consistent. Short motions, of which there are many, show it.
 std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options) {
-  Evidence brief = evidence;
-  brief.stride = std::max(1, evidence.stride / 16);
-  if (brief.stride == evidence.stride) return std::nullopt;
-  const Explanation given = explained(brief, "", {}, {}, options);
+  const int brief = std::max(1, evidence.stride / 16);
+  if (brief == evidence.stride) return std::nullopt;
+  const Explanation given = explained(evidence, brief, "", {}, {}, options);
   std::optional<Finding> best;
   for (const Candidate& candidate : common_mistakes()) {
     if (std::string_view(candidate.code) != "quaternion_order_both") continue;
-    const Explanation here = explained(brief, candidate.code, candidate.a, candidate.b, options);
+    const Explanation here = explained(evidence, brief, candidate.code, candidate.a, candidate.b, options);
     if (given.explained.motions.all.empty() || here.explained.motions.all.empty()) continue;
     const Comparison comparison = compare(given.explained, here.explained);
     if (!better(comparison, 0, options) || (best && best->improvement > std::exp(comparison.gain))) continue;

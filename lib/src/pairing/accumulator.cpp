@@ -53,6 +53,7 @@ void Accumulator::restart() {
 }
 
 std::vector<MotionPair> Accumulator::add(const Instant& instant) {
+  const std::uint64_t before = state_.instants.empty() ? 0 : state_.instants.back().number;
   state_.instants.push_back(instant);
   const auto longest = static_cast<std::size_t>(state_.strides.back().stride);
   while (state_.instants.size() > longest + 1) state_.instants.pop_front();
@@ -78,13 +79,24 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     doubtful = entry.statistics.disagreed();
     if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem, entry.stride);
   }
-  if (instant.number >= state_.next_choice) {
+  const bool to_choose = instant.number >= state_.next_choice;
+  if (options_.robust && !(options_.stride && options_.balance)) {
+    // A look for outliers costs as much as a hundred poses: those that the choice needs are spread over the
+    // poses before it, one stride each.
+    const auto newest_look = state_.next_choice > 0 ? state_.next_choice - 1 : 0;
+    for (std::size_t i = 0; i < state_.strides.size(); ++i) {
+      const std::uint64_t due = newest_look - std::min<std::uint64_t>(newest_look, i);
+      if (before < due && due <= instant.number)
+        state_.strides[i].statistics.look(problem, state_.strides[i].stride);
+    }
+  }
+  if (to_choose) {
     choose();
     state_.next_choice = instant.number + instant.number / 4;
   }
   if (sums_) {
     sums_->add(instant, doubtful);
-    if (sums_->choice_is_due())
+    if (!to_choose && sums_->choice_is_due())  // not two choices for one pose
       sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
   }
   return pairs;
@@ -116,8 +128,7 @@ void Accumulator::choose() {
   const Problem problem = empty_problem();
   std::vector<Candidate> candidates;
   std::optional<std::size_t> current;
-  for (AccumulatorState::PerStride& entry : state_.strides) {
-    if (options_.robust) entry.statistics.look(problem, entry.stride);
+  for (const AccumulatorState::PerStride& entry : state_.strides) {
     for (const double translation : options_.accumulator.balances) {
       const Balance balance = options_.balance.value_or(Balance{1, translation});
       if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&

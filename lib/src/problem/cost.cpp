@@ -110,7 +110,7 @@ Statistics sum_blocks(const std::vector<Statistics>& blocks) {
 
 double cost(const Matrix8d& Q, const DualQuaternion& q) {
   const Vector8d v = q.vec();
-  return v.dot(Q * v);
+  return v.dot(Q.lazyProduct(v));
 }
 
 Matrix8d cost_matrix(const Problem& problem) {

@@ -53,7 +53,7 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
   DualQuaternion q = normalized(start);
   if (!q.vec().allFinite()) q = {};
   Vector8d v = q.vec();
-  Vector8d Qv = Q * v;
+  Vector8d Qv = Q.lazyProduct(v);
   double J = v.dot(Qv);
   double shift = 0;
   solution.status = SolverStatus::iteration_limit;
@@ -67,7 +67,7 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
     ZT.topRows<4>() += lambda.orthogonal * T.bottomRows<4>() - lambda.norm * T.topRows<4>();
     ZT.bottomRows<4>() += lambda.orthogonal * T.topRows<4>();
     const Matrix6d hessian = T.transpose().lazyProduct(ZT);
-    const Vector6d gradient = T.transpose() * Qv;
+    const Vector6d gradient = T.transpose().lazyProduct(Qv);
     const double trace = hessian.diagonal().cwiseAbs().sum();
     if (!(trace > 0)) {
       solution.status = SolverStatus::degenerate;
@@ -90,7 +90,7 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
       }
       next = retract(q, x);
       v_next = next.vec();
-      Qv_next = Q * v_next;
+      Qv_next = Q.lazyProduct(v_next);
       J_next = v_next.dot(Qv_next);
       accepted = J_next <= J + rounding;
       if (!accepted) shift = std::max(4 * shift, 1e-6 * trace);

@@ -44,7 +44,7 @@ std::vector<Vector6d> spatial_differences(const Problem& problem, const Matrix8d
   for (const detail::TangentForm& form : forms) {
     detail::TangentForm rest = all;
     rest -= form;
-    differences.push_back(space.newton_step(rest));
+    differences.push_back(detail::TangentSpace::newton_step(rest));
     differences.back().head<3>() *= length;
   }
   return differences;

@@ -175,7 +175,7 @@ struct ShownDirections {
 /// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
 void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
                      const ShownDirections& directions) {
-  Matrix6d factors = directions.space.curvature(all);
+  Matrix6d factors = all.curvature;
   if (!detail::factorise(factors, directions.shown)) return;
   Matrix6d inverse = Matrix6d::Zero();  // H^-1 e_i
   inverse.topRows(directions.shown) = directions.basis.transpose().topRows(directions.shown);
@@ -185,9 +185,8 @@ void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
     inverse.col(i) = column;
   }
   for (BlockForm& block : blocks) {
-    const Matrix6d H = directions.space.curvature(block.form);
-    block.information =
-        inverse.cwiseProduct(H.lazyProduct(inverse)).colwise().sum().transpose().cwiseMax(0.0);
+    const Matrix6d H_inverse = block.form.curvature.lazyProduct(inverse);
+    block.information = inverse.cwiseProduct(H_inverse).colwise().sum().transpose().cwiseMax(0.0);
   }
 }
 
@@ -198,8 +197,10 @@ Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& 
   for (const BlockForm& block : blocks) {
     TangentForm rest = all;
     rest -= block.form;
-    const Vector6d step = directions.space.newton_step(rest, directions.shown);
-    jackknife.leave_out(block.pairs, directions.basis.lazyProduct(step), block.information);
+    const Vector6d step = TangentSpace::newton_step(rest, directions.shown);
+    const bool as_they_are = directions.shown == 6;
+    jackknife.leave_out(block.pairs, as_they_are ? step : Vector6d(directions.basis.lazyProduct(step)),
+                        block.information);
   }
   return jackknife;
 }

@@ -9,12 +9,12 @@
 
 namespace egocal::detail {
 
-/// What one Newton step from an extrinsic q needs of a sum of motions S: 44 numbers, linear in S. Forms of
+/// What one Newton step from an extrinsic q needs of a sum of motions S: 42 numbers, linear in S. Forms of
 /// blocks are added and subtracted instead of the blocks, so leaving out a block costs one small
 /// factorisation. Not normalised by the weight, which no Newton step depends on.
 struct TangentForm {
-  Matrix6d curvature = Matrix6d::Zero();  ///< T'ST
-  Vector8d gradient = Vector8d::Zero();   ///< Sq
+  Matrix6d curvature = Matrix6d::Zero();  ///< T'ZT, see TangentSpace
+  Vector6d gradient = Vector6d::Zero();   ///< T'Sq
 
   TangentForm& operator+=(const TangentForm& other) {
     curvature += other.curvature;
@@ -34,20 +34,20 @@ class TangentSpace {
  public:
   TangentSpace(const DualQuaternion& q, double length, const Matrix86d& tangent, const Balance& balance);
 
+  /// Its curvature is that of Z = S - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0] at the least squares
+  /// multipliers, which are linear in S as well.
   TangentForm form(const Statistics& statistics) const;
-  /// T'ZT with Z = S - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0] at the least squares multipliers.
-  Matrix6d curvature(const TangentForm& form) const;
   /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
   /// Infinite where the curvature is not positive definite.
-  Vector6d newton_step(const TangentForm& form, int directions = 6) const;
+  static Vector6d newton_step(const TangentForm& form, int directions = 6);
 
  private:
-  DualQuaternion q_;
   Balance balance_;
-  Matrix86d tangent_;
   Eigen::Matrix<double, 4, 7> upper_, lower_;  ///< [tangent, q], the dual rows counted in metres
+  bool starts_with_translations_;              ///< the first three directions do not rotate
   Eigen::Matrix<double, 6, 4> tangent_upper_, tangent_lower_;  ///< of the tangent alone, transposed
   Matrix6d norm_, orthogonal_;                                 ///< T'[I 0; 0 0]T and T'[0 I; I 0]T
+  Eigen::Matrix<double, 8, 2> multipliers_;                    ///< lambda' = (Sq)' times this
   double length_;
 };
 
