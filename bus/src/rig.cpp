@@ -15,6 +15,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "egocal/bus/answer_check.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/datagrams.hpp"
 #include "egocal/bus/lcm_url.hpp"
@@ -294,6 +295,10 @@ Rig understood(const toml::table& root, const std::string& file) {
   }
   std::set<std::string> pair_channels;
   for (const Table& table : in.tables("pair")) {
+    if (rig.pairs.size() == AnswerCheck::max_pairs)
+      table.fail("",
+                 "a rig has at most 256 pairs, all of 23 sensors; list those of each sensor with one "
+                 "reference, and a few more that close loops");
     rig.pairs.push_back(read_pair(table, rig));
     const PairConfig& pair = rig.pairs.back();
     // a_b with c and a with b_c would share their channels

@@ -115,6 +115,9 @@ DriveScaleOptions scale_options(const CalibrationOptions& options) {
 void put_scale(const std::optional<ScaleSolution>& estimate, double scale, Calibration& result) {
   result.scale = estimate;
   result.scale_applied = scale;
+  if (estimate)
+    result.observability.stddev =
+        with_spread_of_scale(result.observability.stddev, result.problem, *estimate);
   if (!estimate || (estimate->observable && estimate->certified) || result.verdict != Verdict::good) return;
   result.verdict = Verdict::incomplete;
   result.reason = estimate->observable ? "The scale is not proven to be the best one."

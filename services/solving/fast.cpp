@@ -19,7 +19,7 @@ std::string FastSolver::advice() const {
 }
 
 void FastSolver::answer_newest() {
-  if (!heartbeat_.alive(bus::Role::global)) scales_.answer_newest();
+  scales_.answer_newest(!heartbeat_.alive(bus::Role::global));
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (const std::optional<ReceivedProblem> received = take(i)) answer(i, *received);
 }
@@ -37,7 +37,7 @@ void FastSolver::answer(std::size_t pair, const ReceivedProblem& received) {
   const OnlineStep step = algorithm1_step(received.problem, message.utime, progress.state, options);
   progress.state = step.state;
   const bool asks = step.global_wanted && !step.global_used;
-  outbox.send(step.answer, message, asks);
+  outbox.send(scales_.with_spread(step.answer, received), message, asks);
   ++heartbeat_.counter(step.fast_verified ? "verified" : "not verified");
   if (asks) ++heartbeat_.counter("asked for the global solver");
   if (step.global_used) ++heartbeat_.counter("solved globally here");

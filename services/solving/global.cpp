@@ -29,7 +29,9 @@ void GlobalSolver::answer_newest() {
     const ReceivedProblem received = *std::exchange(task.unanswered, std::nullopt);
     AnswerOutbox& outbox = pairs_[i]->outbox;
     if (!outbox.repeat(received.message))
-      outbox.send(solve(received.problem, method_, std::nullopt, &monotonic_ns), received.message, false);
+      outbox.send(
+          scales_.with_spread(solve(received.problem, method_, std::nullopt, &monotonic_ns), received),
+          received.message, false);
   }
 }
 

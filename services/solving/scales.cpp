@@ -4,7 +4,6 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/scale.hpp"
-#include "solving/problems.hpp"
 
 namespace egocal::services {
 
@@ -17,18 +16,27 @@ ScaleDesk::ScaleDesk(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig&
     if (bus::unscaled_side(rig, pair)) pairs_.push_back(std::make_unique<Pair>(loop, pair));
 }
 
-void ScaleDesk::answer_newest() {
+void ScaleDesk::answer_newest(bool publishes) {
   for (const auto& pair : pairs_) {
     scale_problem_t problem{};
-    if (pair->inbox.take(problem)) answer(*pair, problem);
+    if (pair->inbox.take(problem)) answer(*pair, problem, publishes);
   }
 }
 
-void ScaleDesk::answer(Pair& pair, const scale_problem_t& problem) {
+Answer ScaleDesk::with_spread(Answer answer, const ReceivedProblem& received) const {
+  for (const auto& pair : pairs_)
+    if (pair->config.a == received.message.sensor_a && pair->config.b == received.message.sensor_b &&
+        pair->last && pair->last->session == received.message.session)
+      answer.observability.stddev =
+          with_spread_of_scale(answer.observability.stddev, received.problem, pair->solution);
+  return answer;
+}
+
+void ScaleDesk::answer(Pair& pair, const scale_problem_t& problem, bool publishes) {
   const std::string channel = bus::scale_channel(pair.config.a, pair.config.b);
   if (pair.last && pair.last->session == problem.session && pair.last->seq == problem.seq &&
       pair.last->utime == problem.utime) {
-    loop_.publish(channel, *pair.last);
+    if (publishes) loop_.publish(channel, *pair.last);
     return;
   }
   bus::Checked<ScaleProblem> checked = bus::to_scale_problem(problem);
@@ -36,12 +44,14 @@ void ScaleDesk::answer(Pair& pair, const scale_problem_t& problem) {
     checked = {{}, "sensors of another pair"};
   if (!checked) return heartbeat_.reject(checked.reason);
   const std::int64_t begin = monotonic_ns();
-  const ScaleSolution solution = solve_scale(checked.value->blocks, checked.value->options);
-  scale_t message = bus::to_message(solution, problem);
+  pair.solution = solve_scale(checked.value->blocks, checked.value->options);
+  scale_t message = bus::to_message(pair.solution, problem);
   message.solver = heartbeat_.identity().name;
   message.solve_ns = monotonic_ns() - begin;
-  loop_.publish(channel, message);
-  ++heartbeat_.counter("scales");
+  if (publishes) {
+    loop_.publish(channel, message);
+    ++heartbeat_.counter("scales");
+  }
   pair.last = std::move(message);
 }
 

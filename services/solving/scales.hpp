@@ -9,8 +9,10 @@
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/newest.hpp"
 #include "egocal/bus/rig.hpp"
+#include "egocal/scale/solve_scale.hpp"
 #include "egocal/scale_problem_t.hpp"
 #include "egocal/scale_t.hpp"
+#include "solving/problems.hpp"
 
 namespace egocal::services {
 
@@ -20,8 +22,11 @@ class ScaleDesk {
  public:
   ScaleDesk(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig);
 
-  /// Problems may be waiting.
-  void answer_newest();
+  /// Problems may be waiting. publishes: false where another solver answers them.
+  void answer_newest(bool publishes = true);
+  /// An answer at an unknown scale is as uncertain as that is: adds the scale's part to its standard
+  /// deviations, once a scale of the problem's session was solved here.
+  Answer with_spread(Answer answer, const ReceivedProblem& received) const;
 
  private:
   struct Pair {
@@ -29,8 +34,9 @@ class ScaleDesk {
     bus::PairConfig config;
     bus::Newest<scale_problem_t> inbox;
     std::optional<scale_t> last;
+    ScaleSolution solution;  ///< of the last one
   };
-  void answer(Pair& pair, const scale_problem_t& problem);
+  void answer(Pair& pair, const scale_problem_t& problem, bool publishes);
 
   bus::Loop& loop_;
   bus::Heartbeat& heartbeat_;

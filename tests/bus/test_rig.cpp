@@ -169,6 +169,24 @@ TEST(Rig, ErrorsNameFileLineAndKey) {
   }
 }
 
+/// A rig of this many sensors with all of their pairs.
+std::string all_pairs_of(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i)
+    text += "[[sensor]]\nname = \"s" + std::to_string(i) + "\"\nchannel = \"C" + std::to_string(i) + "\"\n";
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b)
+      text += "[[pair]]\na = \"s" + std::to_string(a) + "\"\nb = \"s" + std::to_string(b) + "\"\n";
+  return text;
+}
+
+TEST(Rig, AllPairsOfTwentySensorsAreTakenAndMoreThanListenersKeepAreRefused) {
+  EXPECT_EQ(parse_rig(all_pairs_of(20), "my.toml").pairs.size(), 190u);
+  const std::string message = error_of(all_pairs_of(24));
+  EXPECT_THAT(message, testing::HasSubstr("at most 256 pairs")) << message;
+  EXPECT_THAT(message, testing::StartsWith("my.toml:"));
+}
+
 TEST(Rig, MissingFile) {
   EXPECT_THROW(read_rig("/nonexistent/rig.toml"), Error);
 }

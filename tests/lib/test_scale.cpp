@@ -14,6 +14,7 @@
 #include "../support/real_drives.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/online/answer.hpp"
 #include "egocal/scale/solve_scale.hpp"
 #include "egocal/solvers/global.hpp"
 
@@ -200,6 +201,79 @@ TEST(Scale, NothingOrNonsenseIsNotCertified) {
   const ScaleSolution solution = solve_scale(std::vector{nan});
   EXPECT_FALSE(solution.certified);
   EXPECT_FALSE(solution.observable);
+}
+
+/// Nearly one circle: the way is nearly proportional to the turn, so a lever arm explains most of a scale.
+std::vector<MotionPair> nearly_a_circle(const DualQuaternion& T, double scale, Random& random) {
+  std::vector<MotionPair> pairs;
+  for (int i = 0; i < 400; ++i) {
+    const Eigen::Vector3d turn(0.03 * random.normal(), 0.03 * random.normal(), 0.1 + 0.02 * random.normal());
+    const Eigen::Vector3d way(10 * turn[2] * (1 + 0.1 * random.normal()), 0, 0);
+    const DualQuaternion a = testing::displacement(turn, way);
+    const auto noise = [&] { return testing::displacement(random.normal3(0.001), random.normal3(0.01)); };
+    MotionPair pair;
+    pair.a = scaled(a * noise(), 1 / scale);
+    pair.b = normalized(conjugate(T) * a * T) * noise();
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+TEST(Scale, TheExtrinsicsStandardDeviationContainsThatOfTheScale) {
+  Random random(12);
+  constexpr int drives = 150;
+  int without = 0, with = 0, directions = 0;
+  for (int k = 0; k < drives; ++k) {
+    const DualQuaternion T = testing::random_extrinsic(random, 1);
+    const double scale = random.log_uniform(0.1, 10);
+    const std::vector<ScaleStatistics> blocks = scale_blocks(nearly_a_circle(T, scale, random));
+    ScaleOptions options;
+    options.balance = {1, 0.01};
+    const ScaleSolution solution = solve_scale(blocks, options);
+    ASSERT_TRUE(solution.certified && solution.observable);
+    Problem problem;
+    problem.balance = solution.balance;
+    for (const ScaleStatistics& block : blocks) problem.blocks.push_back(at_scale(block, solution.scale));
+    const Answer answer = solve(problem, Method::dual);
+    const std::array<double, 6>& fixed = answer.observability.stddev;
+    const std::array<double, 6> joint = with_spread_of_scale(fixed, problem, solution);
+    const Eigen::Vector3d error = to_pose(answer.T_a_b).translation - to_pose(T).translation;
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_GE(joint[i], fixed[i]);
+      ++directions;
+      without += std::abs(error[static_cast<Eigen::Index>(i)]) < 1.96 * fixed[i];
+      with += std::abs(error[static_cast<Eigen::Index>(i)]) < 1.96 * joint[i];
+    }
+  }
+  RecordProperty("without", without);
+  RecordProperty("with", with);
+  EXPECT_LT(without, 0.85 * directions);
+  EXPECT_GT(with, 0.92 * directions) << without << " without it";
+  EXPECT_LT(with, 0.99 * directions);
+}
+
+TEST(Scale, TheSensitivityIsTheSlopeOfTheExtrinsicOverTheScale) {
+  Random random(13);
+  for (const Mode mode : {Mode::spatial, Mode::planar}) {
+    RandomDrive drive;
+    drive.noise = 0.02;
+    if (mode == Mode::planar) drive.motion = Motion::planar;
+    const DualQuaternion T =
+        mode == Mode::planar ? testing::random_planar_extrinsic(random) : testing::random_extrinsic(random);
+    const std::vector<ScaleStatistics> blocks = scale_blocks(unscaled_pairs(T, 2, drive, random));
+    ScaleOptions options;
+    options.mode = mode;
+    const ScaleSolution solution = solve_scale(blocks, options);
+    const auto translation_at = [&](double h) {
+      Balance balance = solution.balance;
+      balance.translation *= std::exp(-h);
+      const Matrix8d Q = cost_matrix(at_scale(sum_blocks(blocks), solution.scale * std::exp(h)), balance);
+      return to_pose((mode == Mode::planar ? solve_planar(Q) : solve_dual(Q)).q).translation;
+    };
+    const Eigen::Vector3d slope = (translation_at(1e-4) - translation_at(-1e-4)) / 2e-4;
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(solution.sensitivity[i], slope[static_cast<Eigen::Index>(i)], 0.02 * slope.norm());
+  }
 }
 
 TEST(Scale, NoiseOnBothSidesIsNotPulledTowardsZero) {

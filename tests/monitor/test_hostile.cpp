@@ -127,7 +127,7 @@ TEST(Hostile, AFloodOfNamesIsBoundedAndCounted) {
   EXPECT_EQ(model.events().size(), Model::max_events);
   EXPECT_EQ(model.events().back().text, "1999");
   EXPECT_GT(model.events_seen(), 2000);
-  EXPECT_EQ(model.ignored(), 3 * 1000 - 2 * 64 - 64);
+  EXPECT_EQ(model.ignored(), 3 * 1000 - 2 * 256 - 64);
   expect_clean_screens(model);
 }
 

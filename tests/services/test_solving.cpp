@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "egocal/bus/channels.hpp"
@@ -146,6 +147,28 @@ TEST_F(Solving, TheGlobalSolverAnswersTheScaleAndTheFastOneStepsIn) {
   EXPECT_EQ(scales.back().solver, "egocal-fast");
   EXPECT_EQ(scales.back().seq, 6);
   EXPECT_NEAR(scales.back().scale, 2.7, 0.15);
+}
+
+TEST_F(Solving, StandardDeviationsContainThatOfTheScale) {
+  problem.blocks.assign(10, {});
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    problem.blocks[i * 10 / motions.size()].add(motions[i].a, motions[i].b);
+  start_fast();
+  pass(5s);
+  send(1, 1);
+  pass(100ms);
+  const calibration_t before = answers["egocal-fast"];
+  send_scale(5, 0.37);
+  send(2, 2);
+  pass(100ms);
+  const calibration_t after = answers["egocal-fast"];
+  ASSERT_EQ(after.seq, 2);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_TRUE(std::isfinite(before.stddev[i])) << i;
+    EXPECT_GE(after.stddev[i], before.stddev[i]) << i;
+    EXPECT_LT(after.stddev[i], 3 * before.stddev[i]) << i;
+    if (i < 3) EXPECT_GT(after.stddev[i], before.stddev[i]) << i;
+  }
 }
 
 TEST_F(Solving, RightAfterTheStartNoSolverIsMissed) {

@@ -10,6 +10,7 @@
 
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/solvers/global.hpp"
+#include "scale/joint_jackknife.hpp"
 
 namespace egocal {
 
@@ -218,72 +219,31 @@ Search branch_and_bound(const ScaleCost& f, const ScaleOptions& options) {
   }
 }
 
-/// Slope of f over log s, with the minimiser there.
-struct Slope {
-  double value = 0;
-  DualQuaternion q;
-};
-Slope slope_at(const ScaleCost& f, double log_s) {
-  const double s = std::exp(log_s);
-  Slope result;
-  result.q = f.minimise(f.matrix(s)).q;
-  result.value = f.slope(s, result.q);
-  return result;
+detail::JointForm joint_form(const ScaleCost& f, const ScaleStatistics& all, const ScaleOptions& options,
+                             double s, const DualQuaternion& q) {
+  return {all, {s, q, f.balance(s), f.weight_slope(), all.weight, options.mode}};
 }
 
-/// Second derivative of f over log s.
-double curvature_at(const ScaleCost& f, double log_s) {
-  constexpr double h = 1e-3;
-  return (slope_at(f, log_s + h).value - slope_at(f, log_s - h).value) / (2 * h);
-}
-
-/// From the best node down to where the slope vanishes, by Newton and secant steps within [low, high].
-double polished(const ScaleCost& f, double log_s, double low, double high) {
-  double curvature = curvature_at(f, log_s);
-  Slope here = slope_at(f, log_s);
-  for (int i = 0; i < 6; ++i) {
+/// From the best node down to where the slope vanishes, by Newton steps within [low, high]. log s.
+double polished(const ScaleCost& f, const ScaleStatistics& all, const ScaleOptions& options, const Node& best,
+                double low, double high) {
+  double log_s = std::log(best.s);
+  DualQuaternion q = best.q;
+  double slope = f.slope(best.s, q);
+  for (int i = 0; i < 4; ++i) {
+    const double curvature = joint_form(f, all, options, std::exp(log_s), q).of(all).curvature();
     if (!(curvature > 0)) return log_s;
-    const double next = std::clamp(log_s - here.value / curvature, low, high);
-    if (std::abs(next - log_s) < 1e-14) return next;
-    const Slope there = slope_at(f, next);
-    if (!(std::abs(there.value) < std::abs(here.value))) return log_s;
-    const double secant = (there.value - here.value) / (next - log_s);
-    if (secant > 0) curvature = secant;
+    const double next = std::clamp(log_s - slope / curvature, low, high);
+    if (std::abs(next - log_s) < 1e-9) return next;  // the error of a step is about its square
+    const double s = std::exp(next);
+    const DualQuaternion q_there = f.minimise(f.matrix(s)).q;
+    const double there = f.slope(s, q_there);
+    if (!(std::abs(there) < std::abs(slope))) return log_s;
     log_s = next;
-    here = there;
+    q = q_there;
+    slope = there;
   }
   return log_s;
-}
-
-/// Standard deviation of log s, by the jack-knife over blocks of unequal length (delete-m_j, Busing et al.
-/// 1999), with Student's factor as for the extrinsic.
-double jackknife(std::span<const ScaleStatistics> blocks, const ScaleStatistics& all,
-                 const ScaleOptions& options, double log_s, double curvature) {
-  constexpr std::size_t least_blocks = 6;
-  if (blocks.size() < least_blocks) return infinity;
-  std::vector<double> pseudo, weight;
-  double mean = 0;
-  for (const ScaleStatistics& block : blocks) {
-    ScaleStatistics rest = all;
-    rest -= block;
-    if (block.count == 0 || rest.count == 0) return infinity;
-    const ScaleCost f(rest, options);
-    const double first = slope_at(f, log_s).value;
-    double step = std::clamp(-first / curvature, -0.2, 0.2);
-    const double second = step != 0 ? slope_at(f, log_s + step).value : first;
-    const double secant = step != 0 ? (second - first) / step : 0;
-    if (secant > 0) step = std::clamp(-first / secant, -0.5, 0.5);
-    const double h = static_cast<double>(all.count) / static_cast<double>(block.count);
-    pseudo.push_back(-(h - 1) * step);
-    weight.push_back(h);
-    mean += pseudo.back() / h;
-  }
-  double variance = 0;
-  for (std::size_t i = 0; i < pseudo.size(); ++i)
-    variance += (pseudo[i] - mean) * (pseudo[i] - mean) / (weight[i] - 1);
-  const double count = static_cast<double>(blocks.size());
-  const double student = 1 + 1.21 / (count - 1);
-  return student * std::sqrt(variance / count);
 }
 
 }  // namespace
@@ -312,7 +272,7 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   if (!result.at_limit) {
     const double ends[] = {std::log(search.nodes[best - 1].s), std::log(search.nodes[best + 1].s)};
     const double log_s =
-        polished(f, std::log(answer.s), std::min(ends[0], ends[1]), std::max(ends[0], ends[1]));
+        polished(f, all, options, answer, std::min(ends[0], ends[1]), std::max(ends[0], ends[1]));
     const Node node = evaluate(f, options, std::exp(log_s));
     if (node.cost <= answer.cost + f.rounding(answer.s)) answer = node;
   }
@@ -340,9 +300,10 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   result.least_scale = std::min(low, answer.s);
   result.most_scale = std::max(high, answer.s);
 
-  const double log_s = std::log(answer.s);
   const double energy = f.energy(answer.s);
-  const double curvature = curvature_at(f, log_s);
+  const detail::JointForm form = joint_form(f, all, options, answer.s, answer.q);
+  const detail::JointDerivatives joint = form.of(all);
+  const double curvature = joint.curvature();
   result.observability = std::clamp(curvature / (2 * energy), 0.0, 1.0);
   const double noise = std::max(0.0, f.translation_cost(answer.s, answer.q));
   const double shown = result.observability * energy;
@@ -351,9 +312,29 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   // below 1e-9 the curvature is the rounding of the differences that it is made of
   result.observable = !result.at_limit && result.observability > 1e-9 && share <= options.most_noise_share;
   if (!result.observable) return result;
-  const double spread = jackknife(blocks, all, options, log_s, curvature);
+  result.sensitivity = joint.sensitivity();
+  const double spread = detail::spread_of_scale(blocks, form, joint);
   // evenly likely anywhere within the attenuation
   result.stddev = answer.s * std::hypot(spread, result.attenuation / std::sqrt(3.0));
+  return result;
+}
+
+std::array<double, 6> with_spread_of_scale(const std::array<double, 6>& stddev, const Problem& problem,
+                                           const ScaleSolution& solution) {
+  const double relative = solution.stddev / solution.scale;
+  if (!std::isfinite(relative)) return stddev;
+  Eigen::Vector3d shift(solution.sensitivity[0], solution.sensitivity[1], solution.sensitivity[2]);
+  Eigen::Vector3d turn(solution.sensitivity[3], solution.sensitivity[4], solution.sensitivity[5]);
+  if (problem.mode == Mode::planar) {
+    const Eigen::Quaterniond R = to_pose(plane_frame(problem.plane_a)).rotation;
+    shift = R * shift;
+    turn = R * turn;
+  }
+  std::array<double, 6> result = stddev;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double per = i < 3 ? shift[static_cast<Eigen::Index>(i)] : turn[static_cast<Eigen::Index>(i - 3)];
+    if (per != 0) result[i] = std::hypot(stddev[i], per * relative);
+  }
   return result;
 }
 

@@ -272,9 +272,9 @@ void fields(auto& archive, services::Is<ScaleProblem> auto& value) {
 
 void fields(auto& archive, services::Is<ScaleSolution> auto& value) {
   auto& [scale, q, cost, balance, lower_bound, gap, rounding, least_scale, most_scale, certified, at_limit,
-         stddev, attenuation, observability, observable, solves] = value;
+         stddev, sensitivity, attenuation, observability, observable, solves] = value;
   archive(scale, q, cost, balance, lower_bound, gap, rounding, least_scale, most_scale, certified, at_limit,
-          stddev, attenuation, observability, observable, solves);
+          stddev, sensitivity, attenuation, observability, observable, solves);
 }
 
 void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
@@ -287,7 +287,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 12;
+constexpr int state_layout = 13;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include "egocal/problem/cost.hpp"
 
 namespace egocal {
@@ -20,6 +22,9 @@ struct ScaleSolution {
   bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale
   bool at_limit = false;   ///< the best scale is the end of the range
   double stddev = 0;       ///< by the jack-knife over blocks, with `attenuation`; infinite where unknown
+  /// Change of the best extrinsic per relative change of the scale, x y z roll pitch yaw in the frame of q
+  /// [m, rad]. What an extrinsic at this scale does not know of it: with_spread_of_scale().
+  std::array<double, 6> sensitivity{};
   /// Errors in variables: the true scale lies within this part of the scale of it, if all translation noise
   /// is in one sensor or the other; with noise as ScaleOptions::noise assumes nothing of it is left.
   double attenuation = 0;

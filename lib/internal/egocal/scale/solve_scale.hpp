@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "egocal/problem/problem.hpp"
@@ -42,5 +43,12 @@ struct ScaleOptions {
 /// moves per radian do not count as competitors. Never throws; without motion the solution is not certified
 /// and not observable.
 ScaleSolution solve_scale(std::span<const ScaleStatistics> blocks, const ScaleOptions& options = {});
+
+/// Standard deviations of an extrinsic that was solved at the scale of the solution [m, rad, frame a], with
+/// what the scale's own adds to them. problem: its mode and plane of a. Both parts are independent where the
+/// noise is as the weights say: at a minimum, what the scale can take up is no part of the extrinsic's error
+/// at a fixed scale. Unchanged where the scale is not known (the verdict says so).
+std::array<double, 6> with_spread_of_scale(const std::array<double, 6>& stddev, const Problem& problem,
+                                           const ScaleSolution& solution);
 
 }  // namespace egocal

@@ -177,7 +177,8 @@ class Model {
   Now now() const { return now_; }
   const ModelOptions& options() const { return options_; }
 
-  static constexpr std::size_t max_pairs = 64, max_processes = 64, max_solvers = 4, max_events = 1000;
+  /// As many pairs as a rig file may have: all of 23 sensors.
+  static constexpr std::size_t max_pairs = 256, max_processes = 64, max_solvers = 4, max_events = 1000;
   static constexpr std::size_t max_text = 200;  ///< bytes kept of any text
 
  private:
