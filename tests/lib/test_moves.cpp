@@ -126,7 +126,7 @@ TEST(Moves, AJumpOfOneOdometryIsNotAMovedMount) {
   }
 }
 
-TEST(Moves, SeveralBumpsAreToldApart) {
+TEST(Moves, SeveralBumpsAreDistinguished) {
   SimulationOptions options = drive(Terrain::free, 400, 400);
   for (int i = 0; i < 3; ++i)
     options.faults[1].mount_changes.push_back(bump(100 * (i + 1) + 0.05, static_cast<std::uint64_t>(i), 3));
@@ -160,6 +160,28 @@ TEST(Moves, TwoDegreesOfCreepInAnHourAreTracked) {
     EXPECT_EQ(result.moves[0].kind, MoveKind::creep);
     const std::array<double, 6>& change = result.moves[0].change;
     EXPECT_NEAR(Eigen::Vector3d(change[3], change[4], change[5]).norm() * degrees, 2.0 / 3, 0.2);
+  }
+}
+
+TEST(Moves, CreepIsCalledThatWhereADriveIsNotKeptEvenly) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    SimulationOptions options = drive(terrain, 520, 1200);
+    options.faults[1].mount_changes = {{0, 1200, {rotation_exp({0, 2 / degrees, 0}), {0, 0, 0}}}};
+    const std::vector<Trajectory> sensors = simulate(options);
+    PairingOptions pairing;
+    pairing.stride = 1;
+    pairing.balance = Balance{};
+    std::vector<MotionPair> pairs = pair_motions(pairing, sensors[0], sensors[1]).pairs;
+    // as egocal-diagnosis does: one of four stretches of five seconds, and the newest in full
+    std::erase_if(pairs, [&](const MotionPair& pair) {
+      const double seconds = 1e-6 * static_cast<double>(pair.begin_us - pairs.front().begin_us);
+      return seconds < 1140 && static_cast<int>(seconds / 5) % 4 != 0;
+    });
+    const MovesResult result = find_moves(pairs, {});
+    ASSERT_EQ(result.moves.size(), 1u);
+    EXPECT_EQ(result.moves[0].kind, MoveKind::creep);
+    const std::array<double, 6>& change = result.moves[0].change;
+    EXPECT_NEAR(Eigen::Vector3d(change[3], change[4], change[5]).norm() * degrees, 2, 0.3);
   }
 }
 

@@ -167,7 +167,9 @@ TEST_F(Solving, StandardDeviationsContainThatOfTheScale) {
     EXPECT_TRUE(std::isfinite(before.stddev[i])) << i;
     EXPECT_GE(after.stddev[i], before.stddev[i]) << i;
     EXPECT_LT(after.stddev[i], 3 * before.stddev[i]) << i;
-    if (i < 3) EXPECT_GT(after.stddev[i], before.stddev[i]) << i;
+    if (i < 3) {
+      EXPECT_GT(after.stddev[i], before.stddev[i]) << i;
+    }
   }
 }
 

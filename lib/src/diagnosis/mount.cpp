@@ -14,6 +14,9 @@ namespace egocal::detail {
 
 namespace {
 
+/// A longer interval of the time of a move is worth stating [s].
+constexpr double long_interval = 10;
+
 /// Motion pairs of one stride, none across a gap; in planar mode as seen from the planes.
 std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered,
                                  const DiagnosisOptions& options, std::size_t steps) {
@@ -64,6 +67,29 @@ double length(const Move& move, std::size_t first) {
   return std::sqrt(sum);
 }
 
+/// begin: of the motions, on the clock of the finding [s].
+void word(const Move& move, double begin, Finding& finding) {
+  const double turned = length(move, 3) * 180 / std::numbers::pi, shifted = 100 * length(move, 0);
+  const double from = begin + move.earliest, to = begin + move.latest;
+  const Pose before = to_pose(move.before);
+  const std::string answer = format("%.4f %.4f %.4f m, w x y z %.5f %.5f %.5f %.5f", before.translation.x(),
+                                    before.translation.y(), before.translation.z(), before.rotation.w(),
+                                    before.rotation.x(), before.rotation.y(), before.rotation.z());
+  if (move.kind == MoveKind::creep) {
+    finding.message = format("The mounting creeps: %.2f deg and %.1f cm from %.1f to %.1f s after the start",
+                             turned, shifted, from, to);
+    if (to > from) finding.message += format(", %.2g deg an hour", turned * 3600 / (to - from));
+    finding.message += ". At its begin the answer is " + answer + ".";
+    finding.remedy = "Fasten the mounting; calibrate a shorter part of the drive.";
+    return;
+  }
+  finding.message = format("The mounting changed by %.2f deg and %.1f cm about %.1f s after the start",
+                           turned, shifted, *finding.time);
+  if (to - from > long_interval) finding.message += format(" (between %.1f and %.1f s)", from, to);
+  finding.message += ". Before it the answer is " + answer + ".";
+  finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
+}
+
 }  // namespace
 
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
@@ -79,15 +105,7 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
     finding.certain = true;
     finding.time = begin + move.time;
     finding.T_a_b = to_pose(move.after);
-    finding.message = format("The mounting changed by %.2f deg and %.1f cm %s %.1f s after the start.",
-                             length(move, 3) * 180 / std::numbers::pi, 100 * length(move, 0),
-                             move.kind == MoveKind::creep ? "slowly, from" : "about", *finding.time);
-    const Pose before = to_pose(move.before);
-    finding.message +=
-        format(" Before it the answer is %.4f %.4f %.4f m, w x y z %.5f %.5f %.5f %.5f.",
-               before.translation.x(), before.translation.y(), before.translation.z(), before.rotation.w(),
-               before.rotation.x(), before.rotation.y(), before.rotation.z());
-    finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
+    word(move, begin, finding);
     findings.push_back(std::move(finding));
   }
   return findings;

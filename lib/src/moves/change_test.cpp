@@ -37,6 +37,15 @@ struct Division {
   Parameters x1, x2;                  ///< optima
 };
 
+/// Where the lengths of residuals end: those of blocks that are longer count as if they were this long.
+double longest_length(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
+  std::vector<double> lengths;
+  for (const Parameters& z : residuals) lengths.push_back(z.norm());
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return options.longest_residual * *middle;
+}
+
 Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& options) {
   Division d;
   d.H1 = curvature(blocks.first(split));
@@ -51,19 +60,13 @@ Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& optio
     for (std::size_t i = 0; i < blocks.size(); ++i) (i < split ? g1 : g2) += d.gradients[i];
     d.x1 = -before.solve(g1);
     d.x2 = -after.solve(g2);
-    std::vector<double> lengths;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (i < split ? d.x1 : d.x2));
+    const double limit = longest_length(d.residuals, options);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const Parameters& x = i < split ? d.x1 : d.x2;
-      d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * x);
-      lengths.push_back(d.residuals[i].norm());
-    }
-    std::vector<double> sorted = lengths;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const double limit = options.longest_residual * sorted[sorted.size() / 2];
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const Parameters& x = i < split ? d.x1 : d.x2;
-      if (lengths[i] > limit) d.residuals[i] *= limit / lengths[i];
+      const double length = d.residuals[i].norm();
+      if (length > limit) d.residuals[i] *= limit / length;
       d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
     }
   }
@@ -149,14 +152,14 @@ double correlation_of(const Division& d, std::size_t split) {
 /// Reduction of the cost by an optimum of their own for blocks [from, to).
 class Gains {
  public:
-  Gains(Blocks blocks, const Division& d, double borrowed) : borrowed_(borrowed) {
+  Gains(Blocks blocks, double borrowed) : borrowed_(borrowed) {
     ParameterMatrix H = zero_matrix(blocks);
     Parameters g = zero_vector(blocks);
     H_.push_back(H);
     g_.push_back(g);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       H_.push_back(H += blocks[i].H);
-      g_.push_back(g += d.gradients[i]);
+      g_.push_back(g += blocks[i].g);
     }
   }
   double of(std::size_t from, std::size_t to) const {
@@ -171,54 +174,103 @@ class Gains {
   std::vector<Parameters> g_;
 };
 
-/// Time of a block, from -1 at the begin of the stretch to 1 at its end.
-double time_of(std::size_t block, std::size_t count) {
-  return 2 * (static_cast<double>(block) + 0.5) / static_cast<double>(count) - 1;
+/// Least squares of an extrinsic that changes evenly over the time, x0 + t v.
+struct EvenChange {
+  Parameters x0, v;
+  Parameters S;                       ///< what shows v
+  ParameterMatrix mean;               ///< inv(H) sum t H
+  ParameterMatrix slope;              ///< curvature of v, at the best x0
+  std::vector<Parameters> residuals;  ///< whitened
+  double gain = 0;                    ///< reduction of the cost, of all gradients as they are
+};
+
+EvenChange fit_even_change(Blocks blocks, const ParameterMatrix& H, const ChangeTestOptions& options) {
+  const ParameterMatrix borrowed = options.borrowed_curvature * H;
+  ParameterMatrix Ht = zero_matrix(blocks), Htt = Ht;
+  for (const LinearBlock& block : blocks) {
+    Ht += block.time * block.H;
+    Htt += block.time * block.time * block.H;
+  }
+  const Eigen::LDLT<ParameterMatrix> whole(ParameterMatrix(H + borrowed));
+  EvenChange fit;
+  fit.mean = whole.solve(Ht);
+  fit.slope = Htt - Ht * fit.mean + borrowed;
+  const Eigen::LDLT<ParameterMatrix> slope(fit.slope);
+  std::vector<Parameters> gradients;
+  for (const LinearBlock& block : blocks) gradients.push_back(block.g);
+  for (int pass = 0; pass < 3; ++pass) {
+    Parameters g = zero_vector(blocks), gt = g;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      g += gradients[i];
+      gt += blocks[i].time * gradients[i];
+    }
+    fit.S = gt - fit.mean.transpose() * g;
+    fit.v = -slope.solve(fit.S);
+    fit.x0 = -whole.solve(g) - fit.mean * fit.v;
+    if (pass == 0) fit.gain = g.dot(whole.solve(g)) + fit.S.dot(slope.solve(fit.S));
+    fit.residuals.clear();
+    const auto at = [&](const LinearBlock& block) { return Parameters(fit.x0 + block.time * fit.v); };
+    for (const LinearBlock& block : blocks)
+      fit.residuals.push_back(block.inverse_root * (block.g + block.H * at(block)));
+    const double limit = longest_length(fit.residuals, options);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const double length = fit.residuals[i].norm();
+      if (length > limit) fit.residuals[i] *= limit / length;
+      gradients[i] = blocks[i].root * fit.residuals[i] - blocks[i].H * at(blocks[i]);
+    }
+  }
+  return fit;
 }
 
-/// Least squares of an extrinsic that changes evenly from the first block to the last, x0 + t v, and the same
-/// test of v = 0 as of a step.
-void test_even_change(Blocks blocks, const Division& d, const ChangeTestOptions& options, ChangeTest& test) {
-  const double borrowed = options.borrowed_curvature;
-  const std::size_t count = blocks.size();
-  ParameterMatrix Ht = zero_matrix(blocks), Htt = Ht;
-  Parameters g = zero_vector(blocks), gt = g;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = time_of(i, count);
-    Ht += t * blocks[i].H;
-    Htt += t * t * blocks[i].H;
-    g += d.gradients[i];
-    gt += t * d.gradients[i];
-  }
-  const Eigen::LDLT<ParameterMatrix> whole(ParameterMatrix(d.H + borrowed * d.H));
-  const ParameterMatrix mean = whole.solve(Ht);  // inv(H) Ht
-  const ParameterMatrix slope_curvature = Htt - Ht * mean + borrowed * d.H;
-  const Eigen::LDLT<ParameterMatrix> slope(slope_curvature);
-  const Parameters S = gt - mean.transpose() * g;
-  const Parameters v = -slope.solve(S);
-  const Parameters x0 = -whole.solve(g) - mean * v;
-  test.begin = x0 - v;
-  test.end = x0 + v;
-  test.even_change = g.dot(whole.solve(g)) + S.dot(slope.solve(S));
-
-  Division even = d;
-  for (std::size_t i = 0; i < count; ++i)
-    even.residuals[i] =
-        blocks[i].inverse_root * (d.gradients[i] + blocks[i].H * (x0 + time_of(i, count) * v));
+/// The same test of v = 0 as of a step.
+void test_even_change(Blocks blocks, const EvenChange& fit, const ChangeTestOptions& options,
+                      ChangeTest& test) {
+  test.begin = fit.x0 - fit.v;
+  test.end = fit.x0 + fit.v;
+  Division even;
+  even.residuals = fit.residuals;
+  even.x1 = fit.x0;
   const ParameterMatrix C = residual_covariance(even);
   ParameterMatrix V = zero_matrix(blocks);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (const LinearBlock& block : blocks) {
     const ParameterMatrix weight =
-        time_of(i, count) * ParameterMatrix::Identity(C.rows(), C.cols()) - mean.transpose();
-    V += weight * (blocks[i].root * C * blocks[i].root) * weight.transpose();
+        block.time * ParameterMatrix::Identity(C.rows(), C.cols()) - fit.mean.transpose();
+    V += weight * (block.root * C * block.root) * weight.transpose();
   }
-  const double correlation = correlation_of(even, count);
+  const double correlation = correlation_of(even, blocks.size());
   const Eigen::LDLT<ParameterMatrix> factor(V);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return;
-  const double t2 = S.dot(factor.solve(S)) / correlation;
+  const double t2 = fit.S.dot(factor.solve(fit.S)) / correlation;
   if (!std::isfinite(t2)) return;
-  test.even_false_alarm = chance_of(t2, S.size(), count, options);
+  test.even_false_alarm = chance_of(t2, fit.S.size(), blocks.size(), options);
+  const Eigen::LDLT<ParameterMatrix> slope(fit.slope);
   test.even_covariance = 4 * correlation * slope.solve(slope.solve(V).transpose());
+}
+
+/// What one unknown reduces the cost by, by chance: from the differences of neighbouring residuals, as those
+/// themselves hold what the model does not explain.
+double noise_of(const EvenChange& fit) {
+  double sum = 0;
+  for (std::size_t i = 1; i < fit.residuals.size(); ++i)
+    sum += (fit.residuals[i] - fit.residuals[i - 1]).squaredNorm();
+  return sum / (2 * static_cast<double>(fit.residuals.size() - 1) * static_cast<double>(fit.S.size()));
+}
+
+/// Whether an even change explains more than one division and than the best two, each unknown more of which
+/// must gain the logarithm of the number of blocks (the information criterion of Bayes).
+bool is_even(Blocks blocks, const EvenChange& fit, std::size_t least_side, const ChangeTestOptions& options) {
+  const std::size_t count = blocks.size();
+  const double unknown = noise_of(fit) * std::log(static_cast<double>(count));
+  const double unknowns_of_a_step = static_cast<double>(fit.S.size()) + 1;
+  const Gains gains(blocks, options.borrowed_curvature);
+  for (std::size_t i = least_side; i + least_side <= count; ++i) {
+    const double before = gains.of(0, i);
+    if (fit.gain <= before + gains.of(i, count) - unknown) return false;
+    for (std::size_t k = i + least_side; k + least_side <= count; ++k)
+      if (fit.gain <= before + gains.of(i, k) + gains.of(k, count) - (unknowns_of_a_step + 1) * unknown)
+        return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -247,12 +299,9 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   const Eigen::LDLT<ParameterMatrix> inverse(harmonic);
   test.covariance = test.correlation * inverse.solve(inverse.solve(found.V).transpose());
 
-  const Gains gains(blocks, d, options.borrowed_curvature);
-  test.one_step = gains.of(0, test.split) + gains.of(test.split, count);
-  for (std::size_t i = least_side; i + 2 * least_side <= count; ++i)
-    for (std::size_t k = i + least_side; k + least_side <= count; ++k)
-      test.two_steps = std::max(test.two_steps, gains.of(0, i) + gains.of(i, k) + gains.of(k, count));
-  test_even_change(blocks, d, options, test);
+  const EvenChange even = fit_even_change(blocks, d.H, options);
+  test_even_change(blocks, even, options, test);
+  test.even = test.even_false_alarm < options.even_looked_at && is_even(blocks, even, least_side, options);
   return test;
 }
 
@@ -264,7 +313,7 @@ double chance_of_change_at(Blocks blocks, std::size_t split, const ChangeTestOpt
 
 double chance_of_even_change(Blocks blocks, const ChangeTestOptions& options) {
   ChangeTest test;
-  test_even_change(blocks, divide(blocks, blocks.size() / 2, options), options, test);
+  test_even_change(blocks, fit_even_change(blocks, curvature(blocks), options), options, test);
   return test.even_false_alarm;
 }
 

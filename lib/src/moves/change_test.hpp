@@ -11,15 +11,14 @@ namespace egocal::detail {
 /// The best place to divide consecutive blocks in two with an extrinsic each, and what it is worth
 /// (docs/moves.md, "The test").
 struct ChangeTest {
-  std::size_t split = 0;       ///< index of the first block after it; 0: none could be tested
-  double false_alarm = 1;      ///< chance of such evidence at any split where nothing changes
-  double correlation = 1;      ///< variance of sums of neighbouring blocks against independent ones, >= 1
-  Parameters change;           ///< after minus before
-  ParameterMatrix covariance;  ///< of the change
-  /// Reduction of the cost by one division, by the best two, and by an extrinsic that changes evenly.
-  double one_step = 0, two_steps = 0, even_change = 0;
-  Parameters begin, end;            ///< of the even change: offsets from the common optimum
-  double even_false_alarm = 1;      ///< chance of such evidence for an even change where nothing changes
+  std::size_t split = 0;        ///< index of the first block after it; 0: none could be tested
+  double false_alarm = 1;       ///< chance of such evidence at any split where nothing changes
+  double correlation = 1;       ///< variance of sums of neighbouring blocks against independent ones, >= 1
+  Parameters change;            ///< after minus before
+  ParameterMatrix covariance;   ///< of the change
+  bool even = false;            ///< an even change explains the blocks better than one division or two
+  Parameters begin, end;        ///< of the even change: offsets from the common optimum
+  double even_false_alarm = 1;  ///< chance of such evidence for an even change where nothing changes
   ParameterMatrix even_covariance;  ///< of end - begin
 };
 

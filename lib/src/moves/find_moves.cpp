@@ -85,8 +85,7 @@ class Finder {
     found.test = detail::test_change(found.stretch.blocks, least_side(count, options_), options_.test);
     if (found.test.split == 0) return std::nullopt;
     chance_ = std::min({chance_, found.test.false_alarm, 2 * found.test.even_false_alarm});
-    found.creep = found.test.even_change > found.test.two_steps &&
-                  found.test.even_false_alarm <= 0.5 * options_.false_alarms;
+    found.creep = found.test.even && found.test.even_false_alarm <= 0.5 * options_.false_alarms;
     if (found.creep) {
       found.test.false_alarm = 2 * found.test.even_false_alarm;
       found.test.change = found.test.end - found.test.begin;

@@ -99,6 +99,23 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
   return result;
 }
 
+namespace {
+
+/// Mean time of pairs [from, to), from -1 at the begin of all to 1 at their end. A long drive is not kept
+/// evenly, so the index says little of the time.
+double time_of(std::span<const MotionPair> pairs, std::size_t from, std::size_t to) {
+  const auto middle = [&](std::size_t i) {
+    return 0.5 * static_cast<double>(pairs[i].begin_us - pairs.front().begin_us) +
+           0.5 * static_cast<double>(pairs[i].end_us - pairs.front().begin_us);
+  };
+  double sum = 0;
+  for (std::size_t i = from; i < to; ++i) sum += middle(i);
+  const auto span = static_cast<double>(pairs.back().end_us - pairs.front().begin_us);
+  return from < to && span > 0 ? 2 * sum / (static_cast<double>(to - from) * span) - 1 : 0;
+}
+
+}  // namespace
+
 Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count,
                      const ChangeTestOptions& options) {
   Linearised result;
@@ -128,8 +145,10 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
     block.root = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();
     block.inverse_root =
         eigen.eigenvectors() * roots.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    const std::size_t from = k * pairs.size() / count;
+    block.time = time_of(pairs, from, (k + 1) * pairs.size() / count);
     result.blocks.push_back(std::move(block));
-    result.begin.push_back(k * pairs.size() / count);
+    result.begin.push_back(from);
   }
   return result;
 }

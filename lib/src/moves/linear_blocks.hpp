@@ -21,6 +21,7 @@ struct LinearBlock {
   Parameters g;
   ParameterMatrix H;
   ParameterMatrix root, inverse_root;  ///< of H raised a little: noise in g has about this shape
+  double time = 0;                     ///< of its middle, from -1 at the begin of the stretch to 1 at its end
 };
 
 struct Linearised {

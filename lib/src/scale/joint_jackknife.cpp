@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "egocal/problem/constraints.hpp"
+#include "egocal/problem/cost.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

@@ -31,6 +31,9 @@ struct ChangeTestOptions {
   /// Over 20 to 64 blocks and four shapes of noise the tail of T^2 is below that of Hotelling's with 2.5,
   /// to chances of 2e-5 (docs/moves.md, "The test").
   double freedom = 2.5;
+  /// Chance of an even change above which it is not compared with steps: that takes time, and what is not
+  /// reported need not be named.
+  double even_looked_at = 1e-3;
 };
 
 struct MovesOptions {
