@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "../support/random_motion.hpp"
@@ -62,6 +63,56 @@ TEST(Estimation, SumsOverStridesBeatNeighboursWhereNoiseIsOnPoses) {
     neighbours.push_back(error_of(s, paired(plain, s.a, s.b), true));
   }
   EXPECT_LT(median(sums), 0.6 * median(neighbours));
+}
+
+/// Noise whose size changes from step to step by a factor of three (log-normal), in both sensors.
+testing::Streams with_heavy_tails(testing::Streams streams, std::uint64_t seed) {
+  Random random(seed);
+  for (Trajectory* trajectory : {&streams.a, &streams.b}) {
+    DualQuaternion before = trajectory->front().pose, noisy = before;
+    for (StampedPose& pose : *trajectory) {
+      const double times = std::exp(1.5 * random.normal());
+      noisy = normalized(noisy * conjugate(before) * pose.pose *
+                         normal_displacement(random, 0.0005 * times, 0.005 * times));
+      before = std::exchange(pose.pose, noisy);
+    }
+  }
+  return streams;
+}
+
+DualQuaternion summed(const testing::Streams& s, const StrideSumsOptions& tuning) {
+  StrideSums sums(validated(PairingOptions{}), tuning);
+  sums.begin(s.a[1].time_us - s.a[0].time_us);
+  for (std::size_t i = 0; i < s.a.size(); ++i) {
+    sums.add({s.a[i].time_us, s.a[i].pose, s.b[i].pose, 0, i + 1});
+    if (sums.choice_is_due()) sums.choose();
+  }
+  sums.choose();
+  return sums.choice().value().q;
+}
+
+TEST(Estimation, StepsFarFromTypicalLoseWeightWhereTailsAreHeavy) {
+  std::vector<double> weighted, alike;
+  StrideSumsOptions off;
+  off.jumps.doubtful = 1e9;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const testing::Streams s = with_heavy_tails(free_drive(seed), seed);
+    weighted.push_back(extrinsic_error(s.T, summed(s, {})).rotation);
+    alike.push_back(extrinsic_error(s.T, summed(s, off)).rotation);
+  }
+  EXPECT_LT(median(weighted), 0.85 * median(alike));
+}
+
+TEST(Estimation, WithoutHeavyTailsNoStepLosesWeight) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const testing::Streams s = free_drive(seed, 0.02);
+    std::vector<Step> steps;
+    for (std::size_t i = 1; i < s.a.size(); ++i)
+      steps.push_back(
+          {motion_between(s.a[i - 1].pose, s.a[i].pose), motion_between(s.b[i - 1].pose, s.b[i].pose), true});
+    for (const StepVerdict& verdict : find_jumps(steps, {}, Mode::spatial, std::nullopt))
+      EXPECT_EQ(verdict.extra_variance, 0) << seed;
+  }
 }
 
 /// Tracking that is lost and found again elsewhere: no motion spans it.

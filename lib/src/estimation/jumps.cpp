@@ -20,6 +20,8 @@ constexpr double sharpen = 4;
 constexpr int most_rounds = 24;
 /// Fewer steps have no quartiles.
 constexpr std::size_t least_steps = 8;
+/// Fewer far steps are no tail, however few the steps.
+constexpr double least_far = 4;
 
 double quantile(std::vector<double>& values, double part) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -68,6 +70,9 @@ struct Component {
                                         : residual[i] / limit;
     return x * x;
   }
+
+  /// Of the typical residual.
+  double multiple(std::size_t i) const { return typical > 0 ? residual[i] / typical : 0; }
 
  private:
   static double factor(std::vector<double>& values, const JumpOptions& options) {
@@ -130,7 +135,7 @@ class Judge {
     return 0.25 * ratio * ratio;
   }
 
-  std::vector<Jump> verdicts() const {
+  std::vector<Jump> jumps() const {
     std::vector<Jump> result(steps_.size(), Jump::none);
     std::size_t jumps = 0;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -143,9 +148,32 @@ class Judge {
     return result;
   }
 
+  /// By the newest look.
+  std::vector<StepVerdict> verdicts(const std::vector<Jump>& jumps) const {
+    std::vector<StepVerdict> result;
+    double far = 0, usable = 0;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      result.push_back({jumps[i], extra_variance(i, jumps[i])});
+      if (steps_[i].usable) ++usable;
+      if (result.back().extra_variance > 0) ++far;
+    }
+    if (far < std::max(least_far, options_.heavy_tail * usable))
+      for (StepVerdict& verdict : result) verdict.extra_variance = 0;
+    return result;
+  }
+
   std::vector<double> weights;  ///< per step
 
  private:
+  /// No motion spans a jump; rotations that span a translation's jump count by rotation alone.
+  double extra_variance(std::size_t i, Jump jump) const {
+    if (!steps_[i].usable || jump == Jump::all) return 0;
+    double x = rotation_.multiple(i);
+    if (jump == Jump::none) x = std::max(x, translation_.multiple(i));
+    x /= options_.doubtful;
+    return x > 1 ? x * x * x * x - 1 : 0;
+  }
+
   std::span<const Step> steps_;
   const JumpOptions& options_;
   std::vector<Pose> a_, b_;
@@ -157,22 +185,22 @@ DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
 }
 
 /// Verdicts by a given extrinsic: what is typical is learnt again without what has been found.
-std::vector<Jump> settle(Judge& judge, const DualQuaternion& q) {
-  std::vector<Jump> verdicts;
+std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q) {
+  std::vector<Jump> jumps;
   for (int round = 0; round < most_rounds; ++round) {
     judge.look_from(q);
-    std::vector<Jump> next = judge.verdicts();
-    if (next == verdicts) break;
-    verdicts = std::move(next);
+    std::vector<Jump> next = judge.jumps();
+    if (next == jumps) break;
+    jumps = std::move(next);
     judge.weigh(1);
   }
-  return verdicts;
+  return judge.verdicts(jumps);
 }
 
 }  // namespace
 
-std::vector<Jump> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
-                             const std::optional<DualQuaternion>& q, const JumpOptions& options) {
+std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
+                                    const std::optional<DualQuaternion>& q, const JumpOptions& options) {
   Judge judge(steps, options);
   if (q) return settle(judge, *q);
 
@@ -183,7 +211,7 @@ std::vector<Jump> find_jumps(std::span<const Step> steps, const Statistics& befo
   }
   double balance = 100;  // rotation to translation [m^2]: a centimetre for a milliradian
   double mu = 0;
-  std::vector<Jump> verdicts;
+  std::vector<Jump> jumps;
   for (int round = 0; round < most_rounds; ++round) {
     Statistics sum = before;
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -195,12 +223,12 @@ std::vector<Jump> find_jumps(std::span<const Step> steps, const Statistics& befo
     balance = judge.rotation_weight();
     const bool sharp = mu == 1;
     mu = round == 0 ? std::max(1.0, 2 * judge.largest_excess()) : std::max(1.0, mu / sharpen);
-    std::vector<Jump> next = judge.verdicts();
-    if (sharp && next == verdicts) break;
-    verdicts = std::move(next);
+    std::vector<Jump> next = judge.jumps();
+    if (sharp && next == jumps) break;
+    jumps = std::move(next);
     judge.weigh(mu);
   }
-  return verdicts;
+  return judge.verdicts(jumps);
 }
 
 }  // namespace egocal

@@ -55,12 +55,12 @@ void StrideBlocks::add_instant(std::uint64_t index) {
 }
 
 void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a,
-                       const DualQuaternion& b, bool rotation_only) {
+                       const DualQuaternion& b, bool rotation_only, double weight) {
   StrideSum& sum = state_.strides[stride];
   const std::size_t first = block_of(first_index);
   const std::size_t last = block_of(first_index + static_cast<std::uint64_t>(sum.stride));
   StrideCell& cell = (last - first == offset(sum.stride, state_.block_length) ? sum.near : sum.far)[first];
-  (rotation_only ? cell.rotations : cell.motions).add(a, b);
+  (rotation_only ? cell.rotations : cell.motions).add(a, b, weight);
 }
 
 void StrideBlocks::merge() {

@@ -29,6 +29,13 @@ constexpr std::uint64_t look_part = 16, least_look = 16, most_look = 64;
 constexpr std::uint64_t short_choice_part = 8, choice_part = 4, short_drive = 128;
 /// Rounds of verdicts and weights that depend on each other.
 constexpr int most_rounds = 3;
+/// What is left of a difference of sums by rounding [typical variances].
+constexpr double least_extra_variance = 1e-6;
+
+/// Variances of a step, in typical ones. Differences that change no weight by a tenth are no news.
+bool differ(double x, double y) {
+  return std::abs(x - y) > 0.1 * (1 + std::min(x, y));
+}
 
 }  // namespace
 
@@ -64,13 +71,23 @@ Step StrideSums::step(const JudgedInstant& from, const JudgedInstant& to) const 
 }
 
 /// Sets the verdict and the chains that follow from it.
-void StrideSums::append(JudgedInstant& judged, const JudgedInstant* before, Jump jump) const {
-  judged.jump = jump;
-  judged.rotation_chain = before ? before->rotation_chain + (jump == Jump::all ? 1 : 0) : 0;
-  judged.translation_chain = before ? before->translation_chain + (jump != Jump::none ? 1 : 0) : 0;
+void StrideSums::append(JudgedInstant& judged, const JudgedInstant* before,
+                        const StepVerdict& verdict) const {
+  judged.jump = verdict.jump;
+  judged.rotation_chain = before ? before->rotation_chain + (verdict.jump == Jump::all ? 1 : 0) : 0;
+  judged.translation_chain = before ? before->translation_chain + (verdict.jump != Jump::none ? 1 : 0) : 0;
+  judged.step_variance = verdict.extra_variance;
+  judged.total_variance = before ? before->total_variance + verdict.extra_variance : 0;
 }
 
-/// Calls take(stride's number, first instant, last one, motions, whether they span a jump of a translation)
+/// Of a motion between two instants, among those of its stride: the variances of its steps add up. One where
+/// all steps are typical.
+double StrideSums::certainty(const JudgedInstant& from, const JudgedInstant& to) {
+  const double extra = to.total_variance - from.total_variance;
+  return extra > least_extra_variance ? 1 / (1 + extra) : 1;
+}
+
+/// Calls take(stride's number, first instant, motions, whether they span a jump of a translation)
 /// for the motions that end at the instant at this position.
 template <typename Take>
 void StrideSums::each_motion(std::size_t position, const Take& take) const {
@@ -83,15 +100,17 @@ void StrideSums::each_motion(std::size_t position, const Take& take) const {
     if (from.doubtful || from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain)
       continue;
     const Step motion = step(from, to);
-    if (motion.usable) take(i, from.index, to.index, motion, from.translation_chain != to.translation_chain);
+    if (motion.usable) take(i, from, motion, from.translation_chain != to.translation_chain);
   }
 }
 
 void StrideSums::add_motions(StrideBlocks& blocks, std::size_t position) const {
-  blocks.add_instant(state_.instants[position].index);
+  const JudgedInstant& to = state_.instants[position];
+  blocks.add_instant(to.index);
   each_motion(position,
-              [&](std::size_t stride, std::uint64_t first, std::uint64_t, const Step& motion,
-                  bool rotation_only) { blocks.add(stride, first, motion.a, motion.b, rotation_only); });
+              [&](std::size_t stride, const JudgedInstant& from, const Step& motion, bool rotation_only) {
+                blocks.add(stride, from.index, motion.a, motion.b, rotation_only, certainty(from, to));
+              });
 }
 
 /// Of all motions, those of the open instants as well.
@@ -108,14 +127,16 @@ StrideBlocks StrideSums::sums() const {
 }
 
 void StrideSums::weigh_newest() {
-  const std::uint64_t index = state_.instants.back().index;
+  const JudgedInstant& to = state_.instants.back();
+  const std::uint64_t index = to.index;
   if (!state_.weighted.has_room(index)) return weigh_all(sums());
   const StrideWeights& weights = state_.choice->weights;
   state_.weighted.add_instant(index);
-  each_motion(state_.instants.size() - 1, [&](std::size_t stride, std::uint64_t first, std::uint64_t last,
+  each_motion(state_.instants.size() - 1, [&](std::size_t stride, const JudgedInstant& from,
                                               const Step& motion, bool rotation_only) {
-    state_.weighted.add(first, last, motion.a, motion.b,
-                        {weights.rotation[stride], weights.translation[stride]}, rotation_only);
+    state_.weighted.add(from.index, index, motion.a, motion.b,
+                        {weights.rotation[stride], weights.translation[stride], certainty(from, to)},
+                        rotation_only);
   });
 }
 
@@ -125,17 +146,16 @@ void StrideSums::weigh_all(const StrideBlocks& sums) {
 
 void StrideSums::add(const Instant& instant, bool doubtful) {
   const JudgedInstant* before = state_.instants.empty() ? nullptr : &state_.instants.back();
-  JudgedInstant judged{instant, state_.next_index++, Jump::none, 0, 0, doubtful};
-  append(judged, before, Jump::none);
+  JudgedInstant judged{instant, state_.next_index++, Jump::none, 0, 0, doubtful, 0, 0};
+  append(judged, before, {});
   state_.instants.push_back(judged);
   if (in_force()) weigh_newest();
   if (in_force() && state_.next_index >= state_.next_look) {
     state_.next_look = state_.next_index + std::clamp(state_.next_index / look_part, least_look, most_look);
-    if (rejudge(state_.choice->q)) {
-      // what looks like a jump may be the first motion that shows a new direction
-      rejudge(std::nullopt);
-      weigh_all(sums());
-    }
+    const Changes changes = rejudge(state_.choice->q);
+    // what looks like a jump may be the first motion that shows a new direction
+    if (changes.jumps) rejudge(std::nullopt);
+    if (changes.jumps || changes.variances) weigh_all(sums());
   }
   if (state_.next_index - state_.first_open > most_open) commit_oldest();
 }
@@ -151,24 +171,25 @@ void StrideSums::commit_oldest() {
   if (first_kept + longest < state_.first_open) state_.instants.pop_front();
 }
 
-/// Verdicts on the steps to all open instants. Returns whether one changed.
-bool StrideSums::rejudge(const std::optional<DualQuaternion>& q) {
+/// Verdicts on the steps to all open instants. Returns what changed.
+StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) {
   std::vector<Step> steps;
   std::size_t first = 0;
   while (first < state_.instants.size() && state_.instants[first].index < state_.first_open) ++first;
   first = std::max<std::size_t>(first, 1);
   for (std::size_t i = first; i < state_.instants.size(); ++i)
     steps.push_back(step(state_.instants[i - 1], state_.instants[i]));
-  if (steps.empty()) return false;
-  const std::vector<Jump> verdicts =
+  Changes changes;
+  if (steps.empty()) return changes;
+  const std::vector<StepVerdict> verdicts =
       find_jumps(steps, state_.committed.total(0).motions, options_.mode, q, tuning_.jumps);
-  bool changed = false;
   for (std::size_t i = first; i < state_.instants.size(); ++i) {
-    const Jump jump = verdicts[i - first];
-    changed = changed || jump != state_.instants[i].jump;
-    append(state_.instants[i], &state_.instants[i - 1], jump);
+    const StepVerdict& verdict = verdicts[i - first];
+    changes.jumps = changes.jumps || verdict.jump != state_.instants[i].jump;
+    changes.variances = changes.variances || differ(verdict.extra_variance, state_.instants[i].step_variance);
+    append(state_.instants[i], &state_.instants[i - 1], verdict);
   }
-  return changed;
+  return changes;
 }
 
 void StrideSums::choose(const std::optional<SingleStride>& rival) {
@@ -190,13 +211,14 @@ StrideBlocks StrideSums::judge_open() {
   const bool before = std::any_of(state_.instants.begin(), state_.instants.end(), [&](const auto& judged) {
     return judged.index >= state_.first_open && judged.jump != Jump::none;
   });
-  if (suggested && !before && !rejudge(suggested->q)) return all;
-  rejudge(std::nullopt);
-  all = sums();
-  for (int round = 0; round < most_rounds; ++round) {
-    suggested = residual_weights(all, options_.mode);
-    if (!suggested || !rejudge(suggested->q)) break;
+  Changes changes{true, true};
+  if (suggested && !before) changes = rejudge(suggested->q);
+  if (changes.jumps) rejudge(std::nullopt);
+  for (int round = 0; round < most_rounds && (changes.jumps || changes.variances); ++round) {
     all = sums();
+    suggested = residual_weights(all, options_.mode);
+    if (!suggested) break;
+    changes = rejudge(suggested->q);
   }
   return all;
 }

@@ -26,11 +26,12 @@ void WeightedBlocks::add(std::uint64_t first_index, std::uint64_t last_index, co
   const auto first = static_cast<std::size_t>(first_index / state_.block_length);
   const auto last = static_cast<std::size_t>(last_index / state_.block_length);
   if (state_.left_out[first] != 0 || state_.left_out[last] != 0) return;
+  const double translation = weights.certainty * weights.translation;
   const detail::MotionSquare motion =
-      detail::MotionSquare(a, b).weighted(weights.rotation, weights.translation, rotation_only);
+      detail::MotionSquare(a, b).weighted(weights.certainty * weights.rotation, translation, rotation_only);
   const auto add = [&](Statistics& sum) {
     motion.add_to(sum.dual_rows);
-    sum.weight += weights.translation;
+    sum.weight += translation;
   };
   add(state_.blocks[first]);
   if (first == last) return;

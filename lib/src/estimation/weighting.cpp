@@ -49,12 +49,11 @@ struct Ladder {
     for (std::size_t i = 0; i < blocks.strides().size(); ++i) {
       sums.push_back(totals.total(i));
       const StrideCell& sum = sums.back();
-      const auto translations = static_cast<double>(sum.motions.count);
+      const double translations = sum.motions.weight;
       strides.push_back(blocks.strides()[i].stride);
       motions.push_back(sum.motions.count < least_motions ? 0 : translations);
-      turns.push_back(sum.motions.count + sum.rotations.count < least_motions
-                          ? 0
-                          : translations + static_cast<double>(sum.rotations.count));
+      turns.push_back(
+          sum.motions.count + sum.rotations.count < least_motions ? 0 : translations + sum.rotations.weight);
     }
     std::size_t last = 0;
     for (std::size_t i = 0; i < strides.size(); ++i)
@@ -244,9 +243,7 @@ class Trials {
 };
 
 /// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be.
-bool agrees(const SpreadByPoses& sum, const SingleStride& rival, const Seen& seen, double sigmas) {
-  if (rival.problem.blocks.size() < detail::least_spread_blocks) return true;
-  const SpreadByPoses single = spread_by_poses(rival.problem, seen);
+bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, const Seen& seen, double sigmas) {
   const auto difference = detail::frame_a_difference(single.T_a_b, sum.T_a_b);
   double translation = 0, rotation = 0;
   for (std::size_t i = 0; i < 6; ++i)
@@ -255,15 +252,25 @@ bool agrees(const SpreadByPoses& sum, const SingleStride& rival, const Seen& see
          std::sqrt(rotation) <= sigmas * single.rotation + least_rotation_spread;
 }
 
+/// The part of the neighbouring steps' weight that was taken off as their residuals are far from typical.
+double weight_taken_off(const Ladder& ladder) {
+  const Statistics& steps = ladder.sums.front().motions;
+  return steps.count > 0 ? 1 - steps.weight / static_cast<double>(steps.count) : 0;
+}
+
 /// Whether the sum's spread is clearly smaller than that of motions of one stride.
-bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, const StrideBlocks& blocks,
+bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, const Ladder& ladder,
            Trials& trials, const Seen& seen, const WeightingOptions& options) {
-  const std::vector<StrideSum>& strides = blocks.strides();
-  StrideWeights alone{std::vector<double>(strides.size(), 0.0), std::vector<double>(strides.size(), 0.0)};
-  const auto place = std::find_if(strides.begin(), strides.end(),
-                                  [&](const StrideSum& entry) { return entry.stride == rival.stride; });
-  if (place == strides.end() || !agrees(sum, rival, seen, options.agreement)) return false;
-  const auto i = static_cast<std::size_t>(place - strides.begin());
+  std::optional<SpreadByPoses> own;  // the rival as it is, in its own blocks
+  if (rival.problem.blocks.size() >= detail::least_spread_blocks) own = spread_by_poses(rival.problem, seen);
+  const auto place = std::find(ladder.strides.begin(), ladder.strides.end(), rival.stride);
+  if (place == ladder.strides.end() || (own && !agree(sum, *own, seen, options.agreement))) return false;
+  if (own && std::isfinite(own->score) && weight_taken_off(ladder) > options.taken_off &&
+      own->score - sum.score >= (in_force ? 0 : options.clearly_unpaired))
+    return true;
+
+  StrideWeights alone{std::vector<double>(ladder.size(), 0.0), std::vector<double>(ladder.size(), 0.0)};
+  const auto i = static_cast<std::size_t>(place - ladder.strides.begin());
   alone.rotation[i] = rival.balance.rotation;
   alone.translation[i] = rival.balance.translation;
   if (!trials.set(alone)) return false;
@@ -326,7 +333,7 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Pro
   if (!std::isfinite(least.score)) return std::nullopt;
   if (rival)
     best->beats_single =
-        beats(least, *rival, current && current->beats_single, blocks, trials, seen, options);
+        beats(least, *rival, current && current->beats_single, ladder, trials, seen, options);
   best->reason = reason(*best, least);
   return best;
 }

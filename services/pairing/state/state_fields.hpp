@@ -217,8 +217,9 @@ void fields(auto& archive, services::Is<WeightChoice> auto& value) {
 }
 
 void fields(auto& archive, services::Is<JudgedInstant> auto& value) {
-  auto& [instant, index, jump, rotation_chain, translation_chain, doubtful] = value;
-  archive(instant, index, jump, rotation_chain, translation_chain, doubtful);
+  auto& [instant, index, jump, rotation_chain, translation_chain, doubtful, step_variance, total_variance] =
+      value;
+  archive(instant, index, jump, rotation_chain, translation_chain, doubtful, step_variance, total_variance);
 }
 
 void fields(auto& archive, services::Is<StrideSumsState> auto& value) {

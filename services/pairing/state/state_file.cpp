@@ -20,7 +20,7 @@ const std::string magic = [] {
   const std::uint16_t one = 1;
   std::uint8_t low = 0;
   std::memcpy(&low, &one, 1);
-  return std::string("egocal-pairing state 2") + (low ? "l" : "b") + "\n";
+  return std::string("egocal-pairing state 3") + (low ? "l" : "b") + "\n";
 }();
 const std::string magic_of_any_version = "egocal-pairing state ";
 

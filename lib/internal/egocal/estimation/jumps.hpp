@@ -29,8 +29,22 @@ struct JumpOptions {
   /// The ratio sqrt(q75 / q25) is limited to this range: Gaussian noise in three dimensions has 1.36; above
   /// 1.7 (14 times the typical residual) the quartiles say too little about the tail.
   double least_ratio = 1.36, most_ratio = 1.7;
+  /// Where the noise has heavy tails, a step loses weight if its residual is larger than this many times the
+  /// typical one: its variance is then taken to be (residual / (doubtful * typical))^4 times the typical one.
+  /// Seven are 11 standard deviations of Gaussian noise.
+  double doubtful = 7;
+  /// Tails are heavy where more than this part of the steps are doubtful or jumps. Below, far steps are
+  /// judged one by one as jumps. KITTI 05 and 07 have one in a thousand, 0930_27 one in twenty
+  /// (docs/accuracy.md).
+  double heavy_tail = 0.02;
   /// Not more than this part of the steps are jumps: then there is no majority to judge by.
   double most_jumps = 0.4;
+};
+
+/// What is known of one step.
+struct StepVerdict {
+  Jump jump = Jump::none;
+  double extra_variance = 0;  ///< beyond what is typical, in typical variances of a step
 };
 
 /// Where one sensor's odometry jumps: tracking lost and found again elsewhere, a slip, a single wrong step.
@@ -41,7 +55,7 @@ struct JumpOptions {
 /// q: the extrinsic to judge by (planar mode: T_p); empty: found by graduated non-convexity over the steps
 /// and `before`, statistics of earlier steps, so that a first turn is never taken for a jump. Deterministic.
 /// Returns one verdict per step.
-std::vector<Jump> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
-                             const std::optional<DualQuaternion>& q, const JumpOptions& options = {});
+std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
+                                    const std::optional<DualQuaternion>& q, const JumpOptions& options = {});
 
 }  // namespace egocal

@@ -51,9 +51,9 @@ class StrideBlocks {
 
   /// Opens the block that the instant with this index (counted from 0, ascending) belongs to.
   void add_instant(std::uint64_t index);
-  /// Adds a motion of strides()[stride] that begins at an instant and ends at the newest one.
+  /// Adds a motion of strides()[stride] that begins at an instant and ends at the newest one, by this weight.
   void add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a, const DualQuaternion& b,
-           bool rotation_only);
+           bool rotation_only, double weight = 1);
   /// One verdict a block.
   void leave_out(std::vector<std::uint8_t> outlier) { state_.outlier = std::move(outlier); }
 

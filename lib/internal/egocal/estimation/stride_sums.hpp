@@ -24,6 +24,8 @@ struct JudgedInstant {
   std::uint64_t rotation_chain = 0;     ///< counts the jumps that spoil rotation
   std::uint64_t translation_chain = 0;  ///< counts all jumps
   bool doubtful = false;                ///< no motion begins or ends here
+  double step_variance = 0;             ///< of the step from the instant before, beyond what is typical
+  double total_variance = 0;            ///< the sum of these over all steps; in typical variances of a step
 };
 
 /// Tuning of StrideSums.
@@ -80,8 +82,9 @@ class StrideSums {
 
  private:
   Problem empty_problem() const;
-  void append(JudgedInstant& judged, const JudgedInstant* before, Jump jump) const;
+  void append(JudgedInstant& judged, const JudgedInstant* before, const StepVerdict& verdict) const;
   Step step(const JudgedInstant& from, const JudgedInstant& to) const;
+  static double certainty(const JudgedInstant& from, const JudgedInstant& to);
   template <typename Take>
   void each_motion(std::size_t position, const Take& take) const;
   void add_motions(StrideBlocks& blocks, std::size_t position) const;
@@ -89,7 +92,10 @@ class StrideSums {
   void weigh_newest();
   void weigh_all(const StrideBlocks& sums);
   void commit_oldest();
-  bool rejudge(const std::optional<DualQuaternion>& q);
+  struct Changes {
+    bool jumps = false, variances = false;
+  };
+  Changes rejudge(const std::optional<DualQuaternion>& q);
   StrideBlocks judge_open();
   void leave_out_blocks(StrideBlocks& all);
 

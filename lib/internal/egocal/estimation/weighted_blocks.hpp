@@ -14,6 +14,7 @@ namespace egocal {
 struct MotionWeights {
   double rotation = 0;
   double translation = 0;
+  double certainty = 1;  ///< of this motion among those of its stride
 };
 
 /// A weighted sum of motions of many strides in touching blocks of instants. Every block holds each motion

@@ -26,6 +26,12 @@ struct WeightingOptions {
   /// nothing.
   double single_evidence = 1;
   double clearly = 0.1;
+  /// Where steps far from typical lost weight (JumpOptions::doubtful), more than this part of the weight of
+  /// all, the same stride summed here is no longer the rival: the sum replaces it as well where its spread is
+  /// smaller by `clearly_unpaired` than the rival's own. Those are spreads of different blocks, and the sum
+  /// of the logarithms of two spreads of about 16 blocks scatters by a quarter.
+  double taken_off = 0.01;
+  double clearly_unpaired = 0.25;
   /// And where the two answers differ by no more than this many standard deviations of the single stride's,
   /// in rotation and in translation. Motions of one stride are judged one by one; the sum leaves out whole
   /// blocks, and many short stretches of wrong poses pass (tests/lib/test_outliers.cpp: 3 deg off).
