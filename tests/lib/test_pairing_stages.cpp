@@ -172,7 +172,7 @@ TEST(Accumulator, ContinuesFromItsStateBitForBit) {
   EXPECT_EQ(whole.choice().stride, parts.choice().stride);
 }
 
-TEST(Accumulator, SpreadsLooksForOutliersAndChoicesOverPoses) {
+TEST(Accumulator, SpreadsLooksForOutliersOverPosesAndChoosesAtOnce) {
   Accumulator accumulator{PairingOptions{}};
   accumulator.begin(period_us);
   AccumulatorState before = accumulator.state();
@@ -189,7 +189,8 @@ TEST(Accumulator, SpreadsLooksForOutliersAndChoicesOverPoses) {
     const bool chose = now.next_choice != before.next_choice;
     ASSERT_TRUE(now.sums);
     const bool chose_sums = now.sums->next_choice != before.sums->next_choice;
-    EXPECT_FALSE(chose && chose_sums) << "pose " << instant.number;
+    // a drive may end here: weights of an older choice would be worse (docs/benchmarks.md)
+    EXPECT_FALSE(now.sums->next_index >= now.sums->next_choice) << "pose " << instant.number;
     choices += (chose ? 1 : 0) + (chose_sums ? 1 : 0);
     before = now;
   }

@@ -79,7 +79,6 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     doubtful = entry.statistics.disagreed();
     if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem, entry.stride);
   }
-  const bool to_choose = instant.number >= state_.next_choice;
   if (options_.robust && !(options_.stride && options_.balance)) {
     // A look for outliers costs as much as a hundred poses: those that the choice needs are spread over the
     // poses before it, one stride each.
@@ -90,13 +89,13 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
         state_.strides[i].statistics.look(problem, state_.strides[i].stride);
     }
   }
-  if (to_choose) {
+  if (instant.number >= state_.next_choice) {
     choose();
     state_.next_choice = instant.number + instant.number / 4;
   }
   if (sums_) {
     sums_->add(instant, doubtful);
-    if (!to_choose && sums_->choice_is_due())  // not two choices for one pose
+    if (sums_->choice_is_due())
       sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
   }
   return pairs;
