@@ -227,4 +227,48 @@ TEST_F(Tables, WhatIsNotUnderstoodIsSaid) {
 }
 
 }  // namespace
+TEST_F(Tables, WordsWrittenTogetherNameATime) {
+  for (const char* name : {"GPSTime", "ImageTimestamp", "rosTime", "header.stamp", "unixtime"})
+    expect_two_poses(std::string(name) +
+                     ",easting,northing,altitude,roll,pitch,yaw\n"
+                     "1000000000.0,1,2,3,0,0,1.5707963\n1000000000.1,4,5,6,0,0,1.5707963\n");
+}
+
+TEST_F(Tables, AWordWhereANumberIsExpectedNamesTheCure) {
+  expect_error("1000000000,5,odom,base,1,2,3,0,0,0,1\n1000000000,105,odom,base,1,2,3,0,0,0,1\n", "--columns");
+}
+
+/// COLMAP holds T_camera_world: for the poses that expect_two_poses() wants, q is -90 degrees about z and t =
+/// -R' p.
+const std::string colmap =
+    "# Image list with two lines of data per image:\n"
+    "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+    "#   POINTS2D[] as (X, Y, POINT3D_ID)\n"
+    "# Number of images: 2, mean observations per image: 1\n";
+
+TEST_F(Tables, ImagesOfColmapAreInvertedAndOrderedByTheirNames) {
+  const std::string second = "1 0.70710678 0 0 -0.70710678 -5 4 -6 1 cam0/1000000000100000000.png\n";
+  const std::string first = "2 0.70710678 0 0 -0.70710678 -2 1 -3 1 cam0/1000000000000000000.png\n";
+  expect_two_poses(colmap + second + "10.5 20 -1 3 4 17\n" + first + "\n");  // a line of points may be empty
+  expect_two_poses(colmap + second + "\n" + first);
+
+  ReadOptions options;
+  options.rate = 20;
+  const TrajectoryReading frames =
+      read(colmap + "1 1 0 0 0 1 2 3 1 left_000012.jpg\n\n2 1 0 0 0 1 2 4 1 left_000011.jpg\n\n", options);
+  ASSERT_EQ(frames.trajectory.size(), 2u);
+  EXPECT_EQ(frames.trajectory[0].time_us, 550'000);
+  EXPECT_EQ(to_pose(frames.trajectory[0].pose).translation, Eigen::Vector3d(-1, -2, -4));
+  EXPECT_THAT(frames.notes, ::testing::Contains(HasSubstr("--scale auto")));
+}
+
+TEST_F(Tables, DamagedImagesOfColmap) {
+  const std::string image = "1 1 0 0 0 1 2 3 1 000012.jpg\n\n";
+  expect_error(colmap, "holds no data");
+  expect_error(colmap + "1 1 0 0 0 1 2 3 1 left.jpg\n\n", "number of a frame");
+  expect_error(colmap + image + "2 1 0 0 x 1 2 3 1 000013.jpg\n\n", ":7: QZ");
+  expect_error(colmap + image + "2 1 0 0\n\n", "expected 10 fields");
+  EXPECT_EQ(read(colmap + image + "2 1 0 0").trajectory.size(), 1u);  // cut off
+}
+
 }  // namespace egocal

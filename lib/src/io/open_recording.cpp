@@ -12,6 +12,7 @@
 #include "io/bag/mcap_reader.hpp"
 #include "io/bag/rosbag1_reader.hpp"
 #include "io/bag/rosbag2_reader.hpp"
+#include "io/text/colmap_images.hpp"
 #include "io/text/text_recording.hpp"
 
 namespace egocal {
@@ -95,6 +96,8 @@ std::unique_ptr<Recording> open_recording(const std::string& file, const ReadOpt
     parts.push_back(std::move(reader));
     return std::make_unique<detail::BagRecording>(file, format, std::move(parts));
   }
+  if (begins_with(*source, detail::colmap_magic))
+    return std::make_unique<detail::ColmapImages>(std::move(source), options);
   return std::make_unique<detail::TextRecording>(std::move(source), options);
 }
 

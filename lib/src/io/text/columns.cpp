@@ -62,15 +62,19 @@ struct Meaning {
   int rank = 0;  ///< the more specific name is taken; 0: not understood
 };
 
+bool ends_with(std::string_view word, std::string_view end) {
+  return word.size() >= end.size() && word.substr(word.size() - end.size()) == end;
+}
+
 Meaning meaning_of_time(const ColumnName& name) {
   const std::string_view last = name.words.back();
   if (is_one_of(last, {"nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"}))
     return {Quantity::nanoseconds, 1};
   if (is_one_of(last, {"sec", "secs", "seconds"})) return {Quantity::seconds, 1};
-  if (is_one_of(last, {"stamp", "timestamp", "timestamps"})) return {Quantity::time, 3};
-  if (is_one_of(name.joined, {"t", "time", "times", "ts", "utime", "epoch", "unixtime", "timestampns",
-                              "timens", "timestamps"}) ||
-      is_one_of(last, {"time", "utime"}))
+  // "header.stamp", "ImageTimestamp", "GPSTime": words may be written together
+  if (ends_with(last, "stamp") || ends_with(last, "stamps")) return {Quantity::time, 3};
+  if (is_one_of(name.joined, {"t", "times", "ts", "epoch", "timestampns", "timens"}) ||
+      ends_with(last, "time"))
     return {Quantity::time, 2};
   return {};
 }
@@ -192,6 +196,9 @@ ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
     for (const Quantity quantity :
          {Quantity::vx, Quantity::vy, Quantity::vz, Quantity::wx, Quantity::wy, Quantity::wz})
       map.of[static_cast<std::size_t>(quantity)].reset();
+  // "easting, northing, altitude"
+  if (map.has(Quantity::x) && map.has(Quantity::y) && !map.has(Quantity::z) && map.has(Quantity::height))
+    map.of[static_cast<std::size_t>(Quantity::z)] = map[Quantity::height];
   // one column of seconds or nanoseconds alone is the time
   const bool seconds = map.has(Quantity::seconds), rest = map.has(Quantity::nanoseconds);
   if (seconds != rest && !map.has(Quantity::time))

@@ -225,9 +225,12 @@ double TextRecording::value(const Rows& rows, std::size_t index) const {
     const std::string name =
         layout_.matrix ? (index >= layout_.first_column ? matrix[index - layout_.first_column] : "time")
                        : (index < layout_.names.size() ? layout_.names[index] : "");
-    throw_not_a_number(file_, rows.lines.number(),
-                       "field " + std::to_string(index + 1) + " (" + name.substr(0, 100) + ")",
-                       rows.fields[index]);
+    const std::string field = "field " + std::to_string(index + 1) + " (" + name.substr(0, 100) + ")";
+    if (rows.count == 1 && !layout_.matrix && layout_.format != "table")
+      throw error_at(file_, rows.lines.number(), field,
+                     "expected a number, got " + quoted(rows.fields[index]) +
+                         "; name the columns with --columns t,x,y,z,qx,qy,qz,qw (- for others)");
+    throw_not_a_number(file_, rows.lines.number(), field, rows.fields[index]);
   }
   return number;
 }
