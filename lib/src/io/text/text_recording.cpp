@@ -279,8 +279,8 @@ DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {
   const ColumnMap& columns = layout_.columns;
   const long line = rows.lines.number();
   Eigen::Vector4d q;
-  Eigen::Vector3d t(value(rows, x) * length_scale(x), value(rows, y) * length_scale(y),
-                    value(rows, z) * length_scale(z));
+  Eigen::Vector3d t{value(rows, x) * length_scale(x), value(rows, y) * length_scale(y),
+                    value(rows, z) * length_scale(z)};  // braces: the first bad field is reported
   if (columns.has_quaternion()) {
     q = {value(rows, qw), value(rows, qx), value(rows, qy), value(rows, qz)};
   } else {
