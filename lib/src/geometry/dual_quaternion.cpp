@@ -8,6 +8,16 @@
 
 namespace egocal {
 
+namespace {
+
+/// The scalar product, summed in one order whatever the width of the processor's vectors: normalised poses
+/// have the same bits in a build for any processor, and those of detail::motions_between().
+double dot(const QuaternionVector& p, const QuaternionVector& q) {
+  return (p[0] * q[0] + p[2] * q[2]) + (p[1] * q[1] + p[3] * q[3]);
+}
+
+}  // namespace
+
 QuaternionVector quaternion_product(const QuaternionVector& p, const QuaternionVector& q) {
   return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
           p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
@@ -75,7 +85,7 @@ Matrix8d right_matrix(const DualQuaternion& q) {
 }
 
 DualQuaternion normalized(const DualQuaternion& q) {
-  const double norm = q.real.norm();
+  const double norm = std::sqrt(dot(q.real, q.real));
   // beyond, the squares that the length is made of overflow or vanish
   if (!(norm > 1e-100 && norm < 1e100)) {
     const QuaternionVector nothing = QuaternionVector::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -83,7 +93,7 @@ DualQuaternion normalized(const DualQuaternion& q) {
   }
   const QuaternionVector real = q.real / norm;
   const QuaternionVector dual = q.dual / norm;
-  return {real, dual - real.dot(dual) * real};
+  return {real, dual - dot(real, dual) * real};
 }
 
 DualQuaternion canonical_sign(const DualQuaternion& q) {
