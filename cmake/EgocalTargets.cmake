@@ -1,6 +1,10 @@
 # What every target of ours shares: warnings, sanitizers, and arithmetic that is the same on every run.
 
+include(CheckCXXSourceCompiles)
 include(Precompiled)
+
+# whether the flags of this build (-march=native) allow fused multiply-adds
+check_cxx_source_compiles("#ifndef __FMA__\n#error\n#endif\nint main() {}" EGOCAL_HAS_FMA)
 
 # install(), where egocal is not part of another project
 macro(egocal_install)
@@ -22,6 +26,10 @@ function(egocal_compile_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
   # a*b+c must round the same way wherever it is compiled: answers are bit-identical from run to run
   target_compile_options(${target} PRIVATE -ffp-contract=off)
+  # GCC's vectoriser of straight code fuses products with alternating sums in spite of it (GCC 12: vfmaddsub)
+  if(EGOCAL_HAS_FMA)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+  endif()
   # GCC 12 warns with -O3, wrongly, of `"x" + std::string()` (GCC bug 105651) and of strings that are moved; the builds
   # whose warnings are errors look for both
   target_compile_options(${target} PRIVATE
