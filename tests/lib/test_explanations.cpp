@@ -64,13 +64,36 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, NamedMistake,
                                            "order of both", "scale 0.37", "scale 1.05", "b in millimetres",
                                            "a in millimetres", "clock 0.5 s off", "x and y of b exchanged",
                                            "x and y of a exchanged", "rotations of b inverse",
-                                           "b knocked in the middle"),
+                                           "b knocked in the middle", "b turned round in the middle",
+                                           "b turned aside early", "b turned aside late"),
                          [](const auto& instance) {
                            std::string name = instance.param;
                            std::replace_if(
                                name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
                            return name;
                          });
+
+TEST(Explanations, StreamsWithoutPositionsOrRotationsAreRefused) {
+  int named = 0;
+  for (const testing::Mistake& mistake : testing::mistakes()) {
+    if (mistake.code != "missing_b") continue;
+    for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+      testing::Streams streams = drive(terrain);
+      mistake.make(streams);
+      Calibration calibration;
+      try {
+        calibration = calibrate(streams.a, streams.b);
+      } catch (const Error&) {
+        continue;  // no motion of both sensors agrees: refused with one line
+      }
+      const Finding* finding = find(calibration, mistake.code);
+      ASSERT_NE(finding, nullptr) << mistake.name << ": " << calibration.reason;
+      EXPECT_EQ(calibration.verdict, Verdict::contradictory) << mistake.name;
+      ++named;
+    }
+  }
+  EXPECT_GT(named, 0);
+}
 
 TEST(Explanations, CleanDrivesHaveNoCertainFinding) {
   for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free}) {

@@ -221,6 +221,45 @@ inline Trajectory seen_from(const Trajectory& trajectory, const DualQuaternion& 
   return result;
 }
 
+/// A slow sensor whose last pose is repeated at every stamp: one new pose in n.
+inline Trajectory held(Trajectory trajectory, std::size_t n) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory[i].pose = trajectory[i - i % n].pose;
+  return trajectory;
+}
+
+/// Positions as they were some poses before: of another sensor than the rotations, with a delay.
+inline Trajectory with_late_positions(const Trajectory& trajectory, std::size_t poses) {
+  Trajectory result = trajectory;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Pose pose = to_pose(trajectory[i].pose), before = to_pose(trajectory[i - std::min(i, poses)].pose);
+    result[i].pose = canonical_sign(to_dual_quaternion({pose.rotation, before.translation}));
+  }
+  return result;
+}
+
+/// A causal filter of first order; each pose keeps this part of the one before.
+inline Trajectory low_passed(Trajectory trajectory, double kept) {
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const Pose before = to_pose(trajectory[i - 1].pose), pose = to_pose(trajectory[i].pose);
+    const Eigen::Quaterniond q0 = before.rotation, q1 = pose.rotation;
+    const Eigen::Vector3d position = kept * before.translation + (1 - kept) * pose.translation;
+    trajectory[i].pose = canonical_sign(to_dual_quaternion({q0.slerp(1 - kept, q1), position}));
+  }
+  return trajectory;
+}
+
+/// From the middle of the drive on, every motion longer by this factor.
+inline Trajectory longer_from_the_middle(Trajectory trajectory, double factor) {
+  const std::size_t middle = trajectory.size() / 2;
+  const Eigen::Vector3d there = to_pose(trajectory[middle].pose).translation;
+  for (std::size_t i = middle; i < trajectory.size(); ++i) {
+    const Pose pose = to_pose(trajectory[i].pose);
+    const Eigen::Vector3d position = there + factor * (pose.translation - there);
+    trajectory[i].pose = canonical_sign(to_dual_quaternion({pose.rotation, position}));
+  }
+  return trajectory;
+}
+
 struct Mistake {
   std::string name;
   std::string code;  ///< of the finding that names it; empty: none has to
@@ -235,6 +274,8 @@ inline std::vector<Mistake> mistakes() {
   const Eigen::Matrix3d flat = Eigen::Vector3d(1, 1, 0).asDiagonal();
   const Eigen::Matrix3d halved = Eigen::Vector3d(1, 1, 0.5).asDiagonal();
   const Eigen::Matrix3d turn = rotation_exp({0.1, 0, 0.7}).toRotationMatrix();
+  const Pose round{rotation_exp({0, 0, std::numbers::pi}), {0.1, 0, 0}};
+  const Pose aside{rotation_exp({0, 0.5, 70 * std::numbers::pi / 180}), {0, 0.1, 0}};
   const Pose bump{rotation_exp({0, 0, 5 * std::numbers::pi / 180}), {0.05, 0, 0}};
   return {
       {"none", "", [](Streams&) {}},
@@ -297,6 +338,20 @@ inline std::vector<Mistake> mistakes() {
       {"odometry of b starts anew", "", [](Streams& s) { s.b = restarted(s.b); }},
       {"b of another vehicle", "", [](Streams& s) { s.b = of_another_vehicle(s.b); }},
       {"b already in the frame of a", "same_stream", [](Streams& s) { s.b = seen_from(s.b, s.T); }},
+      {"b turned round in the middle", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.5, round); }},
+      {"b turned aside early", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.2, aside); }},
+      {"b turned aside late", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.8, aside); }},
+      {"b without positions", "missing_b", [](Streams& s) { s.b = lengthened(s.b, 0); }},
+      {"b without rotations", "missing_b",
+       [](Streams& s) { s.b = changed(s.b, [](const Pose& pose) {
+                          return Pose{{}, pose.translation};
+                        }); }},
+      {"positions of b 0.3 s late", "", [](Streams& s) { s.b = with_late_positions(s.b, 3); }},
+      {"b low-passed, 1 s", "", [](Streams& s) { s.b = low_passed(s.b, 0.905); }},
+      {"b holds each third pose", "", [](Streams& s) { s.b = held(s.b, 3); }},
+      {"b holds each tenth pose", "", [](Streams& s) { s.b = held(s.b, 10); }},
+      {"stamps of b rounded to 1 s", "", [](Streams& s) { s.b = with_rounded_stamps(s.b, 1'000'000); }},
+      {"scale of b 1.15 from the middle on", "", [](Streams& s) { s.b = longer_from_the_middle(s.b, 1.15); }},
   };
 }
 

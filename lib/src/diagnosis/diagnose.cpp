@@ -10,6 +10,7 @@
 #include "diagnosis/fit.hpp"
 #include "diagnosis/forward.hpp"
 #include "diagnosis/judge.hpp"
+#include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/planes.hpp"
 #include "diagnosis/stream_check.hpp"
@@ -60,6 +61,19 @@ Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) 
   return finding;
 }
 
+Finding unexplained(const UnexplainedPart& part) {
+  Finding finding;
+  finding.code = "unrelated";
+  finding.certain = true;
+  finding.time = part.begin;
+  finding.message = format(
+      "The answer explains the motions of the drive but for those from %.0f to %.0f s after the start, which "
+      "contradict it: a sensor was moved, a clock jumped, or an odometry was lost.",
+      part.begin, part.end);
+  finding.remedy = "Use the part of the drive where the streams belong together.";
+  return finding;
+}
+
 /// What is left where no reading, scale or clock explains the motions.
 void look_further(const Evidence& evidence, const Answered& answered, const Misfit& misfit,
                   const DiagnosisOptions& options, std::vector<Finding>& findings) {
@@ -83,7 +97,30 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
   }
   std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
   // a mount that moved looks like many things
-  if (!moves.empty()) findings = std::move(moves);
+  if (!moves.empty()) {
+    findings = std::move(moves);
+    return;
+  }
+  if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T))
+    findings.push_back(unexplained(*part));
+}
+
+/// A mount that moved by much looks like other axes, another clock or another recording: it is named instead
+/// of them where it explains more.
+bool replace_by_large_move(const Evidence& evidence, const Answered& answered,
+                           const DiagnosisOptions& options, std::vector<Finding>& findings) {
+  if (answered.problem.mode == Mode::planar) return false;
+  for (const Finding& finding : findings)
+    if (finding.certain && !finding.code.starts_with("axes_") && !finding.code.starts_with("clock_"))
+      return false;
+  std::optional<Finding> move = large_move(evidence.instants, evidence.stride, options);
+  if (!move) return false;
+  for (const Finding& finding : findings)
+    if (finding.certain && finding.improvement > move->improvement) return false;
+  // its time is more exact where it is small enough for the linear test
+  findings = moved_mount(evidence.instants, answered, options);
+  if (findings.size() != 1) findings = {*std::move(move)};
+  return true;
 }
 
 }  // namespace
@@ -118,7 +155,8 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const Misfit misfit{detail::misfit(motions, at_answer),
                       detail::misfit(motions, evidence.given.explained.fit),
                       median_misfit(motions, at_answer)};
-  const bool explained = std::any_of(result.findings.begin(), result.findings.end(),
+  const bool explained = replace_by_large_move(evidence, answered, options, result.findings) ||
+                         std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain || one.code == "samples"; });
   if (!explained) look_further(evidence, answered, misfit, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),

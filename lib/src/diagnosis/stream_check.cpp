@@ -118,6 +118,38 @@ Finding flat(char which, const Flatness& flatness) {
   return finding;
 }
 
+/// A stream of which one half never changes while the other sensor has it: positions that were never filled
+/// in, rotations that are all the identity.
+std::optional<Finding> without_part(char which, const Trajectory& own, const Trajectory& other,
+                                    const StreamCheckOptions& options) {
+  const auto sizes = [&](const Trajectory& trajectory) {
+    double travelled = 0, turned = 0;
+    const std::size_t each = std::max<std::size_t>(1, trajectory.size() / options.most);
+    for (std::size_t i = 0; i + each < trajectory.size(); i += each) {
+      const DualQuaternion motion = conjugate(trajectory[i].pose) * trajectory[i + each].pose;
+      travelled += motion.dual.norm();
+      turned += motion.real.tail<3>().norm();
+    }
+    return std::pair(travelled, turned);
+  };
+  if (own.size() < options.least || other.size() < options.least) return std::nullopt;
+  const auto [travelled, turned] = sizes(own);
+  const auto [other_travelled, other_turned] = sizes(other);
+  const bool no_positions =
+      travelled <= options.flat * other_travelled && turned > options.flat * other_turned;
+  const bool no_rotations = turned <= options.flat * other_turned &&
+                            travelled > options.flat * other_travelled && other_turned > options.least_tilt;
+  if (no_positions == no_rotations) return std::nullopt;
+  Finding finding;
+  finding.code = std::string("missing_") + which;
+  finding.certain = true;
+  finding.message = format("The %s of %c never change although %s: they are missing.",
+                           no_positions ? "positions" : "rotations", which,
+                           no_positions ? "the other sensor travels" : "the other sensor turns");
+  finding.remedy = format("Give poses of %c with positions and rotations.", which);
+  return finding;
+}
+
 Finding samples() {
   Finding finding;
   finding.code = "samples";
@@ -191,6 +223,9 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
   for (const char which : {'a', 'b'}) {
     const Flatness found = flatness(which == 'a' ? a : b, options);
     if (found.coordinate != 0 && found.tilt > options.least_tilt) findings.push_back(flat(which, found));
+    if (std::optional<Finding> missing =
+            which == 'a' ? without_part('a', a, b, options) : without_part('b', b, a, options))
+      findings.push_back(*std::move(missing));
   }
   check('a', steps.frozen_a, steps.travelled_a);
   check('b', steps.frozen_b, steps.travelled_b);

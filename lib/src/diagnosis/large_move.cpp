@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/large_move.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/robust_fit.hpp"
+#include "diagnosis/wording.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// The motions [first, last), measured by the typical motion of the whole drive.
+Motions part_of(const Motions& motions, std::size_t first, std::size_t last) {
+  Motions part;
+  part.all.assign(motions.all.begin() + static_cast<std::ptrdiff_t>(first),
+                  motions.all.begin() + static_cast<std::ptrdiff_t>(last));
+  part.rotation = motions.rotation;
+  part.translation = motions.translation;
+  part.stride = motions.stride;
+  return part;
+}
+
+/// Two answers, before motion number `at` and from it on.
+struct Division {
+  std::size_t at = 0;
+  RobustFit before, after;
+};
+
+Division divided(const Motions& motions, std::size_t at, const RobustFitOptions& options) {
+  return {at, quick_fit(part_of(motions, 0, at), options),
+          quick_fit(part_of(motions, at, motions.all.size()), options)};
+}
+
+/// Sum of the logarithms of the squares: outliers do not decide it.
+double misfit_of(const std::vector<double>& squares, double floor) {
+  double sum = 0;
+  for (const double square : squares) sum += std::log(square + floor);
+  return sum;
+}
+
+/// The division between two answers that suits them best.
+std::size_t best_place(const Motions& motions, const Division& division, std::size_t margin, double floor) {
+  const RobustFit before = evaluated(motions, division.before.T),
+                  after = evaluated(motions, division.after.T);
+  double sum = 0, least = 0;
+  std::size_t place = margin;
+  for (std::size_t i = 0; i + margin <= motions.all.size(); ++i) {
+    if (i >= margin && (i == margin || sum < least)) {
+      least = sum;
+      place = i;
+    }
+    sum += std::log(before.squares[i] + floor) - std::log(after.squares[i] + floor);
+  }
+  return place;
+}
+
+/// Typical residual of one part at an answer, as a part of the typical motion.
+double typical_at(const Motions& part, const DualQuaternion& T) {
+  return std::sqrt(evaluated(part, T).typical);
+}
+
+bool contradict(const Motions& before, const Motions& after, const Division& found,
+                const LargeMoveOptions& large) {
+  const auto contradicts = [&](const Motions& part, const DualQuaternion& own, const DualQuaternion& other) {
+    const double there = typical_at(part, other);
+    return there > large.contradicts && typical_at(part, own) < large.own * there;
+  };
+  return contradicts(before, found.before.T, found.after.T) &&
+         contradicts(after, found.after.T, found.before.T);
+}
+
+Finding worded(const Division& found, double time, const Comparison& comparison) {
+  const Vector6d change = frame_a_difference(found.before.T, found.after.T);
+  Finding finding;
+  finding.code = "mount_moved";
+  finding.certain = true;
+  finding.time = time;
+  finding.improvement = std::exp(comparison.gain);
+  finding.T_a_b = to_pose(found.after.T);
+  finding.message = format(
+      "From about %.1f s after the start on, another mounting explains the motions: it is turned by %.0f "
+      "deg. "
+      "A sensor was turned, or its poses are in other axes from then on.",
+      time, change.tail<3>().norm() * 180 / std::numbers::pi);
+  finding.remedy = format("Calibrate the drive before and after %.1f s separately.", time);
+  return finding;
+}
+
+/// Single steps show the time best: longer motions that cross it fit neither answer.
+double time_of(const Division& division, const Instants& instants, const DiagnosisOptions& options) {
+  const Motions steps = motions_of(instants, {}, {}, 1, options.motions.most, options.motions);
+  if (steps.all.empty()) return 0;
+  const double floor = 0.25 * std::min(evaluated(steps, division.before.T).typical,
+                                       evaluated(steps, division.after.T).typical);
+  const std::size_t place = best_place(steps, division, 0, floor);
+  return steps.all[std::min(place, steps.all.size() - 1)].time;
+}
+
+/// By motions of one length.
+std::optional<Finding> move_of(const Instants& instants, int stride, const DiagnosisOptions& options,
+                               const LargeMoveOptions& large) {
+  const Motions motions = motions_of(instants, {}, {}, stride, options.motions.most, options.motions);
+  const std::size_t n = motions.all.size();
+  const std::size_t margin = large.least_blocks * n / motions.blocks;
+  if (n < 2 * margin || margin == 0) return std::nullopt;
+  const RobustFit whole = robust_fit(motions, options.fit);
+  const double floor = 0.25 * whole.typical;
+  Division best;
+  double least = misfit_of(whole.squares, floor);
+  for (std::size_t i = 1; i <= large.places; ++i) {
+    const std::size_t at = i * n / (large.places + 1);
+    if (at < margin || n - at < margin) continue;
+    Division here = divided(motions, at, options.fit);
+    const double value = misfit_of(here.before.squares, floor) + misfit_of(here.after.squares, floor);
+    if (value < least) {
+      least = value;
+      best = std::move(here);
+    }
+  }
+  if (best.at == 0) return std::nullopt;
+  best.at = best_place(motions, best, margin, 0.25 * std::min(best.before.typical, best.after.typical));
+  const Motions before = part_of(motions, 0, best.at), after = part_of(motions, best.at, n);
+  best.before = robust_fit(before, options.fit);
+  best.after = robust_fit(after, options.fit);
+  if (!contradict(before, after, best, large)) return std::nullopt;
+
+  Explained two{motions, {}};
+  two.fit.squares = best.before.squares;
+  two.fit.squares.insert(two.fit.squares.end(), best.after.squares.begin(), best.after.squares.end());
+  two.fit.typical = std::max(best.before.typical, best.after.typical);
+  return worded(best, time_of(best, instants, options), compare({motions, whole}, two));
+}
+
+}  // namespace
+
+std::optional<Finding> large_move(const Instants& instants, int stride, const DiagnosisOptions& options,
+                                  const LargeMoveOptions& large) {
+  std::optional<Finding> best;
+  for (const int length : {stride, std::max(1, stride / 4)}) {
+    std::optional<Finding> found = move_of(instants, length, options, large);
+    if (found && (!best || found->improvement > best->improvement)) best = std::move(found);
+  }
+  return best;
+}
+
+std::optional<UnexplainedPart> unexplained_part(const Motions& motions, const DualQuaternion& T_a_b,
+                                                const LargeMoveOptions& large) {
+  constexpr std::size_t windows = 12;
+  const std::size_t n = motions.all.size();
+  if (n < 4 * windows) return std::nullopt;
+  std::vector<double> misfits;
+  for (std::size_t w = 0; w < windows; ++w)
+    misfits.push_back(typical_at(part_of(motions, w * n / windows, (w + 1) * n / windows), T_a_b));
+  std::vector<double> sorted = misfits;
+  std::sort(sorted.begin(), sorted.end());
+  const double explained = std::max(sorted[windows / 6], 1e-3);
+  const double limit = std::max(2 * large.contradicts, explained / large.own);
+  const auto is_bad = [&](double misfit) { return misfit > limit; };
+  const auto bad = static_cast<std::size_t>(std::count_if(misfits.begin(), misfits.end(), is_bad));
+  if (3 * bad < windows || 3 * bad > 2 * windows) return std::nullopt;
+  // one run, but for one window
+  const auto first = std::find_if(misfits.begin(), misfits.end(), is_bad);
+  const auto last = std::find_if(misfits.rbegin(), misfits.rend(), is_bad).base();
+  if (static_cast<std::size_t>(last - first) > bad + 1) return std::nullopt;
+  const auto time = [&](std::ptrdiff_t window) {
+    return motions.all[std::min(n - 1, static_cast<std::size_t>(window) * n / windows)].time;
+  };
+  return UnexplainedPart{time(first - misfits.begin()), time(last - misfits.begin())};
+}
+
+}  // namespace egocal::detail
