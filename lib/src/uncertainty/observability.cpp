@@ -77,12 +77,14 @@ class Jackknife {
     information_ += information;
     information_squares_ += information.cwiseAbs2();
   }
+  /// Mean of (pseudo - mean)^2 / (h - 1).
+  Vector6d spread() const {
+    return (squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_) / count_;
+  }
   /// With Student's factor: 1.96 of its roots cover 95 % whatever the number of blocks.
   Vector6d variance() const {
     const double student = student_factor(count_ - 1);
-    // mean of (pseudo - mean)^2 / (h - 1)
-    const Vector6d squares = squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_;
-    return student * student * squares / count_;
+    return student * student * spread();
   }
   /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
   /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
@@ -205,7 +207,21 @@ Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& 
   return jackknife;
 }
 
-/// Per direction the larger of the variances with single and with double blocks.
+/// How much more parts of four blocks scatter than single and double ones say, all directions together: one
+/// direction of five or six parts would be mostly chance. Errors that depend on the place, as those of real
+/// odometries do, last for longer than a block. One where they do not.
+double scatter_of_long_parts(const Jackknife& of_four, const Vector6d& spread) {
+  const Vector6d of_parts = of_four.spread();
+  double sum = 0, count = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (!(spread[i] > 0)) continue;
+    sum += of_parts[i] / spread[i];
+    count += 1;
+  }
+  return count > 0 ? std::max(1.0, sum / count) : 1;
+}
+
+/// Per direction the larger of the variances with single and with double blocks, times what longer parts say.
 Vector6d spatial_variance(const Problem& problem, const Statistics& all, const ShownDirections& directions,
                           ErrorCorrelation errors) {
   std::vector<BlockForm> blocks;
@@ -220,8 +236,13 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, const S
   const auto pairs = static_cast<double>(all.count);
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
   Vector6d variance = single.variance();
-  if (looks_at_double_blocks(problem, errors))
-    variance = variance.cwiseMax(jackknife_of(doubled(blocks), sum, pairs, directions).variance());
+  if (looks_at_double_blocks(problem, errors)) {
+    const std::vector<BlockForm> twos = doubled(blocks);
+    const Jackknife of_twos = jackknife_of(twos, sum, pairs, directions);
+    variance = variance.cwiseMax(of_twos.variance());
+    variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
+                                      single.spread().cwiseMax(of_twos.spread()));
+  }
   return single.concentration().cwiseAbs2().cwiseProduct(variance);
 }
 
