@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/goal_spread.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/io/whole_file.hpp"
@@ -140,10 +141,26 @@ void print(const std::vector<Look>& drive, const GoalOptions& goal) {
   std::printf("\n");
 }
 
-Tally study(const Kind& kind, int count, int poses, int looks, bool verbose) {
+/// One line a look: kind, seed, seconds, then six standard deviations compared with the goal, six reported
+/// ones and six errors.
+void record(std::FILE* file, const Kind& kind, std::uint64_t seed, const std::vector<Look>& drive) {
+  for (const Look& look : drive) {
+    if (look.answered.problem.blocks.empty()) continue;
+    std::fprintf(file, "%td %llu %.3f", &kind - kinds, static_cast<unsigned long long>(seed), look.seconds);
+    for (const Six& six :
+         {detail::goal_spread(look.answered), look.answered.observability.stddev, look.error})
+      for (const double x : six) std::fprintf(file, " %.6g", x);
+    std::fprintf(file, "\n");
+  }
+}
+
+Tally study(const Kind& kind, int count, int poses, int looks, bool verbose, std::FILE* records) {
   std::vector<std::vector<Look>> drives;
-  for (int seed = 1; seed <= count; ++seed)
-    drives.push_back(looks_at(kind, 500 + static_cast<std::uint64_t>(seed), poses, looks));
+  for (int seed = 1; seed <= count; ++seed) {
+    const auto number = 500 + static_cast<std::uint64_t>(seed);
+    drives.push_back(looks_at(kind, number, poses, looks));
+    if (records) record(records, kind, number, drives.back());
+  }
   const std::size_t half = static_cast<std::size_t>(looks) / 2 - 1;
   const Six reached = rms_at(drives, half);
   const GoalOptions goal{*std::max_element(reached.begin() + 3, reached.end()),
@@ -186,26 +203,29 @@ int main(int argc, char** argv) {
       "goals of simulated drives: exit code 1 where fewer than 90 % of the goals that are said to "
       "be reached are");
   int drives = 100, poses = 1601, looks = 40;
-  std::string write;
+  std::string write, record_file;
   bool verbose = false;
   app.add_flag("--verbose", verbose, "the worst standard deviation over the goal at each look");
   app.add_option("--drives", drives, "of each kind").show_default();
   app.add_option("--poses", poses, "of each drive").show_default();
   app.add_option("--looks", looks, "at each drive").check(cli::Check::range(8, 1000)).show_default();
   app.add_option("--write", write, "a page: put the table in its place");
+  app.add_option("--record", record_file, "every look at every drive, one a line, for other evaluations");
   if (const auto code = app.parse(argc, argv)) return *code;
   bench::Table table{"goals",
                      {{"drives", "number", "reached is said", "and true (1.96 times the goal)",
                        "at most 1.5 times later than true", "time left within a factor 1.5 at half time"}}};
+  std::FILE* const records = record_file.empty() ? nullptr : std::fopen(record_file.c_str(), "w");
   int said = 0, right = 0;
   for (const Kind& kind : kinds) {
-    const Tally tally = study(kind, drives, poses, looks, verbose);
+    const Tally tally = study(kind, drives, poses, looks, verbose, records);
     table.rows.push_back({kind.name, std::to_string(tally.drives), std::to_string(tally.said),
                           part(tally.right, tally.said), part(tally.in_time, tally.said),
                           part(tally.near, tally.asked)});
     said += tally.said;
     right += tally.right;
   }
+  if (records) std::fclose(records);
   std::printf("%s\n", bench::markdown(table).c_str());
   if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
   return 10 * right < 9 * said ? 1 : 0;
