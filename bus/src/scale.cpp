@@ -247,6 +247,14 @@ const CheckedScale* ScaleCheck::find(const std::string& a, const std::string& b,
              : nullptr;
 }
 
+const ScaleSolution* ScaleCheck::solution(const std::string& a, const std::string& b, std::int64_t session) {
+  const auto known = pairs_.find({a, b});
+  if (known == pairs_.end() || known->second.session != session || known->second.seq < 0) return nullptr;
+  Pair& pair = known->second;
+  if (!pair.own) pair.own = solve_scale(pair.problem.blocks, pair.problem.options);
+  return &*pair.own;
+}
+
 std::optional<double> ScaleCheck::in_force(const std::string& a, const std::string& b,
                                            std::int64_t session) const {
   const auto pair = pairs_.find({a, b});

@@ -34,7 +34,8 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
 }
 
 /// single: motions of one stride, which the diagnosis takes apart.
-Answered answered(const Calibration& calibration, Problem single) {
+Answered answered(const Calibration& calibration, Problem single,
+                  const std::optional<ScaleSolution>& scale = std::nullopt) {
   Answered result;
   result.T_a_b = to_dual_quaternion(calibration.T_a_b);
   result.observability = calibration.observability;
@@ -42,6 +43,7 @@ Answered answered(const Calibration& calibration, Problem single) {
   result.problem = std::move(single);
   result.stride = calibration.choice.stride;
   result.minimised = calibration.problem;
+  if (scale) result.scale_stddev = with_spread_of_scale({}, calibration.problem, *scale);
   return result;
 }
 
@@ -124,71 +126,9 @@ void put_scale(const std::optional<ScaleSolution>& estimate, double scale, Calib
                                        : "The motions do not show the scale.";
 }
 
-/// Scales one stream, then calibrates as always.
-Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
-  std::optional<ScaleSolution> estimate;
-  PairingOptions pairing = options.pairing;
-  if (options.estimate_scale) {
-    // rotations alone show the time offset, whatever the scale
-    std::optional<TimeOffset> offset;
-    if (options.estimate_time_offset) offset = estimate_time_offset(a, b);
-    if (offset) pairing.time_offset = 0;
-    estimate = estimate_scale(a, offset ? on_clock_of_a(*offset, b) : b, pairing, scale_options(options));
-  }
-  const double scale = estimate ? estimate->scale : options.scale;
-  const bool on_a = options.scale_side == Side::a;
-  Calibration result =
-      calibrate(on_a ? scaled(a, scale) : a, on_a ? b : scaled(b, scale), without_scale(options));
-  put_scale(estimate, scale, result);
-  return result;
-}
-
-Calibration calibrate_scaled(std::span<const MotionPair> pairs, const CalibrationOptions& options) {
-  if (options.pairing.mode == Mode::planar && options.estimate_scale)
-    throw Error("scale: cannot be estimated from motion pairs in planar mode; give it, or trajectories");
-  std::optional<ScaleSolution> estimate;
-  if (options.estimate_scale) estimate = estimate_scale(pairs, scale_options(options));
-  const double scale = estimate ? estimate->scale : options.scale;
-  std::vector<MotionPair> scaled_pairs(pairs.begin(), pairs.end());
-  for (MotionPair& pair : scaled_pairs) {
-    DualQuaternion& motion = options.scale_side == Side::a ? pair.a : pair.b;
-    motion = scaled(motion, scale);
-  }
-  Calibration result = calibrate(scaled_pairs, without_scale(options));
-  put_scale(estimate, scale, result);
-  return result;
-}
-
-}  // namespace
-
-std::string rejections_in_words(const PairingCounts& counts) {
-  std::string text;
-  for (std::size_t i = 0; i < counts.rejected.size(); ++i)
-    if (counts.rejected[i] > 0)
-      text += (text.empty() ? "rejected: " : ", ") + std::to_string(counts.rejected[i]) + " " +
-              std::string(to_string(static_cast<Rejection>(i)));
-  return text.empty() ? "none rejected" : text;
-}
-
-std::string motions_in_words(const Calibration& calibration) {
-  const Choice& choice = calibration.choice;
-  const auto count = static_cast<unsigned long long>(sum_blocks(calibration.problem.blocks).count);
-  char text[160];
-  if (choice.mean_stride > 0)
-    std::snprintf(text, sizeof text, "of many strides between %llu instants", count);
-  else
-    std::snprintf(text, sizeof text, "%llu pairs, stride %d, weights rotation : translation = %g : %g", count,
-                  choice.stride, choice.balance.rotation, choice.balance.translation);
-  return text + (" (" + choice.reason + ")");
-}
-
-Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const CalibrationOptions& options) {
-  if (!as_read(options.read_a) || !as_read(options.read_b)) {
-    CalibrationOptions rest = options;
-    rest.read_a = rest.read_b = {};
-    return calibrate(reread(a, options.read_a), reread(given_b, options.read_b), rest);
-  }
-  if (with_scale(options)) return calibrate_scaled(a, given_b, options);
+/// Of streams whose lengths are in one unit. scale: found before, which adds to what is not known.
+Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
+                              const CalibrationOptions& options, const std::optional<ScaleSolution>& scale) {
   PairingOptions pairing_options = options.pairing;
   std::optional<TimeOffset> time_offset;
   if (options.estimate_time_offset) {
@@ -210,15 +150,14 @@ Calibration calibrate(const Trajectory& a, const Trajectory& given_b, const Cali
   if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;
   result.time_offset_applied = time_offset ? time_offset->seconds : pairing_options.time_offset;
-  const Answered what = answered(result, pairing.single_stride_problem());
+  const Answered what = answered(result, pairing.single_stride_problem(), scale);
   Diagnosis diagnosis = options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
                                                   : diagnose(what, options.diagnosis);
   return judged(std::move(result), std::move(diagnosis));
 }
 
-Calibration calibrate(std::span<const MotionPair> given, const CalibrationOptions& options) {
-  if (given.empty()) throw Error("no motion pairs");
-  if (with_scale(options)) return calibrate_scaled(given, options);
+Calibration calibrate_pairs(std::span<const MotionPair> given, const CalibrationOptions& options,
+                            const std::optional<ScaleSolution>& scale) {
   const PairingOptions& pairing = options.pairing;
   PairingCounts counts;
   std::vector<MotionPair> pairs(given.begin(), given.end());
@@ -253,7 +192,81 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   problem.balance = choice.balance;
   Calibration result = solved(std::move(problem), std::move(choice), counts, options.method);
   if (pairing.robust) result.outliers = prove_outliers(result.problem, statistics);
-  return judged(result, diagnose(given, answered(result, result.problem), options.diagnosis));
+  return judged(result, diagnose(given, answered(result, result.problem, scale), options.diagnosis));
+}
+
+/// Scales one stream, then calibrates as always.
+Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+  std::optional<ScaleSolution> estimate;
+  PairingOptions pairing = options.pairing;
+  if (options.estimate_scale) {
+    // rotations alone show the time offset, whatever the scale
+    std::optional<TimeOffset> offset;
+    if (options.estimate_time_offset) offset = estimate_time_offset(a, b);
+    if (offset) pairing.time_offset = 0;
+    estimate = estimate_scale(a, offset ? on_clock_of_a(*offset, b) : b, pairing, scale_options(options));
+  }
+  const double scale = estimate ? estimate->scale : options.scale;
+  const bool on_a = options.scale_side == Side::a;
+  Calibration result = calibrate_streams(on_a ? scaled(a, scale) : a, on_a ? b : scaled(b, scale),
+                                         without_scale(options), estimate);
+  put_scale(estimate, scale, result);
+  return result;
+}
+
+Calibration calibrate_scaled(std::span<const MotionPair> pairs, const CalibrationOptions& options) {
+  if (options.pairing.mode == Mode::planar && options.estimate_scale)
+    throw Error("scale: cannot be estimated from motion pairs in planar mode; give it, or trajectories");
+  std::optional<ScaleSolution> estimate;
+  if (options.estimate_scale) estimate = estimate_scale(pairs, scale_options(options));
+  const double scale = estimate ? estimate->scale : options.scale;
+  std::vector<MotionPair> scaled_pairs(pairs.begin(), pairs.end());
+  for (MotionPair& pair : scaled_pairs) {
+    DualQuaternion& motion = options.scale_side == Side::a ? pair.a : pair.b;
+    motion = scaled(motion, scale);
+  }
+  Calibration result = calibrate_pairs(scaled_pairs, without_scale(options), estimate);
+  put_scale(estimate, scale, result);
+  return result;
+}
+
+}  // namespace
+
+std::string rejections_in_words(const PairingCounts& counts) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.rejected.size(); ++i)
+    if (counts.rejected[i] > 0)
+      text += (text.empty() ? "rejected: " : ", ") + std::to_string(counts.rejected[i]) + " " +
+              std::string(to_string(static_cast<Rejection>(i)));
+  return text.empty() ? "none rejected" : text;
+}
+
+std::string motions_in_words(const Calibration& calibration) {
+  const Choice& choice = calibration.choice;
+  const auto count = static_cast<unsigned long long>(sum_blocks(calibration.problem.blocks).count);
+  char text[160];
+  if (choice.mean_stride > 0)
+    std::snprintf(text, sizeof text, "of many strides between %llu instants", count);
+  else
+    std::snprintf(text, sizeof text, "%llu pairs, stride %d, weights rotation : translation = %g : %g", count,
+                  choice.stride, choice.balance.rotation, choice.balance.translation);
+  return text + (" (" + choice.reason + ")");
+}
+
+Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+  if (!as_read(options.read_a) || !as_read(options.read_b)) {
+    CalibrationOptions rest = options;
+    rest.read_a = rest.read_b = {};
+    return calibrate(reread(a, options.read_a), reread(b, options.read_b), rest);
+  }
+  if (with_scale(options)) return calibrate_scaled(a, b, options);
+  return calibrate_streams(a, b, options, std::nullopt);
+}
+
+Calibration calibrate(std::span<const MotionPair> given, const CalibrationOptions& options) {
+  if (given.empty()) throw Error("no motion pairs");
+  if (with_scale(options)) return calibrate_scaled(given, options);
+  return calibrate_pairs(given, options, std::nullopt);
 }
 
 struct Calibrator::Impl {

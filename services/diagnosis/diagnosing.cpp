@@ -15,6 +15,7 @@
 #include "egocal/bus/verdict.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/scale/scale_statistics.hpp"
+#include "egocal/scale/solve_scale.hpp"
 
 namespace egocal::services {
 
@@ -142,6 +143,9 @@ void Diagnosing::judge(Pair& pair) {
     answered.problem = problem;
     answered.stride = message.stride;
     answered.seconds = seconds(message.utime - message.session);
+    if (pair.unscaled)
+      if (const ScaleSolution* solution = pair.scale.solution(pair.config.a, pair.config.b, message.session))
+        answered.scale_stddev = with_spread_of_scale({}, problem, *solution);
     bus::Judged judged{answer.T_a_b, message.utime, message.utime, 0};
     Diagnosis diagnosis;
     if (poses < options_.least_poses) {

@@ -35,7 +35,8 @@ Goal goal_of(const Answered& answered, const GoalOptions& options) {
   for (std::size_t i = 0; i < 6; ++i) {
     if (!expected(answered, i)) continue;
     const double wanted = i < 3 ? options.translation : options.rotation;
-    const double stddev = answered.observability.observable[i] ? spread[i] : INFINITY;
+    const double stddev =
+        answered.observability.observable[i] ? std::hypot(spread[i], answered.scale_stddev[i]) : INFINITY;
     if (!(stddev <= wanted)) missing.emplace_back(stddev / wanted, i);
   }
   std::sort(missing.begin(), missing.end(), [](const auto& x, const auto& y) {

@@ -63,7 +63,8 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
     for (std::size_t i = 0; i < 3; ++i)
       if (expected(answered, first + i))
         stddev[i] = answered.observability.observable[first + i]
-                        ? std::max(answered.observability.stddev[first + i], unstable[first + i])
+                        ? std::hypot(std::max(answered.observability.stddev[first + i], unstable[first + i]),
+                                     answered.scale_stddev[first + i])
                         : INFINITY;
     for (std::size_t known = 3; known > 0; --known) {
       const auto worst = std::max_element(stddev.begin(), stddev.end());

@@ -45,6 +45,8 @@ class ScaleCheck {
   const CheckedScale* find(const std::string& a, const std::string& b, std::int64_t session) const;
   /// The scale that the pair's problem_t is made with; empty where there is none yet.
   std::optional<double> in_force(const std::string& a, const std::string& b, std::int64_t session) const;
+  /// The solution of this pair's newest problem, solved here; null where there is none of this session.
+  const ScaleSolution* solution(const std::string& a, const std::string& b, std::int64_t session);
 
   static constexpr std::size_t max_pairs = 256;
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "egocal/diagnosis/options.hpp"
@@ -20,6 +21,8 @@ struct Answered {
   double seconds = 0;                 ///< that the motions took; 0: unknown
   Platform platform = Platform::car;  ///< where the goal names none
   Problem minimised{};                ///< by T_a_b, where that is not `problem`; no blocks: it is
+  /// What an unknown scale adds to the standard deviation of each direction [m, rad]; 0 where it is known.
+  std::array<double, 6> scale_stddev{};
 };
 
 /// Whether the answer can be used, and if not, why: tries other readings of the streams, scale, clock, ground
