@@ -19,7 +19,7 @@ void Progress::operator()(double part) {
   const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
   if (!terminal_ || percent == percent_) return;
   percent_ = percent;
-  constexpr int width = 40;
+  constexpr int width = 40;  // columns of the screen
   const std::string bar(static_cast<std::size_t>(percent * width / 100), '#');
   std::fprintf(stderr, "\r%s [%-*s] %3d %%", label_.c_str(), width, bar.c_str(), percent);
   std::fflush(stderr);

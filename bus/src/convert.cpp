@@ -20,7 +20,7 @@ namespace {
 /// A cost is a sum of squares; where the message does not say how it was rounded it may be this far below
 /// zero [m^2]: the rounding of motions of 100 km.
 constexpr double negative_by_rounding = 1e-6;
-constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_inlier_blocks;
+constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_inlier_blocks;  // limit of the wire
 
 template <std::size_t n>
 bool finite(const double (&values)[n]) {
@@ -38,7 +38,7 @@ Checked<StampedPose> stamped(std::int64_t utime, const double (&pos)[3], const d
 std::string fault(const Statistics& block) {
   if (!std::isfinite(block.weight) || block.weight <= 0)
     return "statistics with a weight that is not positive";
-  const Vector8d diagonal = block.dual_rows.diagonal();
+  const Eigen::VectorXd diagonal = block.dual_rows.diagonal();
   if (!block.dual_rows.allFinite() || block.dual_rows.cwiseAbs().maxCoeff() > largest_entry)
     return "statistics that are not finite";
   if (diagonal.minCoeff() < 0) return "statistics that are not a sum of squares";
@@ -155,7 +155,6 @@ Checked<Problem> to_problem(const problem_t& message) {
       return {{}, "ground plane out of range"};
     }
   }
-  problem.blocks.reserve(message.blocks.size());
   for (const statistics_t& in : message.blocks) {
     if (!plausible_count(in.count)) return {{}, "count out of range"};
     Statistics block;

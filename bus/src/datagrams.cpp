@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::uint32_t whole_magic = 0x4c433032;     // "LC02"
 constexpr std::uint32_t fragment_magic = 0x4c433033;  // "LC03"
-constexpr std::size_t whole_header = 8;
-constexpr std::size_t fragment_header = 20;
+constexpr std::size_t whole_header = 8;               // bytes, format
+constexpr std::size_t fragment_header = 20;           // bytes, format
 /// LCM_SHORT_MESSAGE_MAX_SIZE and LCM_FRAGMENT_MAX_PAYLOAD: of channel, its final zero and data.
 constexpr std::size_t max_whole_payload = 65499;
-constexpr std::size_t max_fragment_payload = 65487;
-constexpr std::size_t max_fragments = 65535;
+constexpr std::size_t max_fragment_payload = 65487;  // bytes, format
+constexpr std::size_t max_fragments = 65535;         // format
 
 std::uint32_t number32(Bytes bytes, std::size_t at) {
   std::uint32_t value = 0;

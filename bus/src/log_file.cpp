@@ -21,10 +21,10 @@ namespace {
 // Every event: sync word, number (8 bytes), time (8), length of the channel (4), length of the data (4),
 // both, all big endian.
 constexpr std::uint32_t sync_word = 0xEDA1DA01;
-constexpr std::size_t header_size = 28;
-constexpr std::int32_t longest_channel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr std::int32_t largest_data = 64 << 20;
-constexpr std::size_t window_size = 1 << 16;
+constexpr std::size_t header_size = 28;          // bytes, format
+constexpr std::int32_t longest_channel = 63;     // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr std::int32_t largest_data = 64 << 20;  // a limit [bytes]
+constexpr std::size_t window_size = 1 << 16;     // [bytes] read at once
 /// A damaged log may hold any number of names.
 constexpr std::size_t most_channels = 1000;
 /// Events of several sources are not exactly in order [us].

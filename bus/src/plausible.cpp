@@ -9,7 +9,7 @@ namespace egocal::bus {
 
 namespace {
 
-constexpr std::size_t max_name = 40, max_text = 1000;
+constexpr std::size_t max_name = 40, max_text = 1000;  // limits of the wire [bytes]
 
 unsigned char byte_at(std::string_view text, std::size_t i) {
   return static_cast<unsigned char>(text[i]);

@@ -14,8 +14,9 @@ namespace egocal::bus {
 
 namespace {
 
+/// Limit of the wire: twice what ScaleDriveOptions sends.
 constexpr std::size_t most_blocks = 64;
-/// Scales that are looked at.
+/// Limits of the wire.
 constexpr double least_scale = 1e-9, most_scale = 1e9;
 /// Two solutions of one problem agree to this: the same program finds the same to the bit, others may round
 /// in another order.

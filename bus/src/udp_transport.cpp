@@ -24,7 +24,7 @@ namespace egocal::bus {
 
 namespace {
 
-constexpr std::size_t datagram_size = 65536;
+constexpr std::size_t datagram_size = 65536;  // bytes: no UDP datagram is longer
 /// Datagrams fetched by one system call: a flood costs less than a call each.
 constexpr std::size_t datagrams_at_once = 16;
 /// A network card whose queue is full is waited for this long [us]; then it counts as away.

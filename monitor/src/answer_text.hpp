@@ -16,7 +16,7 @@ namespace egocal::monitor {
 // What an answer says, in words and numbers for people: degrees and centimetres.
 
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-inline constexpr double centimetres_per_metre = 100.0;
+inline constexpr double centimetres_per_metre = 100.0;  // unit
 inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 /// From one time to another [s]; no overflow, whatever a sender says.

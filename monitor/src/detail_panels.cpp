@@ -54,7 +54,7 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     pane.text(2, 1, "no answer yet", Style::dim);
     return;
   }
-  constexpr int label_width = 8;
+  constexpr int label_width = 8;                                  // columns of the screen
   const int number_width = charset == Charset::unicode ? 9 : 11;  // "±11.05 cm", "+-0.017 deg"
   const int length = std::max(4, pane.width() - label_width - number_width - 2);
   for (int i = 0; i < 6; ++i) {
@@ -92,7 +92,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     pane.text(2, 1, "no answer yet", Style::dim);
     return;
   }
-  constexpr int label_width = 10, narrow_width = 10;
+  constexpr int label_width = 10, narrow_width = 10;  // columns of the screen
   const int room = pane.width() - label_width;
   const int columns =
       std::min<int>({static_cast<int>(pair.solvers.size()), std::max(1, room / narrow_width), 3});

@@ -7,8 +7,8 @@
 namespace egocal::monitor {
 namespace {
 
-constexpr int summary_rows = 4;
-constexpr int most_verdict_rows = 4;
+constexpr int summary_rows = 4;       // rows of the screen
+constexpr int most_verdict_rows = 4;  // rows of the screen
 
 struct Frame {
   Rect header, body, keys;

@@ -31,7 +31,7 @@ std::vector<Line> lines_of(const PairVerdict& verdict, Charset charset) {
   return lines;
 }
 
-constexpr int label_width = 9;
+constexpr int label_width = 9;  // columns of the screen
 
 }  // namespace
 

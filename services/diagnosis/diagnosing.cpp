@@ -23,9 +23,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
-constexpr int queue_capacity = 1024;
-
 double seconds(std::int64_t us) {
   return 1e-6 * static_cast<double>(us);
 }
@@ -48,7 +45,7 @@ Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     loop_.subscribe_bytes(
         sensors_[i].config.channel, [this, i](const bus::Arrival& arrival) { take(i, arrival); },
-        queue_capacity);
+        options_.queue_capacity);
   hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
   heartbeat_.before_publish([this] { count(); });
   loop_.every(100ms, [this] { look(); });

@@ -11,7 +11,7 @@ namespace egocal::services {
 
 namespace {
 
-/// 2^30 stretches of ten seconds are three centuries.
+/// A limit on the shift: 2^30 stretches of ten seconds are three centuries.
 constexpr int highest_level = 30;
 
 }  // namespace

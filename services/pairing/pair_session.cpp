@@ -11,7 +11,7 @@
 namespace egocal::services {
 
 namespace {
-constexpr std::size_t max_early_poses = 4096;
+constexpr std::size_t max_early_poses = 4096;  // a limit on memory: 40 s at 100 Hz
 
 /// The pairs of a rig estimate their clocks one after the other.
 PairingOptions options_of(const bus::Rig& rig, std::size_t index) {

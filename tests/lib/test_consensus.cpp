@@ -194,7 +194,7 @@ TEST(RobustStatistics, AreBoundedAndContinueFromTheirStateBitForBit) {
       if (i == cut) statistics = RobustStatistics(statistics.state());
       statistics.add(pairs[i], problem);
       if (statistics.look_is_due()) statistics.look(problem);
-      EXPECT_LE(statistics.state().waiting.size(), RobustStatistics::most_waiting);
+      EXPECT_LE(statistics.state().waiting.size(), RobustOptions{}.most_waiting);
       EXPECT_LE(statistics.state().blocks.state().blocks.size(), BlockStatistics::max_blocks);
     }
     return sum_blocks(statistics.inliers());

@@ -67,7 +67,7 @@ TEST(Disagreement, OfAMotionIsThatOfItsStatistics) {
     const Balance balance{random.log_uniform(0.01, 100), random.log_uniform(0.01, 100)};
     const Agreement agreement{T, {random.log_uniform(1e-6, 1), random.log_uniform(1e-6, 1)}};
     const double expected = disagreement(part, balance, agreement);
-    EXPECT_NEAR(detail::disagreement(pair.a, pair.b, balance, agreement), expected, 1e-9 * expected);
+    EXPECT_NEAR(detail::disagreement(pair.a, pair.b, balance, agreement, {}), expected, 1e-9 * expected);
     EXPECT_GT(expected, 0);
   }
 }

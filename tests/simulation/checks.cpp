@@ -90,8 +90,6 @@ void Checks::sent(const Address& from, const std::string& channel, bus::Bytes me
   if (channel.starts_with(bus::problem_prefix)) return problem_sent(sender, channel, message);
   if (channel.starts_with(bus::calibration_prefix)) return answer_sent(sender, channel, message);
   if (channel.starts_with(bus::verdict_prefix)) return verdict_sent(sender, message);
-  if (channel.starts_with(bus::scale_problem_prefix)) return scale_problem_sent(channel, message);
-  if (channel.starts_with(bus::scale_prefix)) return scale_sent(sender, message);
   status_t status{};
   if (channel != bus::status_channel || !bus::decode(message, status)) return;
   std::map<std::string, std::int64_t>& counters = counters_[from.port];
@@ -115,36 +113,12 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
   certificates_.take_problem(channel, message);
   if (!peaceful()) return;
   check_wishes(from, channel, now.first, now.second);
-  check_leader(from);
-}
-
-/// Of several pairing processes of one name the one that sent first goes on. Before that it is the older one,
-/// as far as the dates of their starts say so.
-void Checks::check_leader(const Process& from) {
-  const auto object = [&](const Process& other, const std::string& which) {
-    fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
-                  " us sends problems while " + which + ", of " + std::to_string(other.started_us()) +
-                  " us, is running");
-  };
-  const std::uint64_t leader = std::exchange(leaders_[from.spec().name], from.port());
-  const bool dates_are_set = has(surroundings_.plan, {IncidentKind::set_date});
-  for (const auto& other : processes_) {
-    if (other.get() == &from || !other->runs() || other->spec().name != from.spec().name) continue;
-    if (other->port() == leader)
-      object(*other, "one that sends already");
-    else if (!dates_are_set && !dates_differ() && other->started_us() < from.started_us())
-      object(*other, "an older one");
-  }
-}
-
-/// Of the hosts, whose dates name the starts of their processes.
-bool Checks::dates_differ() const {
-  const Plan& plan = surroundings_.plan;
-  for (int i = 1; i < plan.hosts; ++i)
-    if (plan.clocks[i].wall_off_us != plan.clocks[0].wall_off_us ||
-        plan.clocks[i].drift_ppm != plan.clocks[0].drift_ppm)
-      return true;
-  return false;
+  for (const auto& other : processes_)
+    if (other.get() != &from && other->runs() && other->spec().name == from.spec().name &&
+        other->started_us() < from.started_us())
+      fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
+                    " us sends problems while an older one, of " + std::to_string(other->started_us()) +
+                    " us, is running");
 }
 
 void Checks::answer_sent(const Process& from, const std::string& channel, bus::Bytes message) {
@@ -308,14 +282,11 @@ std::string Checks::missing_answer() const {
       for (const monitor::PairState& pair : watcher->model().pairs()) {
         const calibration_t* answer = pair.answer();
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
-        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
-        const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (scaled && newest == newest_problem_.end()) continue;  // the scale was never known
         if (!answer) return whose + "no answer";
         if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
         if (answer->status != 0) return whose + "an answer that is not certified";
-        if (live && !scaled && answer->utime < std::min(data_us, end_us) - recent_us)
-          return whose + "an old answer";
+        if (live && answer->utime < std::min(data_us, end_us) - recent_us) return whose + "an old answer";
+        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         if (newest == newest_problem_.end() || answer->session != field(newest->second, session_at))
           return whose + "an answer of another session";
       }
@@ -323,13 +294,11 @@ std::string Checks::missing_answer() const {
       for (const bus::PairConfig& pair : surroundings_.drive.rig.pairs) {
         const tools::Answers::Best* best = exporter->answers().best({pair.a, pair.b});
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
-        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
-        const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (scaled && newest == newest_problem_.end()) continue;
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
-        if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)
+        if (live && best->message.utime < std::min(data_us, end_us) - recent_us)
           return whose + "an old answer";
+        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         if (newest == newest_problem_.end() || best->message.session != field(newest->second, session_at))
           return whose + "an answer of another session";
       }

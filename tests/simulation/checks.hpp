@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "egocal/bus/scale.hpp"
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
 #include "simulation/certificates.hpp"
@@ -53,8 +52,6 @@ class Checks {
   std::int64_t certificates() const { return certificates_.checked(); }
   /// Verdicts `good` that were compared with the truth.
   std::int64_t judged_good() const { return judged_good_; }
-  /// Scales that were compared with that of the drive.
-  std::int64_t scales() const { return scales_; }
   /// Of any process at any time [bytes].
   std::size_t most_memory() const { return most_memory_; }
 
@@ -82,16 +79,9 @@ class Checks {
   bool is_foreign(bus::Bytes message) const;
   bool corrupts() const;
   void check_wishes(const Process& from, const std::string& channel, std::int64_t session, std::int64_t seq);
-  void check_leader(const Process& from);
-  bool dates_differ() const;
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
   void status_sent(const Process& from, const status_t& status);
   void answer_sent(const Process& from, const std::string& channel, bus::Bytes message);
-  void scale_problem_sent(const std::string& channel, bus::Bytes message);
-  void scale_sent(const Process& from, bus::Bytes message);
-  bool is_scale_to_be_found(const std::string& a, const std::string& b) const;
-  void check_scale(const std::string& whose, const ScaleSolution& solution);
-  void check_scales();
   void verdict_sent(const Process& from, bus::Bytes message);
   std::string missing_answer() const;
   void compare_with_undisturbed();
@@ -109,16 +99,13 @@ class Checks {
   Certificates certificates_;
   std::map<std::uint64_t, std::map<std::string, std::int64_t>> counters_;  // newest of each life, by its port
   std::size_t most_memory_ = 0;
-  std::int64_t judged_good_ = 0, scales_ = 0;
-  std::map<std::string, std::set<std::pair<std::int64_t, std::int64_t>>>
-      scale_problems_;                            ///< by channel: session, number
+  std::int64_t judged_good_ = 0;
   std::map<std::string, std::int64_t> sessions_;  // newest by channel
   std::int64_t player_starts_ = 0;
   std::map<std::string, std::int64_t>
       begun_before_;  // sessions, where the log began anew behind all that is known
   std::int64_t answered_until_us_ = -1, answers_missing_since_us_ = -1;
   std::int64_t last_start_us_ = 0;
-  std::map<std::string, std::uint64_t> leaders_;  ///< by name of pairing: port of the one that sent last
   int compared_ = 0;
 };
 

@@ -12,7 +12,7 @@ namespace egocal::tools {
 
 namespace {
 
-constexpr std::size_t most_pairs = bus::AnswerCheck::max_pairs;
+constexpr std::size_t most_pairs = bus::AnswerCheck::max_pairs;  // a limit on memory
 /// Problems in a row that are older than the newest one before they are believed: one may be late.
 constexpr int confirmations = 3;
 

@@ -25,7 +25,7 @@ void measure(const Problem& problem, const std::optional<DualQuaternion>& last, 
                                      std::chrono::nanoseconds(1));
   };
   std::vector<double> fast, global, verified;
-  constexpr int repeats = 5;
+  constexpr int repeats = 5;  // of a measurement of time; the median counts
   for (int i = 0; i < repeats; ++i) {
     const Answer by_fast = solve(problem, options.fast, last, now);
     fast.push_back(1e-3 * static_cast<double>(by_fast.solve_ns));

@@ -84,7 +84,7 @@ std::string reproduce_paper(const PaperOptions& options,
     const std::string file = folder + "/" + part.name + ".html";
     std::optional<std::string> text = kept(file, key(options));
     if (!text) {
-      constexpr double share = 1.0 / std::size(parts);
+      constexpr double share = 1.0 / std::size(parts);  // of the progress
       const auto of_part = [&](double fraction) {
         if (progress) progress(part.title, done + share * fraction);
       };

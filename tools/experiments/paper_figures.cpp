@@ -63,7 +63,7 @@ std::vector<Eigen::Vector3d> levelled(const Trajectory& path) {
 
 /// Seen from the side and above: depth goes up and to the right.
 Drawn oblique(const std::vector<Eigen::Vector3d>& points, double height_factor) {
-  constexpr double slant = 0.5;
+  constexpr double slant = 0.5;  // of the drawing
   Drawn drawn;
   for (const Eigen::Vector3d& p : points) {
     drawn.x.push_back(p.x() + slant * p.y());
@@ -96,7 +96,7 @@ std::string figure_3_part(const PaperOptions& options, const PaperData&, const P
   }
   Plot above = map("(a) path on the ground", "x [m]", "y [m]");
   above.series = {series_of("", flat, Colour::blue, Series::Style::line)};
-  constexpr double exaggeration = 3;
+  constexpr double exaggeration = 3;  // of the drawing
   Plot oblique_view = map("(b) path on the surface", "x, and y at an angle [m]", "");
   oblique_view.series = {series_of("on the ground", oblique(path, 0), Colour::orange, Series::Style::dashes),
                          series_of(fmt::format("on the surface, height x {:g}", exaggeration),
@@ -150,7 +150,7 @@ std::string figure_4_part(const PaperOptions& options, const PaperData&, const P
 }
 
 std::string figure_5_part(const PaperOptions& options, const PaperData& data, const PartProgress&) {
-  constexpr std::size_t most = 1000;
+  constexpr std::size_t most = 1000;  // points of the drawing
   // the two directions in which the drive extends most: a camera's y points down
   Eigen::Vector3d least = Eigen::Vector3d::Constant(1e300), largest = -least;
   for (const StampedPose& pose : data.path) {

@@ -27,7 +27,7 @@ inline constexpr TableRow table_2_spatial[] = {{"analytic [19]", 1e5, 71.5, 4.2}
 /// The same, planar.
 inline constexpr TableRow table_2_planar[] = {{"global", 15.85, 0.355, 53.1}, {"fast", 15.84, 0.336, 3.7}};
 
-inline constexpr int table_1_frames = 200, table_2_frames = 12074;
+inline constexpr int table_1_frames = 200, table_2_frames = 12074;          // the paper, tables I and II
 inline constexpr int optimisations = 224448;                                ///< V-B
 inline constexpr int noise_levels = 6, sizes = 167, sensors = 8, runs = 8;  ///< V-B
 inline constexpr int sensor_pairs = sensors * (sensors - 1) / 2;           ///< 28: 6 x 167 x 28 x 8 = 224,448

@@ -12,8 +12,8 @@ namespace egocal::tools {
 
 namespace {
 
-constexpr double font_size = 8;  // [pt], the size of the paper's captions
-constexpr double left = 44, right = 8, top = 20, bottom = 32;
+constexpr double font_size = 8;                                // [pt], the size of the paper's captions
+constexpr double left = 44, right = 8, top = 20, bottom = 32;  // margins [pt]
 
 struct Range {
   double least = std::numeric_limits<double>::infinity();
@@ -272,7 +272,7 @@ bool hides_a_label(const Plot& plot, const Frame& frame, const Place& corner, do
 
 /// The corner that hides the fewest points of the data, and no label where that can be.
 Place emptiest_corner(const Plot& plot, const Frame& frame, double width, double height) {
-  constexpr double gap = 3;
+  constexpr double gap = 3;  // [pt]
   const double far_x = left + frame.width() - width - gap, far_y = top + frame.height() - height - gap;
   const Place corners[] = {{far_x, top + gap}, {left + gap, top + gap}, {far_x, far_y}, {left + gap, far_y}};
   Place best = corners[0];
@@ -294,7 +294,7 @@ Place emptiest_corner(const Plot& plot, const Frame& frame, double width, double
 }
 
 std::string legend(const Plot& plot, const Frame& frame) {
-  constexpr double line_height = font_size + 2, sample = 14;
+  constexpr double line_height = font_size + 2, sample = 14;  // [pt]
   std::size_t rows = 0, longest = 0;
   for (const Series& series : plot.series) {
     rows += !series.name.empty();

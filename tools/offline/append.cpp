@@ -8,7 +8,7 @@
 namespace egocal::tools {
 
 void append_drive(const std::vector<Trajectory*>& sensors, std::vector<Trajectory> drive) {
-  constexpr std::int64_t gap_us = 3'600'000'000;
+  constexpr std::int64_t gap_us = 3'600'000'000;  // [us] an hour: no motion spans it
   std::int64_t end = std::numeric_limits<std::int64_t>::min(),
                begin = std::numeric_limits<std::int64_t>::max();
   for (const Trajectory* sensor : sensors)

@@ -7,7 +7,7 @@
 namespace egocal::tools {
 
 namespace {
-constexpr std::size_t most_shown = 10, most_known = 1000;
+constexpr std::size_t most_shown = 10, most_known = 1000;  // limits of a message, and on memory
 }
 
 void ChannelList::add(const std::string& name) {

@@ -205,7 +205,7 @@ std::string pictures(const ReportInput& input) {
                           Colour::vermilion));
   out += figure(histogram_plot("Translation residuals", "[m]", residuals.translation, Colour::vermilion));
   if (!input.a.empty()) {
-    constexpr int points = 40;
+    constexpr int points = 40;  // of a drawn curve
     const Progress progress = progress_of(input.a, input.b, input.options, points);
     out += figure(progress_plot(progress, false)) + figure(progress_plot(progress, true));
     out += figure(excitation_plot(excitation_of(input.a)));

@@ -22,7 +22,7 @@ namespace egocal::tools {
 
 namespace {
 
-constexpr std::uintmax_t largest = 10'000'000;
+constexpr std::uintmax_t largest = 10'000'000;  // a limit [bytes]: a larger file is renamed
 constexpr const char* header = "-- started ";
 
 }  // namespace
@@ -51,7 +51,7 @@ int open_output(const std::string& file) {
 
 std::string last_line(const std::string& file) {
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  constexpr std::streamoff tail = 1000;
+  constexpr std::streamoff tail = 1000;  // bytes that hold the last line
   const std::streamoff size = stream.tellg();
   stream.seekg(std::max<std::streamoff>(0, size - tail));
   std::string line, last;

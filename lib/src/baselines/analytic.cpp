@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -9,21 +10,9 @@
 
 #include "baselines/usable.hpp"
 #include "egocal/baselines/baselines.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal {
 namespace {
-
-/// Of the singular values in descending order, the seventh and eighth belong to the answer and are "almost
-/// zero": they must be this much smaller than the sixth.
-constexpr double largest_ratio = 0.3;
-/// The rotation axes must leave their principal direction by more than the noise moves them: by this factor
-/// in the second moment. Two sensors on one body turn by the same angle, so the noise shows in the
-/// difference.
-constexpr double least_axis_signal = 10;
-/// Both null vectors are combinations of (r, d) and (0, r): their real parts must be parallel, up to this
-/// sine.
-constexpr double largest_real_sine = 0.1;
 
 /// Triangular factor of the stacked vector rows of q_a q - q q_b = 0, six for each pair. QR and not S'S:
 /// squaring would lose half of the digits of the small singular values.
@@ -51,7 +40,7 @@ double axis_signal(const std::vector<MotionPair>& pairs) {
       const Eigen::Vector3d axis = side(pair).real.template tail<3>();
       moments += pair.eta * axis * axis.transpose();
     }
-    const Eigen::Vector3d values = detail::symmetric_eigen<3>(moments).values;
+    const Eigen::Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvalues();
     return std::max(0.0, values[1] - 1e-14 * values[2]);
   };
   const double moment = std::min(across([](const MotionPair& p) { return p.a; }),
@@ -75,7 +64,7 @@ double real_sine(const Eigen::Vector4d& u1, const Eigen::Vector4d& u2) {
 
 }  // namespace
 
-BaselineAnswer solve_analytic(std::span<const MotionPair> pairs) {
+BaselineAnswer solve_analytic(std::span<const MotionPair> pairs, const AnalyticOptions& options) {
   BaselineAnswer answer;
   const std::vector<MotionPair> usable = usable_pairs(pairs);
   if (usable.size() < 2) {
@@ -113,11 +102,12 @@ BaselineAnswer solve_analytic(std::span<const MotionPair> pairs) {
   answer.T_a_b = canonical_sign(normalized(best));
 
   const double rounding = 1e-12 * singular[0];
-  if (!(axis_signal(usable) >= least_axis_signal)) {
+  if (!(axis_signal(usable) >= options.least_axis_signal)) {
     answer.note = "needs two non-parallel rotation axes: all turn about the same one, up to the noise";
-  } else if (!(singular[6] <= std::max(rounding, largest_ratio * singular[5])) || singular[5] <= rounding) {
+  } else if (!(singular[6] <= std::max(rounding, options.largest_ratio * singular[5])) ||
+             singular[5] <= rounding) {
     answer.note = "needs two singular values near zero: the motions do not single out two";
-  } else if (!(real_sine(u1, u2) <= largest_real_sine)) {
+  } else if (!(real_sine(u1, u2) <= options.largest_real_sine)) {
     answer.note = "the null vectors are no (r, d) and (0, r): too much noise";
   } else if (discriminant < 0) {
     answer.note = "the quadratic for the combination has no real solution";

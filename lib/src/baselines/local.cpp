@@ -98,7 +98,7 @@ double sum_of_squares(const std::vector<MotionPair>& pairs, const DualQuaternion
 }  // namespace
 
 BaselineAnswer solve_local(std::span<const MotionPair> pairs, const DualQuaternion& start) {
-  constexpr int max_iterations = 200;
+  constexpr int max_iterations = 200;  // a limit: ten are the rule
   BaselineAnswer answer;
   const std::vector<MotionPair> usable = usable_pairs(pairs);
   if (usable.empty() || !start.vec().allFinite()) {

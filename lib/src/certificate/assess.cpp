@@ -34,6 +34,7 @@ Eigen::Matrix4d basis_at(const Column<4>& v) {
 /// From the curvature in these directions, in double: a guess, to be proven.
 template <int N>
 Curvatures guessed_curvatures(const Subject<N>& subject, const ProvenBound& proven, double lift) {
+  // degrees of freedom of the problem
   constexpr int rotations = N == 8 ? 3 : 1, translations = N == 8 ? 3 : 2, free = rotations + translations;
   Square<N> Z = subject.Q;
   for (int i = 0; i < N / 2; ++i) {

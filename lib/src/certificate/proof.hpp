@@ -105,7 +105,7 @@ constexpr int reordered(std::size_t i) {
 template <int N>
 ExtendedSquare<N> reordered_lagrangian(const Square<N>& Q, Extended bound, Extended orthogonal,
                                        Extended lift) {
-  constexpr std::size_t half = N / 2;
+  constexpr std::size_t half = N / 2;  // real and dual part
   ExtendedSquare<N> Z;
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < N; ++j) Z[i][j] = Q(reordered<N>(i), reordered<N>(j));

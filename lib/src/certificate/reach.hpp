@@ -85,14 +85,20 @@ double proven_curvature(const ExtendedSquare<N>& Z, const Forms<N, Rows>& P, dou
   return 0;
 }
 
-/// Where D is singular up to rounding the domain has to be at least this large for a reach to be stated
-/// [units of length].
-inline constexpr double least_domain = 1e4;
+/// Tuning of proven_reach().
+struct ReachOptions {
+  /// Where D is singular up to rounding (rotations without noise), a reach is stated only if it holds for
+  /// extrinsics within at least this distance of the answer [units of length: about the distance travelled
+  /// per radian]. No sensor is mounted 10,000 times that far away. Motions that turn about all axes alike
+  /// reach 2e7 (docs/method.md, "Singular D"). Study: tests/bench/certificate_study.cpp.
+  double least_domain = 1e4;
+};
 
-/// The reach of competitors with a cost at most J. `bound` is proven with this multiplier and lift.
+/// The reach of competitors with a cost at most J. `bound` is proven with this multiplier and lift. Where D
+/// is singular up to rounding the domain has to be at least options.least_domain.
 template <int N>
 Reach proven_reach(const Square<N>& Q, const Column<N>& v, double J, double bound, double orthogonal,
-                   double lift, const Curvatures& guess) {
+                   double lift, const Curvatures& guess, const ReachOptions& options = {}) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const ExtendedSquare<N> Z = reordered_lagrangian<N>(Q, bound, orthogonal, lift);
   const Displacement<N> p = displacement_from(v);
@@ -111,7 +117,7 @@ Reach proven_reach(const Square<N>& Q, const Column<N>& v, double J, double boun
   if (lift > 0) {
     reach.domain = std::sqrt(0.5 * c_r / lift);  // there 2 lift |p_d|^2 is a quarter of c_r
     sine_squared += 0.25;
-    if (!(reach.domain >= least_domain)) return {};
+    if (!(reach.domain >= options.least_domain)) return {};
   }
   if (!(sine_squared < 0.81)) return {};
   // |p_dv|^2 >= |p_d|^2 (1 - sine^2), |t| = 2 |p_d|

@@ -149,7 +149,8 @@ std::vector<double> turning_of(const Trajectory& trajectory) {
 }
 
 Explained explained_by(const Streams& streams, const ClockModel& clock) {
-  const Instants instants = synchronised(streams.a, streams.b, clock, streams.max_gap, streams.each);
+  const Instants instants =
+      synchronised(streams.a, streams.b, clock, streams.max_gap, streams.each, streams.options.motions);
   Explained result;
   if (instants.time.size() < 2 || !(instants.period > 0)) return result;
   const int stride = std::max(1, static_cast<int>(std::lround(streams.motion_length / instants.period)));

@@ -135,14 +135,16 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   answered.platform = forward(heading(motions), options.heading) ? Platform::car : Platform::handheld;
   if (motions.all.size() < options.motions.least) {
     Diagnosis result = diagnose(answered, options);
-    result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
+    result.fit =
+        fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period, options.motions);
     result.findings.push_back(too_little_motion(motions.all.size(), options));
     judge(result, answered, {}, options);
     return result;
   }
   Diagnosis result;
   const RobustFit at_answer = evaluated(motions, answered.T_a_b);
-  result.fit = fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period);
+  result.fit =
+      fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period, options.motions);
   result.findings = check_streams(a, b, evidence.instants);
   if (answered.problem.mode == Mode::planar)  // level positions are what planar mode is for
     std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
@@ -170,7 +172,7 @@ Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
                    const DiagnosisOptions& options) {
   const Motions motions = motions_of(pairs, options.motions);
   Diagnosis result;
-  result.fit = fit_at(motions, to_pose(answered.T_a_b), 0);
+  result.fit = fit_at(motions, to_pose(answered.T_a_b), 0, options.motions);
   Misfit misfit;
   if (motions.all.size() >= options.motions.least) {
     misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));

@@ -257,7 +257,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
                     turning_of(b),
                     {a, b, {}, {}, max_gap, 1, options, {}, {}},
                     clock,
-                    synchronised(a, b, clock, max_gap),
+                    synchronised(a, b, clock, max_gap, 1, options.motions),
                     1,
                     {}};
   evidence.streams.turning_a = evidence.turning_a;

@@ -44,13 +44,14 @@ struct Residuals {
 
 }  // namespace
 
-Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds) {
+Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds,
+           const MotionSampleOptions& options) {
   Fit fit;
   fit.motion_seconds = motion_seconds;
   if (motions.all.empty()) return fit;
-  constexpr std::size_t parts = 10;
+  const std::size_t parts = std::max<std::size_t>(1, options.time_parts);
   const double begin = motions.all.front().time, end = motions.all.back().time;
-  const double width = (end - begin) / parts;
+  const double width = (end - begin) / static_cast<double>(parts);
   Residuals whole;
   std::vector<Residuals> tenths(parts);
   for (const Motion& motion : motions.all) {

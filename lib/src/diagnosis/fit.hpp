@@ -8,6 +8,7 @@
 namespace egocal::detail {
 
 /// Residuals of the motions at one extrinsic, in units.
-Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds);
+Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds,
+           const MotionSampleOptions& options = {});
 
 }  // namespace egocal::detail

@@ -14,23 +14,15 @@ namespace egocal {
 
 namespace detail {
 
-namespace {
-
-/// Spreads fall with this power of the time: faster than with the square root, as longer motions count with
-/// time. With it the median of the estimated to the real time left is one in tests/bench/goal_study.cpp.
-constexpr double spread_exponent = 0.63;
-
-}  // namespace
-
 bool expected(const Answered& answered, std::size_t direction) {
   if (answered.problem.mode != Mode::planar) return true;
   const double normal = std::abs(answered.problem.plane_a.normal[static_cast<int>(direction % 3)]);
   return direction < 3 ? normal < 0.5 : normal > 0.5;
 }
 
-Goal goal_of(const Answered& answered, const GoalOptions& options) {
+Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpreadOptions& tuning) {
   constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
-  const std::array<double, 6> spread = goal_spread(answered);
+  const std::array<double, 6> spread = goal_spread(answered, tuning);
   std::vector<std::pair<double, std::size_t>> missing;
   for (std::size_t i = 0; i < 6; ++i) {
     if (!expected(answered, i)) continue;
@@ -52,7 +44,7 @@ Goal goal_of(const Answered& answered, const GoalOptions& options) {
   }
   const double worst = missing.front().first;
   if (std::isfinite(worst) && answered.seconds > 0)
-    goal.seconds_left = answered.seconds * (std::pow(worst, 1 / spread_exponent) - 1);
+    goal.seconds_left = answered.seconds * (std::pow(worst, 1 / tuning.exponent) - 1);
   goal.next = next_manoeuvre(answered, options, indices);
   return goal;
 }

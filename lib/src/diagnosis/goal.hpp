@@ -12,6 +12,6 @@ bool expected(const Answered& answered, std::size_t direction);
 
 /// Which directions are not known well enough yet, how long that takes at this driving, and the manoeuvre
 /// that helps most.
-Goal goal_of(const Answered& answered, const GoalOptions& options);
+Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpreadOptions& tuning = {});
 
 }  // namespace egocal::detail

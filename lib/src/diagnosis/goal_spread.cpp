@@ -15,18 +15,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// Fewer blocks have no common factor.
-constexpr std::size_t least_blocks = 8;
-/// Variance of the logarithm of a direction's variance from 20 blocks. Measured: 0.11; 2/19 under white
-/// noise.
-constexpr double chance = 0.11;
-/// A direction whose log variance differs from the common one by d keeps d^2 / (d^2 + 2 chance) of it.
-constexpr double own_part = 2 * chance;
-/// 1.5 standard deviations of the common estimate, which is known to 12 %.
-constexpr double reserve = 1.2;
-/// The reported standard deviation is never overruled by more: three standard deviations of their ratio.
-constexpr double most_different = 1.5;
-
 /// Covariance by leaving out each block, and each pair of neighbours. Of independent errors both are alike;
 /// of errors that wander for longer than a block the second one is larger.
 struct LeaveOut {
@@ -51,10 +39,10 @@ double common_factor(const Matrix6d& H, const Matrix6d& covariance) {
 
 }  // namespace
 
-std::array<double, 6> goal_spread(const Answered& answered) {
+std::array<double, 6> goal_spread(const Answered& answered, const GoalSpreadOptions& options) {
   const Observability& reported = answered.observability;
   const Problem& problem = answered.minimised.blocks.empty() ? answered.problem : answered.minimised;
-  if (problem.mode == Mode::planar || problem.blocks.size() < least_blocks) return reported.stddev;
+  if (problem.mode == Mode::planar || problem.blocks.size() < options.least_blocks) return reported.stddev;
   const Matrix8d Q = cost_matrix(problem);
   const Matrix86d T = frame_a_basis(answered.T_a_b);
   const Matrix6d H = T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, answered.T_a_b)) * T;
@@ -65,6 +53,7 @@ std::array<double, 6> goal_spread(const Answered& answered) {
   const double common = common_factor(H, left_out.single);
   if (!(std::isfinite(common) && common > 0 && white.diagonal().minCoeff() > 0)) return reported.stddev;
   const double wandering = std::max(1.0, common_factor(H, left_out.twos) / common);
+  const double own_part = 2 * options.chance;
   std::array<double, 6> spread = reported.stddev;
   for (std::size_t i = 0; i < 6; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -73,8 +62,8 @@ std::array<double, 6> goal_spread(const Answered& answered) {
     const double kept = own * own / (own * own + own_part) * own;
     const double pooled = std::sqrt(wandering * common * white(k, k) * std::exp(kept));
     if (std::isfinite(pooled))
-      spread[i] = std::clamp(reserve * pooled, reported.stddev[i] / most_different,
-                             reported.stddev[i] * most_different);
+      spread[i] = std::clamp(options.reserve * pooled, reported.stddev[i] / options.most_different,
+                             reported.stddev[i] * options.most_different);
   }
   return spread;
 }

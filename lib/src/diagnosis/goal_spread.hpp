@@ -14,6 +14,6 @@ namespace egocal::detail {
 /// late, and at a random time. The blocks of all directions together say by half that much scatter how many
 /// times larger the errors are than those of white noise. A direction keeps its own factor as far as it
 /// differs from the common one by more than chance. As reported where that cannot be computed.
-std::array<double, 6> goal_spread(const Answered& answered);
+std::array<double, 6> goal_spread(const Answered& answered, const GoalSpreadOptions& options = {});
 
 }  // namespace egocal::detail

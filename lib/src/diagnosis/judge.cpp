@@ -20,9 +20,9 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
-/// 95 % of a normal distribution, on one side.
+/// 95 % of a normal distribution, on one side (mathematics).
 constexpr double confidence_one_sided = 1.645;
-/// 95 % of the length of three equal, independent components.
+/// 95 % of the length of three equal, independent components (mathematics).
 constexpr double length_of_three = 2.79;
 
 /// How far another answer is, as a part of the tolerance, in the directions that are known.
@@ -55,7 +55,8 @@ double length_95(const std::array<double, 3>& stddev) {
 /// Directions that must be known better before the answer as a whole keeps within the tolerance: the worst
 /// ones, until the rest would.
 std::string unknown_directions(const Answered& answered, const DiagnosisOptions& options) {
-  const std::array<double, 6> unstable = spread_without_fifths(answered.problem, answered.T_a_b);
+  const std::array<double, 6> unstable =
+      spread_without_fifths(answered.problem, answered.T_a_b, options.stability);
   std::array<bool, 6> unknown{};
   for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {
     const double tolerance = first == 0 ? options.tolerance_translation : options.tolerance_rotation;
@@ -80,7 +81,7 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
   return text;
 }
 
-/// Not another reading: what is wrong with the poses themselves. Pairing rejects those that stand still.
+/// Not another reading: what is wrong with the poses themselves. Pairing rejects those that repeat.
 bool stream_fault(const Finding& finding) {
   return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
          finding.code == "flat_b" || (finding.code == "same_stream" && finding.certain);
@@ -150,7 +151,7 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
   const Opinion of_explanations = of_findings(diagnosis, answered, options),
                 fit = of_fit(misfit, answered, options);
-  if (options.goal) diagnosis.goal = goal_of(answered, *options.goal);
+  if (options.goal) diagnosis.goal = goal_of(answered, *options.goal, options.goal_spread);
   const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
   diagnosis.verdict = worse.verdict;
   diagnosis.reason = worse.reason;
@@ -170,7 +171,7 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
     if (!diagnosis.goal && answered.seconds > 0) {
       const GoalOptions usable{options.tolerance_rotation / length_of_three,
                                options.tolerance_translation / length_of_three, options.platform};
-      diagnosis.reason += " " + goal_of(answered, usable).next;
+      diagnosis.reason += " " + goal_of(answered, usable, options.goal_spread).next;
     }
   } else if (diagnosis.goal && !diagnosis.goal->reached) {
     diagnosis.verdict = Verdict::incomplete;

@@ -10,9 +10,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// Distances of stamps that show the usual one.
-constexpr std::size_t most_periods = 1000;
-
 double seconds(std::int64_t us) {
   return 1e-6 * static_cast<double>(us);
 }
@@ -37,7 +34,7 @@ class Times {
 
 /// Median of at most most_periods distances, evenly spread.
 template <typename Values>
-double median_period(const Values& times) {
+double median_period(const Values& times, std::size_t most_periods) {
   if (times.size() < 2) return 0;
   std::vector<double> periods;
   const std::size_t each = std::max<std::size_t>(1, times.size() / most_periods);
@@ -116,12 +113,13 @@ DualQuaternion Instants::between(std::size_t i) const {
 }
 
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
-                      std::size_t each) {
+                      std::size_t each, const MotionSampleOptions& options) {
   Instants instants;
   if (a.empty() || b.empty()) return instants;
   const std::int64_t origin_us = a.front().time_us;
   const Times times_a(a, origin_us, {}), times_b(b, origin_us, clock);
-  const bool b_slower = 10 * median_period(times_b) >= 9 * median_period(times_a);
+  const bool b_slower =
+      10 * median_period(times_b, options.most_periods) >= 9 * median_period(times_a, options.most_periods);
   instants.b_slower_ = b_slower;
   instants.keys_ = b_slower ? &b : &a;
   instants.others_ = b_slower ? &a : &b;
@@ -136,7 +134,7 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
     instants.time.push_back(time);
     instants.places_.push_back({i, found->before, found->part});
   }
-  instants.period = median_period(instants.time);
+  instants.period = median_period(instants.time, options.most_periods);
   return instants;
 }
 

@@ -34,7 +34,8 @@ class Instants {
   DualQuaternion b(std::size_t i) const { return b_slower_ ? key(i) : between(i); }
 
  private:
-  friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t);
+  friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
+                               const MotionSampleOptions&);
 
   struct Place {
     std::size_t key = 0;     ///< pose of the slower stream
@@ -52,7 +53,7 @@ class Instants {
 
 /// each: only every such pose of the slower stream is an instant.
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
-                      std::size_t each = 1);
+                      std::size_t each = 1, const MotionSampleOptions& options = {});
 
 /// One motion of both sensors, in the parts that residuals are made of.
 struct Motion {

@@ -14,9 +14,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// A longer interval of the time of a move is worth stating [s].
-constexpr double long_interval = 10;
-
 /// Motion pairs of one stride, none across a gap; in planar mode as seen from the planes.
 std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered,
                                  const DiagnosisOptions& options, std::size_t steps) {
@@ -68,7 +65,7 @@ double length(const Move& move, std::size_t first) {
 }
 
 /// begin: of the motions, on the clock of the finding [s].
-void word(const Move& move, double begin, Finding& finding) {
+void word(const Move& move, double begin, double long_interval, Finding& finding) {
   const double turned = length(move, 3) * 180 / std::numbers::pi, shifted = 100 * length(move, 0);
   const double from = begin + move.earliest, to = begin + move.latest;
   const Pose before = to_pose(move.before);
@@ -105,7 +102,7 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
     finding.certain = true;
     finding.time = begin + move.time;
     finding.T_a_b = to_pose(move.after);
-    word(move, begin, finding);
+    word(move, begin, options.mount.long_interval, finding);
     findings.push_back(std::move(finding));
   }
   return findings;

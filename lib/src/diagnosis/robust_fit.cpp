@@ -12,7 +12,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Squares below this part of the motion are rounding.
+/// Squares below this part of the motion are rounding: 1e-8, eight digits of a pose.
 constexpr double rounding = 1e-16;
 
 /// Size of a motion in units of the typical one; the smaller of the two, for an outlier makes one of them
@@ -72,8 +72,10 @@ static double misfit_of(const Motions& motions, const RobustFit& fit, double par
   return std::sqrt(weighted_quantile(std::move(values), part));
 }
 
+/// Up to two thirds of the motions may be outliers of one kind or another (two of three motions have an end
+/// at a wrong pose where a third of the poses are wrong).
 double misfit(const Motions& motions, const RobustFit& fit) {
-  constexpr double better_third = 1.0 / 3;
+  constexpr double better_third = 1.0 / 3;  // see above
   return misfit_of(motions, fit, better_third);
 }
 
@@ -125,7 +127,7 @@ RobustFit robust_fit(const Motions& motions, const RobustFitOptions& options) {
 }
 
 RobustFit quick_fit(const Motions& motions, const RobustFitOptions& options) {
-  return reweighted(motions, 2, options.inlier);
+  return reweighted(motions, options.quick_rounds, options.inlier);
 }
 
 namespace {

@@ -56,7 +56,7 @@ double best_scale(const ScaledCost& cost, double centre, const ScaleSearchOption
       best = i;
     }
   }
-  constexpr double golden = 0.6180339887498949;
+  constexpr double golden = 0.6180339887498949;  // mathematics: the golden section
   double left = low + (best - 1) * step, right = low + (best + 1) * step;
   for (int i = 0; i < options.refinements; ++i) {
     const double x = right - golden * (right - left), y = left + golden * (right - left);

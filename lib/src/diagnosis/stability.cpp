@@ -14,11 +14,10 @@ namespace egocal::detail {
 
 namespace {
 
-constexpr std::size_t parts = 5;
-
 /// What blocks that touch each other share is not known pair by pair: what each of a fifth changes is added
 /// up, less what is counted more than once on average.
-std::vector<Vector6d> without_touching_parts(const Problem& problem, const DualQuaternion& T_a_b) {
+std::vector<Vector6d> without_touching_parts(const Problem& problem, const DualQuaternion& T_a_b,
+                                             std::size_t parts) {
   const std::vector<Vector6d> each = leave_out_differences(problem, cost_matrix(problem), T_a_b);
   const double whole = sum_blocks(problem.blocks).weight;
   const double times_counted = (whole - problem.blocks.back().weight) / whole;
@@ -31,7 +30,7 @@ std::vector<Vector6d> without_touching_parts(const Problem& problem, const DualQ
   return answers;
 }
 
-std::vector<Vector6d> without_parts(const Problem& problem, const DualQuaternion& T_a_b) {
+std::vector<Vector6d> without_parts(const Problem& problem, const DualQuaternion& T_a_b, std::size_t parts) {
   const std::size_t n = problem.blocks.size();
   const bool planar = problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(problem.plane_a) : DualQuaternion{};
@@ -50,19 +49,21 @@ std::vector<Vector6d> without_parts(const Problem& problem, const DualQuaternion
 
 }  // namespace
 
-std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQuaternion& T_a_b) {
+std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQuaternion& T_a_b,
+                                            const StabilityOptions& options) {
+  const std::size_t parts = options.parts;
   std::array<double, 6> spread{};
   if (problem.blocks.size() < 2 * parts) return spread;
   const std::vector<Vector6d> answers = takes_off(problem.blocks.back())
-                                            ? without_touching_parts(problem, T_a_b)
-                                            : without_parts(problem, T_a_b);
+                                            ? without_touching_parts(problem, T_a_b, parts)
+                                            : without_parts(problem, T_a_b, parts);
   Vector6d mean = Vector6d::Zero();
   for (const Vector6d& answer : answers) mean += answer / static_cast<double>(parts);
   for (std::size_t i = 0; i < 6; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     double sum = 0;
     for (const Vector6d& answer : answers) sum += (answer[k] - mean[k]) * (answer[k] - mean[k]);
-    spread[i] = std::sqrt(sum * (parts - 1) / parts);
+    spread[i] = std::sqrt(sum * static_cast<double>(parts - 1) / static_cast<double>(parts));
   }
   return spread;
 }

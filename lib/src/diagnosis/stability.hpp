@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "egocal/diagnosis/options.hpp"
 #include "egocal/problem/problem.hpp"
 
 namespace egocal::detail {
@@ -11,6 +12,7 @@ namespace egocal::detail {
 /// Standard deviation of each direction (x y z roll pitch yaw in sensor a's frame [m, rad]) from answers
 /// without each fifth of the drive in turn. Long parts see what short blocks do not: errors that wander for
 /// minutes, and an answer that hinges on one curve. Zero where there are too few blocks.
-std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQuaternion& T_a_b);
+std::array<double, 6> spread_without_fifths(const Problem& problem, const DualQuaternion& T_a_b,
+                                            const StabilityOptions& options = {});
 
 }  // namespace egocal::detail

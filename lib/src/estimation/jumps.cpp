@@ -11,18 +11,6 @@ namespace egocal {
 
 namespace {
 
-/// Residuals smaller than this are rounding of what sensors send [rad, m].
-constexpr double rotation_floor = 1e-7, translation_floor = 1e-6;
-/// Steps with a smaller weight say nothing about what is typical.
-constexpr double counts = 0.3;
-/// The non-convexity is sharpened fourfold at a time; then the verdicts settle.
-constexpr double sharpen = 4;
-constexpr int most_rounds = 24;
-/// Fewer steps have no quartiles.
-constexpr std::size_t least_steps = 8;
-/// Fewer far steps are no tail, however few the steps.
-constexpr double least_far = 4;
-
 double quantile(std::vector<double>& values, double part) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
@@ -50,11 +38,11 @@ struct Component {
   void learn(const std::vector<double>& weights, double floor, const JumpOptions& options) {
     std::vector<double> sizes, absolute, part;
     for (std::size_t i = 0; i < size.size(); ++i)
-      if (weights[i] > counts) sizes.push_back(size[i]);
-    if (sizes.size() < least_steps) return;
+      if (weights[i] > options.least_weight) sizes.push_back(size[i]);
+    if (sizes.size() < options.least_steps) return;
     cap = quantile(sizes, 0.9);
     for (std::size_t i = 0; i < size.size(); ++i) {
-      if (!(weights[i] > counts)) continue;
+      if (!(weights[i] > options.least_weight)) continue;
       absolute.push_back(residual[i]);
       part.push_back(relative(i));
     }
@@ -106,8 +94,8 @@ class Judge {
       rotation_.residual[i] = 2 * (left.rotation * right.rotation.conjugate()).vec().norm();
       translation_.residual[i] = (left.translation - right.translation).norm();
     }
-    rotation_.learn(weights, rotation_floor, options_);
-    translation_.learn(weights, translation_floor, options_);
+    rotation_.learn(weights, options_.rotation_floor, options_);
+    translation_.learn(weights, options_.translation_floor, options_);
   }
 
   double excess(std::size_t i) const {
@@ -157,7 +145,7 @@ class Judge {
       if (steps_[i].usable) ++usable;
       if (result.back().extra_variance > 0) ++far;
     }
-    if (far < std::max(least_far, options_.heavy_tail * usable))
+    if (far < std::max(options_.least_far, options_.heavy_tail * usable))
       for (StepVerdict& verdict : result) verdict.extra_variance = 0;
     return result;
   }
@@ -185,7 +173,7 @@ DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
 }
 
 /// Verdicts by a given extrinsic: what is typical is learnt again without what has been found.
-std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q) {
+std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q, int most_rounds) {
   std::vector<Jump> jumps;
   for (int round = 0; round < most_rounds; ++round) {
     judge.look_from(q);
@@ -202,17 +190,17 @@ std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q) {
 std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
                                     const std::optional<DualQuaternion>& q, const JumpOptions& options) {
   Judge judge(steps, options);
-  if (q) return settle(judge, *q);
+  if (q) return settle(judge, *q, options.most_rounds);
 
   std::vector<Statistics> statistics;
   for (const Step& step : steps) {
     statistics.emplace_back();
     if (step.usable) statistics.back().add(step.a, step.b);
   }
-  double balance = 100;  // rotation to translation [m^2]: a centimetre for a milliradian
+  double balance = options.first_balance;
   double mu = 0;
   std::vector<Jump> jumps;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < options.most_rounds; ++round) {
     Statistics sum = before;
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (!steps[i].usable) continue;
@@ -222,7 +210,7 @@ std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistic
     judge.look_from(minimiser(cost_matrix(sum, {balance, 1}), mode));
     balance = judge.rotation_weight();
     const bool sharp = mu == 1;
-    mu = round == 0 ? std::max(1.0, 2 * judge.largest_excess()) : std::max(1.0, mu / sharpen);
+    mu = round == 0 ? std::max(1.0, 2 * judge.largest_excess()) : std::max(1.0, mu / options.sharpen);
     std::vector<Jump> next = judge.jumps();
     if (sharp && next == jumps) break;
     jumps = std::move(next);

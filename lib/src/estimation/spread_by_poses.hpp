@@ -9,9 +9,6 @@
 
 namespace egocal::detail {
 
-/// Fewer blocks have no spread.
-constexpr std::size_t least_spread_blocks = 6;
-
 /// Directions (x y z roll pitch yaw of sensor a's frame) that the motions show.
 using Seen = std::array<bool, 6>;
 

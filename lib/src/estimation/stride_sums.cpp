@@ -13,35 +13,16 @@ namespace egocal {
 
 namespace {
 
-/// Strides of the motions [steps]: each about 1.4 times the one before. The longest bounds the memory;
-/// motions of 128 steps are longer than the memory of any odometry on record (docs/accuracy.md).
-const std::vector<int>& ladder() {
-  static const std::vector<int> strides{1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128};
-  return strides;
-}
-/// Instants whose verdicts may still change: enough for quartiles, few enough for a look in 0.1 ms.
-constexpr std::uint64_t most_open = 192;
-/// The open instants are judged anew after a sixteenth more, within these limits: a jump spoils every motion
-/// across it, and short drives have few to spare.
-constexpr std::uint64_t look_part = 16, least_look = 16, most_look = 64;
-/// The weights are chosen anew after an eighth more instants, and after a quarter more beyond `short_drive`:
-/// a choice costs as much as a hundred instants.
-constexpr std::uint64_t short_choice_part = 8, choice_part = 4, short_drive = 128;
-/// Rounds of verdicts and weights that depend on each other.
-constexpr int most_rounds = 3;
-/// What is left of a difference of sums by rounding [typical variances].
-constexpr double least_extra_variance = 1e-6;
-
-/// Variances of a step, in typical ones. Differences that change no weight by a tenth are no news.
-bool differ(double x, double y) {
-  return std::abs(x - y) > 0.1 * (1 + std::min(x, y));
+/// Whether two variances of a step, in typical ones, give weights that differ by more than this part.
+bool differ(double x, double y, double part) {
+  return std::abs(x - y) > part * (1 + std::min(x, y));
 }
 
 }  // namespace
 
 StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& tuning)
     : StrideSums(options, tuning, StrideSumsState{}) {
-  state_.committed = StrideBlocks(ladder());
+  state_.committed = StrideBlocks(tuning_.strides);
   state_.next_choice = options_.accumulator.first_choice;
 }
 
@@ -82,9 +63,9 @@ void StrideSums::append(JudgedInstant& judged, const JudgedInstant* before,
 
 /// Of a motion between two instants, among those of its stride: the variances of its steps add up. One where
 /// all steps are typical.
-double StrideSums::certainty(const JudgedInstant& from, const JudgedInstant& to) {
+double StrideSums::certainty(const JudgedInstant& from, const JudgedInstant& to) const {
   const double extra = to.total_variance - from.total_variance;
-  return extra > least_extra_variance ? 1 / (1 + extra) : 1;
+  return extra > tuning_.least_extra_variance ? 1 / (1 + extra) : 1;
 }
 
 /// Calls take(stride's number, first instant, motions, whether they span a jump of a translation)
@@ -93,8 +74,8 @@ template <typename Take>
 void StrideSums::each_motion(std::size_t position, const Take& take) const {
   const JudgedInstant& to = state_.instants[position];
   if (to.doubtful) return;
-  for (std::size_t i = 0; i < ladder().size(); ++i) {
-    const auto steps = static_cast<std::size_t>(ladder()[i]);
+  for (std::size_t i = 0; i < tuning_.strides.size(); ++i) {
+    const auto steps = static_cast<std::size_t>(tuning_.strides[i]);
     if (steps > position) break;
     const JudgedInstant& from = state_.instants[position - steps];
     if (from.doubtful || from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain)
@@ -151,13 +132,14 @@ void StrideSums::add(const Instant& instant, bool doubtful) {
   state_.instants.push_back(judged);
   if (in_force()) weigh_newest();
   if (in_force() && state_.next_index >= state_.next_look) {
-    state_.next_look = state_.next_index + std::clamp(state_.next_index / look_part, least_look, most_look);
+    state_.next_look = state_.next_index + std::clamp(state_.next_index / tuning_.look_part,
+                                                      tuning_.least_look, tuning_.most_look);
     const Changes changes = rejudge(state_.choice->q);
     // what looks like a jump may be the first motion that shows a new direction
     if (changes.jumps) rejudge(std::nullopt);
     if (changes.jumps || changes.variances) weigh_all(sums());
   }
-  if (state_.next_index - state_.first_open > most_open) commit_oldest();
+  if (state_.next_index - state_.first_open > tuning_.most_open) commit_oldest();
 }
 
 /// The oldest of the open instants keeps its verdict for good.
@@ -167,7 +149,7 @@ void StrideSums::commit_oldest() {
   add_motions(state_.committed, position);
   if (state_.instants[position].jump != Jump::none) ++state_.jumps;
   ++state_.first_open;
-  const auto longest = static_cast<std::uint64_t>(ladder().back());
+  const auto longest = static_cast<std::uint64_t>(tuning_.strides.back());
   if (first_kept + longest < state_.first_open) state_.instants.pop_front();
 }
 
@@ -186,14 +168,16 @@ StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) 
   for (std::size_t i = first; i < state_.instants.size(); ++i) {
     const StepVerdict& verdict = verdicts[i - first];
     changes.jumps = changes.jumps || verdict.jump != state_.instants[i].jump;
-    changes.variances = changes.variances || differ(verdict.extra_variance, state_.instants[i].step_variance);
+    changes.variances = changes.variances || differ(verdict.extra_variance, state_.instants[i].step_variance,
+                                                    tuning_.least_change);
     append(state_.instants[i], &state_.instants[i - 1], verdict);
   }
   return changes;
 }
 
 void StrideSums::choose(const std::optional<SingleStride>& rival) {
-  const std::uint64_t part = state_.next_index < short_drive ? short_choice_part : choice_part;
+  const std::uint64_t part =
+      state_.next_index < tuning_.short_drive ? tuning_.short_choice_part : tuning_.choice_part;
   state_.next_choice = state_.next_index + std::max<std::uint64_t>(1, state_.next_index / part);
   StrideBlocks all = judge_open();
   leave_out_blocks(all);
@@ -207,16 +191,16 @@ void StrideSums::choose(const std::optional<SingleStride>& rival) {
 /// the weights without any: that is the end of it. Returns the sums.
 StrideBlocks StrideSums::judge_open() {
   StrideBlocks all = sums();
-  std::optional<WeightChoice> suggested = residual_weights(all, options_.mode);
+  std::optional<WeightChoice> suggested = residual_weights(all, options_.mode, tuning_.weighting.residuals);
   const bool before = std::any_of(state_.instants.begin(), state_.instants.end(), [&](const auto& judged) {
     return judged.index >= state_.first_open && judged.jump != Jump::none;
   });
   Changes changes{true, true};
   if (suggested && !before) changes = rejudge(suggested->q);
   if (changes.jumps) rejudge(std::nullopt);
-  for (int round = 0; round < most_rounds && (changes.jumps || changes.variances); ++round) {
+  for (int round = 0; round < tuning_.most_rounds && (changes.jumps || changes.variances); ++round) {
     all = sums();
-    suggested = residual_weights(all, options_.mode);
+    suggested = residual_weights(all, options_.mode, tuning_.weighting.residuals);
     if (!suggested) break;
     changes = rejudge(suggested->q);
   }
@@ -229,14 +213,14 @@ void StrideSums::leave_out_blocks(StrideBlocks& all) {
   state_.outlier = all.state().outlier;
   state_.outlier_length = all.state().block_length;
   const std::optional<WeightChoice> suggested =
-      state_.choice ? state_.choice : residual_weights(all, options_.mode);
+      state_.choice ? state_.choice : residual_weights(all, options_.mode, tuning_.weighting.residuals);
   if (!suggested) return;
   Problem problem = empty_problem();
   problem.balance = {0, 1};
   const std::vector<Statistics> parts = all.within(suggested->weights);
   // Motions of a block share their ends: no block is long enough to have an extrinsic of its own.
   const auto overlap = static_cast<int>(all.state().block_length);
-  if (const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap))
+  if (const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap, tuning_.consensus))
     state_.outlier.assign(consensus->outlier.begin(), consensus->outlier.end());
   all.leave_out(state_.outlier);
 }

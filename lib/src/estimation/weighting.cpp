@@ -20,40 +20,24 @@ using detail::spread_by_poses;
 using detail::SpreadByPoses;
 using detail::standard_error;
 
-/// Squared residuals of one motion below this are rounding [rad^2, m^2].
-constexpr double least_variance = 1e-28;
-/// Weights of rotation and translation differ by at most this factor, beyond the square of the motions'
-/// length per turn: noise-free data must not make the cost singular.
-constexpr double most_imbalance = 1e6;
-/// Fewer motions of a stride have no variance.
-constexpr std::uint64_t least_motions = 6;
-/// Spreads below these are rounding: nothing is to be gained [rad, m].
-constexpr double least_rotation_spread = 1e-9, least_translation_spread = 1e-8;
-/// A motion of 128 steps with this part of the weight of a single step adds less than rounding to the sum,
-/// even where it is 128 times as long.
-constexpr double negligible_part = 1e-22;
-constexpr int rounds = 4;
-/// The same where a minimiser is known already.
-constexpr int later_rounds = 2;
-/// Grid of the ratio of a random walk's variance a step to that of the noise on poses.
-constexpr int grid = 24;
-constexpr double least_growth = 1e-3, most_growth = 1e3;
-
 /// The strides with enough motions, their sums, and how many strides each stands for.
 struct Ladder {
+  const ResidualWeightOptions& options;
   std::vector<StrideCell> sums;
   std::vector<double> strides, width, motions, turns;
 
   template <typename Sums>
-  Ladder(const StrideBlocks& blocks, const Sums& totals) {
+  Ladder(const StrideBlocks& blocks, const Sums& totals, const ResidualWeightOptions& tuning)
+      : options(tuning) {
     for (std::size_t i = 0; i < blocks.strides().size(); ++i) {
       sums.push_back(totals.total(i));
       const StrideCell& sum = sums.back();
       const double translations = sum.motions.weight;
       strides.push_back(blocks.strides()[i].stride);
-      motions.push_back(sum.motions.count < least_motions ? 0 : translations);
-      turns.push_back(
-          sum.motions.count + sum.rotations.count < least_motions ? 0 : translations + sum.rotations.weight);
+      motions.push_back(sum.motions.count < options.least_motions ? 0 : translations);
+      turns.push_back(sum.motions.count + sum.rotations.count < options.least_motions
+                          ? 0
+                          : translations + sum.rotations.weight);
     }
     std::size_t last = 0;
     for (std::size_t i = 0; i < strides.size(); ++i)
@@ -101,8 +85,8 @@ Residuals residuals(const Ladder& ladder, const DualQuaternion& q) {
     const Eigen::Matrix4d turns =
         motions.bottomRightCorner<4, 4>() + ladder.sums[i].rotations.dual_rows.bottomRightCorner<4, 4>();
     const double n_turns = std::max(1.0, ladder.turns[i]), n_motions = std::max(1.0, ladder.motions[i]);
-    result.rotation.push_back(std::max(least_variance, q.real.dot(turns * q.real) / n_turns));
-    result.translation.push_back(std::max(least_variance, v.dot(motions * v) / n_motions));
+    result.rotation.push_back(std::max(ladder.options.least_variance, q.real.dot(turns * q.real) / n_turns));
+    result.translation.push_back(std::max(ladder.options.least_variance, v.dot(motions * v) / n_motions));
   }
   return result;
 }
@@ -112,8 +96,10 @@ Residuals residuals(const Ladder& ladder, const DualQuaternion& q) {
 double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
                      const std::vector<double>& counts) {
   double best = std::numeric_limits<double>::infinity(), lambda = 0;
-  for (int k = 0; k <= grid; ++k) {
-    const double growth = least_growth * std::pow(most_growth / least_growth, static_cast<double>(k) / grid);
+  const ResidualWeightOptions& o = ladder.options;
+  for (int k = 0; k <= o.grid; ++k) {
+    const double growth =
+        o.least_growth * std::pow(o.most_growth / o.least_growth, static_cast<double>(k) / o.grid);
     double total = 0, mean = 0, squares = 0;
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       const double count = counts[i] / ladder.strides[i];  // independent ones
@@ -138,7 +124,7 @@ std::vector<double> shape(const Ladder& ladder, double lambda, const std::vector
   std::vector<double> weights;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     const double part = std::pow(lambda, ladder.strides[i] - 1);
-    weights.push_back(counts[i] > 0 && part > negligible_part ? ladder.width[i] * part : 0);
+    weights.push_back(counts[i] > 0 && part > ladder.options.negligible_part ? ladder.width[i] * part : 0);
   }
   return weights;
 }
@@ -166,7 +152,8 @@ StrideWeights balanced(const Ladder& ladder, StrideWeights shapes, const Residua
   const auto [lengths, turns] = ladder.squared_size();
   double ratio = rotation > 0 && translation > 0 ? translation / rotation : 1;
   if (lengths > 0 && turns > 0)
-    ratio = std::clamp(ratio, lengths / turns / most_imbalance, lengths / turns * most_imbalance);
+    ratio = std::clamp(ratio, lengths / turns / ladder.options.most_imbalance,
+                       lengths / turns * ladder.options.most_imbalance);
   for (double& weight : shapes.rotation) weight *= n_turns > 0 ? ratio / n_turns : 0;
   for (double& weight : shapes.translation) weight *= n_motions > 0 ? 1 / n_motions : 0;
   return shapes;
@@ -190,11 +177,14 @@ WeightChoice completed(const Ladder& ladder, StrideWeights weights, const DualQu
 std::optional<WeightChoice> residual_weights(const Ladder& ladder, Mode mode) {
   const auto [lengths, turns] = ladder.squared_size();
   if (!(lengths > 0) || !(ladder.motions.front() > 0)) return std::nullopt;
-  StrideWeights weights{shape(ladder, 0.5, ladder.turns), shape(ladder, 0.5, ladder.motions)};
+  const ResidualWeightOptions& options = ladder.options;
+  StrideWeights weights{shape(ladder, options.first_lambda, ladder.turns),
+                        shape(ladder, options.first_lambda, ladder.motions)};
   weights = balanced(ladder, std::move(weights),
-                     {std::vector<double>(ladder.size(), 1e-4), std::vector<double>(ladder.size(), 1e-2)});
+                     {std::vector<double>(ladder.size(), options.first_rotation),
+                      std::vector<double>(ladder.size(), options.first_translation)});
   DualQuaternion q = minimiser(weighted_sum(ladder, weights), mode);
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < options.rounds; ++round) {
     const Residuals residual = residuals(ladder, q);
     weights = {shape(ladder, fitted_lambda(ladder, residual.rotation, ladder.turns), ladder.turns),
                shape(ladder, fitted_lambda(ladder, residual.translation, ladder.motions), ladder.motions)};
@@ -207,7 +197,7 @@ std::optional<WeightChoice> residual_weights(const Ladder& ladder, Mode mode) {
 WeightChoice with_memory(const Ladder& ladder, Mode mode, double memory, DualQuaternion q) {
   const double lambda = std::exp(-1 / memory);
   StrideWeights weights;
-  for (int round = 0; round < later_rounds; ++round) {
+  for (int round = 0; round < ladder.options.later_rounds; ++round) {
     weights = balanced(ladder, {shape(ladder, lambda, ladder.turns), shape(ladder, lambda, ladder.motions)},
                        residuals(ladder, q));
     q = minimiser(weighted_sum(ladder, weights), mode);
@@ -227,12 +217,13 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
 
 class Trials {
  public:
-  Trials(const TouchingSums& sums, const Problem& problem) : sums_(sums), problem_(problem) {}
+  Trials(const TouchingSums& sums, const Problem& problem, std::size_t least_blocks)
+      : sums_(sums), problem_(problem), least_blocks_(least_blocks) {}
 
   /// False where the blocks are too few for a spread.
   bool set(const StrideWeights& weights) {
     sums_.weighted(weights).fill(problem_);
-    return problem_.blocks.size() >= detail::least_spread_blocks;
+    return problem_.blocks.size() >= least_blocks_;
   }
   Seen seen() const { return detail::seen_directions(problem_); }
   SpreadByPoses spread(const Seen& seen) const { return spread_by_poses(problem_, seen); }
@@ -240,16 +231,19 @@ class Trials {
  private:
   const TouchingSums& sums_;
   Problem problem_;
+  std::size_t least_blocks_;
 };
 
 /// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be.
-bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, const Seen& seen, double sigmas) {
+bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, const Seen& seen,
+           const WeightingOptions& options) {
   const auto difference = detail::frame_a_difference(single.T_a_b, sum.T_a_b);
   double translation = 0, rotation = 0;
   for (std::size_t i = 0; i < 6; ++i)
     if (seen[i]) (i < 3 ? translation : rotation) += std::pow(difference[static_cast<Eigen::Index>(i)], 2);
-  return std::sqrt(translation) <= sigmas * single.translation + least_translation_spread &&
-         std::sqrt(rotation) <= sigmas * single.rotation + least_rotation_spread;
+  return std::sqrt(translation) <=
+             options.agreement * single.translation + options.residuals.least_translation_spread &&
+         std::sqrt(rotation) <= options.agreement * single.rotation + options.residuals.least_rotation_spread;
 }
 
 /// The part of the neighbouring steps' weight that was taken off as their residuals are far from typical.
@@ -262,9 +256,9 @@ double weight_taken_off(const Ladder& ladder) {
 bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, const Ladder& ladder,
            Trials& trials, const Seen& seen, const WeightingOptions& options) {
   std::optional<SpreadByPoses> own;  // the rival as it is, in its own blocks
-  if (rival.problem.blocks.size() >= detail::least_spread_blocks) own = spread_by_poses(rival.problem, seen);
+  if (rival.problem.blocks.size() >= options.least_blocks) own = spread_by_poses(rival.problem, seen);
   const auto place = std::find(ladder.strides.begin(), ladder.strides.end(), rival.stride);
-  if (place == ladder.strides.end() || (own && !agree(sum, *own, seen, options.agreement))) return false;
+  if (place == ladder.strides.end() || (own && !agree(sum, *own, seen, options))) return false;
   if (own && std::isfinite(own->score) && weight_taken_off(ladder) > options.taken_off &&
       own->score - sum.score >= (in_force ? 0 : options.clearly_unpaired))
     return true;
@@ -277,7 +271,9 @@ bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, c
   const SpreadByPoses single = trials.spread(seen);
   if (!std::isfinite(single.score)) return true;
   if (single.influence.size() != sum.influence.size()) return false;
-  if (single.rotation < least_rotation_spread && single.translation < least_translation_spread) return false;
+  if (single.rotation < options.residuals.least_rotation_spread &&
+      single.translation < options.residuals.least_translation_spread)
+    return false;
   const double gain = single.score - sum.score;
   if (in_force) return gain > 0;
   return gain >= std::max(options.clearly, options.single_evidence * standard_error(single, sum));
@@ -285,8 +281,9 @@ bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, c
 
 }  // namespace
 
-std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode) {
-  return residual_weights(Ladder(blocks, blocks), mode);
+std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode,
+                                             const ResidualWeightOptions& options) {
+  return residual_weights(Ladder(blocks, blocks, options), mode);
 }
 
 std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Problem& problem,
@@ -294,7 +291,7 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Pro
                                            const std::optional<SingleStride>& rival,
                                            const WeightingOptions& options) {
   const TouchingSums sums(blocks);
-  const Ladder ladder(blocks, sums);
+  const Ladder ladder(blocks, sums, options.residuals);
   std::optional<WeightChoice> best = residual_weights(ladder, problem.mode);
   if (!best) return std::nullopt;
   std::vector<WeightChoice> others;
@@ -302,7 +299,7 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Pro
     others.push_back(with_memory(ladder, problem.mode, memory, best->q));
 
   // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights
-  Trials trials(sums, problem);
+  Trials trials(sums, problem, options.least_blocks);
   Seen seen{};
   if (!others.empty() && trials.set(others.back().weights)) seen = trials.seen();
   if (!trials.set(best->weights)) return std::nullopt;

@@ -2,25 +2,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/evaluation/alignment.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "egocal/error.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal {
 
 namespace {
-
-constexpr std::int64_t largest_gap_us = 500'000;  // as between the poses of a pairing
 
 /// The same instant seen by both sensors.
 struct Instant {
   Pose a, b_as_a;  ///< T_world_a_a; T_world_b_a
 };
 
-std::vector<Instant> common_instants(const Trajectory& a, const Trajectory& b_as_a) {
+std::vector<Instant> common_instants(const Trajectory& a, const Trajectory& b_as_a,
+                                     const AlignmentOptions& options) {
+  const std::int64_t largest_gap_us = std::llround(1e6 * options.max_gap);
   std::vector<Instant> instants;
   std::size_t after = 0;
   for (const StampedPose& pose : b_as_a) {
@@ -40,14 +41,15 @@ std::vector<Instant> common_instants(const Trajectory& a, const Trajectory& b_as
 
 }  // namespace
 
-Alignment align(const Trajectory& a, const Trajectory& b, const Pose& T_a_b, double time_offset) {
+Alignment align(const Trajectory& a, const Trajectory& b, const Pose& T_a_b, double time_offset,
+                const AlignmentOptions& options) {
   Alignment alignment;
   const DualQuaternion T_b_a = to_dual_quaternion(inverse(T_a_b));
   const std::int64_t offset_us = std::llround(time_offset * 1e6);
   alignment.b_as_a.reserve(b.size());
   for (const StampedPose& pose : b)
     alignment.b_as_a.push_back({pose.time_us + offset_us, normalized(pose.pose * T_b_a)});
-  const std::vector<Instant> instants = common_instants(a, alignment.b_as_a);
+  const std::vector<Instant> instants = common_instants(a, alignment.b_as_a, options);
   alignment.compared = instants.size();
   if (instants.empty()) throw Error("align: the two trajectories do not overlap in time");
 
@@ -56,9 +58,9 @@ Alignment align(const Trajectory& a, const Trajectory& b, const Pose& T_a_b, dou
     const Eigen::Vector4d q = (at.a.rotation * at.b_as_a.rotation.conjugate()).coeffs();
     sum += q * q.transpose();
   }
-  const detail::SymmetricEigen<4> eigen = detail::symmetric_eigen<4>(sum);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
   Pose& T = alignment.T_world_a_world_b;
-  T.rotation.coeffs() = eigen.vectors.col(3);
+  T.rotation.coeffs() = solver.eigenvectors().col(3);
   if (T.rotation.w() < 0) T.rotation.coeffs() *= -1;
   T.rotation.normalize();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -12,7 +12,7 @@ void append_number(std::string& text, double value) {
 }
 
 void append_seconds(std::string& text, std::int64_t time_us) {
-  constexpr std::uint64_t second_us = 1'000'000;
+  constexpr std::uint64_t second_us = 1'000'000;  // unit
   if (time_us < 0) text += '-';
   const std::uint64_t magnitude =
       time_us < 0 ? 0 - static_cast<std::uint64_t>(time_us) : static_cast<std::uint64_t>(time_us);

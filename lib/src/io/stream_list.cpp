@@ -17,7 +17,7 @@ std::string printable(const std::string& text) {
 }
 
 std::string topics_in_words(const std::vector<RecordedStream>& streams) {
-  constexpr std::size_t longest = 500;
+  constexpr std::size_t longest = 500;  // bytes of a message
   std::string text;
   std::size_t poses = 0, left_away = 0, others = 0;
   for (const RecordedStream& stream : streams) {

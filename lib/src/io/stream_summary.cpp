@@ -9,7 +9,7 @@ namespace egocal {
 
 namespace {
 
-constexpr std::size_t kept_steps = 4096;
+constexpr std::size_t kept_steps = 4096;  // a limit on memory: the median of these is known to 2 %
 
 double median(std::vector<float> values) {
   if (values.empty()) return 0;

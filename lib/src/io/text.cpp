@@ -24,7 +24,7 @@ bool blank(char c) {
 }  // namespace
 
 std::string quoted(std::string_view text) {
-  constexpr std::size_t most = 40;
+  constexpr std::size_t most = 40;  // bytes of a message
   std::string out = "'" + std::string(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
   std::replace_if(
       out.begin(), out.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t buffer_size = 1 << 16;
-constexpr int most_links = 40;  // as the kernel follows
-constexpr int most_temporaries = 1000;
+constexpr std::size_t buffer_size = 1 << 16;  // [bytes]
+constexpr int most_links = 40;                // as the kernel follows
+constexpr int most_temporaries = 1000;        // a limit: names that are tried
 constexpr std::string_view temporary_suffix = ".part";
 
 bool write_all(int fd, std::span<const std::byte> bytes) {

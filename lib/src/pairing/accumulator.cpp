@@ -8,22 +8,23 @@
 #include <numbers>
 #include <utility>
 
-#include "egocal/pairing/selection.hpp"
 #include "pairing/motions_between.hpp"
 
 namespace egocal {
 
-Accumulator::Accumulator(const PairingOptions& options) : Accumulator(options, AccumulatorState{}) {
+Accumulator::Accumulator(const PairingOptions& options, const EstimationOptions& tuning)
+    : Accumulator(options, AccumulatorState{}, tuning) {
   state_.choice.stride = options_.stride.value_or(1);
   state_.choice.balance = options_.balance.value_or(Balance{});
   state_.choice.reason = options_.stride && options_.balance ? "fixed" : "too few motions to choose yet";
   state_.next_choice = options_.accumulator.first_choice;
-  if (options_.robust && !options_.stride && !options_.balance) sums_.emplace(options_);
+  if (options_.robust && !options_.stride && !options_.balance) sums_.emplace(options_, tuning_.sums);
 }
 
-Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state)
-    : options_(options), state_(std::move(state)) {
-  if (state_.sums) sums_.emplace(options_, StrideSumsOptions{}, *std::exchange(state_.sums, std::nullopt));
+Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state,
+                         const EstimationOptions& tuning)
+    : options_(options), tuning_(tuning), state_(std::move(state)) {
+  if (state_.sums) sums_.emplace(options_, tuning_.sums, *std::exchange(state_.sums, std::nullopt));
   if (options_.mode == Mode::planar) {
     G_a_ = plane_frame(options_.plane_a);
     G_b_ = plane_frame(options_.plane_b);
@@ -48,7 +49,7 @@ void Accumulator::restart() {
   state_.instants.clear();
   state_.rejections = {};
   if (!sums_) return;
-  sums_.emplace(options_);
+  sums_.emplace(options_, tuning_.sums);
   sums_->begin(state_.period_us);
 }
 
@@ -71,13 +72,14 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
                chosen ? state_.rejections : not_counted);
     if (!pair) continue;
     if (options_.robust)
-      entry.statistics.add(*pair, problem, entry.stride);
+      entry.statistics.add(*pair, problem, entry.stride, tuning_.robust);
     else
       entry.statistics.add_unjudged(*pair);
     if (!chosen) continue;
     pairs.push_back(*pair);
     doubtful = entry.statistics.disagreed();
-    if (options_.robust && entry.statistics.look_is_due()) entry.statistics.look(problem, entry.stride);
+    if (options_.robust && entry.statistics.look_is_due())
+      entry.statistics.look(problem, entry.stride, tuning_.robust);
   }
   if (options_.robust && !(options_.stride && options_.balance)) {
     // A look for outliers costs as much as a hundred poses: those that the choice needs are spread over the
@@ -86,12 +88,12 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     for (std::size_t i = 0; i < state_.strides.size(); ++i) {
       const std::uint64_t due = newest_look - std::min<std::uint64_t>(newest_look, i);
       if (before < due && due <= instant.number)
-        state_.strides[i].statistics.look(problem, state_.strides[i].stride);
+        state_.strides[i].statistics.look(problem, state_.strides[i].stride, tuning_.robust);
     }
   }
   if (instant.number >= state_.next_choice) {
     choose();
-    state_.next_choice = instant.number + instant.number / 4;
+    state_.next_choice = instant.number + instant.number / tuning_.choice_part;
   }
   if (sums_) {
     sums_->add(instant, doubtful);
@@ -137,7 +139,8 @@ void Accumulator::choose() {
       if (options_.balance) break;
     }
   }
-  const std::optional<Selection> selection = select_candidate(problem, candidates, current);
+  const std::optional<Selection> selection =
+      select_candidate(problem, candidates, current, tuning_.selection);
   if (!selection) return;
   const Candidate& chosen = candidates[selection->index];
   state_.choice.stride = chosen.stride;

@@ -37,16 +37,15 @@ Difference difference(const DualQuaternion& a, const DualQuaternion& b, const Co
 }
 
 /// Of a normal distribution: its standard deviation by the lower quartile and by the median of absolute
-/// values.
+/// values (mathematics, not tuning).
 constexpr double deviations_per_quartile = 3.1386, deviations_per_median = 1.4826;
-/// A deviation is expected within these multiples of one that is known already.
-constexpr double lower = 0.7, upper = 1.4;
-
 /// Standard deviation of most of the values (absolute ones). It begins with a lower quartile: where a fifth
 /// of the poses is wrong, more than a third of the motions are, and nearly two thirds of interpolated ones.
 /// Then the median of what is near.
 /// before: what it was the last time, to find it faster.
-double robust_deviation(std::span<const double> values, double before) {
+double robust_deviation(std::span<const double> values, double before,
+                        const detail::ExpectedOptions& expected = {}) {
+  const double lower = expected.lower, upper = expected.upper;
   const detail::Expected quartile{lower * before / deviations_per_quartile,
                                   upper * before / deviations_per_quartile};
   double deviation = deviations_per_quartile * detail::order_statistic(values, values.size() / 4, quartile);

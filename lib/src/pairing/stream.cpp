@@ -14,6 +14,7 @@ namespace egocal {
 
 namespace {
 
+// format: after the message behind the gap came twice the player has no older one (docs/processes.md)
 constexpr std::int32_t repeats_of_nothing = 2;
 constexpr std::int64_t no_time = std::numeric_limits<std::int64_t>::min();
 
@@ -200,9 +201,7 @@ std::vector<NumberedPose> Stream::take_candidates() {
 void Stream::settle() {
   state_.settling = !state_.next_seq;
   state_.gap_repeats = 0;
-  // not acknowledged yet: they come again, in order
-  state_.counts.duplicate += static_cast<std::int64_t>(state_.held.size());
-  state_.held.clear();
+  state_.held.clear();  // not acknowledged yet: they come again, in order
 }
 
 std::vector<NumberedPose> Stream::settled() {

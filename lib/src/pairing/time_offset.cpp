@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-constexpr double second_us = 1e6;
+constexpr double second_us = 1e6;  // unit
 /// Offset of one part of the drive.
 struct WindowOffset {
   double time = 0;    ///< of its middle [s since the begin of b]

@@ -13,34 +13,11 @@ namespace egocal {
 
 namespace {
 
-constexpr std::size_t least_parts = 16;
-/// A part is an outlier when its mean squared residual is this many times the typical one, by both scales.
-/// Real odometry has heavy tails that belong to it; what is grossly wrong is wrong by the size of the motion.
-/// The mean of many is steadier than one.
-double limit(std::uint64_t motions) {
-  constexpr double of_many = 6, of_one = 200;
-  return of_many + (of_one - of_many) / static_cast<double>(motions);
+/// Of the excess of a part over the typical residual.
+double limit(std::uint64_t motions, const ConsensusOptions& options) {
+  return options.limit_of_many +
+         (options.limit_of_one - options.limit_of_many) / static_cast<double>(motions);
 }
-/// Nothing better than a hundredth of the motion is expected of odometry, squared.
-constexpr double least_relative = 1e-4;
-/// Residuals smaller than this part of the motion are rounding.
-constexpr double rounding = 1e-9;
-/// Starting points besides the contiguous ones, and how many of all are followed to their end.
-constexpr std::size_t draws_of_pieces = 16, draws_of_parts = 32, most_settled = 8;
-/// A fit to three hundredths of the motion (squared) with parts no further off than this needs no further
-/// search.
-constexpr double good_fit = 1e-3, unsuspicious = 6;
-/// A run of motions may fit well enough and yet come from another extrinsic (two axes exchanged on a straight
-/// road): then it would gain far more than others by an extrinsic of its own. Of single runs of real drives
-/// up to 25 times the typical gain, all others below 10; of such a stretch 10 to 60.
-constexpr double most_gain = 10;
-/// Shorter runs of independent motions fit anything by themselves.
-constexpr double least_run = 16;
-/// Less is nothing to compare with [squared residuals of one motion].
-constexpr double least_gain = 1;
-/// So much of the motion must agree; the scale is doubled so often until it does.
-constexpr double majority = 0.55;
-constexpr int most_relaxed = 8;
 
 /// Mean squared size of a part's motions in the metric of the cost (16): what a wrong extrinsic of the same
 /// scale costs.
@@ -72,17 +49,20 @@ double weighted_median(std::vector<std::pair<double, double>> values_weights) {
   return 0;
 }
 
-double excess(double residual, double size, const ResidualScale& scale) {
-  return std::min(residual / scale.absolute, residual / (size * std::max(scale.relative, least_relative)));
+double excess(double residual, double size, const ResidualScale& scale, const ConsensusOptions& options) {
+  return std::min(residual / scale.absolute,
+                  residual / (size * std::max(scale.relative, options.least_relative)));
 }
 
 class Search {
  public:
-  Search(const Problem& problem, std::span<const Statistics> statistics, int overlap)
-      : mode_(problem.mode), overlap_(overlap) {
+  Search(const Problem& problem, std::span<const Statistics> statistics, int overlap,
+         const ConsensusOptions& options)
+      : options_(options), mode_(problem.mode), overlap_(overlap) {
     for (const Statistics& part : statistics) {
       const Matrix8d Q = cost_matrix(part, problem.balance);
-      parts_.push_back({Q, part.weight, static_cast<double>(part.count), squared_size(Q), limit(part.count)});
+      parts_.push_back(
+          {Q, part.weight, static_cast<double>(part.count), squared_size(Q), limit(part.count, options)});
       all_ += part.weight * parts_.back().size;
     }
   }
@@ -115,12 +95,13 @@ class Search {
       absolute.emplace_back(fit.residuals[i], motion);
       relative.emplace_back(fit.residuals[i] / parts_[i].size, motion);
     }
-    return {std::max(weighted_median(std::move(absolute)), rounding * rounding * all_ / weight),
-            std::max(weighted_median(std::move(relative)), rounding * rounding)};
+    const double least = options_.rounding * options_.rounding;
+    return {std::max(weighted_median(std::move(absolute)), least * all_ / weight),
+            std::max(weighted_median(std::move(relative)), least)};
   }
 
   double excess_of(const Fit& fit, std::size_t i, const ResidualScale& scale) const {
-    return parts_[i].size > 0 ? excess(fit.residuals[i], parts_[i].size, scale) : 0;
+    return parts_[i].size > 0 ? excess(fit.residuals[i], parts_[i].size, scale, options_) : 0;
   }
 
   double largest_excess(const Fit& fit, const ResidualScale& scale) const {
@@ -178,13 +159,13 @@ class Search {
     return fit;
   }
 
-  /// Leaves out the run that would gain most by an extrinsic of its own, again and again, as long as one
-  /// would gain far more than others do and a majority stays.
+  /// Drops the run that would gain most by an extrinsic of its own, repeatedly, as long as one would gain far
+  /// more than others do and a majority stays.
   Fit without_dissenters(Fit fit, std::vector<double>& factors) const {
     const std::vector<Alone> alone = fit_alone();
     while (const std::optional<std::size_t> i = dissenter(fit, alone, factors)) {
       const double rest = motion_of(factors) - parts_[*i].weight * parts_[*i].size;
-      if (rest < majority * motion()) break;
+      if (rest < options_.majority * motion()) break;
       factors[*i] = 0;
       fit = this->fit(factors);
     }
@@ -211,7 +192,7 @@ class Search {
     double noise = 0;     ///< at least what is typical: a short run may fit by chance
   };
 
-  bool is_run(const Part& part) const { return part.count >= least_run * overlap_ && part.size > 0; }
+  bool is_run(const Part& part) const { return part.count >= options_.least_run * overlap_ && part.size > 0; }
 
   std::vector<Alone> fit_alone() const {
     std::vector<Alone> alone;
@@ -224,10 +205,11 @@ class Search {
       relative.emplace_back(one.residual / part.size, part.weight);
     }
     const double typical = weighted_median(std::move(absolute));
-    const double typical_relative = std::max(weighted_median(std::move(relative)), rounding * rounding);
+    const double least = options_.rounding * options_.rounding;
+    const double typical_relative = std::max(weighted_median(std::move(relative)), least);
     for (std::size_t i = 0; i < parts_.size(); ++i)
-      alone[i].noise = std::max({alone[i].residual, std::min(typical, typical_relative * parts_[i].size),
-                                 rounding * rounding * parts_[i].size});
+      alone[i].noise = std::max(
+          {alone[i].residual, std::min(typical, typical_relative * parts_[i].size), least * parts_[i].size});
     return alone;
   }
 
@@ -247,11 +229,12 @@ class Search {
         most = i;
       }
     }
-    if (gains.size() < least_parts) return std::nullopt;
-    const double typical = std::max(weighted_median(std::move(gains)), least_gain);
-    return most_found > most_gain * typical ? std::optional(most) : std::nullopt;
+    if (gains.size() < options_.least_parts) return std::nullopt;
+    const double typical = std::max(weighted_median(std::move(gains)), options_.least_gain);
+    return most_found > options_.most_gain * typical ? std::optional(most) : std::nullopt;
   }
 
+  const ConsensusOptions& options_;
   Mode mode_;
   int overlap_;
   std::vector<Part> parts_;
@@ -274,14 +257,14 @@ void fit_pieces(const Search& search, std::size_t pieces, std::vector<Fit>& fits
 
 /// Fits of three sixteenths drawn together (a piece may be free of what is wrong and yet too short to show
 /// every direction), and of four parts (what is wrong may be everywhere).
-void fit_draws(const Search& search, std::vector<Fit>& fits) {
+void fit_draws(const Search& search, const ConsensusOptions& options, std::vector<Fit>& fits) {
   const std::size_t n = search.size();
   std::uint64_t drawn = 1;
   const auto draw = [&](std::size_t below) {
     drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
     return static_cast<std::size_t>((drawn >> 33) % below);
   };
-  for (std::size_t i = 0; i < draws_of_pieces; ++i) {
+  for (std::size_t i = 0; i < options.draws_of_pieces; ++i) {
     std::vector<double> factors(n, 0.0);
     for (int piece = 0; piece < 3; ++piece) {
       const std::size_t k = draw(16);
@@ -290,7 +273,7 @@ void fit_draws(const Search& search, std::vector<Fit>& fits) {
     }
     fits.push_back(search.fit(factors));
   }
-  for (std::size_t i = 0; i < draws_of_parts; ++i) {
+  for (std::size_t i = 0; i < options.draws_of_parts; ++i) {
     std::vector<double> factors(n, 0.0);
     for (int part = 0; part < 4; ++part) factors[draw(n)] = 1;
     fits.push_back(search.fit(factors));
@@ -304,9 +287,9 @@ double product(const ResidualScale& scale) {
 }  // namespace
 
 std::optional<Consensus> find_consensus(const Problem& problem, std::span<const Statistics> parts,
-                                        int overlap) {
-  if (parts.size() < least_parts) return std::nullopt;
-  const Search search(problem, parts, overlap);
+                                        int overlap, const ConsensusOptions& options) {
+  if (parts.size() < options.least_parts) return std::nullopt;
+  const Search search(problem, parts, overlap, options);
   if (!(search.motion() > 0)) return std::nullopt;
 
   std::vector<Fit> starts;
@@ -320,11 +303,12 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   for (const Fit& start : starts) tighten(start);
   // Mostly nothing is wrong: where the fit of the whole is good, and nowhere worse than noise explains, it is
   // all there is to find. (Gross errors of many parts spoil it for all; those of few stand out.)
-  if (scale.relative < good_fit && search.largest_excess(starts.front(), scale) < unsuspicious)
+  if (scale.relative < options.good_fit &&
+      search.largest_excess(starts.front(), scale) < options.unsuspicious)
     return search.consensus(std::move(starts.front()), scale, std::vector<double>(parts.size(), 1.0));
 
   for (const std::size_t pieces : {8u, 16u}) fit_pieces(search, pieces, starts);
-  fit_draws(search, starts);
+  fit_draws(search, options, starts);
   for (const Fit& start : starts) tighten(start);
   starts.push_back(search.graduated(starts.front(), scale));
   tighten(starts.back());
@@ -336,7 +320,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
       order.emplace_back(search.truncated_cost(starts[i], scale), i);
     std::sort(order.begin(), order.end());
     double least = search.truncated_cost(best, scale);
-    for (std::size_t i = 0; i < std::min(order.size(), most_settled); ++i) {
+    for (std::size_t i = 0; i < std::min(order.size(), options.most_settled); ++i) {
       Fit here = search.settled(starts[order[i].second], scale);
       const double cost = search.truncated_cost(here, scale);
       if (cost < least) {
@@ -349,23 +333,26 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   // the tightest fit may have been tight by chance, on less than a majority
   best = search.settled(std::move(best), scale);
   std::vector<double> factors = search.agreeing(best, scale);
-  for (int i = 0; i < most_relaxed && search.motion_of(factors) < majority * search.motion(); ++i) {
+  const double majority = options.majority * search.motion();
+  for (int i = 0; i < options.most_relaxed && search.motion_of(factors) < majority; ++i) {
     scale.absolute *= 2;
     scale.relative *= 2;
     best = search.settled(std::move(best), scale);
     factors = search.agreeing(best, scale);
   }
-  if (search.motion_of(factors) < majority * search.motion()) return std::nullopt;
+  if (search.motion_of(factors) < majority) return std::nullopt;
   return search.consensus(std::move(best), scale, std::move(factors));
 }
 
-double detail::residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale) {
+double detail::residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale,
+                              const ConsensusOptions& options) {
   const double size = squared_size(cost_matrix(part, balance));
-  return limit(part.count) * std::max(scale.absolute, size * std::max(scale.relative, least_relative));
+  return limit(part.count, options) *
+         std::max(scale.absolute, size * std::max(scale.relative, options.least_relative));
 }
 
 double detail::disagreement(const DualQuaternion& a, const DualQuaternion& b, const Balance& balance,
-                            const Agreement& agreement) {
+                            const Agreement& agreement, const ConsensusOptions& options) {
   const double sign_a = positive_sign(a), sign_b = positive_sign(b);
   const QuaternionDifference real(a.real, sign_a, b.real, sign_b), dual(a.dual, sign_a, b.dual, sign_b);
   const double rotation = real.squared_size();
@@ -374,14 +361,16 @@ double detail::disagreement(const DualQuaternion& a, const DualQuaternion& b, co
   const DualQuaternion& q = agreement.q;
   const double residual = balance.translation * (dual.times(q.real) + real.times(q.dual)).squaredNorm() +
                           balance.rotation * real.times(q.real).squaredNorm();
-  return excess(residual, size, agreement.scale) / limit(1);
+  return excess(residual, size, agreement.scale, options) / limit(1, options);
 }
 
-double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement) {
+double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement,
+                    const ConsensusOptions& options) {
   const Matrix8d Q = cost_matrix(part, balance);
   const double size = squared_size(Q);
   if (!(size > 0)) return 0;
-  return excess(std::max(0.0, cost(Q, agreement.q)), size, agreement.scale) / limit(part.count);
+  return excess(std::max(0.0, cost(Q, agreement.q)), size, agreement.scale, options) /
+         limit(part.count, options);
 }
 
 }  // namespace egocal

@@ -67,12 +67,13 @@ std::optional<OutlierProof> prove_outliers(const Problem& problem, std::span<con
                                            const std::vector<bool>& outlier, int overlap,
                                            const OutlierProofOptions& options) {
   if (problem.mode == Mode::planar || parts.size() != outlier.size()) return std::nullopt;
-  const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap);
+  const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap, options.consensus);
   if (!consensus) return std::nullopt;
   std::vector<TruncatedPart> truncated;
   for (const Statistics& part : parts)
-    truncated.push_back({part.weight * cost_matrix(part, problem.balance),
-                         part.weight * residual_limit(part, problem.balance, consensus->agreement.scale)});
+    truncated.push_back(
+        {part.weight * cost_matrix(part, problem.balance),
+         part.weight * residual_limit(part, problem.balance, consensus->agreement.scale, options.consensus)});
   return prove_outliers(truncated, outlier, options);
 }
 

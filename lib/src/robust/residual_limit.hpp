@@ -6,11 +6,12 @@
 
 namespace egocal::detail {
 
-/// The mean squared residual (16) above which find_consensus() leaves a part out.
-double residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale);
+/// The mean squared residual (16) above which a part is an outlier to find_consensus().
+double residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale,
+                      const ConsensusOptions& options = {});
 
 /// disagreement() of a single motion.
 double disagreement(const DualQuaternion& a, const DualQuaternion& b, const Balance& balance,
-                    const Agreement& agreement);
+                    const Agreement& agreement, const ConsensusOptions& options);
 
 }  // namespace egocal::detail

@@ -11,9 +11,6 @@ namespace egocal {
 
 namespace {
 
-/// The consensus is looked for anew after this many pairs in a row that disagree, and at every doubling.
-constexpr std::uint64_t suspicious_run = 4;
-
 Statistics of_one(const MotionPair& pair) {
   Statistics statistics;
   statistics.add(pair);
@@ -27,13 +24,14 @@ void RobustStatistics::add_unjudged(const MotionPair& pair) {
   state_.blocks.add(pair);
 }
 
-void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int overlap) {
+void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int overlap,
+                           const RobustOptions& options) {
   ++state_.given;
-  const bool disagrees =
-      state_.agreement && detail::disagreement(pair.a, pair.b, problem.balance, *state_.agreement) > 1;
+  const bool disagrees = state_.agreement && detail::disagreement(pair.a, pair.b, problem.balance,
+                                                                  *state_.agreement, options.consensus) > 1;
   if (disagrees) {
     state_.waiting.push_back(pair);
-    if (state_.waiting.size() > most_waiting) {
+    if (state_.waiting.size() > options.most_waiting) {
       state_.blocks.add(state_.waiting.front(), true);
       state_.waiting.pop_front();
     }
@@ -42,18 +40,19 @@ void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int o
     state_.blocks.add(pair);
     state_.in_a_row = 0;
   }
-  if (state_.in_a_row >= suspicious_run && std::has_single_bit(state_.in_a_row)) look(problem, overlap);
+  if (state_.in_a_row >= options.suspicious_run && std::has_single_bit(state_.in_a_row))
+    look(problem, overlap, options);
 }
 
-void RobustStatistics::look(const Problem& problem, int overlap) {
-  state_.next_look = state_.given + std::max<std::uint64_t>(1, state_.given / 8);
+void RobustStatistics::look(const Problem& problem, int overlap, const RobustOptions& options) {
+  state_.next_look = state_.given + std::max<std::uint64_t>(1, state_.given / options.look_part);
   const auto& blocks = state_.blocks.state().blocks;
   std::vector<Statistics> parts;
   parts.reserve(blocks.size() + state_.waiting.size());
   for (const BlockStatistics::Block& block : blocks) parts.push_back(block.statistics);
   for (const MotionPair& pair : state_.waiting) parts.push_back(of_one(pair));
-  const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap);
-  if (!consensus) return;  // what was agreed on before stands
+  const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap, options.consensus);
+  if (!consensus) return;  // what was agreed on before stays in force
   const std::vector<bool>& outlier = consensus->outlier;
   state_.agreement = consensus->agreement;
   const auto first_waiting = outlier.begin() + static_cast<std::ptrdiff_t>(blocks.size());

@@ -126,9 +126,8 @@ class Search {
       sum.rotation += squares.rotation;
       sum.translation += squares.translation;
     }
-    constexpr double nothing = 1e-24;
-    trimmed.size = std::log(sum.rotation + nothing) +
-                   std::log(sum.translation / (set_.length() * set_.length()) + nothing);
+    trimmed.size = std::log(sum.rotation + tuning_.nothing) +
+                   std::log(sum.translation / (set_.length() * set_.length()) + tuning_.nothing);
     trimmed.fit = std::move(fit);
     return trimmed;
   }
@@ -167,7 +166,7 @@ Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit
 
 /// How much larger the variance is by the median of all samples than by the chosen ones, which fit best.
 double underestimated(const SampleSet& set, const SampleFit& fit) {
-  constexpr double median_of_six = 5.348;  // chi-squared, rotation and position
+  constexpr double median_of_six = 5.348;  // mathematics: chi-squared, rotation and position
   std::vector<double> squares;
   for (std::size_t i = 0; i < set.size(); ++i) {
     squares.push_back(in_variances(set, i, fit));
@@ -180,7 +179,7 @@ double underestimated(const SampleSet& set, const SampleFit& fit) {
 /// Does noise explain the sample by its residual alone? A fit with it is no worse than this one.
 bool plainly_agrees(const SampleSet& set, const SampleFit& fit, std::size_t one,
                     const AgreeingOptions& tuning) {
-  constexpr double dof = 6;
+  constexpr double dof = 6;  // mathematics: of a pose
   if (!(fit.dof > 0) || !(fit.cost > 0)) return false;
   return f_exceeded(in_variances(set, one, fit) / dof / (fit.cost / fit.dof), dof, fit.dof) >
          tuning.unremarkable;
@@ -240,8 +239,8 @@ double turn(const DualQuaternion& from, const DualQuaternion& to) {
 /// Standard deviation of a rotation [rad] as the motions show it without any answer: their angles in a and in
 /// b are equal but for noise. From the fifth of the motions that agrees best, as half of them may have a
 /// wrong end.
-double congruent_noise(const SampleSet& set) {
-  constexpr double normal_fifth = 0.2533, least = 1e-10;
+double congruent_noise(const SampleSet& set, double least) {
+  constexpr double normal_fifth = 0.2533;  // mathematics: the fifth of absolute normal values
   std::vector<double> differences;
   const std::size_t n = set.size();
   for (const std::size_t step : {n / 2, n / 3})
@@ -260,7 +259,7 @@ bool beyond_doubt(const SampleSet& set, const Trimmed& trimmed, const AgreeingSa
   if (static_cast<double>(agreeing.chosen.size()) < tuning.most_samples * static_cast<double>(set.size()))
     return false;
   const SampleNoise& noise = agreeing.fit.noise;
-  return std::sqrt(noise.rotation) <= tuning.as_good * congruent_noise(set) &&
+  return std::sqrt(noise.rotation) <= tuning.as_good * congruent_noise(set, tuning.least_noise) &&
          trimmed.fit.noise.translation >= tuning.least_trimmed * noise.translation;
 }
 

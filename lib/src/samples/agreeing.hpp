@@ -36,6 +36,10 @@ struct AgreeingOptions {
   /// The noise of exact samples is that of rounding: their variance is not taken to be smaller than this part
   /// of it.
   double least_variance = 1e-3;
+  /// A noise of the rotations below this is rounding [rad].
+  double least_noise = 1e-10;
+  /// Added to sums of squares in parts of the length before their logarithm: (1e-12)^2, rounding.
+  double nothing = 1e-24;
 };
 
 /// Least trimmed squares over triples of samples, then samples are taken in again, best first, as long as

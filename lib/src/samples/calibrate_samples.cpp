@@ -24,9 +24,6 @@ namespace {
 
 using namespace detail;
 
-/// Motions that the fit is judged on, at most: its medians are good to a tenth. All pairs of 25 samples.
-constexpr std::size_t most_motions = 300;
-
 std::array<double, 16> numbers_of(const PoseSample& sample) {
   std::array<double, 16> numbers;
   const Vector8d a = sample.a.vec(), b = sample.b.vec();
@@ -56,11 +53,11 @@ void require_usable(std::span<const PoseSample> samples) {
 }
 
 /// Motions between samples, nearest neighbours of the order first.
-std::vector<MotionPair> motions_between(const std::vector<PoseSample>& samples) {
+std::vector<MotionPair> motions_between(const std::vector<PoseSample>& samples, std::size_t most) {
   std::vector<MotionPair> pairs;
   for (std::size_t step = 1; step < samples.size(); ++step)
     for (std::size_t i = 0; i + step < samples.size(); ++i) {
-      if (pairs.size() == most_motions) return pairs;
+      if (pairs.size() == most) return pairs;
       const PoseSample& from = samples[i];
       const PoseSample& to = samples[i + step];
       MotionPair pair;
@@ -132,9 +129,9 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
                           1,
                           0,
                           Platform::arm};
-  const Motions motions = motions_of(motions_between(samples), tolerances.motions);
+  const Motions motions = motions_of(motions_between(samples, options.most_motions), tolerances.motions);
   Diagnosis diagnosis;
-  diagnosis.fit = fit_at(motions, calibration.T_a_b, 0);
+  diagnosis.fit = fit_at(motions, calibration.T_a_b, 0, tolerances.motions);
   diagnosis.fit.tenths.clear();  // samples have no order in time
   Misfit misfit;
   misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
@@ -177,7 +174,8 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   // where the samples do not show a direction the answer is the one closest to the prior: so is the target
   agreeing.fit.Y = target_at(set, agreeing.chosen, agreeing.fit, answer.T_a_b);
   agreeing.fit.X = answer.T_a_b;
-  calibration.observability.stddev = spread_without_each(set, agreeing.chosen, agreeing.fit);
+  calibration.observability.stddev =
+      spread_without_each(set, agreeing.chosen, agreeing.fit, options.most_solved);
   for (std::size_t i = 0; i < 6; ++i)
     if (!calibration.observability.observable[i])
       calibration.observability.stddev[i] = std::numeric_limits<double>::infinity();

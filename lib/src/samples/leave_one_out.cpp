@@ -6,15 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-/// Up to here the answer without a sample is solved; beyond it is one Newton step away: what that misses is
-/// of second order in a step that is a thirtieth of the noise.
-constexpr std::size_t most_solved = 30;
 
 /// Differences of the answers without each sample from the one with all, in the frame of a.
 std::vector<Vector6d> solved(const SampleSet& set, const std::vector<std::size_t>& chosen,
@@ -69,7 +66,7 @@ std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_
     jacobians.push_back(J);
     residuals.push_back(r);
   }
-  constexpr double ridge = 1e-12;  // a direction that nothing shows is not reported
+  constexpr double ridge = 1e-12;  // rounding: a direction that nothing shows is not reported
   H.diagonal() *= 1 + ridge;
   std::vector<Vector6d> differences;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -84,11 +81,10 @@ std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_
 }  // namespace
 
 std::array<double, 6> spread_without_each(const SampleSet& set, const std::vector<std::size_t>& chosen,
-                                          const SampleFit& fit) {
+                                          const SampleFit& fit, std::size_t most_solved) {
   std::array<double, 6> spread;
   spread.fill(std::numeric_limits<double>::infinity());
-  // X and Y have twelve numbers, a sample six
-  constexpr double samples_worth = 2;
+  constexpr double samples_worth = 2;  // mathematics: X and Y have twelve numbers, a sample six
   const auto n = static_cast<double>(chosen.size());
   if (chosen.size() < 4) return spread;
   const std::vector<Vector6d> differences =
@@ -100,7 +96,7 @@ std::array<double, 6> spread_without_each(const SampleSet& set, const std::vecto
   Vector6d squares = Vector6d::Zero();
   for (const Vector6d& difference : differences) squares += (difference - mean).cwiseAbs2();
   const double dof = n - samples_worth;
-  const double student = 1 + 1.21 / dof;  // t(0.975) / 1.96, to a few hundredths from six degrees on
+  const double student = student_factor(dof);
   for (int i = 0; i < 6; ++i) spread[static_cast<std::size_t>(i)] = student * std::sqrt(squares[i] * dof / n);
   return spread;
 }

@@ -11,8 +11,8 @@ namespace egocal::detail {
 
 /// Standard deviations of X in sensor a's frame (x y z roll pitch yaw, [m, rad]) from the answers without
 /// each sample in turn. With Student's factor: 1.96 of them cover 95 %. Infinite where there are fewer than 4
-/// samples.
+/// samples. Up to most_solved samples each answer is solved for, beyond it is one Newton step.
 std::array<double, 6> spread_without_each(const SampleSet& set, const std::vector<std::size_t>& chosen,
-                                          const SampleFit& fit);
+                                          const SampleFit& fit, std::size_t most_solved);
 
 }  // namespace egocal::detail

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <numbers>
 #include <optional>
 
 #include "egocal/error.hpp"
@@ -13,16 +12,6 @@
 namespace egocal {
 
 namespace {
-
-/// Stamps belong together where they are nearer than this part of the typical distance between samples.
-constexpr double nearest_part = 0.25;
-/// Recordings with more poses are streams.
-constexpr std::size_t most_samples = 200;
-/// Still poses turn by more than this from one to the next, streams do not [rad].
-constexpr double large_turn = 8 * std::numbers::pi / 180;
-/// In a stream neighbours are much more alike than poses far apart; still poses come in any order, or at best
-/// in a scan. Drives of a pose a second have a tenth, sets of arms 0.4 and more.
-constexpr double unlike_a_stream = 0.3;
 
 std::int64_t typical_period_us(const Trajectory& trajectory) {
   std::vector<std::int64_t> periods;
@@ -51,9 +40,10 @@ void add(const Trajectory& a, const Trajectory& b, std::size_t i, std::size_t j,
   matched.rows_b.push_back(j);
 }
 
-MatchedSamples by_stamp(const Trajectory& a, const Trajectory& b) {
+MatchedSamples by_stamp(const Trajectory& a, const Trajectory& b, const MatchingOptions& options) {
   MatchedSamples matched;
-  const auto limit = nearest_part * static_cast<double>(std::min(typical_period_us(a), typical_period_us(b)));
+  const auto limit =
+      options.nearest_part * static_cast<double>(std::min(typical_period_us(a), typical_period_us(b)));
   for (std::size_t i = 0; i < a.size(); ++i) {
     const std::size_t j = nearest(b, a[i].time_us);
     if (nearest(a, b[j].time_us) != i) continue;
@@ -81,17 +71,17 @@ double median_turn(const Trajectory& trajectory, std::size_t apart) {
   return *middle;
 }
 
-bool turns_like_samples(const Trajectory& trajectory) {
+bool turns_like_samples(const Trajectory& trajectory, const MatchingOptions& options) {
   const double near = median_turn(trajectory, 1), far = median_turn(trajectory, trajectory.size() / 2);
-  return near > large_turn && near > unlike_a_stream * far;
+  return near > options.large_turn && near > options.unlike_a_stream * far;
 }
 
 }  // namespace
 
-MatchedSamples match_samples(const Trajectory& a, const Trajectory& b) {
+MatchedSamples match_samples(const Trajectory& a, const Trajectory& b, const MatchingOptions& options) {
   MatchedSamples matched;
   if (!a.empty() && !b.empty()) {
-    matched = by_stamp(a, b);
+    matched = by_stamp(a, b, options);
     if (matched.samples.size() < std::min(a.size(), b.size()) && a.size() == b.size())
       matched = row_by_row(a, b);
   }
@@ -103,9 +93,9 @@ MatchedSamples match_samples(const Trajectory& a, const Trajectory& b) {
   return matched;
 }
 
-bool look_like_samples(const Trajectory& a, const Trajectory& b) {
-  if (a.size() != b.size() || a.size() < 3 || a.size() > most_samples) return false;
-  return turns_like_samples(a) && turns_like_samples(b);
+bool look_like_samples(const Trajectory& a, const Trajectory& b, const MatchingOptions& options) {
+  if (a.size() != b.size() || a.size() < 3 || a.size() > options.most_samples) return false;
+  return turns_like_samples(a, options) && turns_like_samples(b, options);
 }
 
 }  // namespace egocal

@@ -11,7 +11,6 @@
 #include "diagnosis/reading.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/solvers/global.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal::detail {
@@ -34,7 +33,7 @@ std::vector<Alternative> alternatives() {
 }
 
 /// Variance of the rotations at the X that suits them best, whatever the positions [rad^2].
-double rotation_variance(std::span<const PoseSample> samples) {
+double rotation_variance(std::span<const PoseSample> samples, int rounds_of_signs) {
   std::vector<Eigen::Matrix4d> seen;
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (const PoseSample& sample : samples) {
@@ -46,11 +45,10 @@ double rotation_variance(std::span<const PoseSample> samples) {
   }
   const auto n = static_cast<double>(samples.size());
   double largest = 0;
-  constexpr int rounds_of_signs = 3;
   for (int round = 0; round < rounds_of_signs; ++round) {
-    const SymmetricEigen<4> eigen = symmetric_eigen<4>(sum.transpose() * sum / n);
-    largest = eigen.values[3];
-    const Eigen::Vector4d x = eigen.vectors.col(3), y = sum * x;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(sum.transpose() * sum / n);
+    largest = eigen.eigenvalues()[3];
+    const Eigen::Vector4d x = eigen.eigenvectors().col(3), y = sum * x;
     sum.setZero();
     for (Eigen::Matrix4d& one : seen) {
       if (y.dot(one * x) < 0) one = -one;
@@ -79,7 +77,8 @@ double improvement(const SampleFit& given, const SampleFit& other) {
 /// tell quaternions of another order in both lists: they exchange X and Y.
 bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given,
               const SampleReadingOptions& search) {
-  if (rotation_variance(few) > search.most_worse_rotation * given.noise.rotation) return true;
+  if (rotation_variance(few, search.rounds_of_signs) > search.most_worse_rotation * given.noise.rotation)
+    return true;
   std::vector<std::size_t> all(few.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   FitSettings settings;

@@ -2,24 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "samples/sample_fit.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "egocal/solvers/global.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-/// Residuals below this part of a radian, and of the length, are rounding.
-constexpr double rounding = 1e-12;
-/// Of sums of squares, which are differences of large numbers.
-constexpr double rounding_of_sums = 1e-7;
-/// The target has settled where it moves by less than this part of the length, the weights where their ratio
-/// changes by less than this part; on the way, and in the end.
-constexpr double settled_target = 1e-10, settled_weights = 1e-6, settled_on_the_way = 1e-2;
 
 Eigen::Vector3d position(const DualQuaternion& q) {
   return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
@@ -65,7 +57,7 @@ struct Determined {
   double by_rotations = 0, by_positions = 0;
 };
 Determined determined(const Statistics& statistics, const SampleNoise& noise, double length,
-                      const DualQuaternion& X) {
+                      const DualQuaternion& X, double shown) {
   const Matrix8d rotation = in_units_of(length, cost_matrix(statistics, {1 / noise.rotation, 0}));
   const Matrix8d position = in_units_of(length, cost_matrix(statistics, {0, 1 / noise.translation}));
   const Matrix86d T = tangent_basis(in_units_of(length, X));
@@ -73,14 +65,13 @@ Determined determined(const Statistics& statistics, const SampleNoise& noise, do
   const Matrix6d H = H_r + H_p;
   Vector6d scale;
   for (int i = 0; i < 6; ++i) scale[i] = H(i, i) > 0 ? 1 / std::sqrt(H(i, i)) : 0;
-  const SymmetricEigen<6> eigen = symmetric_eigen<6>(scale.asDiagonal() * H * scale.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scale.asDiagonal() * H * scale.asDiagonal());
   Determined result;
   for (int i = 0; i < 6; ++i) {
-    constexpr double shown = 1e-9;
-    if (!(eigen.values[i] > shown)) continue;
-    const Vector6d v = scale.asDiagonal() * eigen.vectors.col(i);
-    result.by_rotations += v.dot(H_r * v) / eigen.values[i];
-    result.by_positions += v.dot(H_p * v) / eigen.values[i];
+    if (!(eigen.eigenvalues()[i] > shown)) continue;
+    const Vector6d v = scale.asDiagonal() * eigen.eigenvectors().col(i);
+    result.by_rotations += v.dot(H_r * v) / eigen.eigenvalues()[i];
+    result.by_positions += v.dot(H_p * v) / eigen.eigenvalues()[i];
   }
   return result;
 }
@@ -91,12 +82,12 @@ struct SumOfSquares {
 };
 
 /// Variances from residuals. With few degrees of freedom their ratio is drawn towards length^2.
-SampleNoise noise_from(const SumOfSquares& squares, double length, double prior_log_ratio) {
-  const double least_r = rounding * rounding, least_t = least_r * length * length;
+SampleNoise noise_from(const SumOfSquares& squares, double length, const FitSettings& settings) {
+  const double least_r = settings.rounding * settings.rounding, least_t = least_r * length * length;
   const double dof_r = std::max(squares.dof_rotation, 0.5), dof_t = std::max(squares.dof_translation, 0.5);
   const double variance_r = std::max(squares.rotation / dof_r, least_r);
   const double variance_t = std::max(squares.translation / dof_t, least_t);
-  const double uncertain = 2 / dof_r + 2 / dof_t, prior = prior_log_ratio * prior_log_ratio;
+  const double uncertain = 2 / dof_r + 2 / dof_t, prior = settings.prior_log_ratio * settings.prior_log_ratio;
   const double away = std::log(variance_t / (variance_r * length * length));
   const double kept = away * prior / (prior + uncertain);
   // the ratio moves, the weighted mean of the logarithms stays
@@ -203,14 +194,15 @@ class Rounds {
     fit_.X = solve_dual(cost_matrix(fit_.statistics, balance_of(fit_.noise))).q;
     fit_.Y = exact ? mean_target(set_, chosen_, signs_, fit_.X) : sums_.mean_target(fit_.X);
     SumOfSquares squares = squares_of_forms(fit_.statistics, fit_.X);
-    const double n = static_cast<double>(chosen_.size()), least = n * rounding_of_sums * rounding_of_sums;
+    const double n = static_cast<double>(chosen_.size());
+    const double least = n * settings_.rounding_of_sums * settings_.rounding_of_sums;
     if (exact || squares.rotation < least || squares.translation < least * length * length)
       squares = squares_about_mean(set_, chosen_, signs_, origin_, fit_.X);
-    if (exact || !parts_) parts_ = determined(fit_.statistics, fit_.noise, length, fit_.X);
+    if (exact || !parts_) parts_ = determined(fit_.statistics, fit_.noise, length, fit_.X, settings_.shown);
     squares.dof_rotation = 3 * (n - 1) - parts_->by_rotations;
     squares.dof_translation = 3 * (n - 1) - parts_->by_positions;
     const SampleNoise before = fit_.noise;
-    if (!settings_.noise) fit_.noise = noise_from(squares, length, settings_.prior_log_ratio);
+    if (!settings_.noise) fit_.noise = noise_from(squares, length, settings_);
     fit_.cost = squares.rotation / fit_.noise.rotation + squares.translation / fit_.noise.translation;
     fit_.dof = squares.dof_rotation + squares.dof_translation;
     const double moved = (position(fit_.Y) - origin_).norm() / length;
@@ -222,8 +214,8 @@ class Rounds {
     signs_ = std::move(next);
     if (!same) sum();
     const bool on_the_way = settings_.precision == FitPrecision::on_the_way;
-    return same && moved < (on_the_way ? settled_on_the_way : settled_target) &&
-           reweighted < (on_the_way ? settled_on_the_way : settled_weights);
+    return same && moved < (on_the_way ? settings_.settled_on_the_way : settings_.settled_target) &&
+           reweighted < (on_the_way ? settings_.settled_on_the_way : settings_.settled_weights);
   }
 
   const SampleSet& set_;

@@ -79,6 +79,16 @@ struct FitSettings {
   /// Rounds of weights and of the target's position; both settle in three to six.
   int most_rounds = 20;
   FitPrecision precision = FitPrecision::exact;
+  /// Residuals below this part of a radian, and of the length, are rounding of one sample; of sums of squares
+  /// over all, which are differences of large numbers.
+  double rounding = 1e-12, rounding_of_sums = 1e-7;
+  /// The target has settled where it moves by less than this part of the length, the weights where their
+  /// ratio changes by less than this part; on the way, and in the end (tests/lib/test_samples.cpp: the order
+  /// of the samples changes no bit, their unit nothing beyond rounding).
+  double settled_target = 1e-10, settled_weights = 1e-6, settled_on_the_way = 1e-2;
+  /// Directions with less than this part of the curvature of the best one are not shown: far above the
+  /// rounding of the curvature, 1e-15, and far below what any noise leaves.
+  double shown = 1e-9;
 };
 
 /// Fits the chosen samples (indices, at least 2).

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egocal/problem/cost.hpp"
+#include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
@@ -33,24 +34,18 @@ Matrix8d combined(const ScaleStatistics& part, double s, double rotation, double
 
 }  // namespace
 
-double JointDerivatives::curvature() const {
+JointDerivatives::OverScale JointDerivatives::over_scale() const {
   const Eigen::Index n = hessian.rows() - 1;
   const Eigen::LDLT<Hessian> extrinsic(hessian.topLeftCorner(n, n));
-  if (extrinsic.info() != Eigen::Success || !extrinsic.isPositive()) return 0;
-  const Gradient mixed = hessian.col(n).head(n);
-  const double value = 2 * (hessian(n, n) - mixed.dot(extrinsic.solve(mixed)));
-  return std::isfinite(value) ? value : 0;
-}
-
-std::array<double, 6> JointDerivatives::sensitivity() const {
-  const Eigen::Index n = hessian.rows() - 1;
-  const Eigen::LDLT<Hessian> extrinsic(hessian.topLeftCorner(n, n));
-  std::array<double, 6> result{};
+  OverScale result;
   if (extrinsic.info() != Eigen::Success || !extrinsic.isPositive()) return result;
-  const Gradient x = -extrinsic.solve(hessian.col(n).head(n));
+  const Gradient mixed = hessian.col(n).head(n);
+  const Gradient x = extrinsic.solve(mixed);
+  const double curvature = 2 * (hessian(n, n) - mixed.dot(x));
+  if (std::isfinite(curvature)) result.curvature = curvature;
   if (!x.allFinite()) return result;
   for (Eigen::Index i = 0; i < n; ++i)
-    result[static_cast<std::size_t>(n == 3 ? planar[static_cast<std::size_t>(i)] : i)] = x[i];
+    result.sensitivity[static_cast<std::size_t>(n == 3 ? planar[static_cast<std::size_t>(i)] : i)] = -x[i];
   return result;
 }
 
@@ -93,8 +88,7 @@ JointDerivatives JointForm::of(const ScaleStatistics& part) const {
 }
 
 double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm& form,
-                       const JointDerivatives& all) {
-  constexpr std::size_t least_blocks = 6;
+                       const JointDerivatives& all, std::size_t least_blocks) {
   if (blocks.size() < least_blocks) return infinity;
   std::uint64_t pairs = 0;
   for (const ScaleStatistics& block : blocks) pairs += block.count;
@@ -116,8 +110,7 @@ double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm&
   for (std::size_t i = 0; i < pseudo.size(); ++i)
     variance += (pseudo[i] - mean) * (pseudo[i] - mean) / (weight[i] - 1);
   const double count = static_cast<double>(blocks.size());
-  const double student = 1 + 1.21 / (count - 1);
-  const double spread = student * std::sqrt(variance / count);
+  const double spread = student_factor(count - 1) * std::sqrt(variance / count);
   return std::isfinite(spread) ? spread : infinity;
 }
 

@@ -32,10 +32,12 @@ struct JointDerivatives {
   Gradient gradient;
   Hessian hessian;
 
-  /// Second derivative of min over the extrinsic of J, over u. 0 where it is not a minimum.
-  double curvature() const;
-  /// Change of the best extrinsic per change of u.
-  std::array<double, 6> sensitivity() const;
+  /// With the best extrinsic at each scale.
+  struct OverScale {
+    double curvature = 0;  ///< second derivative of J over u; 0 where the extrinsic is at no minimum
+    std::array<double, 6> sensitivity{};  ///< change of the extrinsic per change of u
+  };
+  OverScale over_scale() const;
 };
 
 /// Derivatives of the part of J that these statistics are; with those of all of them they add up.
@@ -51,9 +53,9 @@ class JointForm {
 };
 
 /// Standard deviation of u by the jack-knife over blocks of unequal length (delete-m_j, Busing et al. 1999),
-/// each left out by one Newton step over scale and extrinsic together, with Student's factor as for the
-/// extrinsic. Infinite where it is unknown. all: of(sum of the blocks).
+/// each dropped by one Newton step over scale and extrinsic together, with Student's factor as for the
+/// extrinsic. Infinite where it is unknown: also with fewer than least_blocks. all: of(sum of the blocks).
 double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm& form,
-                       const JointDerivatives& all);
+                       const JointDerivatives& all, std::size_t least_blocks);
 
 }  // namespace egocal::detail

@@ -12,11 +12,6 @@ namespace egocal {
 
 namespace {
 
-/// More blocks of old motions than this are joined, two by two.
-constexpr std::size_t most_old_blocks = 32;
-/// Blocks of the newest motions: together they are no more than a problem on the wire may hold.
-constexpr std::size_t most_recent_blocks = 32;
-
 PairingOptions of_single_steps(const ScaleDriveOptions& options) {
   PairingOptions pairing = options.pairing;
   pairing.stride = 1;
@@ -109,7 +104,7 @@ void ScaleDrive::commit_old() {
   const std::size_t count = state_.recent.size() / 2;
   if (state_.old_block == 0)
     state_.old_block =
-        std::max<std::uint64_t>(options_.least_block, options_.most_recent / most_recent_blocks);
+        std::max<std::uint64_t>(options_.least_block, options_.most_recent / options_.most_recent_blocks);
   for (std::size_t i = 0; i < count; ++i) {
     const MotionPair& pair = state_.recent[i];
     if (state_.limit > 0 && detail::scale_residual(pair, state_.solution, side()) > state_.limit) {
@@ -117,7 +112,7 @@ void ScaleDrive::commit_old() {
       continue;
     }
     if (state_.old.empty() || state_.old.back().count >= state_.old_block) {
-      if (state_.old.size() >= most_old_blocks) join_old_blocks();
+      if (state_.old.size() >= options_.most_old_blocks) join_old_blocks();
       state_.old.emplace_back();
     }
     state_.old.back().add(pair);
@@ -139,7 +134,7 @@ std::vector<ScaleStatistics> ScaleDrive::blocks_with(std::span<const MotionPair>
   std::vector<ScaleStatistics> blocks = state_.old;
   const std::size_t least =
       blocks.empty() ? options_.least_block : static_cast<std::size_t>(state_.old_block);
-  for (const ScaleStatistics& block : scale_blocks(recent, most_recent_blocks, least))
+  for (const ScaleStatistics& block : scale_blocks(recent, options_.most_recent_blocks, least))
     blocks.push_back(block);
   return blocks;
 }

@@ -104,22 +104,19 @@ struct Node {
 
 /// Where D is singular (perfect rotations) and the scale is far off, the dual has hardly a feasible point. D
 /// raised by a lift has many: J + lift |d|^2 is bounded instead, and competitors are those with an extrinsic
-/// no longer than `farthest`.
-double lifted_bound(const ScaleCost& f, double s, double cost) {
-  constexpr double farthest = 1000;    // lengths that a drive makes in one radian
-  constexpr double given_away = 1e-3;  // of the cost
+/// no longer than options.farthest.
+double lifted_bound(const ScaleCost& f, const ScaleOptions& options, double s, double cost) {
   Matrix8d Q = f.matrix(s);
   const double length2 = Q.topLeftCorner<4, 4>().trace() / Q.bottomRightCorner<4, 4>().trace();
-  const double lift = given_away * cost / (0.25 * farthest * farthest * length2);
+  const double lift = options.given_away * cost / (0.25 * options.farthest * options.farthest * length2);
   if (!std::isfinite(lift)) return -infinity;
   Q.diagonal().tail<4>().array() += lift;
   const DualQuaternion q = f.minimise(Q).q;
   const Certificate certificate = f.certify(Q, q);
-  return certificate.lower_bound - certificate.rounding - given_away * cost;
+  return certificate.lower_bound - certificate.rounding - options.given_away * cost;
 }
 
 Node evaluate(const ScaleCost& f, const ScaleOptions& options, double s) {
-  constexpr double weak = 1e-2;  // of the cost
   Node node;
   node.s = s;
   node.x = f.variable(s);
@@ -128,8 +125,8 @@ Node evaluate(const ScaleCost& f, const ScaleOptions& options, double s) {
   const Certificate certificate = f.certify(Q, node.q);
   node.cost = certificate.cost;
   node.bound = certificate.lower_bound - certificate.rounding;
-  if (node.cost - node.bound > weak * node.cost + options.tolerance * f.energy(s))
-    node.bound = std::max(node.bound, lifted_bound(f, s, node.cost));
+  if (node.cost - node.bound > options.weak_bound * node.cost + options.tolerance * f.energy(s))
+    node.bound = std::max(node.bound, lifted_bound(f, options, s, node.cost));
   node.bound = std::min(node.bound, node.cost);
   node.concave = node.bound - f.extra(node.x);
   return node;
@@ -231,7 +228,7 @@ double polished(const ScaleCost& f, const ScaleStatistics& all, const ScaleOptio
   DualQuaternion q = best.q;
   double slope = f.slope(best.s, q);
   for (int i = 0; i < 4; ++i) {
-    const double curvature = joint_form(f, all, options, std::exp(log_s), q).of(all).curvature();
+    const double curvature = joint_form(f, all, options, std::exp(log_s), q).of(all).over_scale().curvature;
     if (!(curvature > 0)) return log_s;
     const double next = std::clamp(log_s - slope / curvature, low, high);
     if (std::abs(next - log_s) < 1e-9) return next;  // the error of a step is about its square
@@ -303,8 +300,8 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   const double energy = f.energy(answer.s);
   const detail::JointForm form = joint_form(f, all, options, answer.s, answer.q);
   const detail::JointDerivatives joint = form.of(all);
-  const double curvature = joint.curvature();
-  result.observability = std::clamp(curvature / (2 * energy), 0.0, 1.0);
+  const detail::JointDerivatives::OverScale over_scale = joint.over_scale();
+  result.observability = std::clamp(over_scale.curvature / (2 * energy), 0.0, 1.0);
   const double noise = std::max(0.0, f.translation_cost(answer.s, answer.q));
   const double shown = result.observability * energy;
   const double share = shown > 0 ? noise / shown : infinity;
@@ -312,8 +309,8 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   // below 1e-9 the curvature is the rounding of the differences that it is made of
   result.observable = !result.at_limit && result.observability > 1e-9 && share <= options.most_noise_share;
   if (!result.observable) return result;
-  result.sensitivity = joint.sensitivity();
-  const double spread = detail::spread_of_scale(blocks, form, joint);
+  result.sensitivity = over_scale.sensitivity;
+  const double spread = detail::spread_of_scale(blocks, form, joint, options.least_blocks);
   // evenly likely anywhere within the attenuation
   result.stddev = answer.s * std::hypot(spread, result.attenuation / std::sqrt(3.0));
   return result;

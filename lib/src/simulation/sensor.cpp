@@ -86,7 +86,7 @@ Trajectory detail::drive_sensor(const SimulationOptions& options, const Path& dr
   const double sigma_t =
       faults.noise_factor * (options.noise_translation + options.relative_noise * translation / count);
 
-  constexpr double correlation = 0.9;
+  constexpr double correlation = 0.9;  // of wandering noise from pose to pose: ten poses
   Trajectory trajectory;
   DualQuaternion pose;
   Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();

@@ -50,7 +50,7 @@ std::vector<Pose> ground_path(const SimulationOptions& options, const std::vecto
   const Mixture along_x(random, 12, 40), along_y(random, 12, 40);
   const double amplitude = options.terrain == Terrain::rough ? options.roughness : 0;
   constexpr double sharpest_turn = 0.04;  // [1/m]
-  constexpr int substeps = 20;
+  constexpr int substeps = 20;            // of the integration, between two poses
   std::vector<Pose> poses;
   double x = 0, y = 0, heading = 0, length = 0, time = 0;
   for (const double t : times) {
@@ -85,7 +85,7 @@ std::vector<Pose> free_path(const SimulationOptions& options, const std::vector<
     move.emplace_back(random, 2.0, 8.0);
   }
   constexpr double turn_rate = 0.6;  // [rad/s]
-  constexpr int substeps = 20;
+  constexpr int substeps = 20;       // of the integration, between two poses
   std::vector<Pose> poses;
   Pose pose;
   double time = 0;

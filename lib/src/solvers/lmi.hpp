@@ -51,7 +51,7 @@ LmiResult<N, M> solve_lmi(const Lmi<N, M>& lmi, const LmiPoint<N, M>& start, dou
   const auto symmetric = [](const Matrix& P) -> Matrix { return 0.5 * (P + P.transpose()); };
   // the longest part of a step, at most all of it, that stays inside the cone with a margin
   const auto step_length = [](const Matrix& P, const Matrix& step) {
-    constexpr double margin = 0.95;
+    constexpr double margin = 0.95;  // part of the way to the border of the cone, usual for interior points
     double alpha = 1;
     for (int i = 0; i < 60; ++i) {
       const Matrix probe = P + alpha * step;

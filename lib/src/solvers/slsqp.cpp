@@ -15,15 +15,6 @@
 namespace egocal {
 namespace {
 
-/// NLopt keeps the best *feasible* iterate, and an exact unit dual quaternion is more feasible than any later
-/// one: a tight tolerance returns the unchanged start as success. So loose here; the answer is projected back
-/// afterwards.
-constexpr double constraint_tolerance = 1e-8;
-/// Costs relative to trace(Q) below this drown in the rounding of Q; without it a cost of zero is never
-/// reached.
-constexpr double absolute_tolerance = 1e-20;
-constexpr double relative_tolerance = 1e-14;
-
 struct Deleter {
   void operator()(nlopt_opt_s* opt) const { nlopt_destroy(opt); }
 };
@@ -99,8 +90,8 @@ LocalMinimum<N> minimise(const Eigen::Matrix<double, N, N>& Q, const Units& unit
   const Optimizer opt(nlopt_create(NLOPT_LD_SLSQP, N));
   const bool ready = opt && nlopt_set_min_objective(opt.get(), objective<N>, &scaled) > 0 &&
                      add_constraints(opt.get()) > 0 &&
-                     nlopt_set_ftol_rel(opt.get(), relative_tolerance) > 0 &&
-                     nlopt_set_ftol_abs(opt.get(), absolute_tolerance) > 0 &&
+                     nlopt_set_ftol_rel(opt.get(), options.relative_tolerance) > 0 &&
+                     nlopt_set_ftol_abs(opt.get(), options.absolute_tolerance) > 0 &&
                      nlopt_set_maxeval(opt.get(), options.max_evaluations) > 0 &&
                      nlopt_set_maxtime(opt.get(), options.max_seconds) > 0;
   if (!ready) {
@@ -126,14 +117,10 @@ LocalMinimum<N> minimise(const Eigen::Matrix<double, N, N>& Q, const Units& unit
   return result;
 }
 
-/// NLopt watches the cost, which stops changing at about the root of its rounding in the argument, 1e-8.
-/// Newton steps find the rest; they are no search of their own, so they may not lead further than this [units
-/// of length, radians].
-constexpr double finish = 1e-2;
-
 /// Newton on the KKT system of the planar problem, (Q - lambda P) x = 0 with P = diag(1, 1, 0, 0) and x'P x
 /// = 1.
-Eigen::Vector4d finished_planar(const Eigen::Matrix4d& Q, const Eigen::Vector4d& start, double length) {
+Eigen::Vector4d finished_planar(const Eigen::Matrix4d& Q, const Eigen::Vector4d& start, double length,
+                                double finish) {
   Eigen::Vector4d x = start;
   for (int i = 0; i < 3; ++i) {
     x.head<2>().normalize();
@@ -195,15 +182,16 @@ Solution solve_slsqp(const Matrix8d& Q, const DualQuaternion& start, const Slsqp
   const Units unit = units<8>(Q);
   if (!(unit.cost > std::numeric_limits<double>::min())) return refused(Q, begin, SolverStatus::degenerate);
 
-  const LocalMinimum<8> minimum = minimise<8>(Q, unit, begin.vec(), options, [](nlopt_opt opt) {
-    const double tolerances[2] = {constraint_tolerance, constraint_tolerance};
+  const LocalMinimum<8> minimum = minimise<8>(Q, unit, begin.vec(), options, [&options](nlopt_opt opt) {
+    const double tolerances[2] = {options.constraint_tolerance, options.constraint_tolerance};
     return nlopt_add_equality_mconstraint(opt, 2, unit_dual_quaternion, nullptr, tolerances);
   });
   Solution solution =
       finished(Q, begin, DualQuaternion::from_vec(minimum.x), minimum.status, minimum.evaluations);
   const Solution newton = solve_sqp(Q, solution.q, {.max_iterations = 4});
   const Vector8d step = newton.q.vec() - solution.q.vec();
-  const bool near = step.head<4>().norm() < finish && step.tail<4>().norm() < finish * unit.length;
+  const bool near =
+      step.head<4>().norm() < options.finish && step.tail<4>().norm() < options.finish * unit.length;
   if (near && newton.cost <= solution.cost + 1e-14 * unit.cost) {
     solution.q = newton.q;
     solution.cost = newton.cost;
@@ -214,7 +202,7 @@ Solution solve_slsqp(const Matrix8d& Q, const DualQuaternion& start, const Slsqp
 
 Solution solve_slsqp_planar(const Matrix8d& Q_planar, const DualQuaternion& start,
                             const SlsqpOptions& options) {
-  constexpr int variables[4] = {0, 3, 5, 6};
+  constexpr int variables[4] = {0, 3, 5, 6};  // q1, q4, q6, q7 of (26)
   DualQuaternion begin = unit_start(start);
   begin.real[1] = begin.real[2] = begin.dual[0] = begin.dual[3] = 0;
   begin = unit_start(begin);
@@ -230,11 +218,11 @@ Solution solve_slsqp_planar(const Matrix8d& Q_planar, const DualQuaternion& star
   if (!(unit.cost > std::numeric_limits<double>::min()))
     return refused(Q_planar, begin, SolverStatus::degenerate);
 
-  const LocalMinimum<4> minimum = minimise<4>(Q, unit, x, options, [](nlopt_opt opt) {
-    return nlopt_add_equality_constraint(opt, unit_planar, nullptr, constraint_tolerance);
+  const LocalMinimum<4> minimum = minimise<4>(Q, unit, x, options, [&options](nlopt_opt opt) {
+    return nlopt_add_equality_constraint(opt, unit_planar, nullptr, options.constraint_tolerance);
   });
   Vector8d found = Vector8d::Zero();
-  const Eigen::Vector4d last = finished_planar(Q, minimum.x, unit.length);
+  const Eigen::Vector4d last = finished_planar(Q, minimum.x, unit.length, options.finish);
   for (int i = 0; i < 4; ++i) found[variables[i]] = last[i];
   return finished(Q_planar, begin, DualQuaternion::from_vec(found), minimum.status, minimum.evaluations);
 }

@@ -13,7 +13,7 @@ double log_gamma(double x) {
   constexpr double coefficients[] = {0.99999999999980993,  676.5203681218851,     -1259.1392167224028,
                                      771.32342877765313,   -176.61502916214059,   12.507343278686905,
                                      -0.13857109526572012, 9.9843695780195716e-6, 1.5056327351493116e-7};
-  constexpr double half_log_two_pi = 0.91893853320467274178;
+  constexpr double half_log_two_pi = 0.91893853320467274178;  // mathematics
   double sum = coefficients[0];
   for (int i = 1; i < 9; ++i) sum += coefficients[i] / (x - 1 + i);
   const double t = x + 6.5;
@@ -22,7 +22,7 @@ double log_gamma(double x) {
 
 /// The continued fraction of the incomplete beta function (modified Lentz).
 double beta_fraction(double x, double a, double b) {
-  constexpr double tiny = 1e-300;
+  constexpr double tiny = 1e-300;  // far below any term: no division by zero
   const auto away_from_zero = [](double value) { return std::abs(value) < tiny ? tiny : value; };
   double c = 1;
   double d = 1 / away_from_zero(1 - (a + b) * x / (a + 1));
@@ -58,6 +58,11 @@ double f_exceeded(double f, double d1, double d2) {
   if (!(f > 0) || !(d1 > 0) || !(d2 > 0)) return 1;
   if (!std::isfinite(f)) return 0;
   return incomplete_beta(d2 / (d2 + d1 * f), 0.5 * d2, 0.5 * d1);
+}
+
+double student_factor(double freedom) {
+  const double x = 1 / freedom;
+  return 1 + x * (1.2104 + x * (1.440 + x * 1.304));
 }
 
 double hotelling_exceeded(double t2, double p, double nu) {

@@ -3,6 +3,7 @@
 #include "egocal/uncertainty/observability.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,7 +11,7 @@
 
 #include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
+#include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
 #include "uncertainty/tangent_form.hpp"
@@ -34,8 +35,8 @@ struct Spectrum {
 };
 
 Spectrum spectrum(const Matrix6d& H) {
-  const detail::SymmetricEigen<6> eigen = detail::symmetric_eigen<6>(H);
-  return {eigen.vectors, eigen.values};
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
+  return {eigen.eigenvectors(), eigen.eigenvalues()};
 }
 
 /// Whether all curvatures are larger than that.
@@ -50,18 +51,9 @@ double rotation_noise(const Matrix8d& Q, const DualQuaternion& q) {
   return std::max(0.0, q.real.dot(Q.bottomRightCorner<4, 4>() * q.real));
 }
 
-/// t(0.975) / 1.96 by its series in 1 / degrees of freedom: to three hundredths from two on.
-double student_factor(double freedom) {
-  const double x = 1 / freedom;
-  return 1 + x * (1.2104 + x * (1.440 + x * 1.304));
-}
-
 /// Standard deviations by leaving out blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et
 /// al. 1999).
 class Jackknife {
-  /// A spread of fewer has no meaning; Student's factor would only grow without bound.
-  static constexpr double least_equal_blocks = 2;
-
  public:
   explicit Jackknife(double pairs) : pairs_(pairs) {}
   /// difference: estimate without the block minus estimate with all. information: what part of what is known
@@ -83,20 +75,20 @@ class Jackknife {
   }
   /// With Student's factor: 1.96 of its roots cover 95 % whatever the number of blocks.
   Vector6d variance() const {
-    const double student = student_factor(count_ - 1);
+    const double student = detail::student_factor(count_ - 1);
     return student * student * spread();
   }
   /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
   /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
   /// for about m degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the
   /// part by which leaving out one of m says too much. One where all blocks hold alike.
-  Vector6d concentration() const {
+  Vector6d concentration(double least_equal_blocks) const {
     Vector6d factor;
     for (int i = 0; i < 6; ++i) {
       const double squares = information_squares_[i];
       const double all = squares > 0 ? information_[i] * information_[i] / squares : count_;
       const double m = std::clamp(all, least_equal_blocks, count_);
-      factor[i] = student_factor(m - m / count_) / student_factor(count_ - 1) *
+      factor[i] = detail::student_factor(m - m / count_) / detail::student_factor(count_ - 1) *
                   std::sqrt((m - 1) / m * count_ / (count_ - 1));
     }
     return factor;
@@ -108,13 +100,6 @@ class Jackknife {
   Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
   Vector6d information_ = Vector6d::Zero(), information_squares_ = Vector6d::Zero();
 };
-
-/// Fewer blocks than this say too little about a spread.
-constexpr std::size_t least_blocks = 6;
-/// Directions with less translation in them are rotations, which need no such test.
-constexpr double most_rotation_part = 0.5;
-/// Fewer double ones are not looked at.
-constexpr std::size_t least_double_blocks = 8;
 
 std::string text_of(const Eigen::Vector3d& v) {
   char text[64];
@@ -162,8 +147,9 @@ std::vector<Block> doubled(const std::vector<Block>& blocks) {
 }
 
 /// Where neighbours share their errors (noise that wanders) single blocks say too little.
-bool looks_at_double_blocks(const Problem& problem, ErrorCorrelation errors) {
-  return errors == ErrorCorrelation::correlated && problem.blocks.size() >= 2 * least_double_blocks;
+bool looks_at_double_blocks(const Problem& problem, ErrorCorrelation errors,
+                            const ObservabilityOptions& options) {
+  return errors == ErrorCorrelation::correlated && problem.blocks.size() >= 2 * options.least_double_blocks;
 }
 
 /// Coordinates in which the first `shown` directions are seen; basis: from them to (dt in units of length,
@@ -223,7 +209,7 @@ double scatter_of_long_parts(const Jackknife& of_four, const Vector6d& spread) {
 
 /// Per direction the larger of the variances with single and with double blocks, times what longer parts say.
 Vector6d spatial_variance(const Problem& problem, const Statistics& all, const ShownDirections& directions,
-                          ErrorCorrelation errors) {
+                          ErrorCorrelation errors, const ObservabilityOptions& options) {
   std::vector<BlockForm> blocks;
   TangentForm sum;
   for (const Statistics& block : problem.blocks) {
@@ -236,14 +222,14 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, const S
   const auto pairs = static_cast<double>(all.count);
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
   Vector6d variance = single.variance();
-  if (looks_at_double_blocks(problem, errors)) {
+  if (looks_at_double_blocks(problem, errors, options)) {
     const std::vector<BlockForm> twos = doubled(blocks);
     const Jackknife of_twos = jackknife_of(twos, sum, pairs, directions);
     variance = variance.cwiseMax(of_twos.variance());
     variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
                                       single.spread().cwiseMax(of_twos.spread()));
   }
-  return single.concentration().cwiseAbs2().cwiseProduct(variance);
+  return single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(variance);
 }
 
 /// Whether the translation along a direction (dt in units of length, dtheta) differs from zero by more than
@@ -284,7 +270,8 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   clean.diagonal().head<3>().array() -= 0.25 * noise * (options.independent_noise + fluctuation);
   clean.diagonal().tail<3>().array() -= 0.25 * fluctuation * std::max(0.0, cost(Q, q));
   const double floor = 1e-12 * (H.diagonal().cwiseAbs().sum() + Q.diagonal().maxCoeff() * 1e-3);
-  const bool may_share = errors == ErrorCorrelation::correlated && problem.blocks.size() >= least_blocks;
+  const bool may_share =
+      errors == ErrorCorrelation::correlated && problem.blocks.size() >= options.least_blocks;
   const double doubtful =
       floor + (may_share ? 0.25 * noise * (options.shared_noise - options.independent_noise) : 0);
   // mostly all directions are seen beyond doubt, which a factorisation shows at a tenth of the cost
@@ -295,7 +282,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
     while (hidden < 6 && !(seen.curvatures[hidden] > floor)) ++hidden;
   if (!all_seen && may_share)
     while (hidden < 6 && seen.curvatures[hidden] < doubtful &&
-           seen.vectors.col(hidden).head<3>().norm() > most_rotation_part &&
+           seen.vectors.col(hidden).head<3>().norm() > options.least_translation_part &&
            !shown_by_translations(seen.vectors.col(hidden), problem, Q_metres, T_a_b, length,
                                   options.shown_sigmas))
       ++hidden;
@@ -308,19 +295,19 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   for (int k = 0; k < hidden; ++k) {
     const Vector6d v = seen.vectors.col(k);
-    if (v.head<3>().norm() > 0.3) {
+    if (v.head<3>().norm() > options.hinted_part) {
       ++hidden_translations;
       direction = v.head<3>().normalized();
     }
-    if (v.tail<3>().norm() > 0.3) rotation_hidden = true;
+    if (v.tail<3>().norm() > options.hinted_part) rotation_hidden = true;
   }
   result.hint = spatial_hint(hidden_translations, rotation_hidden, direction);
 
-  if (hidden == 6 || problem.blocks.size() < least_blocks) return result;
+  if (hidden == 6 || problem.blocks.size() < options.least_blocks) return result;
   const Matrix6d basis = hidden == 0 ? Matrix6d::Identity() : Matrix6d(seen.vectors.rowwise().reverse());
   const Matrix86d tangent = hidden == 0 ? T : Matrix86d(T.lazyProduct(basis));
   const ShownDirections directions{TangentSpace(q, length, tangent, problem.balance), basis, 6 - hidden};
-  const Vector6d variance = spatial_variance(problem, all, directions, errors);
+  const Vector6d variance = spatial_variance(problem, all, directions, errors, options);
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
@@ -338,7 +325,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
 
 /// Per direction the larger of the variances with single and with double blocks, each minimum solved for.
 Vector6d planar_variance(const Problem& problem, const Statistics& all, const DualQuaternion& T_a_b,
-                         ErrorCorrelation errors) {
+                         ErrorCorrelation errors, const ObservabilityOptions& options) {
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
   const auto jackknife_of = [&](const std::vector<Statistics>& blocks) {
     Jackknife jackknife(std::max(1.0, static_cast<double>(all.count)));
@@ -358,7 +345,7 @@ Vector6d planar_variance(const Problem& problem, const Statistics& all, const Du
     if (!detail::takes_off(block)) blocks.push_back(block);
   const Jackknife single = jackknife_of(blocks);
   Vector6d variance = single.variance();
-  if (looks_at_double_blocks(problem, errors))
+  if (looks_at_double_blocks(problem, errors, options))
     variance = variance.cwiseMax(jackknife_of(doubled(blocks)).variance());
   return variance;
 }
@@ -376,7 +363,9 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   const double count = std::max(1.0, static_cast<double>(all.count));
   const double fluctuation = 4 / std::sqrt(count);
   const double noise = rotation_noise(Q, T_p);
-  const double D_least = detail::symmetric_eigen<2>(Q.block<2, 2>(5, 5)).values[0];
+  const double D_least =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Q.block<2, 2>(5, 5), Eigen::EigenvaluesOnly)
+          .eigenvalues()[0];
   const Solution best = solve_planar(Q);
   DualQuaternion turned = best.q;  // the other eigenvector of the 2 x 2 Schur complement is the worst yaw
   turned.real = {-best.q.real[3], 0, 0, best.q.real[0]};
@@ -403,8 +392,8 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   if (!translation_seen || !yaw_seen)
     result.hint = translation_seen ? "still needed: motion" : "still needed: turns";
 
-  if (problem.blocks.size() < least_blocks) return result;
-  const Vector6d variance = planar_variance(problem, all, T_a_b, errors);
+  if (problem.blocks.size() < options.least_blocks) return result;
+  const Vector6d variance = planar_variance(problem, all, T_a_b, errors, options);
   const double pull = D_least > 0 ? 2 * T_p.dual.norm() * noise / D_least : infinity;
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -13,9 +13,6 @@ namespace egocal::services {
 
 namespace {
 
-/// Bytes of inputs that are taken in again within a fraction of a second.
-constexpr std::uint64_t most_added = 4 << 20;
-
 /// Whose state it is: what is accumulated means nothing to another rig, nor to another version of the
 /// mathematics.
 std::string identity(const bus::Rig& rig) {
@@ -52,11 +49,13 @@ void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
 
 }  // namespace
 
-SavedState::SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock)
-    : SavedState(open_state_medium(file), rig, std::move(clock)) {}
+SavedState::SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock,
+                       const StateOptions& options)
+    : SavedState(open_state_medium(file, options), rig, std::move(clock), options) {}
 
-SavedState::SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock)
-    : rig_(rig), file_(std::move(medium), identity(rig), std::move(clock)) {}
+SavedState::SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock,
+                       const StateOptions& options)
+    : options_(options), rig_(rig), file_(std::move(medium), identity(rig), std::move(clock), options) {}
 
 Accumulation SavedState::restore() {
   Accumulation accumulation(rig_);
@@ -90,7 +89,7 @@ void SavedState::note(const Input& input) {
 }
 
 void SavedState::save(const Accumulation& accumulation) {
-  if (broken_ || file_.added() >= most_added || !file_.in_place()) return snapshot(accumulation);
+  if (broken_ || file_.added() >= options_.most_added || !file_.in_place()) return snapshot(accumulation);
   if (inputs_.bytes().empty()) return;
   broken_ = true;
   file_.add(inputs_.bytes());

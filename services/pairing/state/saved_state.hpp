@@ -16,8 +16,10 @@ namespace egocal::services {
 class SavedState {
  public:
   /// In the file system. Throws Error as open_state_medium() does.
-  SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time);
-  SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock);
+  SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time,
+             const StateOptions& options = {});
+  SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock,
+             const StateOptions& options = {});
 
   /// What is on disk, with all inputs applied and settled (Accumulation::settle()); a new one where there is
   /// nothing or it is refused. Takes a snapshot, so that the next restart is quick. A disk that does not take
@@ -39,6 +41,7 @@ class SavedState {
   bool complete() const { return !broken_ && inputs_.bytes().empty(); }
 
  private:
+  StateOptions options_;
   bus::Rig rig_;
   StateFile file_;
   Writer inputs_;

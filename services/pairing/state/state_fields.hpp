@@ -262,8 +262,10 @@ void fields(auto& archive, services::Is<ScaleStatistics> auto& value) {
 }
 
 void fields(auto& archive, services::Is<ScaleOptions> auto& value) {
-  auto& [side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share] = value;
-  archive(side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share);
+  auto& [side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share, farthest,
+         given_away, weak_bound, least_blocks] = value;
+  archive(side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share, farthest,
+          given_away, weak_bound, least_blocks);
 }
 
 void fields(auto& archive, services::Is<ScaleProblem> auto& value) {
@@ -288,7 +290,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 13;
+constexpr int state_layout = 14;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

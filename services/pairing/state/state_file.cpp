@@ -15,7 +15,7 @@ namespace egocal::services {
 
 namespace {
 
-/// The last character tells the byte order of the machine apart.
+/// The last character states the byte order of the machine.
 const std::string magic = [] {
   const std::uint16_t one = 1;
   std::uint8_t low = 0;
@@ -110,8 +110,12 @@ Parsed parsed(std::span<const std::byte> bytes, const std::string& identity) {
 
 }  // namespace
 
-StateFile::StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock)
-    : medium_(std::move(medium)), identity_(std::move(identity)), clock_(std::move(clock)) {}
+StateFile::StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock,
+                     const StateOptions& options)
+    : medium_(std::move(medium)),
+      identity_(std::move(identity)),
+      clock_(std::move(clock)),
+      options_(options) {}
 
 std::optional<StateFile::Content> StateFile::read() {
   const std::optional<StateMedium::Found> found = medium_->read(magic_of_any_version);
@@ -119,9 +123,9 @@ std::optional<StateFile::Content> StateFile::read() {
   try {
     Parsed state = parsed(found->bytes, identity_);
     const std::int64_t age = age_s(state.written, clock_(), found->written_s, found->now_s);
-    if (std::abs(age) > most_age_s)
+    if (std::abs(age) > options_.most_age_s)
       throw Error("is stale: written " + std::to_string(age) + " s ago, expected at most " +
-                  std::to_string(most_age_s));
+                  std::to_string(options_.most_age_s));
     return std::move(state.content);
   } catch (const Error& error) {
     refuse(error.what());

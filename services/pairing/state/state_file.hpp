@@ -31,7 +31,8 @@ class StateFile {
   using Clock = std::function<BootTime()>;
 
   /// identity: whose state it is, one line each.
-  StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock = boot_time);
+  StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock = boot_time,
+            const StateOptions& options = {});
 
   /// What is there to go on from; empty where there is no file or it is refused. Throws Error where the file
   /// cannot be read, or is something else than a state: that is never touched.
@@ -50,13 +51,11 @@ class StateFile {
   /// Bytes added since the snapshot.
   std::uint64_t added() const { return added_; }
 
-  /// Older files are stale: the sensors may have been moved meanwhile [s]. See age_s().
-  static constexpr std::int64_t most_age_s = 3600;
-
  private:
   std::unique_ptr<StateMedium> medium_;
   std::string identity_, refused_;
   Clock clock_;
+  StateOptions options_;
   std::uint64_t added_ = 0;
 };
 

@@ -21,8 +21,6 @@ namespace egocal::services {
 
 namespace {
 
-constexpr int most_refused = 100;
-
 void write_all(int fd, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd, bytes.data(), bytes.size());
@@ -32,12 +30,10 @@ void write_all(int fd, std::span<const std::byte> bytes) {
   }
 }
 
-/// A state of the largest rigs has some megabytes.
-constexpr std::int64_t largest_state = std::int64_t{256} << 20;
-
 /// The file, checked before its content is read: a user's own file must not be moved away because of a
 /// slip on the command line, nor a pipe be waited for. Empty: there is none.
-std::optional<StateMedium::Found> whole(const std::string& file, std::string_view begins) {
+std::optional<StateMedium::Found> whole(const std::string& file, std::string_view begins,
+                                        const StateOptions& options) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0 && errno == ENOENT) return std::nullopt;
   const auto fail = [&](const std::string& why) {
@@ -50,7 +46,7 @@ std::optional<StateMedium::Found> whole(const std::string& file, std::string_vie
   if (!S_ISREG(status.st_mode)) fail("is not a file; expected a state of egocal-pairing, or no file");
   StateMedium::Found found{{}, status.st_mtime, std::time(nullptr)};
   std::vector<std::byte>& bytes = found.bytes;
-  const std::int64_t most = std::min<std::int64_t>(status.st_size, largest_state);
+  const std::int64_t most = std::min<std::int64_t>(status.st_size, options.largest_state);
   const auto read_up_to = [&](std::size_t size) {
     std::size_t have = bytes.size();
     bytes.resize(size);
@@ -73,7 +69,8 @@ std::optional<StateMedium::Found> whole(const std::string& file, std::string_vie
 
 class StateInFileSystem final : public StateMedium {
  public:
-  explicit StateInFileSystem(const std::string& file) : file_(without_links(file)), lock_(file_) {
+  StateInFileSystem(const std::string& file, const StateOptions& options)
+      : options_(options), file_(without_links(file)), lock_(file_) {
     remove_temporaries(file_);
   }
   ~StateInFileSystem() override {
@@ -83,7 +80,7 @@ class StateInFileSystem final : public StateMedium {
   }
 
   const std::string& name() const override { return file_; }
-  std::optional<Found> read(std::string_view begins) override { return whole(file_, begins); }
+  std::optional<Found> read(std::string_view begins) override { return whole(file_, begins, options_); }
 
   void replace(std::span<const std::byte> bytes) override {
     // the folder was there when this began: its removal was not meant for what is known here
@@ -117,7 +114,7 @@ class StateInFileSystem final : public StateMedium {
     // what was kept before stays, too: it may be hours of driving
     std::string aside = file_ + ".refused";
     std::error_code error;
-    for (int n = 2; n <= most_refused && std::filesystem::exists(aside, error); ++n)
+    for (int n = 2; n <= options_.most_refused && std::filesystem::exists(aside, error); ++n)
       aside = file_ + ".refused-" + std::to_string(n);
     std::filesystem::rename(file_, aside, error);
     if (error) throw Error("cannot be kept aside: " + error.message());
@@ -125,6 +122,7 @@ class StateInFileSystem final : public StateMedium {
   }
 
  private:
+  StateOptions options_;
   std::string file_;
   StateLock lock_;
   int out_ = -1;
@@ -132,8 +130,8 @@ class StateInFileSystem final : public StateMedium {
 
 }  // namespace
 
-std::unique_ptr<StateMedium> open_state_medium(const std::string& file) {
-  return std::make_unique<StateInFileSystem>(file);
+std::unique_ptr<StateMedium> open_state_medium(const std::string& file, const StateOptions& options) {
+  return std::make_unique<StateInFileSystem>(file, options);
 }
 
 }  // namespace egocal::services

@@ -13,6 +13,19 @@
 
 namespace egocal::services {
 
+/// Tuning of a pairing's state on disk. Study: tests/services/test_saved_state.cpp, the faulty disks of the
+/// simulation.
+struct StateOptions {
+  /// Older files are stale: the sensors may have been moved meanwhile [s]. See age_s().
+  std::int64_t most_age_s = 3600;
+  /// A new snapshot is taken when this much was added to the last one [bytes]: inputs that are read again
+  /// within a fraction of a second.
+  std::uint64_t most_added = 4 << 20;
+  /// More of a file is not read [bytes]: a state of the largest rigs has some megabytes.
+  std::int64_t largest_state = std::int64_t{256} << 20;
+  int most_refused = 100;  ///< files that are kept aside under names of their own
+};
+
 /// Where a state is kept: one file, which one process holds until the end. What its bytes mean is
 /// StateFile's. A simulation can put any disk behind this interface.
 class StateMedium {
@@ -46,6 +59,6 @@ class StateMedium {
 
 /// In the file system, by whatever symbolic links the file is named. Throws Error where another process holds
 /// it, or it cannot be held.
-std::unique_ptr<StateMedium> open_state_medium(const std::string& file);
+std::unique_ptr<StateMedium> open_state_medium(const std::string& file, const StateOptions& options = {});
 
 }  // namespace egocal::services

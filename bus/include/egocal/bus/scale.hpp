@@ -48,7 +48,7 @@ class ScaleCheck {
   /// The solution of this pair's newest problem, solved here; null where there is none of this session.
   const ScaleSolution* solution(const std::string& a, const std::string& b, std::int64_t session);
 
-  static constexpr std::size_t max_pairs = 256;
+  static constexpr std::size_t max_pairs = 256;  ///< a limit on memory
 
  private:
   struct Pair {

@@ -19,13 +19,16 @@ struct MotionSampleOptions {
       2.9670597283903604;        ///< [rad], 170 degrees: nearer to half a turn the sign is a guess
   std::size_t most_blocks = 64;  ///< independent parts of a drive that a comparison counts, at most
   double most_stretched = 4;     ///< a motion of more than this many times its usual duration crosses a gap
+  std::size_t most_periods = 1000;  ///< distances of stamps that show the usual one: its median to 3 %
+  std::size_t time_parts = 10;      ///< parts of the drive whose residuals are reported (Fit::tenths)
   /// Fewer motions are explained by anything: six unknowns, two equations of three each.
   std::size_t least = 5;
 };
 
 /// Iteratively reweighted fit.
 struct RobustFitOptions {
-  int rounds = 4;  ///< of reweighting; the weights of gross outliers are negligible after three
+  int rounds = 4;        ///< of reweighting; the weights of gross outliers are negligible after three
+  int quick_rounds = 2;  ///< of a first look, which only orders the explanations
   double inlier =
       9;  ///< squares beyond this many times the typical one lose weight: three standard deviations
 };
@@ -74,6 +77,30 @@ struct MountCheckOptions {
   std::size_t least_stride = 8;
   std::size_t blocks = 32;  ///< of three motions each that share no time: enough to know their scatter
   std::size_t most_motions = 20000;  ///< of long drives: overlapping motions say little that is new
+  /// The interval of the time of a move is stated where it is longer [s]. Changes the message only.
+  double long_interval = 10;
+};
+
+/// Standard deviations as they are compared with a goal, and the time left. Study:
+/// tests/bench/goal_study.cpp; docs/trust.md has its table.
+struct GoalSpreadOptions {
+  /// Fewer blocks have no common factor of all directions: it would be known to a quarter only.
+  std::size_t least_blocks = 8;
+  /// Variance of the logarithm of a direction's variance from 20 blocks. Measured: 0.11; 2/19 under white
+  /// noise. A direction whose log variance differs from the common one by d keeps d^2 / (d^2 + 2 chance) of
+  /// it.
+  double chance = 0.11;
+  double reserve = 1.2;  ///< 1.5 standard deviations of the common estimate, which is known to 12 %
+  /// The reported standard deviation is never overruled by more: three standard deviations of their ratio.
+  double most_different = 1.5;
+  /// Spreads fall with this power of the time: faster than with the square root, as longer motions count with
+  /// time. With it the median of the estimated to the real time left is one in the study.
+  double exponent = 0.63;
+};
+
+/// Whether the answer stays where it is without a part of the drive.
+struct StabilityOptions {
+  std::size_t parts = 5;  ///< one is dropped at a time; fewer parts have no spread, more are as the blocks
 };
 
 /// When an answer counts as known or as wrong.
@@ -124,6 +151,8 @@ struct DiagnosisOptions {
   HeadingOptions heading;
   PlaneCheckOptions planes;
   MountCheckOptions mount;
+  GoalSpreadOptions goal_spread;
+  StabilityOptions stability;
   std::optional<GoalOptions> goal;
   /// Whose manoeuvres are advised where no goal is stated; empty: as the motions look.
   std::optional<Platform> platform;

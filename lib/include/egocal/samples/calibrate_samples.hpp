@@ -28,18 +28,31 @@ struct MatchedSamples {
   std::size_t without_partner = 0;          ///< rows of both that are in no sample
 };
 
+/// Tuning of match_samples() and look_like_samples(). Study: the sets of docs/samples.md and, for drives of a
+/// pose a second, tests/bench/sample_study.cpp.
+struct MatchingOptions {
+  /// Stamps belong together where they are nearer than this part of the typical distance between samples.
+  double nearest_part = 0.25;
+  std::size_t most_samples = 200;  ///< recordings with more poses are streams
+  /// Still poses turn by more than this from one to the next, streams do not [rad]: 8 degrees.
+  double large_turn = 0.13962634015954636;
+  /// In a stream neighbours are much more alike than poses far apart; still poses come in any order, or at
+  /// best in a scan. Ratio of the turns; drives of a pose a second have a tenth, sets of arms 0.4 and more.
+  double unlike_a_stream = 0.3;
+};
+
 /// The rows of two lists of still poses that belong together; poses are never interpolated. Rows whose stamps
 /// are each other's nearest, and much nearer than the next sample, belong together; where that leaves rows
 /// over and the lists are equally long, row i belongs to row i. Throws Error where neither gives 3 samples.
-MatchedSamples match_samples(const Trajectory& a, const Trajectory& b);
+MatchedSamples match_samples(const Trajectory& a, const Trajectory& b, const MatchingOptions& options = {});
 
 /// Whether two recordings look like still poses rather than streams: few poses, as many in both, and large
 /// turns between neighbours.
-bool look_like_samples(const Trajectory& a, const Trajectory& b);
+bool look_like_samples(const Trajectory& a, const Trajectory& b, const MatchingOptions& options = {});
 
 /// Tuning of calibrate_samples(). The study behind the numbers is tests/bench/sample_study.cpp.
 struct SampleOptions {
-  /// Find samples that contradict the others and leave them out. Fewer than least_to_judge cannot outvote a
+  /// Find samples that contradict the others and reject them. Fewer than least_to_judge cannot outvote a
   /// wrong one.
   bool robust = true;
   std::size_t least_to_judge = 6;
@@ -63,13 +76,18 @@ struct SampleOptions {
   /// The tolerance of the translation is this part of the typical distance to the target where it is smaller
   /// than diagnosis.tolerance_translation: an arm wants less than a vehicle. A degree.
   double tolerance_of_distance = 0.0174;
+  /// Motions that the fit is judged on, at most: its medians are good to a tenth. All pairs of 25 samples.
+  std::size_t most_motions = 300;
+  /// Up to this many samples the answer without one is solved for; beyond, it is one Newton step away: what
+  /// that misses is of second order in a step that is a thirtieth of the noise.
+  std::size_t most_solved = 30;
 };
 
 /// How well one sample fits: the target as this sample sees it, less the target as all see it.
 struct SampleResidual {
   double rotation = 0;     ///< [rad]
   double translation = 0;  ///< [m]
-  bool wrong = false;      ///< left out
+  bool wrong = false;      ///< rejected
 };
 
 /// Hand-eye and target pose from still poses.

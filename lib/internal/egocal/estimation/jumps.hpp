@@ -37,8 +37,23 @@ struct JumpOptions {
   /// judged one by one as jumps. KITTI 05 and 07 have one in a thousand, 0930_27 one in twenty
   /// (docs/accuracy.md).
   double heavy_tail = 0.02;
+  /// Tails are not judged by fewer far steps than this, however few the steps: four of a hundred are rarely
+  /// chance. Study: tests/bench/heavy_tail_study.cpp.
+  double least_far = 4;
   /// Not more than this part of the steps are jumps: then there is no majority to judge by.
   double most_jumps = 0.4;
+  /// Residuals below these are the rounding of what sensors send [rad, m]: the seventh digit of a quaternion,
+  /// a micrometre.
+  double rotation_floor = 1e-7, translation_floor = 1e-6;
+  /// Steps with a smaller weight do not count in what is typical. A residual at its limit has a quarter.
+  double least_weight = 0.3;
+  std::size_t least_steps = 8;  ///< fewer steps have no quartiles: two of them on either side
+  /// Graduated non-convexity: the loss is sharpened by this factor a round. Yang et al. 2020 take 1.4, which
+  /// needs four times the rounds; the jumps of docs/accuracy.md are found with 4.
+  double sharpen = 4;
+  int most_rounds = 24;  ///< a limit: a residual of 4^24 times the limit is none
+  /// Weight of rotation to translation [m^2] before any residual is known: a centimetre for a milliradian.
+  double first_balance = 100;
 };
 
 /// What is known of one step.

@@ -34,7 +34,7 @@ struct StrideWeights {
 /// use, neighbours are merged and blocks become twice as long.
 class StrideBlocks {
  public:
-  static constexpr std::size_t most_blocks = 32;
+  static constexpr std::size_t most_blocks = 32;  ///< format: of state and messages
 
   /// All there is; continuing from a copy gives the same bits.
   struct State {

@@ -13,6 +13,7 @@
 #include "egocal/estimation/weighting.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
+#include "egocal/robust/consensus.hpp"
 
 namespace egocal {
 
@@ -32,6 +33,25 @@ struct JudgedInstant {
 struct StrideSumsOptions {
   JumpOptions jumps{};
   WeightingOptions weighting{};
+  ConsensusOptions consensus{};
+  /// Strides of the motions [steps]: each about 1.4 times the one before. The longest bounds the memory;
+  /// motions of 128 steps are longer than the memory of any odometry on record (docs/accuracy.md).
+  std::vector<int> strides{1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128};
+  /// Instants whose verdicts may still change: enough for quartiles, few enough for a look in 0.1 ms.
+  std::uint64_t most_open = 192;
+  /// The open instants are judged anew after this part more (one sixteenth), within these limits: a jump
+  /// spoils every motion across it, and short drives have few to spare.
+  std::uint64_t look_part = 16, least_look = 16, most_look = 64;
+  /// The weights are chosen anew after an eighth more instants, and after a quarter more beyond
+  /// `short_drive`: a choice costs as much as a hundred instants (docs/benchmarks.md).
+  std::uint64_t short_choice_part = 8, choice_part = 4, short_drive = 128;
+  /// Rounds of verdicts and weights that depend on each other: bounds the time of a choice.
+  int most_rounds = 3;
+  /// A variance below this is what rounding leaves of a difference of sums [typical variances]: the sums of a
+  /// million steps with variances up to 1e4 are rounded by 1e-6.
+  double least_extra_variance = 1e-6;
+  /// Variances of a step that change its weight by less than this part are not summed anew.
+  double least_change = 0.1;
 };
 
 /// All that StrideSums remember; bounded. Continuing from a copy gives the same bits.
@@ -84,7 +104,7 @@ class StrideSums {
   Problem empty_problem() const;
   void append(JudgedInstant& judged, const JudgedInstant* before, const StepVerdict& verdict) const;
   Step step(const JudgedInstant& from, const JudgedInstant& to) const;
-  static double certainty(const JudgedInstant& from, const JudgedInstant& to);
+  double certainty(const JudgedInstant& from, const JudgedInstant& to) const;
   template <typename Take>
   void each_motion(std::size_t position, const Take& take) const;
   void add_motions(StrideBlocks& blocks, std::size_t position) const;

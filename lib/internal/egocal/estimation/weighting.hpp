@@ -11,6 +11,33 @@
 
 namespace egocal {
 
+/// Tuning of residual_weights(). Study: the accuracy benchmark (docs/accuracy.md), with these numbers
+/// together; they were not varied one by one.
+struct ResidualWeightOptions {
+  /// Squared residuals of one motion below this are rounding [rad^2, m^2]: 1e-14, a hundred times epsilon.
+  double least_variance = 1e-28;
+  /// Weights of rotation and translation differ by at most this factor, beyond the square of the motions'
+  /// length per turn: noise-free data must not make the cost singular. A thousand in the noise.
+  double most_imbalance = 1e6;
+  std::uint64_t least_motions = 6;  ///< fewer motions of a stride have no variance: half of it is chance
+  /// Spreads below these are rounding, so nothing is to be gained [rad, m] (a change of 1e-12 in the input
+  /// chose the setting, docs/method.md).
+  double least_rotation_spread = 1e-9, least_translation_spread = 1e-8;
+  /// A stride whose motions have this part of the weight of a single step is skipped: 128 steps, and 128
+  /// times as long, add 128^2 * 1e-22 = 2e-18 of the sum, less than its rounding.
+  double negligible_part = 1e-22;
+  int rounds = 4;        ///< of weights and minimiser by turns: bounds the time of a choice
+  int later_rounds = 2;  ///< the same where a minimiser is known already
+  /// Grid of the ratio of a random walk's variance a step to that of the noise on poses: six points a decade,
+  /// from white noise on poses alone to a random walk alone.
+  int grid = 24;
+  double least_growth = 1e-3, most_growth = 1e3;
+  /// Weights before any residual is known: squared residuals of rotation and translation [rad^2, m^2], a
+  /// hundredth and a tenth.
+  double first_rotation = 1e-4, first_translation = 1e-2;
+  double first_lambda = 0.5;  ///< of the shape before any residual is known: a memory of one and a half steps
+};
+
 /// Tuning of choose_weights().
 struct WeightingOptions {
   /// Memories [steps] that are tried besides the one that the residuals suggest. Geometric, from "neighbours
@@ -39,6 +66,10 @@ struct WeightingOptions {
   /// The choice in force keeps its place unless another's sum of logarithms is smaller by this: settings do
   /// not flap.
   double hysteresis = 0.05;
+  /// A spread needs at least this many blocks: five degrees of freedom, as
+  /// ObservabilityOptions::least_blocks.
+  std::size_t least_blocks = 6;
+  ResidualWeightOptions residuals{};
 };
 
 /// The weights in force and why.
@@ -73,6 +104,7 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Pro
                                            const WeightingOptions& options = {});
 
 /// What the residuals suggest, without the jack-knife.
-std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode);
+std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode,
+                                             const ResidualWeightOptions& options = {});
 
 }  // namespace egocal

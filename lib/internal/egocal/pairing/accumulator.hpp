@@ -12,10 +12,21 @@
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
 #include "egocal/pairing/outcome.hpp"
+#include "egocal/pairing/selection.hpp"
 #include "egocal/problem/problem.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 
 namespace egocal {
+
+/// Tuning of what an Accumulator is made of.
+struct EstimationOptions {
+  RobustOptions robust{};
+  SelectionOptions selection{};
+  StrideSumsOptions sums{};
+  /// Stride and balance are chosen anew after this part of the drive more (a quarter): choosing stays a
+  /// constant part of the work.
+  std::uint64_t choice_part = 4;
+};
 
 /// All that an Accumulator remembers. Bounded; continuing from a copy gives the same bits.
 struct AccumulatorState {
@@ -37,8 +48,8 @@ struct AccumulatorState {
 class Accumulator {
  public:
   /// Uses mode, planes, stride, balance, robust, prior and the options of its own stage; validated() ones.
-  explicit Accumulator(const PairingOptions& options);
-  Accumulator(const PairingOptions& options, AccumulatorState state);
+  explicit Accumulator(const PairingOptions& options, const EstimationOptions& tuning = {});
+  Accumulator(const PairingOptions& options, AccumulatorState state, const EstimationOptions& tuning = {});
 
   /// Typical time between instants [us]. To be called before the first add().
   void begin(std::int64_t period_us);
@@ -69,6 +80,7 @@ class Accumulator {
   void choose();
 
   PairingOptions options_;
+  EstimationOptions tuning_;
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
   AccumulatorState state_;    ///< but for the sums
   std::optional<StrideSums> sums_;

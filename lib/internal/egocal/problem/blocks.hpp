@@ -14,7 +14,7 @@ namespace egocal {
 /// others; those merge among themselves, so that nothing is lost and a verdict can be revised.
 class BlockStatistics {
  public:
-  static constexpr std::size_t max_blocks = 64;
+  static constexpr std::size_t max_blocks = 64;  ///< format: of state and messages
   /// As many as inliers() returns at most: what a message carries and the jack-knife leaves out one by one.
   static constexpr std::size_t max_inlier_blocks = 32;
 

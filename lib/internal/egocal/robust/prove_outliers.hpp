@@ -21,13 +21,14 @@ struct TruncatedPart {
 
 /// Tuning of prove_outliers(). The study is tests/bench/outlier_proof_study.cpp.
 struct OutlierProofOptions {
-  /// Choices are told apart by costs that differ by more than this part; less is rounding.
+  /// The costs of two choices differ where they do so by more than this part; less is rounding.
   double tolerance = 1e-9;
   /// Solves of the search through the parts that the leverages leave undecided. 200 take 2 ms.
   std::size_t most_solves = 200;
   /// Step of the distances that are checked, a ratio. A smaller one proves no more than one problem in a
   /// hundred of the study more.
   double distance_step = 1.05;
+  ConsensusOptions consensus{};  ///< of the choice that is to be proven
 };
 
 /// Whether the minimum over the parts that are no outliers is the global minimum of sum min(q'Q_k q, limit_k)
@@ -40,13 +41,13 @@ OutlierProof prove_outliers(std::span<const TruncatedPart> parts, const std::vec
                             const OutlierProofOptions& options = {});
 
 /// The same for parts of a drive, as find_consensus() judges them: at the limits that it sets. problem: mode
-/// and balance. Not proven where the choice is not the consensus, or leaves out runs for another reason than
+/// and balance. Not proven where the choice is not the consensus, or rejects runs for another reason than
 /// their residual. Empty where there are too few parts to judge, and in planar mode.
 std::optional<OutlierProof> prove_outliers(const Problem& problem, std::span<const Statistics> parts,
                                            const std::vector<bool>& outlier, int overlap = 1,
                                            const OutlierProofOptions& options = {});
 
-/// The same for what was left out of motions of one stride: blocks and single motions.
+/// The same for the outliers among motions of one stride: blocks and single motions.
 std::optional<OutlierProof> prove_outliers(const Problem& problem, const RobustStatistics& statistics,
                                            int overlap = 1, const OutlierProofOptions& options = {});
 

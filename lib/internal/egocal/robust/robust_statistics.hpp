@@ -11,14 +11,25 @@
 
 namespace egocal {
 
+/// Tuning of RobustStatistics. Study: tests/bench/outlier_study.cpp, tests/lib/test_consensus.cpp.
+struct RobustOptions {
+  /// Pairs that wait apart, at most; the oldest of more are summed in a block of their own kind. Bounds
+  /// memory and the time of a look: 128 parts beside 64 blocks.
+  std::size_t most_waiting = 128;
+  /// The consensus is looked for anew after this many pairs in a row that disagree, and at every doubling:
+  /// four outliers in a row are rare among single wrong poses, which spoil two motions each.
+  std::uint64_t suspicious_run = 4;
+  /// And after this part of the pairs more (an eighth): looking stays a constant part of the work.
+  std::uint64_t look_part = 8;
+  ConsensusOptions consensus{};
+};
+
 /// Statistics without the motion pairs that contradict the others. A pair that disagrees with the consensus
 /// of all before it waits apart (in a block of its own kind once many wait). The consensus is looked for
 /// anew, over all blocks and every waiting pair, when several in a row disagree (they may be the first to
 /// show a new direction) and when asked to. What agrees then comes back. Bounded; nothing is thrown away.
 class RobustStatistics {
  public:
-  static constexpr std::size_t most_waiting = 128;
-
   /// All there is; continuing from a copy gives the same bits.
   struct State {
     BlockStatistics blocks;
@@ -33,11 +44,12 @@ class RobustStatistics {
   explicit RobustStatistics(State state) : state_(std::move(state)) {}
 
   /// problem: mode, planes and balance in force. overlap: the stride, see find_consensus().
-  void add(const MotionPair& pair, const Problem& problem, int overlap = 1);
+  void add(const MotionPair& pair, const Problem& problem, int overlap = 1,
+           const RobustOptions& options = {});
   /// Takes it in whatever the others say.
   void add_unjudged(const MotionPair& pair);
   /// Looks for the consensus now.
-  void look(const Problem& problem, int overlap = 1);
+  void look(const Problem& problem, int overlap = 1, const RobustOptions& options = {});
   /// The newest pair contradicts the others.
   bool disagreed() const { return state_.in_a_row > 0; }
   /// The drive has grown by an eighth since the last look.

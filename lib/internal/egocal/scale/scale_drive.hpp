@@ -36,6 +36,9 @@ struct ScaleDriveOptions {
   double growth = 0.02;
   std::size_t longest_wait = 64;
   int passes = 6;  ///< a limit: motions are judged and the rest is solved by turns
+  /// More blocks of old motions than this are joined, two by two. With most_recent_blocks of the newest ones
+  /// they are no more than a problem on the wire may hold (64).
+  std::size_t most_old_blocks = 32, most_recent_blocks = 32;
 };
 
 /// What a solver of the scale needs.

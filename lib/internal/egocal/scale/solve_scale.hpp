@@ -35,6 +35,14 @@ struct ScaleOptions {
   /// The scale counts as observable where noise explains at most this part of what shows it. A quarter leaves
   /// a bias below 13 % with noise on both sides.
   double most_noise_share = 0.25;
+  /// Bounds at perfect rotations: competitors have an extrinsic no longer than this many lengths that the
+  /// drive makes in one radian, and the bound gives away this part of the cost (docs/scale.md).
+  double farthest = 1000, given_away = 1e-3;
+  /// A scale whose bound lies further below its cost than this part of it is bounded that way as well: ten
+  /// times what is given away.
+  double weak_bound = 1e-2;
+  /// A standard deviation needs at least this many blocks, as ObservabilityOptions::least_blocks.
+  std::size_t least_blocks = 6;
 };
 
 /// Global minimum over scale and extrinsic by branch and bound over the scale (docs/scale.md has the proof).

@@ -25,6 +25,20 @@ struct ObservabilityOptions {
   /// Shared noise pulls a translation that is not shown to zero. One that differs from zero by so many
   /// standard deviations is shown: 1 false in 10,000.
   double shown_sigmas = 4;
+  /// A hidden direction with a larger part of translation in it is a translation; rotations need no test for
+  /// shared noise. A half: 30 degrees between the direction and the space of the rotations.
+  double least_translation_part = 0.5;
+  /// Of a unit direction, the part that must be translation (or rotation) for the hint to name it: what is
+  /// within 17 degrees of the other kind is mixed into it by noise. Changes the advice only.
+  double hinted_part = 0.3;
+  /// A standard deviation needs at least this many blocks. With six, Student's factor is 1.31; with fewer it
+  /// grows without bound (tests/bench/coverage_study.cpp).
+  std::size_t least_blocks = 6;
+  /// Double blocks are compared from this many of them: their spread alone scatters by a quarter then.
+  std::size_t least_double_blocks = 8;
+  /// Blocks that are as concentrated as fewer equal ones than this have no spread; Student's factor would
+  /// grow without bound.
+  double least_equal_blocks = 2;
 };
 
 /// What the motions tell of each direction around the minimiser of (18), in the coordinates (t, rotation

@@ -187,7 +187,7 @@ void Rosbag1Reader::open_chunk(const Record& record, bool cut_off) {
   if (record.compression == "none" || expected > largest_record) {
     chunk_.assign(record.data.begin(), record.data.end());
   } else {
-    constexpr std::size_t slack = 64;
+    constexpr std::size_t slack = 64;  // bytes, so that too long a chunk is noticed
     whole = unpack_all(record.compression == "bz2" ? *bz2_ : *lz4_, record.data, expected + slack, chunk_);
   }
   // what could be unpacked of a damaged chunk is sound: lz4 and bz2 check their blocks

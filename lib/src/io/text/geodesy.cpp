@@ -9,7 +9,7 @@ namespace egocal::detail {
 Pose east_north_up(const GeodeticPosition& place) {
   constexpr double a = 6378137.0;          // [m], WGS 84
   constexpr double f = 1 / 298.257223563;  // flattening
-  constexpr double e2 = f * (2 - f);
+  constexpr double e2 = f * (2 - f);       // squared eccentricity
   const double sin_lat = std::sin(place.latitude), cos_lat = std::cos(place.latitude);
   const double sin_lon = std::sin(place.longitude), cos_lon = std::cos(place.longitude);
   const double n = a / std::sqrt(1 - e2 * sin_lat * sin_lat);  // radius of curvature in the prime vertical

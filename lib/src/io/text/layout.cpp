@@ -13,7 +13,7 @@ namespace egocal::detail {
 
 namespace {
 
-constexpr std::size_t sniffed_bytes = 64 << 10;
+constexpr std::size_t sniffed_bytes = 64 << 10;  // a limit: some hundred rows show the layout
 
 /// JSON, XML, point clouds and pose graphs are text, but no tables.
 void refuse_other_text(const std::string& file, std::string_view text) {

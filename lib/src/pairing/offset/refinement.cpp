@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/offset/refinement.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
 #include "pairing/offset/turning.hpp"
 
 namespace egocal::detail {
@@ -18,7 +18,7 @@ namespace egocal::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double second_us = 1e6;
+constexpr double second_us = 1e6;  // unit
 
 /// Pose at a time [us] relative to `at_us`; empty where not known.
 std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t at_us, double time_us,
@@ -43,15 +43,15 @@ std::size_t first_before(const Trajectory& trajectory, std::int64_t at_us, doubl
 /// Marks those that are `outlier` times further off than is typical of the motions of their size: what a
 /// wrong offset does to the large ones must not make outliers of them.
 void mark_outliers(const std::vector<double>& sizes, const std::vector<double>& differences, double outlier,
-                   double floor, std::vector<char>& inlier) {
+                   double floor, const RefinementOptions& tuning, std::vector<char>& inlier) {
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < sizes.size(); ++k)
     if (inlier[k]) order.push_back(k);
-  if (order.size() < 8) return;
+  if (order.size() < tuning.least_motions) return;
   std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     return sizes[i] < sizes[j] || (sizes[i] == sizes[j] && i < j);
   });
-  constexpr std::size_t classes = 4;
+  const std::size_t classes = tuning.size_classes;
   for (std::size_t c = 0; c < classes; ++c) {
     const std::size_t begin = c * order.size() / classes, end = (c + 1) * order.size() / classes;
     std::vector<double> values;
@@ -74,10 +74,12 @@ double residual(const MotionPair& pair, const Balance& balance, const DualQuater
 }  // namespace
 
 Refinement::Refinement(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options,
-                       std::int64_t max_gap_us, Schedule& schedule, std::function<void()> done)
+                       std::int64_t max_gap_us, Schedule& schedule, std::function<void()> done,
+                       const RefinementOptions& tuning)
     : a_(a),
       b_(b),
       options_(options),
+      tuning_(tuning),
       max_gap_us_(static_cast<double>(max_gap_us)),
       schedule_(schedule),
       done_(std::move(done)) {
@@ -122,7 +124,7 @@ void Refinement::collect_motions() {
 void Refinement::round() {
   for (std::size_t which = 0; which < 3; ++which) {
     others_[which].assign(motions_.size(), {});
-    statistics_[which].assign(blocks, {});
+    statistics_[which].assign(tuning_.blocks, {});
     schedule_.add_range(motions_.size(),
                         [this, which](std::size_t begin, std::size_t end) { sample(which, begin, end); });
   }
@@ -180,20 +182,20 @@ void Refinement::find_outliers() {
   best_of_three([this](std::size_t which, std::size_t k) {
     return std::abs(motions_[k].angle - others_[which][k].angle);
   });
-  mark_outliers(sizes, differences, options_.outlier, options_.angle_floor, inlier_);
+  mark_outliers(sizes, differences, options_.outlier, options_.angle_floor, tuning_, inlier_);
   if (!q_) return;
   const Balance balance{1, options_.translation_weight};
   best_of_three([&](std::size_t which, std::size_t k) { return residual(pair(which, k), balance, *q_); });
-  mark_outliers(sizes, differences, options_.outlier, options_.angle_floor, inlier_);
+  mark_outliers(sizes, differences, options_.outlier, options_.angle_floor, tuning_, inlier_);
 }
 
 void Refinement::accumulate(std::size_t begin, std::size_t end) {
-  if (begin == 0) times_.assign(blocks, 0);
+  if (begin == 0) times_.assign(tuning_.blocks, 0);
   const Trajectory& keys = keys_are_b_ ? b_ : a_;
   const std::int64_t key_at = keys_are_b_ ? model_.at_b_us : model_.at_a_us;
   for (std::size_t k = begin; k < end; ++k) {
     if (!inlier_[k]) continue;
-    const std::size_t block = k * blocks / motions_.size();
+    const std::size_t block = k * tuning_.blocks / motions_.size();
     for (std::size_t which = 0; which < 3; ++which) statistics_[which][block].add(pair(which, k));
     const std::int64_t middle = (keys[motions_[k].from].time_us + keys[motions_[k].to].time_us) / 2;
     times_[block] += static_cast<double>(middle - key_at) / second_us;
@@ -225,7 +227,7 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
   Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
   Matrix62 mixed = Matrix62::Zero();
-  for (std::size_t i = 0; i < blocks; ++i) {
+  for (std::size_t i = 0; i < tuning_.blocks; ++i) {
     if (statistics_[1][i].count == 0) continue;
     const double share = statistics_[1][i].weight / weight;
     std::array<Matrix8d, 3> Q;
@@ -244,12 +246,15 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
     parts.push_back(part);
   }
   const Matrix8d Q = cost_matrix(sum_blocks(statistics_[1]), balance);
-  const SymmetricEigen<6> curvature = symmetric_eigen<6>(2 * tangent.transpose() * Q * tangent);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> curvature(2 * tangent.transpose() * Q *
+                                                                             tangent);
   // directions that the motions do not show change nothing
   Vector6 inverse = Vector6::Zero();
   for (int k = 0; k < 6; ++k)
-    if (curvature.values[k] > 1e-9 * curvature.values[5]) inverse[k] = 1 / curvature.values[k];
-  const Matrix62 follow = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose() * mixed;
+    if (curvature.eigenvalues()[k] > 1e-9 * curvature.eigenvalues()[5])
+      inverse[k] = 1 / curvature.eigenvalues()[k];
+  const Matrix62 follow =
+      curvature.eigenvectors() * inverse.asDiagonal() * curvature.eigenvectors().transpose() * mixed;
   H -= mixed.transpose() * follow;
 
   NewtonStep result;

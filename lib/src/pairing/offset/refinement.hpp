@@ -23,6 +23,13 @@ struct ClockLine {
   double rate = 0;
 };
 
+/// Tuning of the Refinement besides TimeOffsetOptions. Study: tests/lib/test_time_offset.cpp.
+struct RefinementOptions {
+  std::size_t blocks = 32;        ///< parts of the drive, for the standard deviation: as StrideBlocks has
+  std::size_t size_classes = 4;   ///< of the motions, each with its own typical difference: quartiles
+  std::size_t least_motions = 8;  ///< of all classes; fewer show nothing typical
+};
+
 /// Minimises the certified minimum of the cost (18) over offset and rate of the clock, by parabolas through
 /// three offsets; with the rate from how the slopes differ between the parts of the drive. Motions that are
 /// outliers at all three offsets are not looked at.
@@ -31,14 +38,13 @@ class Refinement {
   /// a, b: without glitches. arm: how far the model may be off [us]. The work is added to the schedule, which
   /// calls `done` at its end.
   Refinement(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options,
-             std::int64_t max_gap_us, Schedule& schedule, std::function<void()> done);
+             std::int64_t max_gap_us, Schedule& schedule, std::function<void()> done,
+             const RefinementOptions& tuning = {});
 
   void begin(const ClockLine& model, double arm_us);
   const std::optional<TimeOffset>& result() const { return result_; }
 
  private:
-  static constexpr std::size_t blocks = 32;
-
   struct Motion {
     std::size_t from = 0, to = 0;  ///< poses of the slower stream
     DualQuaternion motion;         ///< of the slower stream
@@ -70,6 +76,7 @@ class Refinement {
 
   const Trajectory &a_, &b_;
   TimeOffsetOptions options_;
+  RefinementOptions tuning_;
   double max_gap_us_;
   Schedule& schedule_;
   std::function<void()> done_;

@@ -21,7 +21,7 @@ class Schedule {
   /// piece(begin, end) on consecutive ranges of n items.
   template <typename Piece>
   void add_range(std::size_t n, Piece piece) {
-    constexpr std::size_t most = 256;
+    constexpr std::size_t most = 256;  // poses of a piece: bounds its time, changes no bit
     for (std::size_t begin = 0; begin < n; begin += most) {
       const std::size_t end = std::min(n, begin + most);
       add(end - begin, [piece, begin, end] { piece(begin, end); });
