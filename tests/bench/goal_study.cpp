@@ -184,8 +184,10 @@ Tally study(const Kind& kind, int count, int poses, int looks, bool verbose, std
     if (said < 3) continue;
     const Look& middle = drive[(said + 1) / 2 - 1];
     const std::optional<double> left = goal_at(middle, goal).seconds_left;
+    // a direction that the motions do not show yet takes a manoeuvre, not time
+    if (!left) continue;
     ++tally.asked;
-    const double ratio = left ? *left / (drive[said].seconds - middle.seconds) : 0;
+    const double ratio = *left / (drive[said].seconds - middle.seconds);
     tally.near += ratio > 1 / 1.5 && ratio < 1.5;
   }
   return tally;

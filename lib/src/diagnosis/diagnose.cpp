@@ -116,7 +116,7 @@ bool replace_by_large_move(const Evidence& evidence, const Answered& answered,
   std::optional<Finding> move = large_move(evidence.instants, evidence.stride, options);
   if (!move) return false;
   for (const Finding& finding : findings)
-    if (finding.certain && finding.improvement > move->improvement) return false;
+    if (finding.code != "inverted_both" && finding.improvement > move->improvement) return false;
   // its time is more exact where it is small enough for the linear test
   findings = moved_mount(evidence.instants, answered, options);
   if (findings.size() != 1) findings = {*std::move(move)};

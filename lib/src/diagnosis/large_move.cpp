@@ -68,7 +68,8 @@ bool contradict(const Motions& before, const Motions& after, const Division& fou
                 const LargeMoveOptions& large) {
   const auto contradicts = [&](const Motions& part, const DualQuaternion& own, const DualQuaternion& other) {
     const double there = typical_at(part, other);
-    return there > large.contradicts && typical_at(part, own) < large.own * there;
+    return there > large.contradicts &&
+           typical_at(part, own) < std::min(large.own * there, large.contradicts);
   };
   return contradicts(before, found.before.T, found.after.T) &&
          contradicts(after, found.after.T, found.before.T);

@@ -105,7 +105,18 @@ class Finder {
           i < shifts ? options_.least_translation / found.stretch.length : options_.least_rotation;
       if (shown >= least) return true;
     }
-    return false;
+    return problem_.mode == Mode::spatial && turned_enough(found);
+  }
+
+  /// About an axis across two or three of the frame's no component needs to be large. Noise of three
+  /// components makes a length of 1.6 standard deviations, hence one more than for a component.
+  bool turned_enough(const Found& found) const {
+    const Eigen::Vector3d turned = found.test.change.tail<3>();
+    const double angle = turned.norm();
+    if (!(angle > 0)) return false;
+    const Eigen::Vector3d axis = turned / angle;
+    const double variance = axis.dot(found.test.covariance.bottomRightCorner<3, 3>() * axis);
+    return angle - 3 * std::sqrt(std::max(0.0, variance)) >= options_.least_rotation;
   }
 
   /// Divides the stretch until no part shows a change.
