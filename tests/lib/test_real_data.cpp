@@ -5,9 +5,13 @@
 // so and are skipped; everything they cover is tested on simulated drives elsewhere.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "../support/mistakes.hpp"
 #include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/real_drives.hpp"
+#include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -140,6 +144,18 @@ TEST_F(RealData, OffsetOfTheClocksIsFoundWhateverItIs) {
         EXPECT_GT(offset->correlation, 0.9);
         EXPECT_LT(offset->stddev, 0.01);
       }
+}
+
+// The noise of these poses does not grow with the distance from the start, so the inverted streams fit
+// better.
+TEST_F(RealData, BothStreamsInvertedAreNamedOnArms) {
+  const std::string folder = "tampere/drift/drift_0.050000/run_23/";
+  const Trajectory a = testing::inverted(testing::real_trajectory(folder + "a.tum"));
+  const Trajectory b = testing::inverted(testing::real_trajectory(folder + "b.tum"));
+  const Calibration calibration = calibrate(a, b);
+  EXPECT_TRUE(std::any_of(calibration.findings.begin(), calibration.findings.end(),
+                          [](const Finding& finding) { return finding.code == "inverted_both"; }))
+      << calibration.reason;
 }
 
 }  // namespace
