@@ -7,6 +7,7 @@
 
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
+#include "egocal/estimation/attenuation.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/outlier_choice.hpp"
@@ -95,6 +96,15 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
     choice.reason = "smallest jack-knife spread of " + std::to_string(candidates.size()) + " balances";
   }
   return choice;
+}
+
+/// Empty where that is not needed.
+std::optional<Problem> without_rotation_noise(const Problem& problem, Choice& choice) {
+  const std::optional<Attenuation> attenuation = find_attenuation(problem);
+  if (!attenuation) return std::nullopt;
+  std::optional<Problem> corrected = without_attenuation(problem, *attenuation);
+  if (corrected) choice.reason += ", rotation noise taken off";
+  return corrected;
 }
 
 bool with_scale(const CalibrationOptions& options) {
@@ -190,9 +200,11 @@ Calibration calibrate_pairs(std::span<const MotionPair> given, const Calibration
   counts.outliers = statistics.outlier_pairs();
   Choice choice = choose_balance(problem, pairing);
   problem.balance = choice.balance;
-  Calibration result = solved(std::move(problem), std::move(choice), counts, options.method);
-  if (pairing.robust) result.outliers = prove_outliers(result.problem, statistics);
-  return judged(result, diagnose(given, answered(result, result.problem, scale), options.diagnosis));
+  std::optional<Problem> corrected;
+  if (!pairing.balance) corrected = without_rotation_noise(problem, choice);
+  Calibration result = solved(corrected.value_or(problem), std::move(choice), counts, options.method);
+  if (pairing.robust) result.outliers = prove_outliers(problem, statistics);
+  return judged(result, diagnose(given, answered(result, problem, scale), options.diagnosis));
 }
 
 /// Scales one stream, then calibrates as always.

@@ -42,6 +42,8 @@ struct NoisePoint {
   Errors translation_spread, rotation_spread;
   /// The same, run by run: sensors, and repeats of each.
   std::vector<double> translations, rotations, translation_deviations, rotation_deviations;
+  /// Errors of the translation where the noise is taken off the cost (egocal/estimation/attenuation.hpp).
+  std::vector<double> corrected_translations;
   /// The shared error of the translation: by which part of its length it comes out too short, mean over the
   /// sensor poses.
   double shortened = 0;

@@ -67,6 +67,7 @@ std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points) {
     }
     result.push_back({level, exponent(sizes, &NoisePoint::translations),
                       exponent(sizes, &NoisePoint::rotations),
+                      exponent(sizes, &NoisePoint::corrected_translations),
                       exponent(sizes, &NoisePoint::translation_deviations),
                       exponent(sizes, &NoisePoint::rotation_deviations), sizes.back()->shortened});
   }
@@ -75,30 +76,31 @@ std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points) {
 
 std::string markdown(const std::vector<NoiseSlope>& slopes) {
   std::string text =
-      "| noise | translation error | rotation error | its spread: translation | rotation | translation too "
-      "short by |\n| --- | --- | --- | --- | --- | --- |\n";
+      "| noise | translation error | the same, noise taken off | rotation error | its spread: translation | "
+      "rotation | translation too short by |\n| --- | --- | --- | --- | --- | --- | --- |\n";
   const auto cell = [](const Exponent& e) {
     return fmt::format("{:.2f} +- {:.2f}", e.mean, e.standard_error);
   };
   for (const NoiseSlope& s : slopes)
-    text += fmt::format("| {:g} % | {} | {} | {} | {} | {:.1f} % |\n", 100 * s.level, cell(s.translation),
-                        cell(s.rotation), cell(s.translation_spread), cell(s.rotation_spread),
-                        percent(s.shortened));
+    text += fmt::format("| {:g} % | {} | {} | {} | {} | {} | {:.1f} % |\n", 100 * s.level,
+                        cell(s.translation), cell(s.corrected_translation), cell(s.rotation),
+                        cell(s.translation_spread), cell(s.rotation_spread), percent(s.shortened));
   return text;
 }
 
 std::string html(const std::vector<NoiseSlope>& slopes) {
   std::string text =
-      "<table>\n<tr><th>noise</th><th>translation error</th><th>rotation error</th><th>its spread: "
-      "translation</th><th>rotation</th><th>translation too short by</th></tr>\n";
+      "<table>\n<tr><th>noise</th><th>translation error</th><th>the same, noise taken off</th><th>rotation "
+      "error</th><th>its spread: translation</th><th>rotation</th><th>translation too short by</th></tr>\n";
   const auto cell = [](const Exponent& e) {
     return fmt::format("n<sup>{:.2f} &plusmn; {:.2f}</sup>", e.mean, e.standard_error);
   };
   for (const NoiseSlope& s : slopes)
-    text +=
-        fmt::format("<tr><td>{:g} %</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} %</td></tr>\n",
-                    100 * s.level, cell(s.translation), cell(s.rotation), cell(s.translation_spread),
-                    cell(s.rotation_spread), percent(s.shortened));
+    text += fmt::format(
+        "<tr><td>{:g} %</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} "
+        "%</td></tr>\n",
+        100 * s.level, cell(s.translation), cell(s.corrected_translation), cell(s.rotation),
+        cell(s.translation_spread), cell(s.rotation_spread), percent(s.shortened));
   return text + "</table>\n";
 }
 

@@ -22,6 +22,7 @@ struct Exponent {
 struct NoiseSlope {
   double level = 0;
   Exponent translation, rotation;                ///< of the errors (32)
+  Exponent corrected_translation;                ///< with the noise taken off the cost
   Exponent translation_spread, rotation_spread;  ///< of the errors without their bias
   double shortened = 0;                          ///< NoisePoint::shortened at the largest number of pairs
 };

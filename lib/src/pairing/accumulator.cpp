@@ -48,6 +48,7 @@ void Accumulator::restart() {
   for (AccumulatorState::PerStride& entry : state_.strides) entry.statistics = {};
   state_.instants.clear();
   state_.rejections = {};
+  state_.attenuation.reset();
   if (!sums_) return;
   sums_.emplace(options_, tuning_.sums);
   sums_->begin(state_.period_us);
@@ -91,14 +92,19 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
         state_.strides[i].statistics.look(problem, state_.strides[i].stride, tuning_.robust);
     }
   }
+  bool chosen_anew = false;
   if (instant.number >= state_.next_choice) {
     choose();
     state_.next_choice = instant.number + instant.number / tuning_.choice_part;
+    chosen_anew = true;
   }
   if (sums_) {
     sums_->add(instant, doubtful);
-    if (sums_->choice_is_due())
+    if (sums_->choice_is_due()) {
       sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
+      chosen_anew = true;
+    }
+    if (chosen_anew) state_.attenuation = find_attenuation(plain_problem());
   }
   return pairs;
 }
@@ -170,9 +176,11 @@ const AccumulatorState::PerStride* Accumulator::chosen() const {
 
 Choice Accumulator::choice() const {
   Choice choice = state_.choice;
-  if (!sums_ || !sums_->in_force()) return choice;
-  choice.mean_stride = sums_->choice()->mean_stride;
-  choice.reason = sums_->choice()->reason;
+  if (sums_ && sums_->in_force()) {
+    choice.mean_stride = sums_->choice()->mean_stride;
+    choice.reason = sums_->choice()->reason;
+  }
+  if (state_.attenuation) choice.reason += ", rotation noise taken off";
   return choice;
 }
 
@@ -183,6 +191,14 @@ AccumulatorState Accumulator::state() const {
 }
 
 Problem Accumulator::problem() const {
+  Problem problem = plain_problem();
+  if (!state_.attenuation) return problem;
+  std::optional<Problem> corrected = without_attenuation(problem, *state_.attenuation);
+  return corrected ? *std::move(corrected) : problem;
+}
+
+/// Before rotation noise is taken off.
+Problem Accumulator::plain_problem() const {
   if (!sums_ || !sums_->in_force()) return single_stride_problem();
   Problem problem = empty_problem();
   sums_->fill(problem);

@@ -229,9 +229,14 @@ void fields(auto& archive, services::Is<StrideSumsState> auto& value) {
           outlier_length, choice, weighted, jumps);
 }
 
+void fields(auto& archive, services::Is<Attenuation> auto& value) {
+  auto& [r, taken_off, pull] = value;
+  archive(r, taken_off, pull);
+}
+
 void fields(auto& archive, services::Is<AccumulatorState> auto& value) {
-  auto& [choice, period_us, instants, strides, next_choice, sums, rejections] = value;
-  archive(choice, period_us, instants, strides, next_choice, sums, rejections);
+  auto& [choice, period_us, instants, strides, next_choice, sums, attenuation, rejections] = value;
+  archive(choice, period_us, instants, strides, next_choice, sums, attenuation, rejections);
 }
 
 void fields(auto& archive, services::Is<PairingState> auto& value) {
@@ -290,7 +295,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 14;
+constexpr int state_layout = 15;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

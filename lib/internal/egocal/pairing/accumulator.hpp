@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "egocal/estimation/attenuation.hpp"
 #include "egocal/estimation/stride_sums.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
@@ -36,12 +37,13 @@ struct AccumulatorState {
   };
 
   Choice choice;
-  std::int64_t period_us = 0;           ///< typical time between instants
-  std::deque<Instant> instants;         ///< the newest, as many as the longest motion needs
-  std::vector<PerStride> strides;       ///< under consideration
-  std::uint64_t next_choice = 0;        ///< number of the instant at which to choose again
-  std::optional<StrideSumsState> sums;  ///< where neither stride nor balance is given, and robust
-  Rejections rejections;                ///< gap, too much rotation; of motions of the chosen stride
+  std::int64_t period_us = 0;              ///< typical time between instants
+  std::deque<Instant> instants;            ///< the newest, as many as the longest motion needs
+  std::vector<PerStride> strides;          ///< under consideration
+  std::uint64_t next_choice = 0;           ///< number of the instant at which to choose again
+  std::optional<StrideSumsState> sums;     ///< where neither stride nor balance is given, and robust
+  std::optional<Attenuation> attenuation;  ///< in force, by the last choice
+  Rejections rejections;                   ///< gap, too much rotation; of motions of the chosen stride
 };
 
 /// Instants in, statistics of every stride under consideration and the choice among them out.
@@ -74,6 +76,7 @@ class Accumulator {
 
  private:
   Problem empty_problem() const;
+  Problem plain_problem() const;
   const AccumulatorState::PerStride* chosen() const;
   std::optional<MotionPair> motion(const Instant& from, const Instant& to, int stride,
                                    Rejections& rejections);

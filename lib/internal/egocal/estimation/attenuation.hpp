@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "egocal/problem/problem.hpp"
+
+namespace egocal {
+
+/// When the part of a cost that is rotation noise is taken off. Study: tests/lib/test_attenuation.cpp and
+/// docs/paper.md, "How errors fall with the number of motions".
+struct AttenuationOptions {
+  /// A pull is corrected where it is larger than this part of the standard deviation. Smaller ones widen an
+  /// interval by at most 5 %.
+  double least_pull = 1.0 / 3;
+  /// Where the noise makes a larger part of the curvature, it is not corrected: the correction doubles the
+  /// error of what is known.
+  double most_noise = 0.5;
+  /// A direction that has 30 times the curvature of the noise is shown by the rotations. Others must differ
+  /// from zero by 4 standard deviations, as noise that the sensors share also pulls there
+  /// (ObservabilityOptions::shared_noise, shown_sigmas).
+  double shown_curvature = 30, shown_sigmas = 4;
+  /// A spread needs at least this many blocks (ObservabilityOptions::least_blocks).
+  std::size_t least_blocks = 6;
+  /// The noise that is left along the rotation itself, in multiples of the least that keeps D positive
+  /// semidefinite; and the factor by which more is left until Q is positive definite.
+  double reserve = 4;
+};
+
+/// What to take off the blocks of a problem: D_k - (r'D_k r) taken_off.
+struct Attenuation {
+  Eigen::Matrix<double, 4, 1, Eigen::DontAlign> r;          ///< rotation of the minimiser
+  Eigen::Matrix<double, 4, 4, Eigen::DontAlign> taken_off;  ///< symmetric, eigenvalues in [0, 1]
+  double pull = 0;  ///< largest ratio of a pull to the standard deviation along it
+
+  bool operator==(const Attenuation&) const = default;
+};
+
+/// Errors in variables. Noise of the rotations adds N I to D (N: mean square of the rotation residual, for
+/// noise of the two sensors that is independent, whatever its distribution), and the minimiser of (18)
+/// is then (1 - N / mu) times as long along an eigenvector of D with the eigenvalue mu. N = r'Dr is known
+/// from the residuals. This decides along which eigenvectors across r the noise is to be taken off D: where
+/// the pull is larger than AttenuationOptions::least_pull standard deviations, and a loss of certainty by the
+/// correction, 1 / (1 - N / mu), costs less than the pull. Empty where there are none, in planar mode, and
+/// where the blocks are too few for a spread.
+std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options = {});
+
+/// The same along all eigenvectors that `most_noise` allows, however small the pull.
+std::optional<Attenuation> whole_attenuation(const Problem& problem, const AttenuationOptions& options = {});
+
+/// The problem with its noise taken off, at the balance {0, 1}: the blocks hold the rotation part in their
+/// upper left. Each block loses its own noise, so that leaving it out leaves out what is known of the noise
+/// from it. D stays positive semidefinite, so there is no duality gap; empty where D or Q would not be.
+std::optional<Problem> without_attenuation(const Problem& problem, const Attenuation& attenuation);
+
+}  // namespace egocal

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/estimation/attenuation.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "egocal/solvers/global.hpp"
+#include "egocal/uncertainty/leave_out.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Of the noise, along the rotation: far above rounding.
+constexpr double least_left = 1e-6;
+
+/// The eigenvectors of D across r (columns of `across`, ascending) and what the noise is of each.
+struct Curvatures {
+  DualQuaternion q;
+  double noise = 0;      ///< r'Dr
+  double cost = 0;       ///< q'Qq
+  double dual_gain = 0;  ///< |Br|^2
+  Eigen::Matrix<double, 4, 3> across;
+  Eigen::Vector3d curvature;
+  Eigen::Vector3d coupling;  ///< of the eigenvectors with r, by D
+  Eigen::Vector3d length;    ///< components of d
+  Eigen::Matrix3d ways;      ///< columns: where t goes along each, in sensor a's frame; t = 2 d r*
+
+  double part(int i) const { return noise / curvature[i]; }
+  /// What the noise takes off |t| along an eigenvector.
+  double pull(int i) const { return 2 * std::abs(length[i]) * part(i) / (1 - part(i)); }
+};
+
+std::optional<Curvatures> curvatures(const Problem& problem) {
+  if (problem.mode == Mode::planar) return std::nullopt;
+  const Matrix8d Q = cost_matrix(problem);
+  const Solution solution = solve_dual(Q);
+  if (solution.status != SolverStatus::converged) return std::nullopt;
+  Curvatures result;
+  result.q = solution.q;
+  const Eigen::Vector4d r = solution.q.real, d = solution.q.dual;
+  const Eigen::Matrix4d D = Q.bottomRightCorner<4, 4>();
+  result.noise = r.dot(D * r);
+  result.cost = cost(Q, solution.q);
+  result.dual_gain = (Q.topRightCorner<4, 4>() * r).squaredNorm();
+  // r i, r j, r k span what is across r
+  Eigen::Matrix<double, 4, 3> basis;
+  for (int i = 0; i < 3; ++i) basis.col(i) = quaternion_product(Eigen::Vector4d::Unit(i + 1), r);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(basis.transpose() * D * basis);
+  result.across = basis * eigen.eigenvectors();
+  result.curvature = eigen.eigenvalues();
+  if (!(result.noise > 0) || !(result.curvature[0] > 0)) return std::nullopt;
+  result.coupling = result.across.transpose() * (D * r);
+  result.length = result.across.transpose() * d;
+  result.ways = eigen.eigenvectors();  // as the basis is the unit vectors times r
+  return result;
+}
+
+/// How much of the noise must be left along r, as a part of it. D stays positive semidefinite with `needed`;
+/// and a dual part along r, which only rotations far from r may have, must not pay for them: what it can gain
+/// there, |Br|^2 / noise, is to be a part of the least cost.
+double left_along_rotation(const Curvatures& all, double reserve) {
+  double needed = all.dual_gain / (all.noise * all.cost);
+  for (int i = 0; i < 3; ++i)
+    needed += all.coupling[i] * all.coupling[i] / ((all.curvature[i] - all.noise) * all.noise);
+  return std::isfinite(needed) ? std::clamp(reserve * needed, least_left, 1.0) : 1.0;
+}
+
+bool positive_definite(const Matrix8d& Q) {
+  const Eigen::LLT<Matrix8d> factors(Q);
+  return factors.info() == Eigen::Success;
+}
+
+/// Empty where no noise left along the rotation keeps Q positive definite.
+std::optional<Attenuation> taking_off(const Problem& problem, const Curvatures& all,
+                                      const std::array<bool, 3>& corrected,
+                                      const AttenuationOptions& options) {
+  Attenuation result;
+  result.r = all.q.real;
+  Eigen::Matrix4d across = Eigen::Matrix4d::Zero();
+  for (int i = 0; i < 3; ++i)
+    if (corrected[static_cast<std::size_t>(i)]) across += all.across.col(i) * all.across.col(i).transpose();
+  // what is left of the noise is seen along r: all of it where a direction keeps its own
+  const Eigen::Matrix4d along = result.r * result.r.transpose();
+  const bool everywhere = std::all_of(corrected.begin(), corrected.end(), [](bool one) { return one; });
+  double left = everywhere ? left_along_rotation(all, options.reserve) : 1;
+  while (true) {
+    result.taken_off = across + (1 - left) * along;
+    if (without_attenuation(problem, result)) return result;
+    if (!(left < 1)) return std::nullopt;
+    left = std::min(1.0, options.reserve * left);
+  }
+}
+
+Eigen::Vector3d standard_deviations(const Problem& problem, const Curvatures& all) {
+  const auto differences = leave_out_differences(problem, cost_matrix(problem), all.q);
+  const auto blocks = static_cast<double>(differences.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+  for (const auto& difference : differences) mean += all.ways.transpose() * difference.head<3>() / blocks;
+  for (const auto& difference : differences)
+    squares += (all.ways.transpose() * difference.head<3>() - mean).cwiseAbs2();
+  return (squares * (blocks - 1) / blocks).cwiseSqrt();
+}
+
+}  // namespace
+
+std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options) {
+  if (problem.blocks.size() < options.least_blocks) return std::nullopt;
+  const std::optional<Curvatures> all = curvatures(problem);
+  if (!all) return std::nullopt;
+  const Eigen::Vector3d stddev = standard_deviations(problem, *all);
+  if (!stddev.allFinite()) return std::nullopt;
+  std::array<bool, 3> may_be{}, shown{};
+  bool needed = false;
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double part = all->part(i);
+    shown[k] = part < options.most_noise && (part * options.shown_curvature < 1 ||
+                                             2 * std::abs(all->length[i]) > options.shown_sigmas * stddev[i]);
+    if (!shown[k]) continue;
+    // the correction makes the standard deviation 1 / (1 - part) times as large
+    const double loss = std::sqrt(1 / ((1 - part) * (1 - part)) - 1);
+    const double pull = all->pull(i) / stddev[i];
+    const bool pays = pull > std::max(options.least_pull, loss);
+    needed = needed || pays;
+    may_be[k] = pays || loss < options.least_pull;
+    if (pays) largest = std::max(largest, pull);
+  }
+  if (!needed) return std::nullopt;
+  std::optional<Attenuation> result = taking_off(problem, *all, may_be, options);
+  if (result) result->pull = largest;
+  return result;
+}
+
+std::optional<Attenuation> whole_attenuation(const Problem& problem, const AttenuationOptions& options) {
+  const std::optional<Curvatures> all = curvatures(problem);
+  if (!all) return std::nullopt;
+  std::array<bool, 3> corrected{};
+  for (int i = 0; i < 3; ++i) corrected[static_cast<std::size_t>(i)] = all->part(i) < options.most_noise;
+  if (std::none_of(corrected.begin(), corrected.end(), [](bool one) { return one; })) return std::nullopt;
+  return taking_off(problem, *all, corrected, options);
+}
+
+std::optional<Problem> without_attenuation(const Problem& problem, const Attenuation& attenuation) {
+  Problem result = problem;
+  result.balance = {0, 1};
+  const Eigen::Vector4d r = attenuation.r;
+  const Eigen::Matrix4d taken_off = attenuation.taken_off;
+  for (Statistics& block : result.blocks) {
+    Matrix8d& S = block.dual_rows;
+    const Eigen::Matrix4d D = S.bottomRightCorner<4, 4>();
+    S *= problem.balance.translation;
+    S.topLeftCorner<4, 4>() += problem.balance.rotation * D;
+    S.bottomRightCorner<4, 4>() -= problem.balance.translation * r.dot(D * r) * taken_off;
+  }
+  if (!positive_definite(cost_matrix(result))) return std::nullopt;
+  return result;
+}
+
+}  // namespace egocal
