@@ -4,6 +4,8 @@
 // Errors on all data sets and on simulated drives, beside equal weights and published numbers: the tables of
 // docs/accuracy.md. `scripts/benchmark` runs it.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +19,7 @@
 #include "egocal/samples/calibrate_samples.hpp"
 #include "markdown_tables.hpp"
 #include "support/real_drives.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace {
 
@@ -36,7 +39,7 @@ std::string error_text(double rotation, double translation, const char* length, 
   return text("%.3f deg, ", rotation * degrees) + text("%.2f ", translation * unit) + length;
 }
 
-DualQuaternion answer_to(const Streams& streams, bool equal_weights) {
+Calibration calibration_of(const Streams& streams, bool equal_weights) {
   CalibrationOptions options;
   options.pairing = streams.options;
   options.diagnosis.enabled = false;
@@ -45,7 +48,11 @@ DualQuaternion answer_to(const Streams& streams, bool equal_weights) {
     options.pairing.robust = false;
     options.pairing.stride = 1;
   }
-  return to_dual_quaternion(calibrate(streams.a, streams.b, options).T_a_b);
+  return calibrate(streams.a, streams.b, options);
+}
+
+DualQuaternion answer_to(const Streams& streams, bool equal_weights) {
+  return to_dual_quaternion(calibration_of(streams, equal_weights).T_a_b);
 }
 
 ExtrinsicError error_of(const Streams& streams, bool equal_weights) {
@@ -107,6 +114,49 @@ Table real_drives() {
   return table;
 }
 
+/// Every lidar with every camera, in 3-D and in the plane, and the others: where equal weights are more than
+/// a tenth better than the defaults.
+Table rivals() {
+  Table table{"rivals",
+              {{"pair", "equal weights, stride 1", "defaults", "off by, equal weights", "off by, defaults",
+                "standard deviation"}}};
+  int pairs = 0;
+  const auto add = [&](const std::string& name, const Streams& streams) {
+    ++pairs;
+    const Calibration found = calibration_of(streams, false);
+    const DualQuaternion equal = answer_to(streams, true), ours = to_dual_quaternion(found.T_a_b);
+    const ExtrinsicError theirs = extrinsic_error(streams.T, equal), mine = extrinsic_error(streams.T, ours);
+    if (mine.translation <= 1.1 * theirs.translation) return;
+    const auto three = [](const auto& x, const auto& y, const auto& z) {
+      return text("%.1f", 100 * x) + text(", %.1f", 100 * y) + text(", %.1f cm", 100 * z);
+    };
+    const auto off = [&](const DualQuaternion& q) {
+      const auto d = detail::frame_a_difference(streams.T, q);
+      return three(d[0], d[1], d[2]);
+    };
+    const auto& stddev = found.observability.stddev;
+    table.rows.push_back({name, error_text(theirs.rotation, theirs.translation, "cm", 100),
+                          error_text(mine.rotation, mine.translation, "cm", 100), off(equal), off(ours),
+                          three(stddev[0], stddev[1], stddev[2])});
+  };
+  const auto both = [&](const std::string& name, const Streams& streams) {
+    add(name + ", 3-D", streams);
+    add(name + ", planar", testing::planar(streams));
+  };
+  for (const char* drive : {"05", "07"})
+    for (const char* lidar : {"velodyne_pylidar", "velodyne_aloam"})
+      for (const char* camera : {"cam0_orbslam2", "cam0_gt"}) {
+        Streams streams = testing::kitti(drive, lidar);
+        streams.b = testing::real_trajectory(std::string("kitti_") + drive + "/" + camera + ".tum");
+        both(std::string("KITTI ") + drive + ", " + lidar + ", " + camera, streams);
+      }
+  both("KITTI raw 0930_27", testing::kitti_asynchronous());
+  add("EuRoC V2_01", testing::euroc());
+  add("robot arm", testing::robot_arm());
+  table.rows.push_back({"of " + std::to_string(pairs) + " pairs", "", "", "", "", ""});
+  return table;
+}
+
 Streams tampere_run(const std::filesystem::path& folder) {
   Streams streams;
   streams.a = read_trajectory((folder / "a.tum").string());
@@ -120,25 +170,66 @@ Streams tampere_run(const std::filesystem::path& folder) {
   return streams;
 }
 
-/// Medians of 13 runs a level, beside the best of all 36 configurations that were published.
-Table tampere() {
-  Table table{"tampere", {{"level", "equal weights, stride 1", "defaults", "worst run", "published"}}};
-  struct Level {
-    const char *name, *folder, *published;
-  };
-  for (const Level& level : {Level{"noise on poses .002", "noise/noise_0.002000", "0.1195 deg, 1.7 mm"},
-                             Level{"noise on poses .010", "noise/noise_0.010000", "0.584 deg, 12.3 mm"},
-                             Level{"drift .05", "drift/drift_0.050000", "9.1 mm"},
-                             Level{"4 outliers", "outliers/outliers_4", "0.287 deg, 10.7 mm"},
-                             Level{"10 outliers", "outliers/outliers_10", "0.287 deg, 10.7 mm"},
-                             Level{"mixture", "mixture", "0.606 deg, 14.6 mm"}}) {
+struct Level {
+  const char *name, *folder, *published;
+
+  std::vector<Streams> runs() const {
     std::vector<std::filesystem::path> folders;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(paths::data_dir() + "/tampere/" + level.folder))
+    for (const auto& entry : std::filesystem::directory_iterator(paths::data_dir() + "/tampere/" + folder))
       folders.push_back(entry.path());
     std::sort(folders.begin(), folders.end());
     std::vector<Streams> runs;
-    for (const std::filesystem::path& folder : folders) runs.push_back(tampere_run(folder));
+    for (const std::filesystem::path& one : folders) runs.push_back(tampere_run(one));
+    return runs;
+  }
+};
+
+const std::vector<Level> levels{{"noise on poses .002", "noise/noise_0.002000", "0.1195 deg, 1.7 mm"},
+                                {"noise on poses .010", "noise/noise_0.010000", "0.584 deg, 12.3 mm"},
+                                {"drift .05", "drift/drift_0.050000", "9.1 mm"},
+                                {"4 outliers", "outliers/outliers_4", "0.287 deg, 10.7 mm"},
+                                {"10 outliers", "outliers/outliers_10", "0.287 deg, 10.7 mm"},
+                                {"mixture", "mixture", "0.606 deg, 14.6 mm"}};
+
+/// Of 1.96 standard deviations, per direction: in how many runs they cover the truth.
+Table coverage() {
+  Table table{"coverage", {{"level", "x", "y", "z", "roll", "pitch", "yaw", "all", "sigma / error"}}};
+  for (const Level& level : levels) {
+    std::array<int, 6> covered{}, seen{};
+    double squares = 0, variances = 0;
+    for (const Streams& streams : level.runs()) {
+      const Calibration found = calibration_of(streams, false);
+      const auto error = detail::frame_a_difference(streams.T, to_dual_quaternion(found.T_a_b));
+      for (std::size_t i = 0; i < 6; ++i) {
+        const double stddev = found.observability.stddev[i], off = error[static_cast<Eigen::Index>(i)];
+        if (!found.observability.observable[i] || !std::isfinite(stddev)) continue;
+        ++seen[i];
+        // truth and poses are written with nine digits
+        covered[i] += std::abs(off) <= 1.96 * stddev + 1e-7;
+        if (stddev < 1e-6) continue;  // no noise
+        squares += off * off / (stddev * stddev);
+        variances += 1;
+      }
+    }
+    std::vector<std::string> row{level.name};
+    int all_covered = 0, all_seen = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+      row.push_back(std::to_string(covered[i]) + " of " + std::to_string(seen[i]));
+      all_covered += covered[i];
+      all_seen += seen[i];
+    }
+    row.push_back(text("%.0f %%", 100.0 * all_covered / std::max(1, all_seen)));
+    row.push_back(variances > 0 ? text("%.2f", std::sqrt(variances / squares)) : "no noise");
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+/// Medians of 13 runs a level, beside the best of all 36 configurations that were published.
+Table tampere() {
+  Table table{"tampere", {{"level", "equal weights, stride 1", "defaults", "worst run", "published"}}};
+  for (const Level& level : levels) {
+    const std::vector<Streams> runs = level.runs();
     const Medians equal = medians_of(runs, true), ours = medians_of(runs, false);
     table.rows.push_back({level.name, error_text(equal.rotation, equal.translation, "mm", 1000),
                           error_text(ours.rotation, ours.translation, "mm", 1000),
@@ -207,7 +298,7 @@ int main(int argc, char** argv) {
   std::string only, check, write;
   double tolerance = 0.03;
   egocal::cli::Program app("accuracy_benchmark", "Errors on all data sets: the tables of docs/accuracy.md");
-  app.add_option("--only", only, "one table: real, tampere, hand-eye or simulated");
+  app.add_option("--only", only, "one table: real, rivals, tampere, coverage, hand-eye or simulated");
   app.add_option("--check", check, "a page: exit 1 where its tables differ");
   app.add_option("--tolerance", tolerance, "of --check, relative").show_default();
   app.add_option("--write", write, "a page: put the tables in their places");
@@ -216,7 +307,8 @@ int main(int argc, char** argv) {
   int result = 0;
   std::string page = write.empty() ? "" : bench::read_page(write);
   const std::string checked = check.empty() ? "" : bench::read_page(check);
-  for (const Part& part : {Part{"real", real_drives, true}, Part{"tampere", tampere, true},
+  for (const Part& part : {Part{"real", real_drives, true}, Part{"rivals", rivals, true},
+                           Part{"tampere", tampere, true}, Part{"coverage", coverage, true},
                            Part{"hand-eye", hand_eye, true}, Part{"simulated", simulated, false}}) {
     if (!only.empty() && only != part.name) continue;
     if (part.needs_data && !testing::have_real_drives()) {

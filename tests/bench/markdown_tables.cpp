@@ -116,4 +116,18 @@ std::vector<std::string> differences(const std::string& page, const Table& table
   return found;
 }
 
+std::string with_rows_of(const std::string& page, const Table& table) {
+  const Place place = place_of(page, table.name);
+  std::string kept;
+  std::size_t number = 0;
+  for (const std::string& line : lines_of(page.substr(place.begin, place.end - place.begin))) {
+    const bool heading = number++ < 2;
+    const bool made = std::any_of(table.rows.begin(), table.rows.end(), [&line](const auto& row) {
+      return line.rfind("| " + row.front() + " |", 0) == 0;
+    });
+    if (heading || made) kept += line + "\n";
+  }
+  return page.substr(0, place.begin) + kept + page.substr(place.end);
+}
+
 }  // namespace egocal::bench

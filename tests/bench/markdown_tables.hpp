@@ -25,4 +25,7 @@ std::string with_table(const std::string& page, const Table& table);
 /// equal; numbers may differ by `relative`, or by one in their last place.
 std::vector<std::string> differences(const std::string& page, const Table& table, double relative);
 
+/// The page without the rows whose first cell no row of the table has: a part of a table is compared with it.
+std::string with_rows_of(const std::string& page, const Table& table);
+
 }  // namespace egocal::bench

@@ -5,13 +5,17 @@
 // stream, over several draws: the table of docs/accuracy.md.
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <initializer_list>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "egocal/cli/cli.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "egocal/online/answer.hpp"
+#include "markdown_tables.hpp"
 #include "support/corruption.hpp"
 #include "support/paths.hpp"
 #include "support/real_drives.hpp"
@@ -54,48 +58,85 @@ double quantile(std::vector<double> values, double part) {
                          static_cast<std::size_t>(part * static_cast<double>(values.size())))];
 }
 
-void print(const char* drive, const Errors& errors) {
-  std::printf("%-24s %7.3f   %7.3f %7.3f   %7.3f %7.3f %7.3f  %s\n", drive, quantile(errors.clean, 0.5),
-              quantile(errors.missing, 0.5), quantile(errors.missing, 1), quantile(errors.wrong, 0.5),
-              quantile(errors.wrong, 0.95), errors.worst, errors.worst_kind.c_str());
-  std::fflush(stdout);
+std::string numbers(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, value < 1 ? "%.3f" : "%.2f", value);
+    text += (text.empty() ? "" : ", ") + std::string(buffer);
+  }
+  return text;
+}
+
+struct Drive {
+  const char* name;
+  std::function<std::vector<Streams>()> streams;
+  bool needs_data;
+};
+
+std::vector<Streams> simulated(Terrain terrain) {
+  std::vector<Streams> drives;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    drives.push_back(testing::simulated_drive({.terrain = terrain, .relative_noise = 0.01, .seed = seed}));
+  return drives;
+}
+
+std::vector<Drive> all_drives() {
+  const auto one = [](auto make) { return [make] { return std::vector<Streams>{make()}; }; };
+  return {
+      {"simulated car", [] { return simulated(Terrain::rough); }, false},
+      {"simulated, free", [] { return simulated(Terrain::free); }, false},
+      {"KITTI 05, 3-D", one([] { return testing::kitti("05"); }), true},
+      {"KITTI 07, 3-D", one([] { return testing::kitti("07"); }), true},
+      {"KITTI 07, A-LOAM", one([] { return testing::kitti("07", "velodyne_aloam"); }), true},
+      {"KITTI 05, planar", one([] { return testing::planar(testing::kitti("05")); }), true},
+      {"KITTI 07, planar", one([] { return testing::planar(testing::kitti("07")); }), true},
+      {"KITTI raw 0930_27, planar", one([] { return testing::planar(testing::kitti_asynchronous()); }), true},
+      {"EuRoC V2_01", one([] { return testing::euroc(); }), true},
+      {"robot arm", one([] { return testing::robot_arm(); }), true},
+  };
+}
+
+std::vector<std::string> row(const Drive& drive, std::uint64_t seeds) {
+  Errors errors;
+  for (const Streams& streams : drive.streams()) measure(streams, seeds, errors);
+  return {drive.name, numbers({quantile(errors.clean, 0.5)}),
+          numbers({quantile(errors.missing, 0.5), quantile(errors.missing, 1)}),
+          numbers({quantile(errors.wrong, 0.5), quantile(errors.wrong, 0.95), errors.worst}),
+          errors.worst_kind};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::uint64_t seeds = 6;
+  std::string only, write, check;
   egocal::cli::Program app("outlier_study",
-                           "Rotation error [deg] with a fifth of the poses of one stream wrong");
+                           "Rotation error [deg] with a fifth of the poses of one stream wrong: a table of "
+                           "docs/accuracy.md");
   app.add_option("--draws", seeds, "of what is wrong, per kind and stream")
       .check(egocal::cli::Check::range(1, 1000));
+  app.add_option("--only", only, "the drives whose names contain this");
+  app.add_option("--write", write, "a page: put the table in its place");
+  app.add_option("--check", check, "a page: exit 1 where its rows for these drives differ");
   if (const auto code = app.parse(argc, argv)) return *code;
 
-  std::printf("%-24s %7s   %15s   %23s\n%-24s %7s   %7s %7s   %7s %7s %7s\n", "", "clean", "a fifth missing",
-              "a fifth wrong", "", "", "median", "worst", "median", "95 %", "worst");
-  for (const auto& [name, terrain] :
-       {std::pair{"simulated car", Terrain::rough}, {"simulated, free", Terrain::free}}) {
-    Errors errors;
-    for (std::uint64_t seed = 1; seed <= 3; ++seed)
-      measure(testing::simulated_drive({.terrain = terrain, .relative_noise = 0.01, .seed = seed}), seeds,
-              errors);
-    print(name, errors);
+  bench::Table table{
+      "outliers",
+      {{"drive", "clean", "missing: median, worst", "with outliers: median, 95 %, worst", "the worst"}}};
+  for (const Drive& drive : all_drives()) {
+    if (std::string(drive.name).find(only) == std::string::npos) continue;
+    if (drive.needs_data && !testing::have_real_drives()) {
+      std::printf("%s: the data in %s are not here\n", drive.name, paths::data_dir().c_str());
+      continue;
+    }
+    table.rows.push_back(row(drive, seeds));
   }
-  if (!testing::have_real_drives()) {
-    std::fputs(("the real drives in " + paths::data_dir() + " are not here\n").c_str(), stdout);
-    return 0;
-  }
-  const auto real = [&](const char* name, const Streams& streams) {
-    Errors errors;
-    measure(streams, seeds, errors);
-    print(name, errors);
-  };
-  real("KITTI 05", testing::kitti("05"));
-  real("KITTI 07", testing::kitti("07"));
-  real("KITTI 07, A-LOAM", testing::kitti("07", "velodyne_aloam"));
-  real("KITTI 05, planar", testing::planar(testing::kitti("05")));
-  real("KITTI 07, planar", testing::planar(testing::kitti("07")));
-  real("KITTI 0930_27, planar", testing::planar(testing::kitti_asynchronous()));
-  real("EuRoC V2_01", testing::euroc());
-  real("robot arm", testing::robot_arm());
+  std::printf("%s\n", bench::markdown(table).c_str());
+  if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
+  if (check.empty()) return 0;
+  const std::vector<std::string> differences =
+      bench::differences(bench::with_rows_of(bench::read_page(check), table), table, 0.03);
+  for (const std::string& difference : differences) std::printf("%s\n", difference.c_str());
+  return differences.empty() ? 0 : 1;
 }
