@@ -32,7 +32,8 @@ struct StreamCheckOptions {
          known_translation = 0.3;  ///< standard deviations up to here say so [rad, m]
 };
 
-/// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream, samples.
+/// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream,
+/// samples.
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
                                    const StreamCheckOptions& options = {});
 

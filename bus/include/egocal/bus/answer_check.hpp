@@ -49,7 +49,7 @@ class AnswerCheck {
   /// word: that takes the poses.
   std::string refusal(const verdict_t& message, const ReceivedVerdict& received) const;
 
-  static constexpr std::size_t max_pairs = 256;  ///< a limit on memory
+  static constexpr std::size_t max_pairs = 256;         ///< a limit on memory
   static constexpr std::size_t problems_per_pair = 16;  ///< answers come within a few problems
 
  private:
