@@ -3,93 +3,16 @@
 #include "egocal/monitor/view.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "answer_text.hpp"
 #include "dialog.hpp"
 #include "egocal/monitor/layout.hpp"
 #include "panels.hpp"
+#include "selection.hpp"
 
 namespace egocal::monitor {
 namespace {
-
-constexpr std::array<double, 6> window_choices{10, 30, 60, 300, 1800, 7200};  // [s]
-
-const PairState* selected_pair(const Model& model, const ViewState& view) {
-  if (model.pairs().empty()) return nullptr;
-  const int last = static_cast<int>(model.pairs().size()) - 1;
-  return &model.pairs()[static_cast<std::size_t>(std::clamp(view.selected, 0, last))];
-}
-
-/// Measured time that the curves of a pair cover [s].
-double session_length(const PairState* pair) {
-  const calibration_t* answer = pair ? pair->answer() : nullptr;
-  return answer ? 1e-6 * (static_cast<double>(answer->utime) - static_cast<double>(pair->session)) : 0;
-}
-
-/// step > 0: less of the session, from all of it through the windows that are shorter than it.
-void zoom(ViewState& view, const Model& model, int step) {
-  const double length = session_length(selected_pair(model, view));
-  std::vector<double> windows;
-  for (const double window : window_choices)
-    if (window < length || window == window_choices.front() || window == view.window_s)
-      windows.push_back(window);
-  windows.push_back(0);  // all
-  auto at = std::find(windows.begin(), windows.end(), view.window_s);
-  if (step > 0 && at != windows.begin()) --at;
-  if (step < 0 && at + 1 != windows.end()) ++at;
-  view.window_s = *at;
-  view.notice = view.window_s == 0 ? "the curves show the whole session"
-                                   : "the curves show the last " + age(view.window_s);
-}
-
-Action about_pair(Action::Kind kind, const PairState& pair) {
-  Action action;
-  action.kind = kind;
-  action.a = pair.a;
-  action.b = pair.b;
-  action.session = pair.session;
-  return action;
-}
-
-Action press_in_dialog(ViewState& view, const Model& model, KeyPress key) {
-  const Dialog dialog = view.dialog;
-  view.dialog = Dialog::none;
-  const PairState* pair = selected_pair(model, view);
-  const char c = key.key == Key::character ? key.character : '\0';
-  if (dialog == Dialog::help || !pair) return {};
-  if (dialog == Dialog::export_format) {
-    constexpr ExtrinsicFormat formats[] = {ExtrinsicFormat::yaml, ExtrinsicFormat::ros, ExtrinsicFormat::urdf,
-                                           ExtrinsicFormat::kalibr};
-    for (ExtrinsicFormat format : formats)
-      if (c == to_string(format)[0]) {
-        Action action = about_pair(Action::Kind::export_answer, *pair);
-        action.format = format;
-        return action;
-      }
-    view.notice = "nothing exported";
-    return {};
-  }
-  if (c == 'y' || c == 'Y') {
-    return about_pair(dialog == Dialog::reset   ? Action::Kind::reset
-                      : dialog == Dialog::pause ? Action::Kind::pause
-                                                : Action::Kind::resume,
-                      *pair);
-  }
-  view.notice = "nothing done";
-  return {};
-}
-
-void ask(ViewState& view, const Model& model, Dialog dialog) {
-  if (!selected_pair(model, view)) {
-    view.notice = "there is no pair yet";
-  } else if (!view.live && dialog != Dialog::export_format) {
-    view.notice = "this is a log: there is no process to command";
-  } else {
-    view.dialog = dialog;
-  }
-}
 
 void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
   if (pane.height() < 1) return;
@@ -254,11 +177,6 @@ void draw_detail(Canvas& canvas, const Model& model, const ViewState& view) {
       draw_direction(Pane(canvas, rect), *pair, i == 1, layout.matrices, view.charset);
 }
 
-// A title where there is room for one.
-int event_rows(int height) {
-  return height < 3 ? std::max(1, height) : height - 1;
-}
-
 void draw_event_screen(Canvas& canvas, const Model& model, const ViewState& view) {
   const EventsLayout layout = layout_events(canvas.width(), canvas.height());
   draw_header(Pane(canvas, layout.header), model, view);
@@ -281,126 +199,6 @@ void draw_stream_screen(Canvas& canvas, const Model& model, const ViewState& vie
 }
 
 }  // namespace
-
-Action press(ViewState& view, const Model& model, KeyPress key) {
-  view.notice.clear();
-  if (view.dialog != Dialog::none) return press_in_dialog(view, model, key);
-  const int pairs = static_cast<int>(model.pairs().size());
-  const int events = static_cast<int>(model.events().size());
-  const auto select = [&](int index) { view.selected = pairs ? std::clamp(index, 0, pairs - 1) : 0; };
-  const int page = event_rows(layout_events(80, view.height).list.h);
-  const auto scroll = [&](int lines) {
-    // the newest event is at the bottom, the first stream at the top
-    if (view.screen == Screen::streams)
-      view.scroll = std::clamp(view.scroll - lines, 0, std::max(0, stream_line_count(model) - page));
-    else
-      view.scroll = std::clamp(view.scroll + lines, 0, std::max(0, events - page));
-  };
-  const bool list = view.screen == Screen::events || view.screen == Screen::streams;
-  switch (key.key) {
-    case Key::up:
-      list ? scroll(1) : select(view.selected - 1);
-      return {};
-    case Key::down:
-      list ? scroll(-1) : select(view.selected + 1);
-      return {};
-    case Key::page_up:
-      list ? scroll(page) : select(view.selected - 10);
-      return {};
-    case Key::page_down:
-      list ? scroll(-page) : select(view.selected + 10);
-      return {};
-    case Key::home:
-      list ? scroll(events) : select(0);
-      return {};
-    case Key::end:
-      list ? scroll(-events) : select(pairs - 1);
-      return {};
-    case Key::enter:
-    case Key::right:
-      if (view.screen == Screen::overview) view.screen = Screen::detail;
-      return {};
-    case Key::escape:
-    case Key::left:
-      view.screen = Screen::overview;
-      return {};
-    case Key::tab:
-      view.screen = view.screen == Screen::overview ? Screen::detail
-                    : view.screen == Screen::detail ? Screen::events
-                                                    : Screen::overview;
-      return {};
-    case Key::character:
-      break;
-  }
-  switch (key.character) {
-    case 'q':
-    case 'Q': {
-      Action action;
-      action.kind = Action::Kind::quit;
-      return action;
-    }
-    case '?':
-    case 'h':
-      view.dialog = Dialog::help;
-      break;
-    case 'k':
-      list ? scroll(1) : select(view.selected - 1);
-      break;
-    case 'j':
-      list ? scroll(-1) : select(view.selected + 1);
-      break;
-    case 'n':
-      select(pairs ? (view.selected + 1) % pairs : 0);
-      break;
-    case 'N':
-      select(pairs ? (view.selected + pairs - 1) % pairs : 0);
-      break;
-    case '1':
-      view.screen = Screen::overview;
-      break;
-    case '2':
-      view.screen = Screen::detail;
-      break;
-    case '3':
-    case 'e':
-      view.screen = Screen::events;
-      view.scroll = 0;
-      break;
-    case '4':
-    case 's':
-      view.screen = Screen::streams;
-      view.scroll = 0;
-      break;
-    case '+':
-    case '=':
-      zoom(view, model, 1);
-      break;
-    case '-':
-      zoom(view, model, -1);
-      break;
-    case 'l':
-      view.logarithmic = !view.logarithmic;
-      view.notice = view.logarithmic ? "logarithmic axes" : "linear axes";
-      break;
-    case ' ':
-      view.frozen = !view.frozen;
-      break;
-    case 'r':
-      ask(view, model, Dialog::reset);
-      break;
-    case 'p':
-      ask(view, model,
-          (selected_pair(model, view) && pair_is_paused(model, *selected_pair(model, view))) ? Dialog::resume
-                                                                                             : Dialog::pause);
-      break;
-    case 'x':
-      ask(view, model, Dialog::export_format);
-      break;
-    default:
-      break;
-  }
-  return {};
-}
 
 void draw(Canvas& canvas, const Model& model, const ViewState& view) {
   switch (view.screen) {
