@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   Stream a{&calibrator, egocal::Side::a}, b{&calibrator, egocal::Side::b};
   lcm.subscribe(argv[1], &Stream::receive, &a);
   lcm.subscribe(argv[2], &Stream::receive, &b);
-  // ends when nothing was heard for five seconds
+  // ends when nothing was received for five seconds
   while (lcm.handleTimeout(5000) > 0) continue;
   return calibrator.answer() ? 0 : 1;
 }

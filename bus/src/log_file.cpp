@@ -72,7 +72,7 @@ void EventNumbers::begin_at(std::int64_t number) {
 
 bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
   if (restart_) {
-    // The count goes on as if there had been no zero: the zero was a damaged number.
+    // The count continues as if there had been no zero: the zero was a damaged number.
     const Restart& restart = *restart_;
     if (damaged_bytes == 0 && !follows(number, last_) &&
         static_cast<std::uint64_t>(number) == static_cast<std::uint64_t>(restart.last) + 2) {

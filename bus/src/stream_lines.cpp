@@ -12,7 +12,7 @@ namespace {
 
 using Severity = StreamLine::Severity;
 
-constexpr std::size_t most_named = 3;  ///< channels that were heard instead
+constexpr std::size_t most_named = 3;  ///< channels that were received instead
 
 std::string rate_text(double rate) {
   char text[40];
@@ -53,11 +53,11 @@ StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::in
     const std::string text =
         stream.heard
             ? "silent for " + std::to_string((mono_us - stream.heard->last_mono_us) / 1'000'000) + " s"
-            : std::string("nothing heard");
+            : std::string("nothing received");
     return {Severity::bad, begin + text + "; " +
                                (instead.empty() ? "no other channel carries anything (expected " +
                                                       expected_type(sensor) + ")"
-                                                : "heard instead: " + instead)};
+                                                : "received instead: " + instead)};
   }
   std::int64_t refused = 0;
   for (const Refusal& refusal : stream.heard->refusals) refused += refusal.count;

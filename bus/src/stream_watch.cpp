@@ -72,7 +72,7 @@ std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& count
   counting.last_time_us = time;
   if (counting.at_same_time >= options_.most_at_same_time)
     return add(stream, options_.most_refusals, "the same time again",
-               "the time stands still at " + std::to_string(time) +
+               "the time does not advance: " + std::to_string(time) +
                    " us: fill utime with the time of the measurement.");
   if (counting.first_mono_us == 0 || time < counting.first_time_us) {
     counting.first_mono_us = mono_us;

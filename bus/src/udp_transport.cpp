@@ -127,7 +127,7 @@ class UdpTransport final : public Transport {
     group.imr_multiaddr = to_.sin_addr;
     if (receiver_.set(IPPROTO_IP, IP_ADD_MEMBERSHIP, group) || errno == EADDRINUSE) {
       join_error_ = 0;
-    } else if (errno == ENOBUFS) {  // memberships of interfaces that are gone: begin anew
+    } else if (errno == ENOBUFS) {  // memberships of interfaces that are gone: start again
       open_receiver();
       join_error_ = receiver_.set(IPPROTO_IP, IP_ADD_MEMBERSHIP, group) ? 0 : errno;
     } else {

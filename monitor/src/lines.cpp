@@ -93,7 +93,7 @@ void verdict_into(json& p, const PairState& pair) {
   p["verdict_seq"] = pair.verdict->seq;
 }
 
-/// Null where no scale is looked for, or none was heard of.
+/// Null where no scale is looked for, or none was received.
 json scale_json(const PairState& pair) {
   if (!pair.scale) return nullptr;
   const ScaleSolution& solution = pair.scale->solution;

@@ -270,7 +270,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
     track->name = solver;
     if (pair->solvers.size() > 1 || pair->counted >= 0)
       note(Severity::info, name,
-           "solver added: " + solver + " (" + bounded(message.method) + ") answers, too", now);
+           "solver added: " + solver + " (" + bounded(message.method) + ") answers as well", now);
   } else if (track->answer.method != bounded(message.method)) {
     note(Severity::info, name,
          "solver swapped: " + solver + " changed from " + track->answer.method + " to " +

@@ -75,7 +75,7 @@ class Source {
     for (const int fd : fds_) fds.push_back({fd, POLLIN, 0});
     poll(fds.data(), fds.size(), milliseconds);
   }
-  /// Takes in what is due of a log; the time that the model lives in.
+  /// Delivers what is due of a log; the time of the model.
   Now advance() { return recording_ ? recording_->advance(bus::mono_us()) : feed_->now(); }
   /// The reason why it could not be sent; empty: sent.
   std::string send(const command_t& command) {
@@ -245,7 +245,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
     const bool answered =
         !model.pairs().empty() && std::all_of(model.pairs().begin(), model.pairs().end(),
                                               [](const PairState& p) { return p.answer() != nullptr; });
-    // heartbeats come once a second: who is there has been heard by then
+    // heartbeats come once a second: every process has sent one by then
     if (source.live() && ((answered && waited > 1.2) || waited > options.timeout_s)) break;
     source.wait(20);
   }
@@ -264,7 +264,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
                                  [](const PairState& p) { return p.answer() || p.has_problem; }) ||
                      !model.processes().empty();
   if (!heard && !source.network_error().empty()) throw Error(source.network_error());
-  if (!heard) throw Error(source.live() ? "nothing heard on " + source.name() : no_session(source.name()));
+  if (!heard) throw Error(source.live() ? "nothing received on " + source.name() : no_session(source.name()));
   return 0;
 }
 

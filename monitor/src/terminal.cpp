@@ -52,7 +52,7 @@ extern "C" void on_suspend(int) {
   suspend_flag = 1;
 }
 
-// Only async-signal-safe calls: the process is about to die and the terminal must survive it.
+// Only async-signal-safe calls: the process is about to end and the terminal must be restored.
 extern "C" void on_crash(int signal_number) {
   if (rescue.length > 0) {
     const auto written = write(STDOUT_FILENO, rescue.sequence, rescue.length);

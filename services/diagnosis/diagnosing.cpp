@@ -82,7 +82,7 @@ void Diagnosing::take_problems() {
     const bool same_session = pair->newest && pair->newest->message.session == message.session;
     if (!same_session || pair->newest->message.seq != message.seq) pair->newest_mono_us = loop_.mono_us();
     if (!same_session) {
-      // where times ran backwards the number of the session is no time, and the streams have begun anew
+      // where times ran backwards the number of the session is no time, and the streams have begun again
       if (message.session <= message.utime) pair->sample.begin_session(message.session);
       pair->judged_seq = -1;
       pair->verdict.reset();
@@ -201,7 +201,7 @@ void Diagnosing::obey(Verb verb, const command_t& command) {
     const std::int64_t session = pair->newest ? pair->newest->message.session : 0;
     if (!means(command, verb, pair->config.a, pair->config.b, session)) continue;
     any = true;
-    // a reset begins a session with the next pose; its first problem says so
+    // a reset begins a session with the next pose; its first problem states it
     if (verb != Verb::reset) pair->paused = verb == Verb::pause;
   }
   if (!any) heartbeat_.reject(not_meant);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       "egocal-global",
       bus::Role::global,
       EGOCAL_VERSION,
-      "Solves sensor pairs to global optimality: when the fast process asks for it, or while none is heard.",
+      "Solves sensor pairs to global optimality: when the fast process asks for it, or while none is alive.",
       {},
       {}};
   description.options = {{"--method", "global solver", &method, {"dual", "sdp"}}};

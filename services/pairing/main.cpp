@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
       {},
       {}};
   description.options = {
-      {"--state", "file from which it goes on after it was ended or killed", &state_file, {}}};
+      {"--state", "file from which it continues after it was ended or killed", &state_file, {}}};
   return services::run_program(argc, argv, description, [&](auto& loop, auto& heartbeat, const auto& rig) {
     std::unique_ptr<services::SavedState> saved;
     if (!state_file.empty()) saved = std::make_unique<services::SavedState>(state_file, rig);

@@ -73,7 +73,7 @@ void PairSession::timeline_restarts(Side side) {
     state_.restarted_by = side;
     return;
   }
-  // the other stream began anew shortly before: same session, without what this one still sent of the old
+  // the other stream began again shortly before: same session, without what this one still sent of the old
   // timeline
   begin_drive();
   std::erase_if(state_.early, [side](const EarlyPose& early) { return early.side == side; });

@@ -74,7 +74,7 @@ void Pairing::save() {
   }
 }
 
-/// Better to go on without than to stand still; every attempt is a whole snapshot from now on.
+/// Continues without it; every attempt is a whole snapshot from now on.
 void Pairing::not_saved(const std::string& why) {
   if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", why.c_str());
   save_error_ = why;
@@ -194,7 +194,7 @@ void Pairing::show_state() {
   const bool paused =
       std::all_of(pairs.begin(), pairs.end(), [](const PairSession& pair) { return pair.paused(); });
   heartbeat_.set_state(!leads() ? bus::State::waiting : paused ? bus::State::paused : bus::State::running);
-  heartbeat_.set_error(elder ? "an older process has this name and goes on: pid " +
+  heartbeat_.set_error(elder ? "an older process has this name and continues: pid " +
                                    std::to_string(elder->pid) + " on " + elder->host
                        : !save_error_.empty() ? save_error_
                        : saved_               ? saved_->refused()
@@ -210,7 +210,7 @@ void Pairing::every_second() {
 void Pairing::begin_to_send() {
   listening_ = false;
   every_second();
-  if (leads()) heartbeat_.publish();  // from where senders have to go on
+  if (leads()) heartbeat_.publish();  // from where senders have to continue
 }
 
 /// What starts need not wait for the second to be over, and an older namesake silences this one at once.

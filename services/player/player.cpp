@@ -76,7 +76,7 @@ void Player::hear(const status_t& status) {
 
 void Player::hear(const command_t& command) {
   if (command.to != "*" && command.to != heartbeat_.identity().name) return;
-  // what one pair is to do: the others go on, so does the log
+  // a command to one pair: the others continue, and so does the log
   if (command.to == "*" && !(command.sensor_a.empty() && command.sensor_b.empty())) return;
   if (const std::optional<Control> control = control_from_text(command.verb))
     obey(*control);
@@ -93,7 +93,7 @@ void Player::take_keys() {
 }
 
 void Player::obey(const Control& control) {
-  // the clock of the recording stands still at the place where it is now, or goes on from there
+  // the clock of the recording stops where it is now, or continues from there
   std::int64_t now = recorded_now();
   switch (control.verb) {
     case Control::Verb::pause:
@@ -208,10 +208,11 @@ void Player::wait_until(std::int64_t mono_us) {
 void Player::play() {
   if (timer_) loop_.cancel(*timer_);
   timer_.reset();
-  // what is sent before any pairing process was heard could not be sent again if that process dies
+  // what is sent before any pairing process is alive could not be sent again if that process ends
   const bool waits_for_pairing = !in_flight_.heard() && !alone_ && !step_;
   for (int sent = 0; next_ && (!paused_ || step_) && !waits_for_pairing; ++sent) {
-    if (in_flight_.count() >= options_.pace.most_in_flight) return;  // goes on with the next acknowledgement
+    if (in_flight_.count() >= options_.pace.most_in_flight)
+      return;  // continues with the next acknowledgement
     const double speed = options_.speed == 0 && alone_ ? 1 : options_.speed;
     if (speed > 0 && !step_) {
       const double ahead_us = (static_cast<double>(next_->time_us) - static_cast<double>(anchor_us_)) / speed;

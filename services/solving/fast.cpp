@@ -15,7 +15,7 @@ FastSolver::FastSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
 std::string FastSolver::advice() const {
   return heartbeat_.alive(bus::Role::global)
              ? ""
-             : "no global solver is heard: global solutions are computed here, too";
+             : "no global solver is alive: global solutions are computed here as well";
 }
 
 void FastSolver::answer_newest() {

@@ -17,7 +17,7 @@ GlobalSolver::GlobalSolver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus
 }
 
 std::string GlobalSolver::advice() const {
-  return heartbeat_.alive(bus::Role::fast) ? "" : "no fast solver is heard: every problem is solved globally";
+  return heartbeat_.alive(bus::Role::fast) ? "" : "no fast solver is alive: every problem is solved globally";
 }
 
 void GlobalSolver::answer_newest() {

@@ -60,7 +60,7 @@ void Solver::report() {
     heartbeat_.set_error("a second process has this name: pid " + std::to_string(elder->pid) + " on " +
                          elder->host);
   else
-    // right after the start, and after the network was away, no other process has been heard yet
+    // right after the start, and after the network was away, no other process has sent its status yet
     heartbeat_.set_error(!paused && heartbeat_.settled() ? advice() : "");
 }
 

@@ -29,7 +29,7 @@ constexpr double degrees = 180 / std::numbers::pi;
 constexpr double freedom = 3;     ///< of Student's t
 constexpr double dimensions = 3;  ///< of a rotation, of a translation
 constexpr int rounds = 30;
-constexpr std::size_t spans = 20;   ///< that are left out in turn
+constexpr std::size_t spans = 20;   ///< that are omitted in turn
 constexpr double longest_step = 1;  ///< [s]
 
 struct Step {

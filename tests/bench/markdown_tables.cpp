@@ -25,7 +25,7 @@ Place place_of(const std::string& page, const std::string& name) {
   return {begin + first.size(), end};
 }
 
-/// A text in words and numbers by turns: "0.231 deg" is "", 0.231, " deg".
+/// A text in words and numbers alternately: "0.231 deg" is "", 0.231, " deg".
 struct Parts {
   std::vector<std::string> words;
   std::vector<std::string> numbers;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How soon a moved mount is found, and how often a still one is called moved (docs/moves.md). Every drive has
 // a seed of its own and is one line of a record, so that hours of driving add up over several runs. Exit code
-// 1 where a still mount raises an alarm.
+// 1 where a fixed mount raises an alarm.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -37,7 +37,7 @@ struct Sort {
   double tolerance = 15;             ///< of a bump's time [s]
   double creep = 0;                  ///< [deg/h]
   bool jumps = false;                ///< the odometry's own
-  Terrain terrain = Terrain::rough;  ///< or free, by turns, but for flat
+  Terrain terrain = Terrain::rough;  ///< or free, alternately, except for flat
 };
 
 std::vector<Sort> sorts() {

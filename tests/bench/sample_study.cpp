@@ -112,7 +112,7 @@ double milliseconds(std::size_t n, std::size_t repeats, bool diagnosis) {
   return quantile(times, 0.5);
 }
 
-/// Trials in which exactly the wrong samples were left out and the answer is within 1 deg and 2 cm.
+/// Trials in which exactly the wrong samples were omitted and the answer is within 1 deg and 2 cm.
 std::size_t found_wrong(const ArmSamples& what, std::size_t trials, std::uint64_t seed,
                         const SampleOptions& options) {
   std::size_t right = 0;

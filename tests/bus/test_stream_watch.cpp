@@ -60,7 +60,7 @@ TEST_F(Watch, ASilentSensorComesWithWhatIsHeardInstead) {
   play("ODOMETRY_CAM", 33, 6);
   watch.hear("IMAGES", std::vector<std::byte>(100), 10'900'000);
   EXPECT_TRUE(watch.misses_any(11'000'000));
-  EXPECT_THAT(said(11'000'000), HasSubstr("camera: ODOMETRY_CAMERA, nothing heard; heard instead: "
+  EXPECT_THAT(said(11'000'000), HasSubstr("camera: ODOMETRY_CAMERA, nothing received; received instead: "
                                           "ODOMETRY_CAM (egocal.odometry_t, 33 Hz), IMAGES (unknown type)"));
   EXPECT_THAT(said(20'000'000), HasSubstr("lidar: ODOMETRY_LIDAR, silent for 9 s; no other channel"));
 }

@@ -52,7 +52,7 @@ void check(bool condition, const std::string& what) {
   std::printf("FAILED: %s\n", what.c_str());
 }
 
-/// What the bus says, as an observer hears it.
+/// The bus as an observer receives it.
 class Observer {
  public:
   Observer(const std::string& url, const std::string& a, const std::string& b)

@@ -115,7 +115,7 @@ class LossyNetwork : public ::testing::Test {
     return sum;
   }
 
-  /// The drive through the relay, no faster than everybody hears it: what is lost is the relay's doing.
+  /// The drive through the relay, no faster than all receive it: what is lost is the relay's doing.
   test::RelayCounts play(const Losses& losses) {
     test::LossyRelay relay(losses, 7, [this](const std::string& channel, bus::Bytes bytes) {
       solvers->publish_bytes(channel, bytes);

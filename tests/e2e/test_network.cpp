@@ -47,7 +47,7 @@ TEST_F(Network, ThatIsAwayIsWaitedForAndNothingIsForgotten) {
   ASSERT_TRUE(answered("egocal-fast"));
 
   set_route(false);
-  // heartbeats cannot be sent: each process says so once
+  // heartbeats cannot be sent: each process states it once
   ASSERT_TRUE(until(
       [&] {
         return std::all_of(all.begin(), all.end(), [&](const std::string& process) {

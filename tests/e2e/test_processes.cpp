@@ -319,7 +319,7 @@ TEST_F(Processes, ASecondPairingOfTheSameNameWaitsAndTakesOver) {
   start("egocal-fast");
   processes.emplace("second", ChildProcess({bin + "/egocal-pairing", "--rig", rig_file, "--lcm-url", url},
                                            folder / "second.log"));
-  // a pairing that starts is waiting, too, for a moment: the reason tells them apart
+  // a pairing that starts is waiting, too, for a moment: the reason distinguishes them
   ASSERT_TRUE(until(
       [&] {
         const status_t& status = statuses["egocal-pairing"];

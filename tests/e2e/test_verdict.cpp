@@ -80,7 +80,7 @@ TEST_F(LiveVerdict, ListenSaysWhatIsHeardAndWhatIsMissed) {
   rig.replace(rig.find("ODO_RIGHT"), 9, "ODO_WRONG");
   std::ofstream(other) << rig;
   const std::string said = listened(other + " --seconds 4", 1);
-  EXPECT_THAT(said, HasSubstr("right: ODO_WRONG, nothing heard; heard instead: "
+  EXPECT_THAT(said, HasSubstr("right: ODO_WRONG, nothing received; received instead: "
                               "ODO_RIGHT (egocal.odometry_t, "));
 }
 

@@ -41,9 +41,9 @@ bool equal(const std::vector<bus::LogEvent>& x, const std::vector<bus::LogEvent>
   return true;
 }
 
-/// Whether the log could just as well go on inside of its last event, which would then have a damaged length:
-/// there is an event with the next number, and it ends with the last one or is followed by a higher number.
-/// The same bytes are two logs then, and the reader takes the one that saves more events.
+/// Whether the log could just as well continue inside of its last event, which would then have a damaged
+/// length: there is an event with the next number, and it ends with the last one or is followed by a higher
+/// number. The same bytes are two logs then, and the reader takes the one that saves more events.
 bool has_two_readings(const std::vector<unsigned char>& bytes, std::size_t last, std::int64_t next_number) {
   const auto number = [&](std::size_t at, std::size_t size) {
     std::uint64_t value = 0;

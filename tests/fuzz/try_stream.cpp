@@ -11,7 +11,7 @@ namespace egocal::fuzz {
 
 namespace {
 
-/// What came out: in order, but for messages without numbers and where a new timeline begins.
+/// What came out: in order, except for messages without numbers and where a new timeline begins.
 class Received {
  public:
   void take(const std::vector<NumberedPose>& poses) {

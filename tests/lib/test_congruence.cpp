@@ -21,7 +21,7 @@ using testing::random_pairs;
 
 const DualQuaternion T_a_b = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
 
-/// Small motions, of which a part is spoilt by up to tens of times their size.
+/// Small motions, of which a part is damaged by up to tens of times their size.
 TEST(Congruence, PairsInAnyOrderAreJudgedByTheirLike) {
   for (const std::uint64_t count : {100u, 1500u, 2500u})
     for (const double part : {0.0, 0.05, 0.2, 0.3})

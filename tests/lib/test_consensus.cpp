@@ -55,7 +55,7 @@ TEST(Consensus, TheMajorityIsFoundEvenAgainstAMinorityThatAgrees) {
     const ExtrinsicError error = extrinsic_error(T_a_b, consensus->agreement.q);
     EXPECT_LT(error.rotation, 0.02) << seed;
     EXPECT_LT(error.translation, 0.15) << seed;
-    // the same pairs that were made wrong, but for a few that are too small to tell
+    // the same pairs that were made wrong, except for a few that are too small to tell
     const std::vector<bool> wrong = wrong_ones(pairs);
     int differ = 0;
     for (std::size_t i = 0; i < wrong.size(); ++i) differ += wrong[i] != consensus->outlier[i];

@@ -129,7 +129,7 @@ TEST(Estimation, LastingJumpsBelowTheScreeningAreFound) {
   }
 }
 
-/// Leaving out a block leaves out every motion that touches it; the sum of the blocks is every motion once.
+/// Omitting a block omits every motion that touches it; the sum of the blocks is every motion once.
 TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   Random random(1);
   StrideBlocks blocks(std::vector<int>{1, 3, 8});
@@ -159,7 +159,7 @@ TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   EXPECT_LT((all.dual_rows - expected.dual_rows).norm(), 1e-9 * expected.dual_rows.norm());
 }
 
-/// Whether a fifth of the drive can be left out is asked of touching blocks as of disjoint ones.
+/// Whether a fifth of the drive can be omitted is asked of touching blocks as of disjoint ones.
 TEST(Estimation, TouchingBlocksAreAsStableAsTheDriveIs) {
   const testing::Streams s = with_pose_noise(free_drive(2), 0.005, 0.05, 2);
   const MotionPairing drive = paired({}, s.a, s.b);

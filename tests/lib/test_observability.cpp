@@ -125,7 +125,7 @@ TEST(Observability, OnePairShowsNoTranslationAlongItsAxis) {
 }
 
 TEST(Observability, FlatDirectionsAreTakenFromThePrior) {
-  // true but for the height: the motions give x, y and the rotation, the prior gives z
+  // true except for the height: the motions give x, y and the rotation, the prior gives z
   Problem problem = problem_of(motions_of_a(T_a_b, 100, 0, 1, planar));
   Pose prior = to_pose(T_a_b);
   prior.translation += Eigen::Vector3d(0.3, -0.2, 0.7);

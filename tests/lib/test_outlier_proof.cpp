@@ -72,7 +72,7 @@ TEST(OutlierProof, NotOfAChoiceThatItsOwnLimitsContradict) {
   const TruncatedProblem problem = testing::truncated_problem(drive, random);
   std::vector<bool> outlier(problem.parts.size(), false);
   EXPECT_EQ(prove_outliers(problem.parts, outlier).choice, OutlierChoice::proven);
-  outlier[3] = true;  // fits, and is left out all the same
+  outlier[3] = true;  // fits, and is omitted all the same
   EXPECT_EQ(prove_outliers(problem.parts, outlier).choice, OutlierChoice::not_proven);
 }
 

@@ -39,7 +39,7 @@ TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
   drive.run(5);
   EXPECT_THAT(drive.texts(),
               ElementsAre("lidar -> camera: optimal (proven), by egocal-global",
-                          "lidar -> camera: solver added: egocal-fast (sqp) answers, too",
+                          "lidar -> camera: solver added: egocal-fast (sqp) answers as well",
                           "lidar -> camera: fallback: egocal-fast asked for the global solver"));
   EXPECT_FALSE(drive.pair().only_fast_since);
   drive.run(35);
@@ -87,7 +87,7 @@ TEST(ModelEvents, SolverSwapped) {
   };
   drive.run(1);
   EXPECT_THAT(drive.fresh(),
-              ElementsAre("lidar -> camera: solver added: egocal-other-fast (sdp) answers, too"));
+              ElementsAre("lidar -> camera: solver added: egocal-other-fast (sdp) answers as well"));
   drive.run(30);
   EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: solver swapped: egocal-fast no longer answers"));
   drive.change_answer = [](calibration_t& answer) { answer.method = "sdp"; };

@@ -30,7 +30,7 @@ class Streams : public testing::Test {
   ViewState view;
 };
 
-const std::string silent_line = "camera: ODOMETRY_CAMERA, nothing heard; heard instead: ODOMETRY_CAM";
+const std::string silent_line = "camera: ODOMETRY_CAMERA, nothing received; received instead: ODOMETRY_CAM";
 
 TEST_F(Streams, AFirstScreenSaysWhichSensorIsMissed) {
   model.expect_pair("lidar", "camera");

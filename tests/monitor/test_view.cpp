@@ -111,10 +111,10 @@ TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
 
 TEST_F(View, ProcessesSayWhoWhereAndWhatIsWrong) {
   status_t status = test::status_of("egocal-fast", "fast", 5);
-  status.last_error = "no global solver is heard";
+  status.last_error = "no global solver is alive";
   model.on_status(status, some_time);
   for (int w : {100, 140})
-    EXPECT_THAT(shown(Screen::overview, w, 30), HasSubstr("no global solver is heard")) << w;
+    EXPECT_THAT(shown(Screen::overview, w, 30), HasSubstr("no global solver is alive")) << w;
   EXPECT_THAT(shown(Screen::overview, 140, 30), HasSubstr("pid 4711 on car"));
   model.tick({some_time.mono_us + 4'000'000, some_time.wall_us});
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("GONE"));

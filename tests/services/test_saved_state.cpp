@@ -123,7 +123,7 @@ TEST_F(SavedStates, GoOnWithTheSameBits) {
         saved = std::make_unique<SavedState>(file, config);
         accumulation = saved->restore();
         ASSERT_TRUE(saved->restored()) << saved->refused();
-        // what came before the new process was heard, out of order
+        // what came before the new process was received, out of order
         std::size_t first_missing = messages.size();
         for (std::uint16_t k = 0; k < 2; ++k) {
           std::size_t missing = 0;

@@ -40,7 +40,7 @@ std::string objection_to(const Problem& problem, const Answer& answer) {
   const Extended off = claimed < cost ? cost - claimed : claimed - cost;
   if (off > 4 * rounding) return line("its cost is off", off, 4 * rounding);
 
-  // as the certificate states it: no better one within its domain, but for those within reach
+  // as the certificate states it: no better one within its domain, except for those within reach
   const ExtrinsicError distance = extrinsic_error(best.q, answer.T_a_b);
   if (distance.translation > own.domain) return "";
   const Extended bound = answer.certificate.lower_bound;

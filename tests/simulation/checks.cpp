@@ -67,7 +67,7 @@ bool Checks::peaceful() const {
                IncidentKind::flood, IncidentKind::power_cut, IncidentKind::slow_disk});
 }
 
-/// What overtakes others does so by less than what is taken for a log that begins anew.
+/// What overtakes others does so by less than what is taken for a log that begins again.
 bool Checks::keeps_order() const {
   const Plan& plan = surroundings_.plan;
   const std::int64_t late_us = plan.network.jitter_us + (plan.network.late > 0 ? plan.network.late_by_us : 0);
@@ -176,7 +176,7 @@ void Checks::commanded(const std::string& to, const std::string& verb, const std
   commands_.command(surroundings_.schedule.now_us(), to, verb, surroundings_.drive.rig, a, b);
 }
 
-/// A new session begins where it was asked for or the log begins anew, and nowhere else.
+/// A new session begins where it was asked for or the log begins again, and nowhere else.
 void Checks::check_wishes(const Process& from, const std::string& channel, std::int64_t session,
                           std::int64_t seq) {
   const Plan& plan = surroundings_.plan;
@@ -234,7 +234,7 @@ void Checks::received(const Address& by, std::string_view channel, bus::Bytes me
     if (channel != sensors[i].channel) continue;
     Lineage& lineage = lineages_[listener.spec().name + listener.spec().state_file];
     if (is_foreign(message)) {
-      // acknowledged by what its bytes hold, so that a player with a damaged log goes on; and not used
+      // acknowledged by what its bytes hold, so that a player with a damaged log continues; and not used
       lineage.again[std::string(channel)].insert(field(message, utime_at));
       ++lineage.sensors[i].received;
       continue;
@@ -311,7 +311,7 @@ void Checks::look_at_answers() {
   // a damaged message that looks right may name a session of the future; a wrong drive need not have an
   // answer
   const Plan& plan = surroundings_.plan;
-  // a player that is fast has little left when the faults are over and all goes on after a pause
+  // a player that is fast has little left when the faults are over and all continues after a pause
   const bool little_left =
       plan.input == Input::player && plan.speed != 1 && has(plan, {IncidentKind::command});
   if (corrupts() || plan.mistake > 0 || (plan.input == Input::player && forgets()) || little_left) return;

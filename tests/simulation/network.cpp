@@ -202,7 +202,7 @@ void Network::spread(const PacketPtr& packet, int from_host) {
   for (const std::weak_ptr<Inbox>& listener : inboxes_) {
     const std::shared_ptr<Inbox> inbox = listener.lock();
     if (!inbox) continue;
-    // what nobody there takes cannot matter, however it arrives
+    // what no process there receives cannot matter, however it arrives
     if (packet->whole && !faults_.corrupts()) {
       const auto wanted = inbox->wanted.find(packet->channel);
       if (wanted != inbox->wanted.end() && !wanted->second) continue;

@@ -145,7 +145,7 @@ class Draw {
       network.late = random_.log_uniform(0.001, 0.1);
       network.late_by_us = log_between(1000, 1'000'000);
     }
-    // a log at full speed is over before anything late arrives: what overtakes seconds of it begins it anew
+    // a log at full speed is over before anything late arrives: what overtakes seconds of it begins it again
     if (plan_.input == Input::player && plan_.speed == 0) network.jitter_us = 0, network.late = 0;
     if (chance(0.07)) network.truncated = random_.log_uniform(0.0005, 0.05);
     if (chance(0.07)) network.flipped = random_.log_uniform(0.0005, 0.05);
@@ -194,7 +194,7 @@ class Draw {
     sort_incidents();
   }
 
-  /// The player dies late in its log and begins anew, before all that pairing knows again.
+  /// The player dies late in its log and begins again, before all that pairing knows again.
   void play_again() {
     plan_.rate_hz = 20;
     plan_.speed = 1;

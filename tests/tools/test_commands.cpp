@@ -81,7 +81,7 @@ std::string tum(int poses, const std::function<std::string(int)>& pose) {
 
 const std::string good_line = "1000.0 0 0 0 0 0 0 1\n";
 
-/// Small motions, a fifth of them spoilt by many times their size, in a file without times.
+/// Small motions, a fifth of them damaged by many times their size, in a file without times.
 TEST_F(Commands, MotionPairsFromAFileAreJudgedToo) {
   using namespace egocal;
   egocal::testing::Random random(1);

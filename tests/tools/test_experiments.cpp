@@ -286,7 +286,7 @@ TEST(Paper, OnePageHoldsEveryTableAndFigureBesideThePrintedNumbers) {
                            "fig-5-path.svg", "fig-6-3d-gap.svg", "v-f-rotation.svg"})
     EXPECT_TRUE(std::filesystem::exists(options.out + "/" + file)) << file;
 
-  // a run that was interrupted goes on: what is there stays, what is missing or of other options is made
+  // a run that was interrupted continues: what is there stays, what is missing or of other options is made
   // again
   const std::string kept = options.out + "/parts/fig-4.html", lost = options.out + "/parts/fig-3.html";
   std::ofstream(kept, std::ios::app) << "<!-- kept -->";

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Processes that die, hang, or are ended: the supervisor with small scripts.
+// Processes that fail, hang, or are ended: the supervisor with small scripts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pty.h>

@@ -143,7 +143,7 @@ void add_paper(cli::App experiment) {
       "folder with kitti_05, kitti_07, kitti_ground_planes (docs/paper.md); without it: simulated drives");
   command
       .add_option("--out", options->out,
-                  "folder for the page, the figures and their numbers; a run that was interrupted goes on")
+                  "folder for the page, the figures and their numbers; an interrupted run continues")
       .required();
   command.add_flag("--paper", options->full, "Fig. 4 at the paper's size: 224,448 optimisations");
   command.add_option("--repeats", options->repeats, "of each method, for its time")

@@ -55,7 +55,7 @@ nlohmann::ordered_json watch_json(const bus::StreamWatch& watch, std::int64_t no
   return json;
 }
 
-/// Every sensor is heard now, and nothing is wrong with what it sends; without a rig: anything is heard.
+/// Every sensor sends, without a fault; without a rig: anything is received.
 bool all_well(const bus::StreamWatch& watch, std::int64_t now_us) {
   if (watch.sensors().empty()) return !watch.others().empty();
   if (watch.misses_any(now_us)) return false;
@@ -93,7 +93,7 @@ void add_listen(cli::App program) {
       "listen",
       "what the sensors send: channel, type, rate, silence, faults with their cures; exit code 1 "
       "where a sensor is silent or sends what cannot be used");
-  command.add_option("RIG", options->rig, "rig file; without it every channel that is heard is listed");
+  command.add_option("RIG", options->rig, "rig file; without it every channel that is received is listed");
   command.add_option("--seconds", options->seconds, "how long [s]; rates need two")
       .check(cli::Check::not_negative())
       .show_default();

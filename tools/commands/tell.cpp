@@ -46,7 +46,7 @@ void run(const Options& options) {
   const auto end = std::chrono::steady_clock::now() + 3s;
   while (!heard && std::chrono::steady_clock::now() < end)
     if (!loop.run_once(50ms)) return;
-  if (!heard) throw Error("tell: no process " + (options.to == "*" ? "" : options.to + " ") + "is heard");
+  if (!heard) throw Error("tell: no process " + (options.to == "*" ? "" : options.to + " ") + "is alive");
   command_t command{};
   command.utime = bus::wall_us();
   command.to = options.to;

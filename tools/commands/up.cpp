@@ -31,7 +31,7 @@ struct Options {
   bool monitor = false, follow = false, join = false, report = false;
 };
 
-/// Every process is heard once a second.
+/// Every process sends its status once a second.
 constexpr std::chrono::milliseconds listen_before_start{1200};
 
 /// The folder of our own executable: the other programs lie beside it.
@@ -72,7 +72,7 @@ void report_left_behind(const std::string& directory) {
   if (files.empty()) return;
   fmt::print(stderr,
              "egocal up: statistics of an earlier run that did not end as it should are kept in {}{}; "
-             "--state FILE goes on with them, delete what is not needed\n",
+             "--state FILE continues with them, delete what is not needed\n",
              files.back(), files.size() > 1 ? fmt::format(" and {} others", files.size() - 1) : "");
 }
 
@@ -151,7 +151,7 @@ void run(const Options& options) {
   if (code == 0 && passing) passing->discard();
   if (code != 0) {
     if (passing && std::filesystem::exists(passing->file()))
-      fmt::print(stderr, "egocal up: the statistics are kept in {}; --state FILE goes on with them\n",
+      fmt::print(stderr, "egocal up: the statistics are kept in {}; --state FILE continues with them\n",
                  passing->file());
     throw cli::Exit{1};
   }

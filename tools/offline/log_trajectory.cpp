@@ -16,7 +16,8 @@ namespace egocal::tools {
 
 namespace {
 
-/// A clock that is set back by less goes on as the same session; the poses that it repeats are not used [us].
+/// A clock that is set back by less continues as the same session; the poses that it repeats are not used
+/// [us].
 constexpr std::int64_t session_jump_us = 10'000'000;
 
 class Collector {

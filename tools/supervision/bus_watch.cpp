@@ -94,7 +94,7 @@ void write_all(int out, const std::string& text) {
     loop.run();
     write_all(out, report(rig, answers));
   } catch (const std::exception&) {
-    // nothing was heard, then
+    // nothing was received, then
   }
   _exit(0);
 }

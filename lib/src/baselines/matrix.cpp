@@ -23,7 +23,7 @@ int entry(int row, int column) {
 }
 
 /// Six row and six column orthonormality constraints, nine of handedness, one of homogenisation: 22. The
-/// traces of R R' and R'R are the same number, so one diagonal one is implied by the others and left out: 21
+/// traces of R R' and R'R are the same number, so one diagonal one is implied by the others and omitted: 21
 /// independent ones.
 Lmi<10, 21> rotation_constraints() {
   Lmi<10, 21> lmi;

@@ -15,7 +15,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Covariance by leaving out each block, and each pair of neighbours. Of independent errors both are alike;
+/// Covariance by omitting each block, and each pair of neighbours. Of independent errors both are alike;
 /// of errors that wander for longer than a block the second one is larger.
 struct LeaveOut {
   Matrix6d single = Matrix6d::Zero(), twos = Matrix6d::Zero();

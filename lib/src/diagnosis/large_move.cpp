@@ -164,7 +164,7 @@ std::optional<UnexplainedPart> unexplained_part(const Motions& motions, const Du
   const auto is_bad = [&](double misfit) { return misfit > limit; };
   const auto bad = static_cast<std::size_t>(std::count_if(misfits.begin(), misfits.end(), is_bad));
   if (3 * bad < windows || 3 * bad > 2 * windows) return std::nullopt;
-  // one run, but for one window
+  // one run, except for one window
   const auto first = std::find_if(misfits.begin(), misfits.end(), is_bad);
   const auto last = std::find_if(misfits.rbegin(), misfits.rend(), is_bad).base();
   if (static_cast<std::size_t>(last - first) > bad + 1) return std::nullopt;

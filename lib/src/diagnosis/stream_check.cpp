@@ -59,7 +59,7 @@ Finding frozen(char which, double part) {
   finding.code = std::string("frozen_") + which;
   finding.certain = true;
   finding.message = format(
-      "%c repeats its pose during %.0f %% of the way that the other one travels: it stands still or "
+      "%c repeats its pose during %.0f %% of the way that the other one travels: it is frozen or "
       "has no new poses.",
       which, 100 * part);
   finding.remedy = format("Look at the odometry of %c; use the part of the drive where both move.", which);

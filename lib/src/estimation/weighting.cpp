@@ -20,7 +20,7 @@ using detail::spread_by_poses;
 using detail::SpreadByPoses;
 using detail::standard_error;
 
-/// The strides with enough motions, their sums, and how many strides each stands for.
+/// The strides with enough motions, their sums, and how many strides each represents.
 struct Ladder {
   const ResidualWeightOptions& options;
   std::vector<StrideCell> sums;
@@ -119,7 +119,7 @@ double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
 }
 
 /// Per motion, before rotation and translation are balanced. Strides whose motions are lost in the rounding
-/// of the others are left out: most of them, where noise adds up from step to step.
+/// of the others are skipped: most of them, where noise adds up from step to step.
 std::vector<double> shape(const Ladder& ladder, double lambda, const std::vector<double>& counts) {
   std::vector<double> weights;
   for (std::size_t i = 0; i < ladder.size(); ++i) {

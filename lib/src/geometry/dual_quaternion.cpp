@@ -134,7 +134,7 @@ DualQuaternion interpolate(const DualQuaternion& p, const DualQuaternion& q, dou
   const double sine = v.norm();
   DualQuaternion part;
   if (sine < 1e-9) {
-    // no rotation to speak of: first order in the angle, straight in the translation
+    // nearly no rotation: first order in the angle, straight in the translation
     part.real << 1, s * v;
     part.real.normalize();
     const Pose whole = to_pose(motion);

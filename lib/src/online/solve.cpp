@@ -42,7 +42,7 @@ detail::ProvenSolution minimise(const Matrix8d& Q, Method method,
 
 /// Of all equally good extrinsics the one closest to the prior: along the directions in which the cost is
 /// flat up to rounding, as long as it does not rise above it. Their set may be curved (rotation about a
-/// common axis), hence steps.
+/// common axis): therefore steps.
 DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimiser,
                                 const DualQuaternion& prior) {
   DualQuaternion q = minimiser;

@@ -246,7 +246,7 @@ std::vector<NumberedPose> Stream::look_ahead(NumberedPose sample) {
   return out;
 }
 
-/// The first of those ahead goes on, unless its time contradicts the next one's and order is restored by
+/// The first of those ahead is accepted, unless its time contradicts the next one's and order is restored by
 /// leaving it out. Where that holds for the next one as well, that one will be too late.
 void Stream::pass_checked(std::vector<NumberedPose>& out) {
   std::vector<NumberedPose>& ahead = state_.ahead;

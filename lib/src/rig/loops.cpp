@@ -67,7 +67,7 @@ Matrix6d attenuations(const Loop& loop, const Extrinsics& whole, std::span<const
   return sum;
 }
 
-/// The misfit against its covariance: what it varies by when parts of the drive are left out of all its pairs
+/// The misfit against its covariance: what it varies by when parts of the drive are omitted in all its pairs
 /// together, and what is systematic.
 void judge(Loop& loop, const Vector6d& misfit, const std::vector<Vector6d>& without,
            const Matrix6d& systematic, const RigOptions& options, std::size_t loops) {

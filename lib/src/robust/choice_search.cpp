@@ -52,7 +52,7 @@ class Search {
   }
 
   ChoiceSearch run() {
-    // what was left out may be the better choice: a search in order would find that late
+    // the outliers may be the better choice: a search in order would find that late
     for (const Matrix8d& Q : {all_, left_out_}) {
       ++result_.solves;
       if (cheaper(minimum_of(Q).q)) return result_;

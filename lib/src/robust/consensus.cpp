@@ -84,7 +84,7 @@ class Search {
     return fit;
   }
 
-  /// Medians over the motion, not over time: a vehicle may stand for most of it.
+  /// Medians over the motion, not over time: a vehicle may be at rest for most of it.
   ResidualScale scale_of(const Fit& fit) const {
     std::vector<std::pair<double, double>> absolute, relative;
     double weight = 0;
@@ -302,7 +302,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   };
   for (const Fit& start : starts) tighten(start);
   // Mostly nothing is wrong: where the fit of the whole is good, and nowhere worse than noise explains, it is
-  // all there is to find. (Gross errors of many parts spoil it for all; those of few stand out.)
+  // all there is to find. (Gross errors of many parts make it bad for all; those of few are outliers.)
   if (scale.relative < options.good_fit &&
       search.largest_excess(starts.front(), scale) < options.unsuspicious)
     return search.consensus(std::move(starts.front()), scale, std::vector<double>(parts.size(), 1.0));

@@ -192,7 +192,7 @@ Indices others(const SampleSet& set, const Indices& chosen) {
   return result;
 }
 
-/// Samples to take in next: those that noise explains, else the nearest one; empty where that is wrong.
+/// Samples to add next: those that noise explains, else the nearest one; empty where that is wrong.
 Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options,
                      const AgreeingOptions& tuning) {
   const Indices candidates = others(set, agreeing.chosen);
@@ -212,7 +212,7 @@ Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, cons
   return plain;
 }
 
-/// Takes samples in, best first, as long as noise explains them.
+/// Adds samples, best first, as long as noise explains them.
 AgreeingSamples taken_in(const SampleSet& set, const Trimmed& trimmed, const SampleOptions& options,
                          const AgreeingOptions& tuning) {
   AgreeingSamples result{trimmed.chosen, trimmed.fit};
@@ -237,7 +237,7 @@ double turn(const DualQuaternion& from, const DualQuaternion& to) {
 }
 
 /// Standard deviation of a rotation [rad] as the motions show it without any answer: their angles in a and in
-/// b are equal but for noise. From the fifth of the motions that agrees best, as half of them may have a
+/// b are equal except for noise. From the fifth of the motions that agrees best, as half of them may have a
 /// wrong end.
 double congruent_noise(const SampleSet& set, double least) {
   constexpr double normal_fifth = 0.2533;  // mathematics: the fifth of absolute normal values

@@ -43,7 +43,7 @@ std::int64_t middle_of(const MotionPair& pair) {
   return pair.begin_us + (pair.end_us - pair.begin_us) / 2;
 }
 
-/// The motions with the course taken off, as far as it is known: the rest is one scale.
+/// The motions divided by the course, as far as it is known: the rest has one scale.
 std::vector<MotionPair> with_course(std::span<const MotionPair> pairs, const ScaleCourse& course, Side side) {
   std::vector<MotionPair> result(pairs.begin(), pairs.end());
   for (MotionPair& pair : result) {

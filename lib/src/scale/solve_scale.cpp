@@ -29,7 +29,7 @@ class ScaleCost {
     anchor_ = std::isfinite(ratio) && ratio > 0 ? ratio : 1;
   }
 
-  /// The ratio of the lengths of b's motions and a's: the scale, but for lever arms.
+  /// The ratio of the lengths of b's motions and a's: the scale, except for lever arms.
   double anchor() const { return anchor_; }
 
   double variable(double s) const { return options_.noise == ScaleNoise::metric ? s : 1 / s; }

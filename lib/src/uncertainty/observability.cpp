@@ -51,7 +51,7 @@ double rotation_noise(const Matrix8d& Q, const DualQuaternion& q) {
   return std::max(0.0, q.real.dot(Q.bottomRightCorner<4, 4>() * q.real));
 }
 
-/// Standard deviations by leaving out blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et
+/// Standard deviations by omitting blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et
 /// al. 1999).
 class Jackknife {
  public:
@@ -81,7 +81,7 @@ class Jackknife {
   /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
   /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
   /// for about m degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the
-  /// part by which leaving out one of m says too much. One where all blocks hold alike.
+  /// part by which the jack-knife over m overestimates. One where all blocks hold alike.
   Vector6d concentration(double least_equal_blocks) const {
     Vector6d factor;
     for (int i = 0; i < 6; ++i) {

@@ -135,7 +135,8 @@ std::optional<StateFile::Content> StateFile::read() {
 
 void StateFile::refuse(const std::string& why) {
   try {
-    refused_ = medium_->name() + ": " + why + "; starting anew, it is kept as " + medium_->keep_aside();
+    refused_ =
+        medium_->name() + ": " + why + "; starting from nothing, it is kept as " + medium_->keep_aside();
   } catch (const Error& error) {
     throw error_at(medium_->name(), 0, "", why + ", and " + error.what());
   }

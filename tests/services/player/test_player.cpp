@@ -149,7 +149,7 @@ TEST_F(PlayerProcess, SpeedIsThatOfTheOptionAndChangesLive) {
   write(evenly(100, 0.1));  // 10 s
   start({"--speed", "5", "--paused"});
   ASSERT_TRUE(until([&] { return status.state == "paused"; }));
-  listen(3500ms);  // no pairing to keep in step with: it goes on alone
+  listen(3500ms);  // no pairing to keep in step with: it continues alone
   EXPECT_TRUE(heard.empty());
   command("resume");
   ASSERT_TRUE(until([&] { return heard.size() >= 40; })) << said();
