@@ -151,7 +151,7 @@ std::optional<Finding> large_move(const Instants& instants, int stride, const Di
 
 std::optional<UnexplainedPart> unexplained_part(const Motions& motions, const DualQuaternion& T_a_b,
                                                 const LargeMoveOptions& large) {
-  constexpr std::size_t windows = 12;
+  const std::size_t windows = large.windows;
   const std::size_t n = motions.all.size();
   if (n < 4 * windows) return std::nullopt;
   std::vector<double> misfits;

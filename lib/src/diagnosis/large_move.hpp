@@ -23,6 +23,8 @@ struct LargeMoveOptions {
   double contradicts = 0.3;
   /// Its own answer must leave less than this part of that residual, and contradict nothing by itself.
   double own = 0.4;
+  /// Parts of the drive in which unexplained_part() looks for one run: a third of the drive is four of them.
+  std::size_t windows = 12;
 };
 
 /// Finding mount_moved with the time and the answer after it; its improvement compares two answers with one.
