@@ -22,9 +22,10 @@ struct PairingServiceOptions {
   std::int64_t silence_us = 500'000;
   /// What a player sends again comes within this time [us], on the lossy network of tests/e2e too.
   std::int64_t patience_us = 1'000'000;
-  /// Problems of one pair are at least this far apart [us]: at 1 kHz one answer covers two poses, as a
-  /// problem holds all poses so far (docs/wire.md).
-  std::int64_t problem_distance_us = 2'000;
+  /// Problems of one pair are at least this far apart [us], so that a replay at full speed costs the solvers
+  /// little; every pose at 1 kHz has an answer of its own, and at more an answer covers several
+  /// (docs/benchmarks.md).
+  std::int64_t problem_distance_us = 500;
   /// A disk that is full is tried again after this time [us].
   std::int64_t save_retry_us = 1'000'000;
   /// Processes that were answered once each; invented ones beyond are ignored.

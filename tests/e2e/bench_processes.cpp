@@ -310,7 +310,7 @@ int main(int argc, char** argv) {
   app.add_flag("--monitor", options.monitor, "with egocal-monitor --follow");
   app.add_flag("--state", options.state, "with a state file");
   egocal::cli::App latency = app.add_subcommand("latency", "from odometry to the verified answer");
-  latency.add_option("--pairs", options.pairs).check(egocal::cli::Check::range(1, 16)).show_default();
+  latency.add_option("--pairs", options.pairs).check(egocal::cli::Check::range(1, 64)).show_default();
   latency.add_option("--rate", options.rate, "[Hz] of each sensor").show_default();
   latency.add_option("--seconds", options.seconds).show_default();
   latency.add_flag("--spread", options.spread, "sensors one after the other, not at the same instant");
