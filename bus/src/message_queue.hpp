@@ -20,7 +20,7 @@ class MessageQueue {
  public:
   void subscribe(const std::string& channel, bool prefix, Loop::Handler handler, int capacity);
 
-  /// What no other subscription takes, while wanted() says so.
+  /// What no other subscription takes, while wanted() states it.
   void subscribe_others(Loop::Handler handler, std::function<bool()> wanted, int capacity);
 
   /// Takes what the transport has, up to some hundred messages.

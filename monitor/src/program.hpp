@@ -18,7 +18,7 @@ struct ProgramOptions {
   bool ascii = false, monochrome = false;
   std::string version;
   // What a person notices; the load that they cause is in docs/monitor.md.
-  std::int64_t drain_us = 50'000;      ///< messages are taken in this often [us]: batches keep the load low
+  std::int64_t drain_us = 50'000;      ///< messages are processed this often [us]: batches keep the load low
   std::int64_t redraw_us = 100'000;    ///< between redraws [us]: ten a second
   std::int64_t tick_us = 200'000;      ///< time passes for the model this often [us]
   std::int64_t notice_us = 8'000'000;  ///< the outcome of a key is shown this long [us]

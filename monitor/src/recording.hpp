@@ -18,7 +18,7 @@ class Recording {
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
-  /// Delivers what is due and returns the log's time. A long log is taken in slices, so that keys work
+  /// Delivers what is due and returns the log's time. A long log is read in slices, so that keys work
   /// meanwhile.
   Now advance(std::int64_t mono_us);
   bool at_end() const;

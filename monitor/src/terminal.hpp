@@ -22,7 +22,7 @@ struct TerminalOptions {
 /// What has arrived from outside since the last look.
 struct Interrupts {
   bool quit = false;     ///< SIGINT, SIGTERM, SIGHUP
-  bool resized = false;  ///< also after a suspension: everything is to be drawn anew
+  bool resized = false;  ///< also after a suspension: everything is to be drawn again
 };
 
 /// The screen under ncurses from construction to destruction. Standard error is captured meanwhile, as other

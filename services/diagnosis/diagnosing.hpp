@@ -23,7 +23,7 @@ struct DiagnosingOptions {
   /// time since it began.
   double share = 0.04;
   double least_distance = 1;  ///< [s] between two diagnoses, however quick
-  /// A pair that has had no new problem for so long [s] is judged once without waiting: a drive has ended.
+  /// A pair without a new problem for this time [s] is judged once without waiting: a drive has ended.
   double idle = 0.6;
   /// Fewer poses of a stream say nothing about a drive that began before this process did.
   std::size_t least_poses = 30;
@@ -34,7 +34,7 @@ struct DiagnosingOptions {
 
 /// egocal-diagnosis: from the sensors' poses and the problems to verdict_t. Judges the certified optimum of
 /// the newest problem, so it needs no solver process and believes none. What it is interrupted for is lost
-/// but for the poses since then: it judges what it has heard.
+/// except the poses since then: it judges what it has received.
 class Diagnosing {
  public:
   Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,

@@ -31,7 +31,7 @@ class DriveSample {
 
   void push(Side side, const StampedPose& pose);
   /// The stream's time ran backwards: what came before belongs to another timeline, of the other stream too
-  /// unless that one has just begun anew itself.
+  /// unless that one has just started again itself.
   void begin_anew(Side side);
   /// A session that began at this time: older poses are not of it.
   void begin_session(std::int64_t time_us);

@@ -15,7 +15,7 @@
 namespace egocal::services {
 
 /// Whatever changes what has been accumulated. The same inputs in the same order give the same bits: a
-/// snapshot and the inputs since then are enough to go on from.
+/// snapshot and the inputs since then are enough to continue from.
 struct Input {
   enum class Kind : std::uint8_t {
     message,      ///< of a channel, as it came

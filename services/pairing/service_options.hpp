@@ -17,7 +17,7 @@ struct PairingServiceOptions {
   std::chrono::microseconds acknowledge_delay{300};
   /// Messages of one channel that may wait: sixteen times what a player has on the way.
   int queue_capacity = 1024;
-  /// A gap in a stream is given up where nothing of that stream is heard for this time [us]: no sensor in use
+  /// A gap in a stream is given up where nothing of that stream comes for this time [us]: no sensor in use
   /// sends at less than 2 Hz, so that the sender has ended.
   std::int64_t silence_us = 500'000;
   /// What a player sends again comes within this time [us], on the lossy network of tests/e2e too.
@@ -31,7 +31,7 @@ struct PairingServiceOptions {
   /// Processes that were answered once each; invented ones beyond are ignored.
   std::size_t most_known_runs = 1024;
   /// Nothing is sent before an older process of this name had the time to answer the first status, which it
-  /// does within 50 ms. A process that takes the place of one that died is most likely alone, and waited for.
+  /// does within 50 ms. A process that takes the place of a killed one is most likely alone, and waited for.
   std::chrono::milliseconds listen{300}, listen_restored{100};
 };
 

@@ -24,7 +24,7 @@ struct InFlightOptions {
 };
 
 /// The messages that pairing has not acknowledged yet, of the channels that it acknowledges. What is lost on
-/// the way, or was sent to a pairing process that died, is still here to be sent again. Pure: no clock, no
+/// the way, or was sent to a pairing process that ended, is still here to be sent again. Pure: no clock, no
 /// LCM.
 class InFlight {
  public:

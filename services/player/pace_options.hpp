@@ -13,10 +13,10 @@ struct PaceOptions {
   /// Messages on their way that pairing has not acknowledged. The kernel's buffer holds this many poses many
   /// times over, and more would gain no speed: pairing acknowledges every sixteenth.
   std::size_t most_in_flight = 64;
-  /// At full speed one turn of the loop sends no more than this before it listens.
+  /// At full speed one turn of the loop sends at most this before it listens.
   int most_at_once = 64;
   /// Without a pairing process by then the log is played to any listener [us]: a process starts within a
-  /// second, and nothing is sent before one is heard.
+  /// second, and nothing is sent before one is alive.
   std::int64_t wait_for_pairing_us = 3'000'000;
   /// What was not acknowledged is sent again after this time [us]: pairing acknowledges within
   /// milliseconds, or has lost it.

@@ -27,7 +27,7 @@ struct PlayerOptions {
 };
 
 /// Plays a log on the bus. In step with pairing: no more than a few dozen messages are on their way to it at
-/// any time, and what it did not get, because it was lost or its process died, is sent again.
+/// any time, and what it did not get, because it was lost or its process ended, is sent again.
 class Player {
  public:
   /// Throws Error where there is nothing to play.

@@ -35,7 +35,7 @@ class Tape {
 
   /// The next event; empty at the end.
   std::optional<bus::LogEvent> next();
-  /// Begins anew; only what is so far into the log, or later [s].
+  /// Starts again; only events at this time of the log, or later [s].
   void rewind(double from);
 
   std::int64_t begin_us() const { return begin_us_; }  ///< recorded time of the log's first event

@@ -40,8 +40,8 @@ void report_network(bus::Loop& loop, const std::string& name);
 
 /// The main() of a process that needs a rig and LCM: reads --rig, --lcm-url, --name and the program's own
 /// options, connects, calls start with everything wired and runs the loop until SIGINT or SIGTERM. start
-/// returns what must live meanwhile. Exit codes: 0 ended by a signal, 1 failure (one line on standard error),
-/// 2 wrong usage.
+/// returns what must exist meanwhile. Exit codes: 0 ended by a signal, 1 failure (one line on standard
+/// error), 2 wrong usage.
 int run_program(
     int argc, char** argv, const ProgramDescription& description,
     const std::function<std::shared_ptr<void>(bus::Loop&, bus::Heartbeat&, const bus::Rig&)>& start);

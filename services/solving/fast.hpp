@@ -33,7 +33,7 @@ class FastSolver final : public Solver {
   void answer(std::size_t pair, const ReceivedProblem& received);
 
   OnlineOptions options_;
-  ScaleDesk scales_;                ///< a scale has no local solution: only while no global process is heard
+  ScaleDesk scales_;                ///< a scale has no local solution: only while no global process is alive
   std::vector<Progress> progress_;  ///< of the pairs
 };
 

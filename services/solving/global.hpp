@@ -11,7 +11,7 @@
 
 namespace egocal::services {
 
-/// egocal-global: answers while the fast process asks for it (calibration_t.fallback), while none is heard,
+/// egocal-global: answers while the fast process asks for it (calibration_t.fallback), while none is alive,
 /// or always.
 class GlobalSolver final : public Solver {
  public:
@@ -33,7 +33,7 @@ class GlobalSolver final : public Solver {
 
   Method method_;
   bool always_;
-  ScaleDesk scales_;         ///< answered always: no fast process does while this one is heard
+  ScaleDesk scales_;         ///< answered always: no fast process does while this one is alive
   std::vector<Task> tasks_;  ///< of the pairs
 };
 

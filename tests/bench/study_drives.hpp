@@ -29,7 +29,7 @@ StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int
 /// Every terrain, level (0.1, 1, 10 %) and kind of noise, in this order, for each seed from 1.
 std::vector<StudyDrive> simulated_study_drives(int seeds, int poses);
 
-/// Level evenly in the logarithm from 0.1 to 10 %, terrain and kind of noise by turns: drive i of a series
+/// Level evenly in the logarithm from 0.1 to 10 %, terrain and kind of noise alternately: drive i of a series
 /// without end.
 StudyDrive drive_of_series(std::size_t i, int poses);
 

@@ -12,7 +12,7 @@ namespace egocal::fuzz {
 void try_stream(const std::uint8_t* data, std::size_t size);
 
 /// Messages, commands and restarts into the whole of what egocal-pairing knows: PairSession and MotionPairing
-/// behind the streams. A state that is written and read back goes on with the same bits.
+/// behind the streams. A state that is written and read back continues with the same bits.
 void try_pairing(const std::uint8_t* data, std::size_t size);
 
 }  // namespace egocal::fuzz

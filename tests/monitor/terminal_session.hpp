@@ -101,7 +101,7 @@ inline void expect_screen(const Tmux& tmux, const std::string& text) {
   EXPECT_EQ(seen, text);
 }
 
-// What `stty -a` said, but for the size, which is not ours to keep.
+// What `stty -a` said, except for the size, which is not ours to keep.
 inline std::string modes(const std::filesystem::path& file) {
   return std::regex_replace(read_text(file), std::regex("rows [0-9]+; columns [0-9]+; "), "");
 }

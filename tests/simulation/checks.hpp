@@ -103,7 +103,7 @@ class Checks {
   std::map<std::string, std::int64_t> sessions_;  // newest by channel
   std::int64_t player_starts_ = 0;
   std::map<std::string, std::int64_t>
-      begun_before_;  // sessions, where the log began anew behind all that is known
+      begun_before_;  // sessions, where the log began again behind all that is known
   std::int64_t answered_until_us_ = -1, answers_missing_since_us_ = -1;
   std::int64_t last_start_us_ = 0;
   int compared_ = 0;

@@ -13,7 +13,7 @@
 
 namespace egocal::simulation {
 
-/// The clocks of one simulated host: they drift, begin anew at a boot, and the date may be set.
+/// The clocks of one simulated host: they drift, begin again at a boot, and the date may be set.
 class HostClock final : public bus::Clock {
  public:
   HostClock(const Schedule& schedule, const ClockFaults& faults)

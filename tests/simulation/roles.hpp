@@ -38,7 +38,7 @@ class Exporter {
 };
 
 /// Live odometry of one sensor: sends each message when it is measured, and never again. Started late or
-/// again it goes on with what is measured then.
+/// again it continues with what is measured then.
 class Odometry {
  public:
   Odometry(bus::Loop& loop, const Schedule& schedule, const Drive& drive, std::size_t channel);

@@ -189,13 +189,13 @@ inline Trajectory with_growing_scale(const Trajectory& trajectory, double growth
   return result;
 }
 
-/// From the middle of the drive on, stamps later by so much [us].
+/// From the middle of the drive on, stamps later by this [us].
 inline Trajectory late_from_the_middle(Trajectory trajectory, std::int64_t later) {
   for (std::size_t i = trajectory.size() / 2; i < trajectory.size(); ++i) trajectory[i].time_us += later;
   return trajectory;
 }
 
-/// The odometry starts anew in the middle of the drive. No mistake, but a motion that is none.
+/// The odometry starts again in the middle of the drive. No mistake, but a motion that is none.
 inline Trajectory restarted(Trajectory trajectory) {
   const DualQuaternion there = conjugate(trajectory[trajectory.size() / 2].pose);
   for (std::size_t i = trajectory.size() / 2; i < trajectory.size(); ++i)

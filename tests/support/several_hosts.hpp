@@ -19,8 +19,8 @@
 namespace egocal::test {
 
 /// Hosts on one network segment: network namespaces joined by a bridge, each with an address 10.67.0.N and a
-/// multicast route over its network interface. They live as long as this object. To be made by a process that
-/// is in a network namespace of its own already, and may make more (enter_network_namespace()).
+/// multicast route over its network interface. They exist as long as this object. To be made by a process
+/// that is in a network namespace of its own already, and may make more (enter_network_namespace()).
 class SeveralHosts {
  public:
   explicit SeveralHosts(int count) : SeveralHosts() {
@@ -42,7 +42,7 @@ class SeveralHosts {
   }
   ~SeveralHosts() {
     for (std::size_t i = 0; i < holders_.size(); ++i) {
-      // by name, as the kernel takes its time for a namespace that nobody is in any more: the next object's
+      // by name, as the kernel takes its time for a namespace without processes: the next object's
       // interfaces would meet these
       std::system(("ip link del " + port_of(static_cast<int>(i))).c_str());
       ::kill(holders_[i], SIGKILL);

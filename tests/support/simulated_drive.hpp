@@ -14,7 +14,7 @@ struct Streams {
   PairingOptions options;
 };
 
-/// A lidar on the roof and a camera behind the windscreen, of which the tests know no more than this.
+/// A lidar on the roof and a camera behind the windscreen, of which the tests know at most this.
 inline const Pose T_vehicle_a{rotation_exp({0.02, -0.01, 0.3}), {1, 0.2, 1.8}};
 inline const Pose T_vehicle_b{rotation_exp({-1.2, 0.1, -1.3}), {1.5, -0.4, 1.5}};
 

@@ -15,7 +15,7 @@
 namespace egocal::test {
 
 /// Sends odometry in step with pairing, as egocal-player does: what was lost on the way, or sent to a process
-/// that died, is sent again. A busy machine's kernel drops datagrams.
+/// that was killed, is sent again. A busy machine's kernel drops datagrams.
 class SteadySender {
  public:
   explicit SteadySender(bus::Loop& loop)
@@ -25,7 +25,7 @@ class SteadySender {
     heartbeat_.publish();
   }
 
-  /// Pairing has been heard, and so few messages are on their way that there is room for one more.
+  /// Pairing is alive, and there is room for one more message on its way.
   bool ready() const { return in_flight_.heard() && in_flight_.count() < most_in_flight; }
   bool all_taken() const { return in_flight_.count() == 0; }
   std::size_t on_the_way() const { return in_flight_.count(); }

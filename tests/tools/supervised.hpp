@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Processes that die, hang, or are ended: small scripts under the supervisor.
+// Processes that fail, hang, or are ended: small scripts under the supervisor.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -41,7 +41,7 @@ class Answers {
   const Best* best(const PairName& pair) const;
   /// The newest verdict about the session of the answer that counts; null: none.
   const Diagnosis* diagnosis(const PairName& pair) const;
-  /// The scale that was found together with the answer that counts; null: none was looked for, or heard.
+  /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
   const std::map<PairName, Best>& all() const { return best_; }
   /// Answers that were refused, by reason.
@@ -65,7 +65,7 @@ class Answers {
   bus::AnswerCheck check_;
   std::map<PairName, Newest> newest_;
   std::map<PairName, Best> best_;
-  std::map<PairName, calibration_t> early_;  ///< heard before its problem
+  std::map<PairName, calibration_t> early_;  ///< received before its problem
   std::map<PairName, Judgement> judgements_;
   bus::ScaleCheck scales_;
   std::map<std::string, std::int64_t> refused_;

@@ -16,7 +16,7 @@ struct ReadingOptions {
   ReadOptions of_b() const;
 };
 
-/// Adds --times, --columns and --rate. The struct must live until the command has run.
+/// Adds --times, --columns and --rate. The struct must exist until the command has run.
 void add_reading_options(cli::App command, ReadOptions& options);
 
 /// The same and --times-a, --times-b, --columns-a, --columns-b.

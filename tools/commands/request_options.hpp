@@ -23,10 +23,10 @@ struct RequestOptions {
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
   bool samples = false, eye_in_hand = false, eye_to_hand = false;
-  std::vector<std::string> append;  ///< further drives: files of A and B by turns
+  std::vector<std::string> append;  ///< further drives: files of A and B alternately
 };
 
-/// Adds A, B and all options of the struct. It must live until the command has run.
+/// Adds A, B and all options of the struct. It must exist until the command has run.
 void add_request_options(cli::App command, RequestOptions& options);
 
 /// Throws UsageError naming the option that cannot be understood.

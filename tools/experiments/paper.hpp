@@ -19,7 +19,7 @@ struct PaperOptions {
 };
 
 /// Writes the tables and figures, and OUT/paper.html with all of them beside the paper's printed numbers.
-/// What is there already of the same options and version is kept, so a run that was interrupted goes on.
+/// What is there already of the same options and version is kept, so a run that was interrupted continues.
 /// progress: called with what is done next and the part that is done, 0 to 1. Returns the page's name. Throws
 /// Error naming the file that cannot be read or written.
 std::string reproduce_paper(const PaperOptions& options,

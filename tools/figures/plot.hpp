@@ -9,7 +9,7 @@
 
 namespace egocal::tools {
 
-/// Colours that people with colour-blindness tell apart (Okabe and Ito), of falling contrast in grey.
+/// Colours that people with colour-blindness distinguish (Okabe and Ito), of falling contrast in grey.
 enum class Colour { black, blue, vermilion, green, orange, sky, purple };
 std::string hex(Colour colour);
 
@@ -24,7 +24,7 @@ struct Axis {
 /// Points in the order given. Points that are not finite, or not positive on a logarithmic axis, interrupt a
 /// line.
 struct Series {
-  enum class Style { line, dashes, dotted, points, rings, bars };  ///< told apart in grey
+  enum class Style { line, dashes, dotted, points, rings, bars };  ///< distinct in grey
   std::string name;                                                ///< for the legend; empty: not listed
   std::vector<double> x, y;
   Style style = Style::line;

@@ -31,7 +31,7 @@ struct SolveRequest {
   MotionSource source;
   std::string method = "global";    ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
   CalibrationOptions calibration;   ///< its method is set from the name above
-  std::vector<std::string> append;  ///< further drives of the same sensors: files of a and b by turns
+  std::vector<std::string> append;  ///< further drives of the same sensors: files of a and b alternately
   std::optional<Pose> truth;
   std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
   bool keep_motions = false;              ///< hand back what was read, for a report

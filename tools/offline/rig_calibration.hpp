@@ -20,7 +20,7 @@ struct RigRequest {
   std::vector<std::string> from;            ///< NAME=FILE, for a rig
   std::string log;                          ///< sources are its channels
   ReadOptions reading;                      ///< of all files
-  std::vector<std::string> append;          ///< further drives, one file a sensor by turns
+  std::vector<std::string> append;          ///< further drives, one file per sensor, in turn
   CalibrationOptions calibration;           ///< common to all pairs
 };
 

@@ -12,7 +12,7 @@
 
 namespace egocal::tools {
 
-/// A pairing process that is heard on the bus within this time, for people: "egocal-pairing (pid 7 on car)".
+/// A pairing process that is alive on the bus within this time, as text: "egocal-pairing (pid 7 on car)".
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
 
 /// What was calibrated while somebody watched.
@@ -22,7 +22,7 @@ struct Outcome {
   std::string text;       ///< a line for each pair that was answered: verdict, proof and transform
 };
 
-/// Listens to the answers and verdicts of a rig while this object lives: a process of its own, so that the
+/// Listens to the answers and verdicts of a rig while this object exists: a process of its own, so that the
 /// supervisor has no threads. Ends with us.
 class AnswerListener {
  public:

@@ -20,7 +20,7 @@ struct SupervisorOptions {
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
 
-/// Starts all, restarts what dies with growing pauses for as long as a person lets it, passes SIGINT and
+/// Starts all, restarts what ends, with growing pauses and without a limit, passes SIGINT and
 /// SIGTERM on (SIGHUP as SIGTERM), ends all together. Only wrong usage (exit code 2) and a program that
 /// cannot be executed, and a foreground program that fails, end all, where that comes before it has once
 /// started well: no restart helps there. A Ctrl-C reaches each process once: only foreground programs share

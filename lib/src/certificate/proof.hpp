@@ -49,7 +49,7 @@ Sizes sizes_of(const Square<N>& Q) {
 /// Units in the last place to which the sums in Q are known (docs/method.md, "Rounding").
 inline constexpr double known_to = 16 * std::numeric_limits<double>::epsilon();
 
-/// Costs of v = (r, d) that differ by less cannot be told apart.
+/// Costs of v = (r, d) that differ by less cannot be distinguished.
 template <int N>
 double rounding_of(const Sizes& sizes, const Column<N>& v) {
   const double size = sizes.A * v.template head<N / 2>().norm() + sizes.D * v.template tail<N / 2>().norm();

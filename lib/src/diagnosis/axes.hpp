@@ -13,7 +13,7 @@ namespace egocal::detail {
 
 /// Readings of one stream that could explain the motions, the other stream as it is. The orthogonal matrix is
 /// found by linear least squares: with W free, R_a t + t_a = R_T R_b' W d + t is linear in W and t. Where the
-/// best one is near a signed permutation, that one comes, too; the identity never. At most `most` motions
+/// best one is near a signed permutation, that one is included; the identity never. At most `most` motions
 /// over `stride` instants are looked at.
 std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int stride, std::size_t most,
                                        const DiagnosisOptions& options);

@@ -27,7 +27,7 @@ Residual residual_at(const Motion& motion, const Pose& T);
 /// Squares and typical of a given extrinsic; weights all one.
 RobustFit evaluated(const Motions& motions, const DualQuaternion& T);
 /// Residual that the better third of the motion keeps below, as a part of the typical motion. A fifth of
-/// wrong poses in each stream spoils up to two thirds of the motions; what contradicts, contradicts
+/// wrong poses in each stream affects up to two thirds of the motions; what contradicts, contradicts
 /// everywhere.
 double misfit(const Motions& motions, const RobustFit& fit);
 /// The same of the better half: of motions that contradict in one direction alone, a third may fit.

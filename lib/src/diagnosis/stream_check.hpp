@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with the streams whatever the extrinsic: one of them stands still, both are the same, they
+// What is wrong with the streams for any extrinsic: one of them is frozen, both are the same, they
 // are of one drive in part only, or no streams at all. "Study" is tests/bench/mistake_study.cpp.
 #pragma once
 
@@ -26,10 +26,10 @@ struct StreamCheckOptions {
   double flat = 1e-6;          ///< of the longest extent: a coordinate that changes by less never changes
   double least_tilt = 0.0175;  ///< of a stream with a flat coordinate: a degree [rad]; level ground is within
   /// An answer this close to the identity, or within three standard deviations of it [rad, m]: frames of two
-  /// sensors that are bolted to one vehicle differ by more, but for stereo cameras.
+  /// sensors that are bolted to one vehicle differ by more, except for stereo cameras.
   double parallel = 0.0087, close = 0.2;
   double known_rotation = 0.0175,
-         known_translation = 0.3;  ///< standard deviations up to here say so [rad, m]
+         known_translation = 0.3;  ///< standard deviations up to here show it [rad, m]
 };
 
 /// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream,

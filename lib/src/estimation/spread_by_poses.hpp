@@ -14,7 +14,7 @@ using Seen = std::array<bool, 6>;
 
 Seen seen_directions(const Problem& problem);
 
-/// How far the answers scatter when blocks of instants are left out, each with all motions that touch it.
+/// How far the answers scatter when blocks of instants are omitted, each with all motions that touch it.
 /// Over the directions that are seen.
 struct SpreadByPoses {
   DualQuaternion T_a_b;           ///< minimiser of (18) over all
@@ -25,7 +25,7 @@ struct SpreadByPoses {
 };
 
 /// problem: touching blocks, as WeightedBlocks make them. The score is not finite where a block cannot be
-/// left out.
+/// omitted.
 SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen);
 
 /// Standard error of the difference of two scores of the same blocks.

@@ -56,7 +56,7 @@ struct JointProof {
   double pairwise_bound = 0;
   double lower_bound = 0;  ///< of every set of poses
   double rounding = 0;     ///< of the cost in double precision
-  bool global = false;  ///< the minimum is proven to be the only one as low, but for a rest of its gradient
+  bool global = false;     ///< the minimum is proven to be global, up to the rest of its gradient
 };
 
 /// Empty where not even the bounds of the pairs are proven. Unit poses, up to rounding.

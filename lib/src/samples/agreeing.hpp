@@ -25,7 +25,7 @@ struct AgreeingOptions {
   std::size_t most_followed = 6;  ///< of the starts, the best trimmed fits
   /// Rounds of a fit on the way: only the last fit has to be exact.
   int rounds_on_the_way = 3;
-  /// A sample that noise explains this often is taken in without a second look.
+  /// A sample that noise explains this often is accepted without a second test.
   double unremarkable = 0.01;
   /// From this many samples on the noise of the rotations is known without an answer, to a third.
   std::size_t least_for_congruence = 12;
@@ -42,7 +42,7 @@ struct AgreeingOptions {
   double nothing = 1e-24;
 };
 
-/// Least trimmed squares over triples of samples, then samples are taken in again, best first, as long as
+/// Least trimmed squares over triples of samples, then samples are added again, best first, as long as
 /// noise explains them (F test of what one more adds to the cost). All samples where they are too few to
 /// judge.
 AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options,

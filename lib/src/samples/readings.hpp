@@ -28,7 +28,7 @@ struct SampleReadingOptions {
   double most_worse_rotation = 10, least_at_first = 2;
   double scale_by_chance = 1e-6;  ///< probability of a scale other than 1 by chance, below which it is named
   double unit_tolerance = 0.05;   ///< a power of ten to this part is a unit
-  int rounds_of_signs = 3;        ///< of the quaternions and the sum by turns: settled after two
+  int rounds_of_signs = 3;        ///< of the quaternions and the sum alternately: settled after two
 };
 
 /// Readings of the poses under which they fit far better than as given: one list inverted, another order of

@@ -18,7 +18,7 @@ struct SampleSums {
   double count = 0;
   Eigen::Matrix4d real = Eigen::Matrix4d::Zero(), dual = Eigen::Matrix4d::Zero();  ///< with their signs
   Eigen::Matrix4d dual_dual = Eigen::Matrix4d::Zero(), dual_real = Eigen::Matrix4d::Zero();
-  /// 2 X.real' moment[k] X.real is twice the position along axis k but for the part of X.dual.
+  /// 2 X.real' moment[k] X.real is twice the position along axis k except for the part of X.dual.
   std::array<Eigen::Matrix4d, 3> moment{Eigen::Matrix4d::Zero(), Eigen::Matrix4d::Zero(),
                                         Eigen::Matrix4d::Zero()};
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();  ///< of a

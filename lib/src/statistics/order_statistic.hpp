@@ -7,8 +7,8 @@
 
 namespace egocal::detail {
 
-/// Where a value is expected: where it is, it is found at a third of the cost; elsewhere nothing is lost but
-/// the time.
+/// Where a value is expected: where it is, it is found at a third of the cost; elsewhere only
+/// time is lost.
 struct Expected {
   double low = 0, high = 0;
 };

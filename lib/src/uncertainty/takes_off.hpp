@@ -7,7 +7,7 @@
 namespace egocal::detail {
 
 /// Blocks need not be disjoint: then a last one with a negative weight takes off what is in two of them. It
-/// is no part of the drive to leave out.
+/// is no part of the drive to omit.
 inline bool takes_off(const Statistics& block) {
   return block.weight < 0;
 }

@@ -10,7 +10,7 @@
 namespace egocal::detail {
 
 /// What one Newton step from an extrinsic q needs of a sum of motions S: 42 numbers, linear in S. Forms of
-/// blocks are added and subtracted instead of the blocks, so leaving out a block costs one small
+/// blocks are added and subtracted instead of the blocks, so omitting a block costs one small
 /// factorisation. Not normalised by the weight, which no Newton step depends on.
 struct TangentForm {
   Matrix6d curvature = Matrix6d::Zero();  ///< T'ZT, see TangentSpace

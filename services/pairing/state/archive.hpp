@@ -189,7 +189,7 @@ class Reader {
   std::span<const std::byte> rest_;
 };
 
-/// Finds every change of a single byte, and others but for one in 2^64 (FNV-1a).
+/// Finds every change of a single byte, and others except for one in 2^64 (FNV-1a).
 inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const std::byte byte : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;

@@ -16,7 +16,7 @@
 
 namespace egocal::services {
 
-/// A file from which a process that was killed goes on: a snapshot, and behind it what came since then.
+/// A file from which a process that was killed continues: a snapshot, and behind it what came since then.
 ///
 /// A snapshot takes the place of the file in one step. Each addition is one write behind it; a
 /// process that is killed in the middle of one leaves an unfinished last part, which was not acknowledged to
@@ -34,8 +34,8 @@ class StateFile {
   StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock = boot_time,
             const StateOptions& options = {});
 
-  /// What is there to go on from; empty where there is no file or it is refused. Throws Error where the file
-  /// cannot be read, or is something else than a state: that is never touched.
+  /// What is there to continue from; empty where there is no file or it is refused. Throws Error where the
+  /// file cannot be read, or is something else than a state: that is never touched.
   std::optional<Content> read();
   /// One line: why what was there is refused; empty: it is not.
   const std::string& refused() const { return refused_; }

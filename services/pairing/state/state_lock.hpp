@@ -7,7 +7,7 @@
 namespace egocal::services {
 
 /// FILE.lock, held for one process alone until the end. It remains as an empty file: to remove it while
-/// another process waits for it would let two go on.
+/// another process waits for it would let two continue.
 class StateLock {
  public:
   /// Throws Error where another process holds it, or where the file system cannot lock.

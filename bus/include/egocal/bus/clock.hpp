@@ -10,7 +10,7 @@
 
 namespace egocal::bus {
 
-/// The time that a loop lives in, and its way of waiting. A simulation hands in a clock of its own: its
+/// The time of a loop, and its way of waiting. A simulation hands in a clock of its own: its
 /// wait() returns at once and its time moves only when the simulation moves it.
 class Clock {
  public:

@@ -44,7 +44,7 @@ struct ReassemblyOptions {
   /// All messages that are not complete yet [bytes]: the oldest are dropped beyond. Four of the largest.
   std::size_t max_total = std::size_t{16} << 20;
   /// Senders with a message that is not complete yet. A bus has a few dozen processes; a flood of invented
-  /// senders costs no more than this.
+  /// senders costs at most this.
   std::size_t max_senders = 64;
 };
 

@@ -44,7 +44,7 @@ bool is_a(Bytes bytes) {
 }
 
 /// Decodes a message that must fill the bytes exactly. False: wrong fingerprint (another type or version),
-/// truncated, trailing bytes, or a length field that lies. Never throws on any input but for lack of memory.
+/// truncated, trailing bytes, or a false length field. Never throws on any input except for lack of memory.
 template <class Message>
 bool decode(Bytes bytes, Message& message) {
   if (!lengths_fit(&message, bytes)) return false;

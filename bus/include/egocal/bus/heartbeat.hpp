@@ -71,7 +71,7 @@ class Heartbeat {
   void publish();
 
   bool alive(Role role) const;
-  /// The network has been there for a whole heartbeat timeout: every other process has been heard by now.
+  /// The network has been there for a whole heartbeat timeout: all others have sent their status.
   bool settled() const;
   std::optional<Role> role_of(const std::string& name) const { return peers_.role_of(name); }
   /// Another living process has this name and started earlier.

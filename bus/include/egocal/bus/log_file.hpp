@@ -68,7 +68,7 @@ class EventNumbers {
 };
 
 /// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs what it held: the
-/// reader goes on at the next event that makes sense (liblcm's own reader ends there silently). An
+/// reader continues at the next event that makes sense (liblcm's own reader ends there silently). An
 /// event with impossible lengths is skipped; what else is damaged inside of one only its decoder can tell.
 /// Memory is that of one event, no length field of a damaged event makes it more than 64 MiB, and the time is
 /// proportional to the file.
@@ -81,10 +81,10 @@ class LogReader {
   std::optional<LogEvent> next();
   /// Back to the first event.
   void rewind();
-  /// To a place before every event recorded at time_us or later, found by bisection: next() goes on there,
-  /// with events that may be a little earlier. Times must ascend but for the disorder of several sources (1
-  /// s) and single damaged ones; where they do not, it begins earlier than necessary, at worst at the start.
-  /// Damage is counted from there on.
+  /// To a place before every event recorded at time_us or later, found by bisection: next() continues there,
+  /// with events that may be a little earlier. Times must ascend except for the disorder of several sources
+  /// (1 s) and single damaged ones; where they do not, it begins earlier than necessary, at worst at the
+  /// start. Damage is counted from there on.
   void seek(std::int64_t time_us);
 
   const LogDamage& damage() const { return damage_; }

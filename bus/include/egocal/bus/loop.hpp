@@ -36,7 +36,7 @@ struct LoopOptions {
   // Study of these: bench_processes and tests/bus/test_loop.cpp; docs/processes.md.
   /// Longest that messages are handled before timers, signals and the work on the newest ones get their turn.
   std::chrono::nanoseconds longest_batch{5'000'000};
-  /// And most messages, where the clock stands still meanwhile.
+  /// And most messages, where the clock does not advance meanwhile.
   int most_in_batch = 10'000;
   /// The transport's own buffer is emptied into the queue this often meanwhile: a slow handler of one channel
   /// does not cost messages of another.
@@ -86,7 +86,7 @@ class Loop {
   void subscribe_prefix(const std::string& prefix, Handler handler, int queue_capacity = 256);
 
   /// Calls the handler for every message of a channel that nothing else here subscribes to, while wanted()
-  /// says so; it is asked before anything of a message is kept. Once.
+  /// states it; it is asked before anything of a message is kept. Once.
   void subscribe_others(Handler handler, std::function<bool()> wanted, int queue_capacity = 256);
 
   /// subscribe_bytes, decoded. What cannot be decoded is counted in undecodable() and not handed on.

@@ -27,12 +27,12 @@ struct Peer {
 /// are those of the loop's clock [us].
 class Peers {
  public:
-  /// True: not heard before.
+  /// True: not known before.
   bool hear(const status_t& status, std::int64_t now_us);
 
-  /// Some process of this role is running and was heard within the timeout.
+  /// Some process of this role is running and sent its status within the timeout.
   bool alive(Role role, std::int64_t now_us, std::int64_t timeout_us) const;
-  /// Role of the process of this name heard last; empty: never heard.
+  /// Role of the process of this name that sent last; empty: none did.
   std::optional<Role> role_of(const std::string& name) const;
   /// Another run of this name that is alive and started earlier.
   std::optional<Peer> elder_namesake(const std::string& name, std::int64_t run, const std::string& host,

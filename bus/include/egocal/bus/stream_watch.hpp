@@ -22,7 +22,7 @@ struct Refusal {
   std::int64_t count = 0;
 };
 
-/// One channel as it is heard.
+/// One channel as it is received.
 struct HeardStream {
   std::string channel;
   std::string type;  ///< "egocal.odometry_t", "bot_core.pose_t", another type of ours, or "unknown type"
@@ -52,7 +52,7 @@ struct StreamWatchOptions {
   std::int64_t pace_window_us = 3'000'000;
   /// Messages in a row with the same time: five are no accident.
   std::int64_t most_at_same_time = 5;
-  std::int64_t silent_us = 2'000'000;  ///< a stream not heard for this long is silent [us]
+  std::int64_t silent_us = 2'000'000;  ///< a stream without messages for this long is silent [us]
   std::size_t most_others = 64;        ///< channels that no sensor names: a bound on memory
   std::size_t most_refusals = 16;      ///< kinds, of one channel: a bound on memory
 };
@@ -69,7 +69,7 @@ class StreamWatch {
   const std::vector<SensorStream>& sensors() const { return sensors_; }
   /// Channels that no sensor of the rig names, by name. At most most_others.
   const std::map<std::string, HeardStream>& others() const { return others_; }
-  /// Some sensor has not been heard for silent_us: what others send is worth a look.
+  /// Some sensor has sent nothing for silent_us: the other channels are looked at.
   bool misses_any(std::int64_t mono_us) const;
 
   const StreamWatchOptions& options() const { return options_; }

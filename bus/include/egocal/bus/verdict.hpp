@@ -34,7 +34,7 @@ struct ReceivedVerdict {
 /// Checks the whole message: a value means that every field may be used as it stands.
 Checked<ReceivedVerdict> to_verdict(const verdict_t& message);
 
-/// The verdict as told apart by its name; empty: another version's.
+/// The verdict by its name; empty: another version's.
 std::optional<Verdict> verdict_from_name(const std::string& name);
 
 }  // namespace egocal::bus

@@ -63,7 +63,7 @@ class Option {
   CLI::Option* option_;
 };
 
-/// A program or one of its commands; a handle, copied freely. Variables must live until the command has run.
+/// A program or one of its commands; a handle, copied freely. Variables must exist until the command has run.
 class App {
  public:
   /// Value: std::string, bool, int, unsigned, std::uint64_t, std::int64_t, double, a std::vector of strings
@@ -102,7 +102,7 @@ class Program : public App {
   /// on standard error. Returns the exit code: 0 success, 1 failure, 2 wrong usage, or that of an Exit.
   int run(int argc, char** argv) { return parse(argc, argv).value_or(0); }
 
-  /// The same for a main() that goes on afterwards; an exit code where the program must end now (an error, or
+  /// The same for a main() that continues afterwards; an exit code where the program must end (an error, or
   /// --help was answered).
   std::optional<int> parse(int argc, char** argv);
 

@@ -128,8 +128,8 @@ struct DiagnosisOptions {
   /// "Both inverted" is ruled out where it fits worse by this factor (mean squares): noise that grows with
   /// the distance from the start. Real drives: EuRoC 1.6, Tango 1.2, raw KITTI 4, KITTI 25 to 73.
   double decisive = 3;
-  /// An explanation so much better (squared residuals) makes the streams as given useless, wherever its
-  /// answer lies.
+  /// An explanation better by this factor (squared residuals) makes the streams as given useless, wherever
+  /// its answer lies.
   double overwhelming = 7.4;
   /// Residual at the answer as a part of the typical motion. Clean drives with a noise of a tenth of every
   /// single motion stay below 0.35; streams that do not belong together are at 1 and more.

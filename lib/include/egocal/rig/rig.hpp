@@ -34,7 +34,7 @@ struct ConsistentSet {
   double pairwise_bound = 0;
   /// No set of poses has a lower cost than this. Equal to pairwise_bound where nothing better is proven.
   double lower_bound = 0;
-  double rounding = 0;  ///< of the cost: what double precision cannot tell apart
+  double rounding = 0;  ///< of the cost: what double precision cannot distinguish
   /// Globally optimal: cost - lower_bound is at most twice the rounding (docs/rigs.md has the proof).
   bool certified = false;
 };
@@ -47,13 +47,13 @@ ConsistentSet solve_consistent_set(std::size_t sensors, std::span<const RigEdge>
 struct RigPair {
   std::size_t a = 0, b = 0;
   Problem problem;                ///< mode, planes and balance; its blocks are not looked at
-  std::vector<MotionPair> pairs;  ///< consecutive, in the order of time; outliers are left out
+  std::vector<MotionPair> pairs;  ///< consecutive, in the order of time; outliers are omitted
   /// Motions are rejected that fit this answer far worse than the median one does; empty: around their own.
   std::optional<DualQuaternion> T_a_b;
 };
 
 struct RigOptions {
-  /// Parts of the drive that the jack-knife of a loop leaves out, the same times for all pairs. Four times
+  /// Parts of the drive that the jack-knife of a loop omits, the same times for all pairs. Four times
   /// the parameters of a loop.
   std::size_t blocks = 24;
   double false_alarms = 1e-3;  ///< chance that any loop of a consistent rig is called open
@@ -109,7 +109,7 @@ struct RigMotionsOptions {
   /// is longer, unless all are.
   double max_gap = 0.5;
   std::vector<GroundPlane> planes;  ///< one a sensor: planar mode; empty: 3-D
-  ScreeningOptions screening;       ///< a motion that is not congruent in one pair is left out of all
+  ScreeningOptions screening;       ///< a motion that is not congruent in one pair is used in none
 };
 
 /// All pairs of a rig, with motions between the same instants for all of them: those of the slowest sensor,

@@ -17,7 +17,7 @@ struct Step {
   bool usable = true;   ///< false: the two instants are in different chains
 };
 
-/// What a jump spoils. A translation that jumps leaves the rotation of the motions across it valid.
+/// What a jump affects. A translation that jumps leaves the rotation of the motions across it valid.
 enum class Jump : std::uint8_t { none, translation, all };
 
 /// Tuning of find_jumps().

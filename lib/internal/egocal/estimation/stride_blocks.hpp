@@ -29,7 +29,7 @@ struct StrideWeights {
   std::vector<double> translation;  ///< of the dual rows [1/m^2], up to the same factor
 };
 
-/// Statistics of motions of many strides, in blocks of instants: leaving out a block of instants leaves out
+/// Statistics of motions of many strides, in blocks of instants: omitting a block of instants omits
 /// every motion with an end in it, which gives long motions an honest spread. Bounded: when all blocks are in
 /// use, neighbours are merged and blocks become twice as long.
 class StrideBlocks {
@@ -40,7 +40,7 @@ class StrideBlocks {
   struct State {
     std::uint64_t block_length = 1;       ///< instants
     std::vector<std::uint64_t> instants;  ///< per block, those that were added
-    std::vector<std::uint8_t> outlier;    ///< per block: left out, contradicts the others
+    std::vector<std::uint8_t> outlier;    ///< per block: omitted, contradicts the others
     std::vector<StrideSum> strides;       ///< ascending
   };
 
@@ -59,14 +59,14 @@ class StrideBlocks {
 
   std::size_t blocks() const { return state_.instants.size(); }
   const std::vector<StrideSum>& strides() const { return state_.strides; }
-  /// Calls visit(cell, first block, last block) for the cells that hold motions and are not left out.
+  /// Calls visit(cell, first block, last block) for the cells that hold motions and are not omitted.
   template <typename Visit>
   void each_cell(std::size_t stride, const Visit& visit) const;
-  /// Of one stride, without the blocks left out.
+  /// Of one stride, without the blocks omitted.
   StrideCell total(std::size_t stride) const;
   /// Motions within one block, weighted: what the blocks say independently of each other.
   std::vector<Statistics> within(const StrideWeights& weights) const;
-  /// Instants in blocks that are left out.
+  /// Instants in blocks that are omitted.
   std::uint64_t instants_left_out() const;
   const State& state() const { return state_; }
 
@@ -79,7 +79,7 @@ class StrideBlocks {
   State state_;
 };
 
-/// The sums of StrideBlocks by the blocks that a motion touches, without those left out: made once, weighted
+/// The sums of StrideBlocks by the blocks that a motion touches, without those omitted: made once, weighted
 /// in many ways.
 class TouchingSums {
  public:
@@ -87,7 +87,7 @@ class TouchingSums {
 
   /// Of one stride.
   const StrideCell& total(std::size_t stride) const { return strides_[stride].total; }
-  /// The weighted sum; blocks that are left out hold nothing.
+  /// The weighted sum; blocks that are omitted hold nothing.
   WeightedBlocks weighted(const StrideWeights& weights) const;
 
  private:

@@ -22,7 +22,7 @@ struct JudgedInstant {
   Instant instant;
   std::uint64_t index = 0;              ///< counted from 0
   Jump jump = Jump::none;               ///< of the step from the instant before
-  std::uint64_t rotation_chain = 0;     ///< counts the jumps that spoil rotation
+  std::uint64_t rotation_chain = 0;     ///< counts the jumps of rotation
   std::uint64_t translation_chain = 0;  ///< counts all jumps
   bool doubtful = false;                ///< no motion begins or ends here
   double step_variance = 0;             ///< of the step from the instant before, beyond what is typical
@@ -39,10 +39,10 @@ struct StrideSumsOptions {
   std::vector<int> strides{1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128};
   /// Instants whose verdicts may still change: enough for quartiles, few enough for a look in 0.1 ms.
   std::uint64_t most_open = 192;
-  /// The open instants are judged anew after this part more (one sixteenth), within these limits: a jump
+  /// The open instants are judged again after this part more (one sixteenth), within these limits: a jump
   /// spoils every motion across it, and short drives have few to spare.
   std::uint64_t look_part = 16, least_look = 16, most_look = 64;
-  /// The weights are chosen anew after an eighth more instants, and after a quarter more beyond
+  /// The weights are chosen again after an eighth more instants, and after a quarter more beyond
   /// `short_drive`: a choice costs as much as a hundred instants (docs/benchmarks.md).
   std::uint64_t short_choice_part = 8, choice_part = 4, short_drive = 128;
   /// Rounds of verdicts and weights that depend on each other: bounds the time of a choice.
@@ -50,7 +50,7 @@ struct StrideSumsOptions {
   /// A variance below this is what rounding leaves of a difference of sums [typical variances]: the sums of a
   /// million steps with variances up to 1e4 are rounded by 1e-6.
   double least_extra_variance = 1e-6;
-  /// Variances of a step that change its weight by less than this part are not summed anew.
+  /// Variances of a step that change its weight by less than this part are not summed again.
   double least_change = 0.1;
 };
 
@@ -63,7 +63,7 @@ struct StrideSumsState {
   std::uint64_t next_look = 0;        ///< number of instants at which the open ones are judged again
   std::uint64_t next_choice = 0;      ///< number of instants at which the next choice is due
   std::int64_t period_us = 0;         ///< typical time between instants
-  std::vector<std::uint8_t> outlier;  ///< blocks left out, of outlier_length instants each
+  std::vector<std::uint8_t> outlier;  ///< blocks omitted, of outlier_length instants each
   std::uint64_t outlier_length = 1;
   std::optional<WeightChoice> choice;
   WeightedBlocks weighted;  ///< all motions, by the choice; while it is in force
@@ -87,7 +87,7 @@ class StrideSums {
   void add(const Instant& instant, bool doubtful = false);
   /// The drive has grown by an eighth since the last choice.
   bool choice_is_due() const { return state_.next_index >= state_.next_choice; }
-  /// Judges the open instants anew and chooses the weights. rival: the best single stride.
+  /// Judges the open instants again and chooses the weights. rival: the best single stride.
   void choose(const std::optional<SingleStride>& rival = {});
 
   /// Empty until a choice was made.

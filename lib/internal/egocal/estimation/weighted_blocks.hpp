@@ -19,7 +19,7 @@ struct MotionWeights {
 
 /// A weighted sum of motions of many strides in touching blocks of instants. Every block holds each motion
 /// with an end in it; what is in two of them is kept once more, to be taken off. So the sum of the blocks
-/// less what is shared is the whole, and leaving out a block leaves out every motion that touches it.
+/// less what is shared is the whole, and omitting a block omits every motion that touches it.
 class WeightedBlocks {
  public:
   /// All there is; continuing from a copy gives the same bits.
@@ -37,7 +37,7 @@ class WeightedBlocks {
   bool has_room(std::uint64_t index) const;
   /// Opens the block that the instant with this index belongs to.
   void add_instant(std::uint64_t index);
-  /// A motion between two instants that were added, where neither of their blocks is left out. rotation_only:
+  /// A motion between two instants that were added, where neither of their blocks is omitted. rotation_only:
   /// it spans a jump of a translation.
   void add(std::uint64_t first_index, std::uint64_t last_index, const DualQuaternion& a,
            const DualQuaternion& b, MotionWeights weights, bool rotation_only);

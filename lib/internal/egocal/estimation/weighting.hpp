@@ -26,7 +26,7 @@ struct ResidualWeightOptions {
   /// A stride whose motions have this part of the weight of a single step is skipped: 128 steps, and 128
   /// times as long, add 128^2 * 1e-22 = 2e-18 of the sum, less than its rounding.
   double negligible_part = 1e-22;
-  int rounds = 4;        ///< of weights and minimiser by turns: bounds the time of a choice
+  int rounds = 4;        ///< of weights and minimiser alternately: bounds the time of a choice
   int later_rounds = 2;  ///< the same where a minimiser is known already
   /// Grid of the ratio of a random walk's variance a step to that of the noise on poses: six points a decade,
   /// from white noise on poses alone to a random walk alone.
@@ -59,8 +59,8 @@ struct WeightingOptions {
   /// of the logarithms of two spreads of about 16 blocks scatters by a quarter.
   double taken_off = 0.01;
   double clearly_unpaired = 0.25;
-  /// And where the two answers differ by no more than this many standard deviations of the single stride's,
-  /// in rotation and in translation. Motions of one stride are judged one by one; the sum leaves out whole
+  /// And where the two answers differ by at most this many standard deviations of the single stride's,
+  /// in rotation and in translation. Motions of one stride are judged one by one; the sum omits whole
   /// blocks, and many short stretches of wrong poses pass (tests/lib/test_outliers.cpp: 3 deg off).
   double agreement = 3;
   /// The choice in force keeps its place unless another's sum of logarithms is smaller by this: settings do
@@ -94,7 +94,7 @@ struct SingleStride {
 /// that adds up (a random walk): a motion of s steps then counts by lambda^s, where lambda depends on the
 /// ratio of the two noises alone (0: neighbours only; 1: all alike). lambda is fitted to the variance of the
 /// residuals by stride, for rotation and translation each; their balance is the inverse of the variances.
-/// Where leaving out blocks of poses shows that another lambda = exp(-1 / memory) has a clearly smaller
+/// Where omitting blocks of poses shows that another lambda = exp(-1 / memory) has a clearly smaller
 /// spread (noise is of another kind: it drifts, or grows with the length), that one is taken. problem: mode,
 /// planes, prior. current: the choice in force. rival: the best single stride; one that is not among the
 /// strides of the blocks, or contradicts the sum, is not beaten. Empty where no motion turns or moves.

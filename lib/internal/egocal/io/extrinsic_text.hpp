@@ -27,9 +27,9 @@ struct NamedExtrinsic {
   bool certified = false;                       ///< globally optimal, proven
   long long pairs = 0;                          ///< motion pairs behind it
   std::optional<std::array<double, 6>> stddev;  ///< x y z [m] roll pitch yaw [rad] in the parent's frame
-  bool usable = true;     ///< false: optimal, but the motions contradict each other; every format says so
+  bool usable = true;     ///< false: optimal, but the motions contradict each other; every format states it
   std::string verdict{};  ///< good, incomplete, doubtful, contradictory; empty: it was not judged
-  std::optional<NamedScale> scale{};  ///< that was found together with it; every format says so
+  std::optional<NamedScale> scale{};  ///< that was found together with it; every format states it
 };
 
 enum class ExtrinsicFormat {

@@ -38,7 +38,7 @@ struct ChangeTestOptions {
 
 struct MovesOptions {
   /// Chance of a false alarm in one drive. The test's own statistics are approximate far out (docs/moves.md),
-  /// hence a value far below what a user would accept.
+  /// so it is far below what a user would accept.
   double false_alarms = 1e-4;
   /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
   /// systematic errors nearly as large that depend on where and how the vehicle drives (0.11 deg between two
@@ -105,9 +105,9 @@ struct MovesResult {
 MovesResult find_moves(std::span<const MotionPair> pairs, const Problem& problem,
                        const MovesOptions& options = {});
 
-/// The same with the motions of one drive in several strides: noise that grows with time is told apart best
-/// by short ones, noise that does not by long ones. The stride whose strongest change is the least likely by
-/// chance answers; the rate of false alarms is shared.
+/// The same with the motions of one drive in several strides: noise that grows with time is distinguished
+/// best by short ones, noise that does not by long ones. The stride whose strongest change is the least
+/// likely by chance answers; the rate of false alarms is shared.
 MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strides, const Problem& problem,
                                   const MovesOptions& options = {});
 

@@ -24,7 +24,7 @@ struct EstimationOptions {
   RobustOptions robust{};
   SelectionOptions selection{};
   StrideSumsOptions sums{};
-  /// Stride and balance are chosen anew after this part of the drive more (a quarter): choosing stays a
+  /// Stride and balance are chosen again after this part of the drive more (a quarter): choosing stays a
   /// constant part of the work.
   std::uint64_t choice_part = 4;
 };
@@ -85,7 +85,7 @@ class Accumulator {
   PairingOptions options_;
   EstimationOptions tuning_;
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
-  AccumulatorState state_;    ///< but for the sums
+  AccumulatorState state_;    ///< except for the sums
   std::optional<StrideSums> sums_;
 };
 

@@ -40,10 +40,10 @@ struct ReleasedPose {
 };
 
 /// Follows the offset of clock b from a, and its drift. Poses are held until an estimate is good enough; from
-/// then on they pass at once, b's on the clock of a. Estimated anew every half minute over the newest minute;
-/// each estimate is worked out over the poses of the next two seconds and comes into force at a fixed time,
-/// so that no pose waits for more than a fraction of a millisecond of work. The result depends on the stamps
-/// of both streams, not on how they interleave nor on how fast the machine is.
+/// then on they pass at once, b's on the clock of a. Estimated again every half minute over the newest
+/// minute; each estimate is worked out over the poses of the next two seconds and comes into force at a fixed
+/// time, so that no pose waits for more than a fraction of a millisecond of work. The result depends on the
+/// stamps of both streams, not on how they interleave nor on how fast the machine is.
 class ClockFollower {
  public:
   /// Uses max_gap and the options of its own stage.

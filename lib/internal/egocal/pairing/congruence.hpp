@@ -42,7 +42,7 @@ struct CongruenceScale {
 bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options);
 
 /// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
-/// length, whatever the extrinsic. How far a and b (over the same time) are from that, in standard deviations
+/// length, for every extrinsic. How far a and b (over the same time) are from that, in standard deviations
 /// of the typical difference; 0 before the first estimate.
 double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale,
                     const CongruenceOptions& options);
@@ -56,7 +56,7 @@ bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, doubl
 /// without poses, nothing else can confirm them. In three dimensions, in any order.
 std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& options = {});
 
-/// Remembers the motion and estimates anew where that is due. doubtful: the motion of a doubtful pose.
+/// Remembers the motion and estimates again where that is due. doubtful: the motion of a doubtful pose.
 void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubtful,
                        CongruenceScale& scale, const CongruenceOptions& options);
 

@@ -9,7 +9,7 @@
 
 namespace egocal {
 
-/// Whether what a pairing leaves out of the statistics in force is the best choice of outliers. Motions that
+/// Whether the motions that a pairing rejects are the best choice of outliers. Motions that
 /// end at the newest instants, whose verdicts may change, are not looked at. Empty where nothing was judged,
 /// and in planar mode. Milliseconds: for the end of a drive, not for every pose.
 std::optional<OutlierProof> prove_outliers(const MotionPairing& pairing);

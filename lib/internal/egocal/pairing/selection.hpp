@@ -21,7 +21,7 @@ struct Candidate {
 
 /// Tuning of the choice between settings. Study: tests/bench/accuracy_benchmark.cpp, docs/accuracy.md.
 struct SelectionOptions {
-  /// Parts of the drive that the jack-knife leaves out: at least this many, each at least two motions long,
+  /// Parts of the drive that the jack-knife omits: at least this many, each at least two motions long,
   /// or else neighbouring parts share motions and their spread says too little.
   std::size_t least_parts = 8;
   /// Spreads below these are rounding, all alike [rad, m]: the logarithm of one is a draw.
@@ -43,7 +43,7 @@ std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std:
 std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks, int stride,
                                            const SelectionOptions& options = {});
 
-/// Spread of the answers when each of several consecutive parts of the drive is left out.
+/// Spread of the answers when each of several consecutive parts of the drive is omitted.
 struct Spread {
   double rotation = 0;     ///< standard deviation, root of the sum over the observable directions [rad]
   double translation = 0;  ///< [m]

@@ -32,7 +32,7 @@ struct StreamOptions {
   /// jump_periods periods of the source. Longer than the gaps that a busy source leaves.
   double largest_jump = 1;
   std::int64_t jump_periods = 4;
-  /// Nor numbers that jump by more; and no more than this is held back or remembered as lost. 10 s at 100 Hz.
+  /// Nor numbers that jump by more; and at most this is held back or remembered as lost. 10 s at 100 Hz.
   std::int64_t most_missing = 1000;
   /// Messages in a row that confirm a jump. One damaged message must not, two might be damaged alike.
   std::size_t confirmations = 3;
@@ -72,7 +72,7 @@ struct StreamState {
 ///
 /// - A gap in the numbers is waited for until reorder_window of measured time has gone by, or for as long as
 ///   it is patient.
-/// - Time or number far off: kept back until three messages in a row go on from there, for one damaged
+/// - Time or number far off: kept back until three messages in a row continue from there, for one damaged
 ///   message must not end a session. If time then turns out to run backwards (a log that was started again, a
 ///   clock that was set), a new timeline begins; nothing of it is lost.
 /// - Times and numbers that no source can have (limits.hpp) are counted as jumps and not used.
@@ -97,7 +97,7 @@ class Stream {
   /// has been there twice and had nothing for the gap.
   void be_patient(bool patient) { state_.patient = patient; }
   bool settling() const { return state_.settling; }
-  /// After an interruption: the messages of a stream without numbers, or of one not heard before, are
+  /// After an interruption: the messages of a stream without numbers, or of one not received before, are
   /// collected, and put in order when one of them comes a second time, or by flush().
   void settle();
 

@@ -10,12 +10,12 @@
 namespace egocal {
 
 /// Statistics in consecutive blocks of equal length, bounded however long the drive: when max_blocks are
-/// full, neighbours are merged and blocks become twice as long. Blocks can be left out, as contradicting the
+/// full, neighbours are merged and blocks become twice as long. Blocks can be rejected, as contradicting the
 /// others; those merge among themselves, so that nothing is lost and a verdict can be revised.
 class BlockStatistics {
  public:
   static constexpr std::size_t max_blocks = 64;  ///< format: of state and messages
-  /// As many as inliers() returns at most: what a message carries and the jack-knife leaves out one by one.
+  /// As many as inliers() returns at most: what a message carries and the jack-knife omits one by one.
   static constexpr std::size_t max_inlier_blocks = 32;
 
   struct Block {
@@ -36,7 +36,7 @@ class BlockStatistics {
   /// One verdict a block.
   void leave_out(const std::vector<bool>& verdicts);
 
-  /// The blocks that are not left out, neighbours joined where there are more than max_inlier_blocks.
+  /// The blocks that are not omitted, neighbours joined where there are more than max_inlier_blocks.
   std::vector<Statistics> inliers() const;
   std::uint64_t inlier_pairs() const;
   const State& state() const { return state_; }

@@ -32,7 +32,7 @@ struct OutlierProofOptions {
 };
 
 /// Whether the minimum over the parts that are no outliers is the global minimum of sum min(q'Q_k q, limit_k)
-/// over all extrinsics q and hence over all 2^K choices of outliers. A competitor that is as good lies at a
+/// over all extrinsics q and so over all 2^K choices of outliers. A competitor that is as good lies at a
 /// distance at which some part changes sides; leverages bound what a change can save (docs/method.md,
 /// "Outliers"). Parts that they leave undecided are searched by branch and bound. Rigorous: distances and
 /// leverages by Cholesky proofs, minima by the certificate of the dual. Not proven where some outlier would

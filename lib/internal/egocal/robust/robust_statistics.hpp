@@ -16,8 +16,8 @@ struct RobustOptions {
   /// Pairs that wait apart, at most; the oldest of more are summed in a block of their own kind. Bounds
   /// memory and the time of a look: 128 parts beside 64 blocks.
   std::size_t most_waiting = 128;
-  /// The consensus is looked for anew after this many pairs in a row that disagree, and at every doubling:
-  /// four outliers in a row are rare among single wrong poses, which spoil two motions each.
+  /// The consensus is looked for again after this many pairs in a row that disagree, and at every doubling:
+  /// four outliers in a row are rare among single wrong poses, which affect two motions each.
   std::uint64_t suspicious_run = 4;
   /// And after this part of the pairs more (an eighth): looking stays a constant part of the work.
   std::uint64_t look_part = 8;
@@ -26,8 +26,8 @@ struct RobustOptions {
 
 /// Statistics without the motion pairs that contradict the others. A pair that disagrees with the consensus
 /// of all before it waits apart (in a block of its own kind once many wait). The consensus is looked for
-/// anew, over all blocks and every waiting pair, when several in a row disagree (they may be the first to
-/// show a new direction) and when asked to. What agrees then comes back. Bounded; nothing is thrown away.
+/// again, over all blocks and every waiting pair, when several in a row disagree (they may be the first to
+/// show a new direction) and when asked to. What agrees then comes back. Bounded; nothing is discarded.
 class RobustStatistics {
  public:
   /// All there is; continuing from a copy gives the same bits.

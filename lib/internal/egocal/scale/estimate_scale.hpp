@@ -13,13 +13,13 @@ struct DriveScaleOptions {
   /// Motions for the first guess, before anything is known of outliers, span this time [s]: long enough to be
   /// more than noise, short enough to be many.
   double first_motion = 1;
-  /// A motion that fits this many times worse than the median one is left out; the rest is solved again. Five
+  /// A motion that fits this many times worse than the median one is omitted; the rest is solved again. Five
   /// standard deviations.
   double most_residual = 25;
   int rounds = 4;  ///< a limit: the pairing of the scaled streams is repeated until the scale stays
 };
 
-/// The scale of one stream's translations from two trajectories: pairs them, leaves out motions that do not
+/// The scale of one stream's translations from two trajectories: pairs them, omits motions that do not
 /// fit, and repeats both with the scale found, since screw congruence holds at the true scale only. Multiply
 /// the stream by it (scaled()) and calibrate. The time offset of `pairing` is used, not estimated. Throws
 /// Error where no motion pair is found. Deterministic.

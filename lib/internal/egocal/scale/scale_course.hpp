@@ -14,7 +14,7 @@ namespace egocal {
 
 struct ScaleCourseOptions {
   /// Chance that a scale that never changes is called changing, in one drive. The test is approximate far
-  /// out, hence a value far below what a user would accept.
+  /// out, so it is far below what a user would accept.
   double false_alarms = 1e-5;
   /// Smaller changes are not reported, as a part of the scale: stereo and lidar odometry, whose scale is
   /// known, vary by up to this along a drive (tests/lib/test_scale_course.cpp).
@@ -26,13 +26,13 @@ struct ScaleCourseOptions {
   /// A motion that fits this many times worse than the median one is rejected. Five standard deviations.
   double most_residual = 25;
   double motion = 1;  ///< length of the motions [s]: long enough to be more than noise
-  int rounds = 4;     ///< a limit: extrinsic and segments are found by turns
+  int rounds = 4;     ///< a limit: extrinsic and segments are found alternately
 };
 
 /// A part of the drive with a scale of its own, or one that drifts evenly (in its logarithm).
 struct ScaleSegment {
   std::int64_t begin_us = 0, end_us = 0;
-  double begin_scale = 1, end_scale = 1;  ///< equal but for a drift
+  double begin_scale = 1, end_scale = 1;  ///< equal except for a drift
   double stddev = 0;                      ///< of the mean scale
 };
 
@@ -44,8 +44,8 @@ struct ScaleCourse {
 };
 
 /// Where the scale of `side` changes: steps (a loop closure or relocalisation of a monocular SLAM) and drift.
-/// solution: of the whole drive at one scale. Extrinsic and segments are improved by turns. Throws nothing;
-/// where it cannot be tested there is one segment with the scale of the solution.
+/// solution: of the whole drive at one scale. Extrinsic and segments are improved alternately. Throws
+/// nothing; where it cannot be tested there is one segment with the scale of the solution.
 ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                               const ScaleSolution& solution, Side side,
                               const ScaleCourseOptions& options = {});

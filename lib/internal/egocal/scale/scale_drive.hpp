@@ -35,7 +35,7 @@ struct ScaleDriveOptions {
   /// solving stays a constant part of the work; a display follows within some seconds.
   double growth = 0.02;
   std::size_t longest_wait = 64;
-  int passes = 6;  ///< a limit: motions are judged and the rest is solved by turns
+  int passes = 6;  ///< a limit: motions are judged and the rest is solved alternately
   /// More blocks of old motions than this are joined, two by two. With most_recent_blocks of the newest ones
   /// they are no more than a problem on the wire may hold (64).
   std::size_t most_old_blocks = 32, most_recent_blocks = 32;

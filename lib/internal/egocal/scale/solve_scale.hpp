@@ -55,7 +55,7 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> blocks, const ScaleOp
 /// Standard deviations of an extrinsic that was solved at the scale of the solution [m, rad, frame a], with
 /// what the scale's own adds to them. problem: its mode and plane of a. Both parts are independent where the
 /// noise is as the weights say: at a minimum, what the scale can take up is no part of the extrinsic's error
-/// at a fixed scale. Unchanged where the scale is not known (the verdict says so).
+/// at a fixed scale. Unchanged where the scale is not known (the verdict states it).
 std::array<double, 6> with_spread_of_scale(const std::array<double, 6>& stddev, const Problem& problem,
                                            const ScaleSolution& solution);
 

@@ -9,7 +9,7 @@
 
 namespace egocal {
 
-/// What leaving out each block changes: the minimum without it less the minimum with all, (dt [m], dtheta
+/// The change by omitting each block: the minimum without it less the minimum with all, (dt [m], dtheta
 /// [rad]) in sensor a's frame, by one Newton step (planar mode: solved). Infinite where the rest has no
 /// minimum. T_a_b: the minimiser of Q, Q: cost_matrix(problem).
 std::vector<Eigen::Matrix<double, 6, 1>> leave_out_differences(const Problem& problem, const Matrix8d& Q,

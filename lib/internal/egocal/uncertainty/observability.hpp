@@ -6,7 +6,7 @@
 
 namespace egocal {
 
-/// Whether the errors of neighbouring blocks may be related. If so, double blocks are left out as well as
+/// Whether the errors of neighbouring blocks may be related. If so, double blocks are omitted as well as
 /// single ones, and the larger spread counts: safer to report, noisier to compare settings by.
 enum class ErrorCorrelation { correlated, independent };
 
@@ -22,7 +22,7 @@ struct ObservabilityOptions {
   /// motion. Of a correlation rho they see 1 - rho, and the curvature gets (3 + rho) / 3: 30 times covers
   /// 0.95. Up to there the translations must show the direction. Road drives of KITTI have 37 and more.
   double shared_noise = 30;
-  /// Shared noise pulls a translation that is not shown to zero. One that differs from zero by so many
+  /// Shared noise pulls a translation that is not shown to zero. One that differs from zero by this many
   /// standard deviations is shown: 1 false in 10,000.
   double shown_sigmas = 4;
   /// A hidden direction with a larger part of translation in it is a translation; rotations need no test for

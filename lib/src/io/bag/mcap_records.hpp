@@ -33,8 +33,8 @@ struct McapRecord {
 
 /// The records of an MCAP file in the order of the file, those inside chunks in place of the chunk. The
 /// summary is read like the rest, indexes are not needed. Chunks whose checksum differs are skipped; after a
-/// damaged record reading goes on at the next one whose lengths fit. Records above 64 MiB that are no chunks
-/// or messages (attachments) are passed over.
+/// damaged record reading continues at the next one whose lengths fit. Records above 64 MiB that are no
+/// chunks or messages (attachments) are passed over.
 class McapRecords {
  public:
   /// Throws Error where the file does not begin with the magic bytes.

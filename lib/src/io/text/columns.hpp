@@ -41,7 +41,7 @@ enum class Quantity {
 inline constexpr std::size_t quantities = static_cast<std::size_t>(Quantity::count_);
 std::string_view to_string(Quantity quantity);
 
-/// Which column holds which quantity, and in which unit where a header says so.
+/// Which column holds which quantity, and in which unit where a header states it.
 struct ColumnMap {
   struct Column {
     std::size_t index = 0;

@@ -115,7 +115,7 @@ struct PairState {
   bool time_offset_known = false;
   double reported_left_out = 0;  ///< share of the motions that contradict the others, as last reported
   std::int64_t gap_count = 0;
-  /// By the commands heard; motions that go on being accepted say otherwise.
+  /// By the commands received; motions that are still accepted override it.
   bool paused = false;
   std::int64_t paused_mono_us = 0;
   std::int64_t idle_mono_us = 0;  ///< when last there was nothing to solve
@@ -203,8 +203,8 @@ class Model {
   Now now_;
 };
 
-/// Whether a pair's calibration was paused by a user: by the commands heard for it, or because
-/// pairing says so of all its pairs (a monitor that came later has heard no command).
+/// Whether a pair's calibration was paused by a user: by the commands received for it, or because
+/// pairing reports it of all its pairs (a monitor that started later has received no command).
 bool pair_is_paused(const Model& model, const PairState& pair);
 /// "lidar -> camera", for events and lines.
 std::string pair_name(const std::string& a, const std::string& b);

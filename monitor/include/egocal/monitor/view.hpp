@@ -21,7 +21,7 @@ struct ViewState {
   int selected = 0;     ///< pair
   double window_s = 0;  ///< time shown by the curves up to now; 0: all
   bool logarithmic = true;
-  bool frozen = false;  ///< the view stands still, the calibration goes on
+  bool frozen = false;  ///< the view is frozen, the calibration continues
   int scroll = 0;       ///< events: lines up from the newest
   int height = 24;      ///< of the screen: how far the events can be scrolled
   std::string notice;   ///< one line for the bottom: the outcome of the last key
