@@ -131,9 +131,9 @@ bool Heartbeat::alive(Role role) const {
   return peers_.alive(role, loop_.mono_us(), timeout_us_);
 }
 
-std::optional<Peer> Heartbeat::elder_namesake() const {
-  return peers_.elder_namesake(identity_.name, run_, loop_.host(), identity_.pid, loop_.mono_us(),
-                               timeout_us_);
+std::optional<Peer> Heartbeat::senior_namesake() const {
+  return peers_.senior_namesake({identity_.name, loop_.host(), run_, identity_.pid, state_}, loop_.mono_us(),
+                                timeout_us_);
 }
 
 }  // namespace egocal::bus

@@ -3,6 +3,7 @@
 #include "egocal/bus/peers.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 
 #include "egocal/bus/check.hpp"
@@ -14,6 +15,10 @@ constexpr std::size_t max_peers = 256;  // a limit on memory
 
 bool is_alive(const Peer& peer, std::int64_t now_us, std::int64_t timeout_us) {
   return peer.state != State::ended && now_us - peer.heard_us <= timeout_us;
+}
+/// A paused process has the statistics and goes on from them. Another version's state is not known.
+bool works(std::optional<State> state) {
+  return state && *state != State::waiting && *state != State::ended;
 }
 }  // namespace
 
@@ -45,13 +50,13 @@ std::optional<Role> Peers::role_of(const std::string& name) const {
   return found ? found->role : std::nullopt;
 }
 
-std::optional<Peer> Peers::elder_namesake(const std::string& name, std::int64_t run, const std::string& host,
-                                          std::int32_t pid, std::int64_t now_us,
-                                          std::int64_t timeout_us) const {
+std::optional<Peer> Peers::senior_namesake(const Namesake& self, std::int64_t now_us,
+                                           std::int64_t timeout_us) const {
+  const auto rank = [](const auto& process) {
+    return std::make_tuple(!works(process.state), process.run, std::string_view(process.host), process.pid);
+  };
   for (const auto& [key, peer] : peers_)
-    if (peer.name == name && is_alive(peer, now_us, timeout_us) &&
-        std::tie(peer.run, peer.host, peer.pid) < std::tie(run, host, pid))
-      return peer;
+    if (peer.name == self.name && is_alive(peer, now_us, timeout_us) && rank(peer) < rank(self)) return peer;
   return std::nullopt;
 }
 

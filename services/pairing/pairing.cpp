@@ -45,7 +45,7 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
     heartbeat_.counter("restored") = 1;
   }
   show_state();
-  heartbeat_.publish();  // an older namesake answers this
+  heartbeat_.publish();  // a namesake answers this
   loop_.after(restored ? options_.listen_restored : options_.listen, [this] { begin_to_send(); });
 }
 
@@ -188,14 +188,14 @@ void Pairing::watch_gaps() {
 
 /// What everybody may know about this process, with what has just been learnt.
 void Pairing::show_state() {
-  const std::optional<bus::Peer> elder = heartbeat_.elder_namesake();
-  waits_for_elder_ = elder.has_value();
+  const std::optional<bus::Peer> senior = heartbeat_.senior_namesake();
+  waits_for_senior_ = senior.has_value();
   const auto& pairs = accumulation_.pairs();
   const bool paused =
       std::all_of(pairs.begin(), pairs.end(), [](const PairSession& pair) { return pair.paused(); });
   heartbeat_.set_state(!leads() ? bus::State::waiting : paused ? bus::State::paused : bus::State::running);
-  heartbeat_.set_error(elder ? "an older process has this name and continues: pid " +
-                                   std::to_string(elder->pid) + " on " + elder->host
+  heartbeat_.set_error(senior ? "another process has this name and continues: pid " +
+                                     std::to_string(senior->pid) + " on " + senior->host
                        : !save_error_.empty() ? save_error_
                        : saved_               ? saved_->refused()
                                               : "");
@@ -206,14 +206,15 @@ void Pairing::every_second() {
   if (leads()) publish_all_problems();
 }
 
-/// An older process of this name would have answered by now.
+/// Another process of this name would have answered by now.
 void Pairing::begin_to_send() {
   listening_ = false;
   every_second();
   if (leads()) heartbeat_.publish();  // from where senders have to continue
 }
 
-/// What starts need not wait for the second to be over, and an older namesake silences this one at once.
+/// What starts need not wait for the second to be over, and a namesake that precedes this one silences it at
+/// once.
 void Pairing::hear(const status_t& status) {
   if (status.name == heartbeat_.identity().name) show_state();
   const bool player = status.role == "player";

@@ -59,7 +59,7 @@ class Pairing {
   void show_state();
   void begin_to_send();
   bool saved_or_known_not_to_be() const;
-  bool leads() const { return !waits_for_elder_ && !listening_; }
+  bool leads() const { return !waits_for_senior_ && !listening_; }
 
   PairingServiceOptions options_;
   bus::Loop& loop_;
@@ -78,7 +78,7 @@ class Pairing {
   int unacknowledged_ = 0;
   bool patient_ = false;
   bool listening_ = true;  ///< see begin_to_send()
-  bool waits_for_elder_ = false;
+  bool waits_for_senior_ = false;
 };
 
 }  // namespace egocal::services

@@ -30,7 +30,7 @@ struct PairingServiceOptions {
   std::int64_t save_retry_us = 1'000'000;
   /// Processes that were answered once each; invented ones beyond are ignored.
   std::size_t most_known_runs = 1024;
-  /// Nothing is sent before an older process of this name had the time to answer the first status, which it
+  /// Nothing is sent before another process of this name had the time to answer the first status, which it
   /// does within 50 ms. A process that takes the place of a killed one is most likely alone, and waited for.
   std::chrono::milliseconds listen{300}, listen_restored{100};
 };

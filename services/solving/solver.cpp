@@ -56,9 +56,9 @@ void Solver::report() {
   const bool paused =
       std::all_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair->paused; });
   heartbeat_.set_state(paused ? bus::State::paused : state());
-  if (const auto elder = heartbeat_.elder_namesake())
-    heartbeat_.set_error("a second process has this name: pid " + std::to_string(elder->pid) + " on " +
-                         elder->host);
+  if (const auto other = heartbeat_.senior_namesake())
+    heartbeat_.set_error("a second process has this name: pid " + std::to_string(other->pid) + " on " +
+                         other->host);
   else
     // right after the start, and after the network was away, no other process has sent its status yet
     heartbeat_.set_error(!paused && heartbeat_.settled() ? advice() : "");

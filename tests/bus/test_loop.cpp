@@ -193,8 +193,6 @@ TEST(Peers, AreForgottenWhenSilentEndedOrTooMany) {
   EXPECT_TRUE(peers.alive(Role::fast, now + 1'000'000, timeout));
   EXPECT_FALSE(peers.alive(Role::fast, now + 4'000'000, timeout));
   EXPECT_FALSE(peers.alive(Role::global, now, timeout));
-  EXPECT_TRUE(peers.elder_namesake("egocal-fast", 11, "h", 1, now, timeout));
-  EXPECT_FALSE(peers.elder_namesake("egocal-fast", 9, "h", 1, now, timeout));
   status.state = "ended";
   peers.hear(status, now);
   EXPECT_FALSE(peers.alive(Role::fast, now, timeout));
@@ -204,6 +202,30 @@ TEST(Peers, AreForgottenWhenSilentEndedOrTooMany) {
     peers.hear(status, now + 1000 * i);
   }
   EXPECT_EQ(peers.role_of("egocal-fast"), std::nullopt);
+}
+
+TEST(Peers, ANamesakeThatWorksPrecedesOneThatDoesNotWhateverTheDatesOfTheirStarts) {
+  constexpr std::int64_t now = 0, timeout = 3'000'000, early = 9, late = 11;
+  const auto precedes = [&](const std::string& state, std::int64_t run, State own_state) {
+    Peers peers;
+    status_t status{};
+    status.name = "egocal-pairing";
+    status.role = "pairing";
+    status.host = "h";
+    status.run = run;
+    status.state = state;
+    peers.hear(status, now);
+    return peers.senior_namesake({"egocal-pairing", "h", 10, 1, own_state}, now, timeout).has_value();
+  };
+  for (const std::int64_t run : {early, late}) {
+    EXPECT_TRUE(precedes("running", run, State::waiting));
+    EXPECT_TRUE(precedes("paused", run, State::waiting));
+    EXPECT_FALSE(precedes("waiting", run, State::running));
+    EXPECT_FALSE(precedes("of another version", run, State::paused));
+    EXPECT_FALSE(precedes("ended", run, State::waiting));
+    EXPECT_EQ(precedes("waiting", run, State::waiting), run == early);
+    EXPECT_EQ(precedes("running", run, State::paused), run == early);
+  }
 }
 
 }  // namespace

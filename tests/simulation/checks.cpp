@@ -113,12 +113,36 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
   certificates_.take_problem(channel, message);
   if (!peaceful()) return;
   check_wishes(from, channel, now.first, now.second);
-  for (const auto& other : processes_)
-    if (other.get() != &from && other->runs() && other->spec().name == from.spec().name &&
-        other->started_us() < from.started_us())
-      fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
-                    " us sends problems while an older one, of " + std::to_string(other->started_us()) +
-                    " us, is running");
+  check_leader(from);
+}
+
+/// Of several pairing processes of one name the one that sent first goes on. Before that it is the older one,
+/// as far as the dates of their starts say so.
+void Checks::check_leader(const Process& from) {
+  const auto object = [&](const Process& other, const std::string& which) {
+    fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
+                  " us sends problems while " + which + ", of " + std::to_string(other.started_us()) +
+                  " us, is running");
+  };
+  const std::uint64_t leader = std::exchange(leaders_[from.spec().name], from.port());
+  const bool dates_are_set = has(surroundings_.plan, {IncidentKind::set_date});
+  for (const auto& other : processes_) {
+    if (other.get() == &from || !other->runs() || other->spec().name != from.spec().name) continue;
+    if (other->port() == leader)
+      object(*other, "one that sends already");
+    else if (!dates_are_set && !dates_differ() && other->started_us() < from.started_us())
+      object(*other, "an older one");
+  }
+}
+
+/// Of the hosts, whose dates name the starts of their processes.
+bool Checks::dates_differ() const {
+  const Plan& plan = surroundings_.plan;
+  for (int i = 1; i < plan.hosts; ++i)
+    if (plan.clocks[i].wall_off_us != plan.clocks[0].wall_off_us ||
+        plan.clocks[i].drift_ppm != plan.clocks[0].drift_ppm)
+      return true;
+  return false;
 }
 
 void Checks::answer_sent(const Process& from, const std::string& channel, bus::Bytes message) {

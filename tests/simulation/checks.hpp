@@ -79,6 +79,8 @@ class Checks {
   bool is_foreign(bus::Bytes message) const;
   bool corrupts() const;
   void check_wishes(const Process& from, const std::string& channel, std::int64_t session, std::int64_t seq);
+  void check_leader(const Process& from);
+  bool dates_differ() const;
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
   void status_sent(const Process& from, const status_t& status);
   void answer_sent(const Process& from, const std::string& channel, bus::Bytes message);
@@ -106,6 +108,7 @@ class Checks {
       begun_before_;  // sessions, where the log began again behind all that is known
   std::int64_t answered_until_us_ = -1, answers_missing_since_us_ = -1;
   std::int64_t last_start_us_ = 0;
+  std::map<std::string, std::uint64_t> leaders_;  ///< by name of pairing: port of the one that sent last
   int compared_ = 0;
 };
 

@@ -74,8 +74,8 @@ class Heartbeat {
   /// The network has been there for a whole heartbeat timeout: all others have sent their status.
   bool settled() const;
   std::optional<Role> role_of(const std::string& name) const { return peers_.role_of(name); }
-  /// Another living process has this name and started earlier.
-  std::optional<Peer> elder_namesake() const;
+  /// Another living process has this name and precedes this one, see Peers.
+  std::optional<Peer> senior_namesake() const;
 
  private:
   void change();

@@ -23,6 +23,14 @@ struct Peer {
   std::int64_t heard_us = 0;  ///< of the loop's clock
 };
 
+/// What a process compares itself by with others of its name.
+struct Namesake {
+  std::string name, host;
+  std::int64_t run = 0;
+  std::int32_t pid = 0;
+  State state = State::waiting;
+};
+
 /// Who else is on the bus. Bounded: beyond 256 processes the one that was silent longest is forgotten. Times
 /// are those of the loop's clock [us].
 class Peers {
@@ -34,9 +42,11 @@ class Peers {
   bool alive(Role role, std::int64_t now_us, std::int64_t timeout_us) const;
   /// Role of the process of this name that sent last; empty: none did.
   std::optional<Role> role_of(const std::string& name) const;
-  /// Another run of this name that is alive and started earlier.
-  std::optional<Peer> elder_namesake(const std::string& name, std::int64_t run, const std::string& host,
-                                     std::int32_t pid, std::int64_t now_us, std::int64_t timeout_us) const;
+  /// A living process of the same name that precedes this one. A process that works precedes one that does
+  /// not: dates may have been set between two starts, and what works already has the statistics. Where both
+  /// or neither work, the smaller (run, host, pid) precedes, which both find alike.
+  std::optional<Peer> senior_namesake(const Namesake& self, std::int64_t now_us,
+                                      std::int64_t timeout_us) const;
 
  private:
   struct Key {

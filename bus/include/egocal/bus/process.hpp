@@ -12,7 +12,7 @@ namespace egocal::bus {
 enum class Role { player, pairing, global, fast, diagnosis, monitor };
 
 enum class State {
-  waiting,  ///< cannot work yet, or lets an older process of its name work
+  waiting,  ///< cannot work yet, or lets another process of its name work
   standby,  ///< healthy, with nothing to do: steps in when it is needed
   running,
   paused,
