@@ -38,7 +38,7 @@ Checked<StampedPose> stamped(std::int64_t utime, const double (&pos)[3], const d
 std::string fault(const Statistics& block) {
   if (!std::isfinite(block.weight) || block.weight <= 0)
     return "statistics with a weight that is not positive";
-  const Eigen::VectorXd diagonal = block.dual_rows.diagonal();
+  const Vector8d diagonal = block.dual_rows.diagonal();
   if (!block.dual_rows.allFinite() || block.dual_rows.cwiseAbs().maxCoeff() > largest_entry)
     return "statistics that are not finite";
   if (diagonal.minCoeff() < 0) return "statistics that are not a sum of squares";
@@ -155,6 +155,7 @@ Checked<Problem> to_problem(const problem_t& message) {
       return {{}, "ground plane out of range"};
     }
   }
+  problem.blocks.reserve(message.blocks.size());
   for (const statistics_t& in : message.blocks) {
     if (!plausible_count(in.count)) return {{}, "count out of range"};
     Statistics block;

@@ -17,11 +17,10 @@ bool finite_not_negative(std::initializer_list<double> values) {
 }
 
 bool bounded_by_diagonal(const Matrix8d& matrix, double slack) {
+  const Vector8d root = matrix.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (int row = 0; row < 8; ++row)
-    for (int column = 0; column <= row; ++column) {
-      const double bound = std::max(0.0, matrix(row, row)) * std::max(0.0, matrix(column, column));
-      if (std::abs(matrix(row, column)) > (1 + 1e-9) * std::sqrt(bound) + slack) return false;
-    }
+    for (int column = 0; column <= row; ++column)
+      if (std::abs(matrix(row, column)) > (1 + 1e-9) * root(row) * root(column) + slack) return false;
   return true;
 }
 

@@ -90,6 +90,8 @@ void Checks::sent(const Address& from, const std::string& channel, bus::Bytes me
   if (channel.starts_with(bus::problem_prefix)) return problem_sent(sender, channel, message);
   if (channel.starts_with(bus::calibration_prefix)) return answer_sent(sender, channel, message);
   if (channel.starts_with(bus::verdict_prefix)) return verdict_sent(sender, message);
+  if (channel.starts_with(bus::scale_problem_prefix)) return scale_problem_sent(channel, message);
+  if (channel.starts_with(bus::scale_prefix)) return scale_sent(sender, message);
   status_t status{};
   if (channel != bus::status_channel || !bus::decode(message, status)) return;
   std::map<std::string, std::int64_t>& counters = counters_[from.port];
@@ -306,11 +308,14 @@ std::string Checks::missing_answer() const {
       for (const monitor::PairState& pair : watcher->model().pairs()) {
         const calibration_t* answer = pair.answer();
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
+        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
+        const bool scaled = is_scale_to_be_found(pair.a, pair.b);
+        if (scaled && newest == newest_problem_.end()) continue;  // the scale was never known
         if (!answer) return whose + "no answer";
         if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
         if (answer->status != 0) return whose + "an answer that is not certified";
-        if (live && answer->utime < std::min(data_us, end_us) - recent_us) return whose + "an old answer";
-        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
+        if (live && !scaled && answer->utime < std::min(data_us, end_us) - recent_us)
+          return whose + "an old answer";
         if (newest == newest_problem_.end() || answer->session != field(newest->second, session_at))
           return whose + "an answer of another session";
       }
@@ -318,11 +323,13 @@ std::string Checks::missing_answer() const {
       for (const bus::PairConfig& pair : surroundings_.drive.rig.pairs) {
         const tools::Answers::Best* best = exporter->answers().best({pair.a, pair.b});
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
+        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
+        const bool scaled = is_scale_to_be_found(pair.a, pair.b);
+        if (scaled && newest == newest_problem_.end()) continue;
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
-        if (live && best->message.utime < std::min(data_us, end_us) - recent_us)
+        if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)
           return whose + "an old answer";
-        const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         if (newest == newest_problem_.end() || best->message.session != field(newest->second, session_at))
           return whose + "an answer of another session";
       }

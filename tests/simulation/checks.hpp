@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "egocal/bus/scale.hpp"
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
 #include "simulation/certificates.hpp"
@@ -52,6 +53,8 @@ class Checks {
   std::int64_t certificates() const { return certificates_.checked(); }
   /// Verdicts `good` that were compared with the truth.
   std::int64_t judged_good() const { return judged_good_; }
+  /// Scales that were compared with that of the drive.
+  std::int64_t scales() const { return scales_; }
   /// Of any process at any time [bytes].
   std::size_t most_memory() const { return most_memory_; }
 
@@ -84,6 +87,11 @@ class Checks {
   void problem_sent(const Process& from, const std::string& channel, bus::Bytes message);
   void status_sent(const Process& from, const status_t& status);
   void answer_sent(const Process& from, const std::string& channel, bus::Bytes message);
+  void scale_problem_sent(const std::string& channel, bus::Bytes message);
+  void scale_sent(const Process& from, bus::Bytes message);
+  bool is_scale_to_be_found(const std::string& a, const std::string& b) const;
+  void check_scale(const std::string& whose, const ScaleSolution& solution);
+  void check_scales();
   void verdict_sent(const Process& from, bus::Bytes message);
   std::string missing_answer() const;
   void compare_with_undisturbed();
@@ -101,7 +109,9 @@ class Checks {
   Certificates certificates_;
   std::map<std::uint64_t, std::map<std::string, std::int64_t>> counters_;  // newest of each life, by its port
   std::size_t most_memory_ = 0;
-  std::int64_t judged_good_ = 0;
+  std::int64_t judged_good_ = 0, scales_ = 0;
+  std::map<std::string, std::set<std::pair<std::int64_t, std::int64_t>>>
+      scale_problems_;                            ///< by channel: session, number
   std::map<std::string, std::int64_t> sessions_;  // newest by channel
   std::int64_t player_starts_ = 0;
   std::map<std::string, std::int64_t>

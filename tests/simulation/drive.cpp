@@ -39,7 +39,8 @@ bus::Rig make_rig(const Plan& plan) {
   std::string text;
   for (int i = 0; i < plan.sensors; ++i)
     text += "[[sensor]]\nname = \"s" + std::to_string(i) + "\"\nchannel = \"ODOMETRY_" + std::to_string(i) +
-            "\"\ntype = \"" + (plan.numbered ? "egocal.odometry_t" : "bot_core.pose_t") + "\"\n";
+            "\"\ntype = \"" + (plan.numbered ? "egocal.odometry_t" : "bot_core.pose_t") +
+            (plan.auto_scale && i == 1 ? "\"\nscale = \"auto" : "") + "\"\n";
   const std::string settings = plan.estimation == Estimation::plain    ? "weights = \"equal\"\n"
                                : plan.estimation == Estimation::robust ? "stride = 1\nweights = [1, 0.1]\n"
                                                                        : "";

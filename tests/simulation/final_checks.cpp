@@ -82,6 +82,7 @@ void Checks::finish() {
   check_counts();
   check_losses();
   check_certificates();
+  check_scales();
   check_bounds();
 }
 
@@ -126,6 +127,7 @@ void Checks::compare_with_undisturbed() {
     const bus::PairConfig& pair = surroundings_.drive.rig.pairs[i];
     const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
     problem_t found{};
+    if (newest == newest_problem_.end() && expected[i].seq == 0) continue;  // of unknown scale
     if (newest == newest_problem_.end() || !bus::decode(newest->second, found))
       fail('b', "no problem was ever sent for " + pair.a + ", " + pair.b);
     else if (!same_bits(found, expected[i]))

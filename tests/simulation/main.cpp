@@ -118,7 +118,7 @@ int run(const Options& options) {
   constexpr std::uint64_t report_every = 10'000, remember_every = 500;  // seeds
   std::uint64_t lives = 0, failed = 0, trace = 0;
   double simulated_s = 0;
-  std::int64_t compared = 0, messages = 0, certificates = 0, good = 0;
+  std::int64_t compared = 0, messages = 0, certificates = 0, good = 0, scales = 0;
   std::size_t memory = 0;
   const std::vector<std::uint64_t> corpus =
       options.corpus.empty() ? std::vector<std::uint64_t>{} : seeds_of(options.corpus);
@@ -151,6 +151,7 @@ int run(const Options& options) {
     messages += outcome.messages;
     certificates += outcome.certificates;
     good += outcome.judged_good;
+    scales += outcome.scales;
     memory = std::max(memory, outcome.most_memory);
     if ((lives + 1) % report_every == 0) {
       std::printf("until seed %" PRIu64 ": %" PRIu64 " violations, trace %016" PRIx64 "\n", seed, failed,
@@ -171,12 +172,12 @@ int run(const Options& options) {
   remember();
   const double cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
   std::printf("seeds %" PRIu64 " to %" PRIu64 ": %" PRIu64 " lives, %" PRIu64
-              " violations, %.0f s simulated in %.1f s of processor time (%.0f times real time), %" PRId64
+              " violations, %.0f s simulated in %.2f s of processor time (%.0f times real time), %" PRId64
               " messages, %" PRId64 " compared with an undisturbed run, %" PRId64
-              " certificates by 113 bits, %" PRId64
-              " verdicts 'good', at most %zu kB a process, trace %016" PRIx64 "\n",
+              " certificates by 113 bits, %" PRId64 " verdicts 'good', %" PRId64
+              " scales, at most %zu kB a process, trace %016" PRIx64 "\n",
               before.seed, before.seed + lives - 1, lives, failed, simulated_s, cpu_s, simulated_s / cpu_s,
-              messages, compared, certificates, good, memory / 1024, trace);
+              messages, compared, certificates, good, scales, memory / 1024, trace);
   return failed > 0 ? 1 : 0;
 }
 

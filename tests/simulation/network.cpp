@@ -8,6 +8,8 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/calibration_t.hpp"
+#include "egocal/scale_t.hpp"
 #include "simulation/allocations.hpp"
 
 namespace egocal::simulation {
@@ -17,10 +19,18 @@ namespace {
 constexpr std::size_t most_recent = 32;
 
 /// How long a solver took is the only thing in a message that the machine decides on which this runs.
-std::vector<std::byte> without_timings(bus::Bytes bytes) {
-  calibration_t message{};
-  if (!bus::decode(bytes, message)) return {bytes.begin(), bytes.end()};
+void forget_timings(calibration_t& message) {
   message.solve_ns = message.verify_ns = 0;
+}
+void forget_timings(scale_t& message) {
+  message.solve_ns = 0;
+}
+
+template <class Message>
+std::vector<std::byte> without_timings(bus::Bytes bytes) {
+  Message message{};
+  if (!bus::decode(bytes, message)) return {bytes.begin(), bytes.end()};
+  forget_timings(message);
   return bus::encode(message);
 }
 
@@ -71,7 +81,11 @@ class Network::End final : public bus::Transport {
   bool receive(const Wanted& wanted, bus::Received& message) override {
     const Wanted remembered = [&](std::string_view channel) {
       const bool is = wanted(channel);
-      inbox_->wanted[std::string(channel)] = is;
+      const auto known = inbox_->wanted.find(channel);
+      if (known == inbox_->wanted.end())
+        inbox_->wanted.emplace(channel, is);
+      else
+        known->second = is;
       return is;
     };
     while (!inbox_->waiting.empty()) {
@@ -136,7 +150,8 @@ bus::SendStatus Network::send(const Address& from, std::string_view channel, bus
     return bus::SendStatus::no_network;
   }
   std::vector<std::byte> cleaned;
-  if (channel.starts_with(bus::calibration_prefix)) bytes = cleaned = without_timings(bytes);
+  if (channel.starts_with(bus::calibration_prefix)) bytes = cleaned = without_timings<calibration_t>(bytes);
+  if (channel.starts_with(bus::scale_prefix)) bytes = cleaned = without_timings<scale_t>(bytes);
   const std::string name(channel);
   if (observer_.sent) observer_.sent(from, name, bytes);
   bus::for_each_datagram(channel, bytes, number, [&](const bus::Datagram& part) {
@@ -183,7 +198,7 @@ PacketPtr Network::corrupted(const PacketPtr& packet) {
   if (!cut && !flip) return packet;
   const auto changed = std::make_shared<Packet>(*packet);
   changed->whole = false;
-  if (cut) changed->datagram.resize(random_.below(changed->datagram.size()));
+  if (cut && !changed->datagram.empty()) changed->datagram.resize(random_.below(changed->datagram.size()));
   if (flip && !changed->datagram.empty())
     changed->datagram[random_.below(changed->datagram.size())] ^= std::byte(1U << random_.below(8));
   changed->hash = hash_of(changed->datagram.data(), changed->datagram.size());

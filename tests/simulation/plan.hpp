@@ -102,8 +102,9 @@ struct Plan {
   bool free_motion = true;                ///< else a road vehicle on rough ground
   double bump_s = 0;  ///< the second sensor's mount is turned and moved at this time of the drive [s]; 0: not
   double scale = 1;   ///< of the second sensor: its lengths must be multiplied by it to be metres
-  double clock_drift = 0;  ///< of the second sensor's stamps [s/s]
-  bool numbered = true;    ///< odometry_t; else bot_core.pose_t
+  bool auto_scale = false;  ///< the rig file says scale = "auto" of the second sensor
+  double clock_drift = 0;   ///< of the second sensor's stamps [s/s]
+  bool numbered = true;     ///< odometry_t; else bot_core.pose_t
   Estimation estimation = Estimation::plain;
   Input input = Input::player;
   double speed = 1;        ///< of the player
@@ -111,6 +112,7 @@ struct Plan {
   int hosts = 1;
   Method fast_method = Method::sqp, global_method = Method::dual;
   bool global_always = false;
+  bool swaps_methods = true;  ///< a solver that takes the place of another has another method
   Burden burden;
   bool diagnosed = false;  ///< egocal-diagnosis runs as well
   int mistake = 0;         ///< of testing::mistakes(), in the drive of the first pair; 0: none

@@ -21,6 +21,8 @@ Watcher::Watcher(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   loop.subscribe_prefix(bus::problem_prefix, deliver, monitor_queue);
   loop.subscribe_prefix(bus::calibration_prefix, deliver, monitor_queue);
   loop.subscribe_prefix(bus::verdict_prefix, deliver, monitor_queue);
+  loop.subscribe_prefix(bus::scale_problem_prefix, deliver, monitor_queue);
+  loop.subscribe_prefix(bus::scale_prefix, deliver, monitor_queue);
   loop.subscribe_bytes(bus::status_channel, deliver, monitor_queue);
   loop.subscribe_bytes(bus::command_channel, deliver);
   heartbeat.set_state(bus::State::running);
@@ -38,6 +40,11 @@ Exporter::Exporter(bus::Loop& loop, const bus::Rig& rig) {
     loop.subscribe<verdict_t>(
         bus::verdict_channel(pair.a, pair.b),
         [this](const verdict_t& message, const bus::Arrival&) { answers_.hear(message); });
+    loop.subscribe<scale_problem_t>(
+        bus::scale_problem_channel(pair.a, pair.b),
+        [this](const scale_problem_t& message, const bus::Arrival&) { answers_.hear(message); });
+    loop.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b),
+                            [this](const scale_t& message, const bus::Arrival&) { answers_.hear(message); });
   }
 }
 

@@ -71,7 +71,8 @@ class World {
     return {checks_->violation(),   trace_,
             schedule_.now_us(),     messages_,
             checks_->compared(),    checks_->certificates(),
-            checks_->judged_good(), checks_->most_memory()};
+            checks_->judged_good(), checks_->scales(),
+            checks_->most_memory()};
   }
 
  private:
@@ -302,9 +303,9 @@ void World::swap(Process& old, const Incident& incident) {
   if (old.retired()) return;
   ProcessSpec spec = old.spec();
   spec.name += "-" + std::to_string(processes_.size());
-  if (spec.part == Part::fast)
+  if (plan_.swaps_methods && spec.part == Part::fast)
     spec.method = spec.method == Method::sqp ? Method::slsqp : Method::sqp;
-  else
+  else if (plan_.swaps_methods)
     spec.method = spec.method == Method::dual ? Method::sdp : Method::dual;
   const std::int64_t distance_us = std::min<std::int64_t>(incident.duration_us, 1'000'000);
   add(spec, incident.amount == 1 ? 0 : distance_us);

@@ -20,6 +20,7 @@ struct Outcome {
   int compared = 0;               ///< with an undisturbed run
   std::int64_t certificates = 0;  ///< compared with arithmetic of 113 bits
   std::int64_t judged_good = 0;   ///< verdicts compared with the truth
+  std::int64_t scales = 0;        ///< compared with that of the drive
   std::size_t most_memory = 0;    ///< of any process at any time [bytes]
 };
 

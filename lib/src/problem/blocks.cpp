@@ -53,6 +53,7 @@ void BlockStatistics::leave_out(const std::vector<bool>& verdicts) {
 
 std::vector<Statistics> BlockStatistics::inliers() const {
   std::vector<Statistics> kept;
+  kept.reserve(state_.blocks.size());
   for (const Block& block : state_.blocks)
     if (!block.outlier) kept.push_back(block.statistics);
   if (kept.size() <= max_inlier_blocks) return kept;
