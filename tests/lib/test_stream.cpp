@@ -191,6 +191,18 @@ TEST(Stream, AfterAnInterruptionMessagesWithoutNumbersArePutInOrder) {
   EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(7, -1)}), ElementsAre(2, 3, 4, 5, 6, 7));
 }
 
+TEST(Stream, WhatIsDroppedByASecondInterruptionIsCounted) {
+  Stream stream;
+  feed(stream, {sample(0, -1)});
+  stream.settle();
+  EXPECT_THAT(feed(stream, {sample(1, -1), sample(2, -1)}), ElementsAre());
+  stream.settle();
+  EXPECT_EQ(stream.counts().duplicate, 2) << "they come again";
+  EXPECT_THAT(feed(stream, {sample(1, -1), sample(2, -1), sample(1, -1), sample(3, -1)}),
+              ElementsAre(1, 2, 3));
+  EXPECT_EQ(stream.counts().duplicate, 3);
+}
+
 TEST(Stream, NumbersAtTheEdgeOfTheirTypeAreRefusedAndCostNoTime) {
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   for (const std::int64_t edge : {most, most - 1, -most, limits::largest_count + 1, std::int64_t{-2}}) {

@@ -201,7 +201,9 @@ std::vector<NumberedPose> Stream::take_candidates() {
 void Stream::settle() {
   state_.settling = !state_.next_seq;
   state_.gap_repeats = 0;
-  state_.held.clear();  // not acknowledged yet: they come again, in order
+  // not acknowledged yet: they come again, in order
+  state_.counts.duplicate += static_cast<std::int64_t>(state_.held.size());
+  state_.held.clear();
 }
 
 std::vector<NumberedPose> Stream::settled() {
