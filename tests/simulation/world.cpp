@@ -148,6 +148,8 @@ class World {
 
   void start(Process& process) {
     if (process.runs() || process.retired()) return;
+    // what was started by hand on a host without power would be a fault after the faults
+    if (!process.spec().supervised && schedule_.now_us() >= plan_.disturbed_us) return;
     if (hosts_[static_cast<std::size_t>(process.spec().host)]->down) {
       const int number = process.number();
       schedule_.after_us(50'000, [this, number] { start(this->process(number)); });
@@ -185,6 +187,7 @@ class World {
   void go_back_to_state(std::int64_t by_us);
   void command(const std::string& to, const std::string& verb, std::int64_t pair);
   void calm_down();
+  void resume();
   void watch_answers() {
     checks_->look_at_answers();
     schedule_.after_us(100'000, [this] { watch_answers(); });
@@ -410,8 +413,15 @@ void World::calm_down() {
   }
   if (std::any_of(plan_.incidents.begin(), plan_.incidents.end(),
                   [](const Incident& incident) { return incident.kind == IncidentKind::command; }))
-    command("*", "resume", 0);
+    resume();
   watch_answers();
+}
+
+/// Again and again: a process that is not there when the command comes stays paused.
+void World::resume() {
+  command("*", "resume", 0);
+  if (schedule_.now_us() < plan_.disturbed_us + plan_.quiet_us / 2)
+    schedule_.after_us(1'000'000, [this] { resume(); });
 }
 
 }  // namespace
