@@ -195,7 +195,7 @@ void Pairing::show_state() {
       std::all_of(pairs.begin(), pairs.end(), [](const PairSession& pair) { return pair.paused(); });
   heartbeat_.set_state(!leads() ? bus::State::waiting : paused ? bus::State::paused : bus::State::running);
   heartbeat_.set_error(senior ? "another process has this name and continues: pid " +
-                                     std::to_string(senior->pid) + " on " + senior->host
+                                    std::to_string(senior->pid) + " on " + senior->host
                        : !save_error_.empty() ? save_error_
                        : saved_               ? saved_->refused()
                                               : "");

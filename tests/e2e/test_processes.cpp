@@ -323,7 +323,8 @@ TEST_F(Processes, ASecondPairingOfTheSameNameWaitsAndTakesOver) {
   ASSERT_TRUE(until(
       [&] {
         const status_t& status = statuses["egocal-pairing"];
-        return status.state == "waiting" && status.last_error.find("another process has this name") != std::string::npos;
+        return status.state == "waiting" &&
+               status.last_error.find("another process has this name") != std::string::npos;
       },
       3s));
   processes.at("egocal-pairing").signal(SIGTERM);
