@@ -193,21 +193,6 @@ Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& 
   return jackknife;
 }
 
-/// The part of the motions' weight that is in two blocks (WeightedBlocks).
-double shared_part(const Problem& problem) {
-  double all = 0, shared = 0;
-  for (const Statistics& block : problem.blocks) {
-    all += block.weight;
-    if (detail::takes_off(block)) shared -= block.weight;
-  }
-  return all > 0 ? shared / all : 0;
-}
-
-/// Where blocks share more, a part of several blocks is said to hold what they share more than once: its
-/// spread is too large. tests/bench/accuracy_benchmark, "coverage": with noise on poses 100 % instead of 97
-/// to 99 % at twice the errors.
-constexpr double most_shared = 0.1;
-
 /// How much more parts of four blocks scatter than single and double ones say, all directions together: one
 /// direction of five or six parts would be mostly chance. Errors that depend on the place, as those of real
 /// odometries do, last for longer than a block. One where they do not.
@@ -241,9 +226,8 @@ Vector6d spatial_variance(const Problem& problem, const Statistics& all, const S
     const std::vector<BlockForm> twos = doubled(blocks);
     const Jackknife of_twos = jackknife_of(twos, sum, pairs, directions);
     variance = variance.cwiseMax(of_twos.variance());
-    if (shared_part(problem) <= most_shared)
-      variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
-                                        single.spread().cwiseMax(of_twos.spread()));
+    variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
+                                      single.spread().cwiseMax(of_twos.spread()));
   }
   return single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(variance);
 }
