@@ -48,6 +48,9 @@ function(egocal_compile_flags target)
     target_compile_options(${target} PRIVATE -fsanitize=${EGOCAL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${EGOCAL_SANITIZE})
   endif()
+  if(EGOCAL_BUILD_FUZZERS)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
 endfunction()
 
 # A program of ours: lands in build/bin, is installed to bin with its manual pages, knows its version. The target

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "baselines/usable.hpp"
 #include "egocal/baselines/baselines.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal {
 namespace {
@@ -40,7 +40,7 @@ double axis_signal(const std::vector<MotionPair>& pairs) {
       const Eigen::Vector3d axis = side(pair).real.template tail<3>();
       moments += pair.eta * axis * axis.transpose();
     }
-    const Eigen::Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvalues();
+    const Eigen::Vector3d values = detail::symmetric_eigen<3>(moments).values;
     return std::max(0.0, values[1] - 1e-14 * values[2]);
   };
   const double moment = std::min(across([](const MotionPair& p) { return p.a; }),

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 
 #include "baselines/usable.hpp"
 #include "egocal/baselines/baselines.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/lmi.hpp"
 
 namespace egocal {
@@ -134,10 +134,11 @@ BaselineAnswer solve_matrix(std::span<const MotionPair> pairs) {
   // candidates: the null vector of Z, and the principal one of X where the former has no homogeneous part
   Matrix10d Z = lmi.C;
   for (int i = 0; i < 21; ++i) Z -= result.point.y[i] * lmi.A[std::size_t(i)];
-  const Eigen::SelfAdjointEigenSolver<Matrix10d> of_Z(Z), of_X(result.point.X);
+  const detail::SymmetricEigen<10> of_Z = detail::symmetric_eigen<10>(Z),
+                                   of_X = detail::symmetric_eigen<10>(result.point.X);
   double best = INFINITY;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  for (const Vector10d& x : {Vector10d(of_Z.eigenvectors().col(0)), Vector10d(of_X.eigenvectors().col(9)),
+  for (const Vector10d& x : {Vector10d(of_Z.vectors.col(0)), Vector10d(of_X.vectors.col(9)),
                              Vector10d(result.point.X.col(homogeneous))}) {
     if (!(std::abs(x[homogeneous]) > 1e-9)) continue;
     const Vector10d unit = x / x[homogeneous];

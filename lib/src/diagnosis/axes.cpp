@@ -3,7 +3,6 @@
 #include "diagnosis/axes.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "diagnosis/robust_fit.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal::detail {
 
@@ -88,7 +88,7 @@ Matrix3d orientation(std::vector<Step>& steps, const RobustFitOptions& options) 
       const Eigen::Matrix4d M = left_matrix(step.s) - right_matrix(step.w);
       sum += step.weight * M.transpose() * M;
     }
-    q = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(sum).eigenvectors().col(0);
+    q = symmetric_eigen<4>(sum).vectors.col(0);
     std::vector<double> squares;
     for (const Step& step : steps)
       squares.push_back((quaternion_product(step.s, q) - quaternion_product(q, step.w)).squaredNorm());

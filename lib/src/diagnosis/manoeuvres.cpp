@@ -3,11 +3,11 @@
 #include "diagnosis/manoeuvres.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
 #include "egocal/problem/cost.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
@@ -73,11 +73,9 @@ Matrix6d information(const Matrix8d& Q, const DualQuaternion& q) {
 /// of least curvature for the translation is the axis that was turned about most.
 Body body_of(const Answered& answered, const Matrix6d& shown) {
   Body body;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turns(shown.topLeftCorner<3, 3>());
-  const Eigen::Vector3d up = turns.eigenvectors().col(0);
+  const Eigen::Vector3d up = symmetric_eigen<3>(shown.topLeftCorner<3, 3>()).vectors.col(0);
   // rotations about the way forward change the translations least
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> ways(shown.bottomRightCorner<3, 3>());
-  Eigen::Vector3d forward = ways.eigenvectors().col(0);
+  Eigen::Vector3d forward = symmetric_eigen<3>(shown.bottomRightCorner<3, 3>()).vectors.col(0);
   forward -= forward.dot(up) * up;
   if (forward.norm() < 0.1) forward = up.unitOrthogonal();
   forward.normalize();
@@ -138,9 +136,8 @@ std::string next_manoeuvre(const Answered& answered, const GoalOptions& options,
       std::max(0.0, answered.T_a_b.real.dot(Q.bottomRightCorner<4, 4>() * answered.T_a_b.real));
   Matrix6d known = shown;
   known.diagonal().head<3>().array() -= 0.75 * rotation_noise;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> spectrum(known);
-  known = spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).asDiagonal() *
-          spectrum.eigenvectors().transpose();
+  const SymmetricEigen<6> spectrum = symmetric_eigen<6>(known);
+  known = spectrum.vectors * spectrum.values.cwiseMax(0.0).asDiagonal() * spectrum.vectors.transpose();
 
   const char* best = "";
   double least = INFINITY;

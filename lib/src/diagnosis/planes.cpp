@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/planes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "diagnosis/wording.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal::detail {
 
@@ -22,10 +22,9 @@ Eigen::Vector3d turn(const DualQuaternion& motion) {
 
 /// Direction of the axis, if there is one.
 bool axis_of(const Eigen::Matrix3d& squares, double one_axis, Eigen::Vector3d& axis) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
-  axis = eigen.eigenvectors().col(2);
-  return eigen.eigenvalues()[2] > one_axis * std::max(0.0, eigen.eigenvalues()[1]) &&
-         eigen.eigenvalues()[2] > 0;
+  const SymmetricEigen<3> eigen = symmetric_eigen<3>(squares);
+  axis = eigen.vectors.col(2);
+  return eigen.values[2] > one_axis * std::max(0.0, eigen.values[1]) && eigen.values[2] > 0;
 }
 
 Finding plane_finding(char which, std::string message, std::string remedy, bool certain = true) {

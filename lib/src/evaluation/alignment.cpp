@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/evaluation/alignment.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "egocal/error.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal {
 
@@ -58,9 +57,9 @@ Alignment align(const Trajectory& a, const Trajectory& b, const Pose& T_a_b, dou
     const Eigen::Vector4d q = (at.a.rotation * at.b_as_a.rotation.conjugate()).coeffs();
     sum += q * q.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+  const detail::SymmetricEigen<4> eigen = detail::symmetric_eigen<4>(sum);
   Pose& T = alignment.T_world_a_world_b;
-  T.rotation.coeffs() = solver.eigenvectors().col(3);
+  T.rotation.coeffs() = eigen.vectors.col(3);
   if (T.rotation.w() < 0) T.rotation.coeffs() *= -1;
   T.rotation.normalize();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

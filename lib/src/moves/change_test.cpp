@@ -3,11 +3,11 @@
 #include "moves/change_test.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal::detail {
@@ -80,9 +80,9 @@ ParameterMatrix residual_covariance(const Division& d) {
   ParameterMatrix sum = ParameterMatrix::Zero(d.x1.size(), d.x1.size());
   for (const Parameters& z : d.residuals) sum += z * z.transpose();
   sum /= static_cast<double>(d.residuals.size()) - 2;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);  // fixed bounds confuse g++ 12
-  const Eigen::VectorXd raised = eigen.eigenvalues().cwiseMax(eigen.eigenvalues().mean());
-  return eigen.eigenvectors() * raised.asDiagonal() * eigen.eigenvectors().transpose();
+  const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(sum);
+  const Eigen::VectorXd raised = eigen.values.cwiseMax(eigen.values.mean());
+  return eigen.vectors * raised.asDiagonal() * eigen.vectors.transpose();
 }
 
 /// Chance of T^2 where nothing changes.

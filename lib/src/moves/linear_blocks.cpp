@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moves/linear_blocks.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
@@ -139,12 +139,11 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
     block.g = share * (T.transpose() * (Q_block * v));
     block.H = share * (T.transpose() * lagrangian_matrix(Q_block, lambda) * T);
     const ParameterMatrix shape = block.H + options.raised_curvature * H_mean;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(shape);
+    const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(shape);
     const double floor = std::max(1e-12 * H_mean.trace(), 1e-300);
-    const Parameters roots = eigen.eigenvalues().cwiseMax(floor).cwiseSqrt();
-    block.root = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();
-    block.inverse_root =
-        eigen.eigenvectors() * roots.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    const Parameters roots = eigen.values.cwiseMax(floor).cwiseSqrt();
+    block.root = eigen.vectors * roots.asDiagonal() * eigen.vectors.transpose();
+    block.inverse_root = eigen.vectors * roots.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
     const std::size_t from = k * pairs.size() / count;
     block.time = time_of(pairs, from, (k + 1) * pairs.size() / count);
     result.blocks.push_back(std::move(block));

@@ -3,7 +3,6 @@
 #include "robust/leverage.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "certificate/assess.hpp"
 #include "egocal/solvers/global.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {
@@ -34,8 +34,7 @@ double proven_leverage(const Curvature& curvature, const Eigen::LLT<Eigen::Matri
                        const Matrix8d& Q) {
   Eigen::Matrix<double, 8, 8> inner = factor.matrixL().solve(Eigen::Matrix<double, 8, 8>(Q));
   inner = factor.matrixL().solve(Eigen::Matrix<double, 8, 8>(inner.transpose()));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 8, 8>> eigen(inner, Eigen::EigenvaluesOnly);
-  const double guess = std::max(eigen.eigenvalues()[7], 1e-12);
+  const double guess = std::max(symmetric_eigenvalues<8>(inner)[7], 1e-12);
   const double mu = 1e4 * (Q.trace() + guess * curvature.stiff.trace());
   for (const double more : {1.01, 1.1, 2.0}) {
     const Extended eta = more * guess;

@@ -11,6 +11,7 @@
 #include "diagnosis/reading.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/solvers/global.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal::detail {
@@ -46,9 +47,9 @@ double rotation_variance(std::span<const PoseSample> samples, int rounds_of_sign
   const auto n = static_cast<double>(samples.size());
   double largest = 0;
   for (int round = 0; round < rounds_of_signs; ++round) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(sum.transpose() * sum / n);
-    largest = eigen.eigenvalues()[3];
-    const Eigen::Vector4d x = eigen.eigenvectors().col(3), y = sum * x;
+    const SymmetricEigen<4> eigen = symmetric_eigen<4>(sum.transpose() * sum / n);
+    largest = eigen.values[3];
+    const Eigen::Vector4d x = eigen.vectors.col(3), y = sum * x;
     sum.setZero();
     for (Eigen::Matrix4d& one : seen) {
       if (y.dot(one * x) < 0) one = -one;

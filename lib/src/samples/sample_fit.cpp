@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "samples/sample_fit.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "egocal/solvers/global.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {
@@ -65,13 +65,13 @@ Determined determined(const Statistics& statistics, const SampleNoise& noise, do
   const Matrix6d H = H_r + H_p;
   Vector6d scale;
   for (int i = 0; i < 6; ++i) scale[i] = H(i, i) > 0 ? 1 / std::sqrt(H(i, i)) : 0;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scale.asDiagonal() * H * scale.asDiagonal());
+  const SymmetricEigen<6> eigen = symmetric_eigen<6>(scale.asDiagonal() * H * scale.asDiagonal());
   Determined result;
   for (int i = 0; i < 6; ++i) {
-    if (!(eigen.eigenvalues()[i] > shown)) continue;
-    const Vector6d v = scale.asDiagonal() * eigen.eigenvectors().col(i);
-    result.by_rotations += v.dot(H_r * v) / eigen.eigenvalues()[i];
-    result.by_positions += v.dot(H_p * v) / eigen.eigenvalues()[i];
+    if (!(eigen.values[i] > shown)) continue;
+    const Vector6d v = scale.asDiagonal() * eigen.vectors.col(i);
+    result.by_rotations += v.dot(H_r * v) / eigen.values[i];
+    result.by_positions += v.dot(H_p * v) / eigen.values[i];
   }
   return result;
 }

@@ -3,12 +3,12 @@
 #include "egocal/solvers/global.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
 #include "certificate/assess.hpp"
 #include "egocal/problem/cost.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/newton.hpp"
 #include "solvers/proven_dual.hpp"
 
@@ -89,19 +89,18 @@ struct Sample {
 };
 
 Sample sample(const DualFunction& phi, double m) {
-  const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(phi.at(m));
+  const detail::SymmetricEigen<4> eigen = detail::symmetric_eigen<4>(phi.at(m));
   Sample here;
   here.m = m;
-  here.value = eigen.eigenvalues()[0];
-  here.r = eigen.eigenvectors().col(0);
-  here.next = eigen.eigenvectors().col(1);
+  here.value = eigen.values[0];
+  here.r = eigen.vectors.col(0);
+  here.next = eigen.vectors.col(1);
   here.slope = 2 * here.r.dot(phi.dual_part(here.r, m));
   const Vector4d change = phi.S1 * here.r + 2 * m * (phi.inverse * here.r);
   here.curvature = 2 * here.r.dot(phi.inverse * here.r);
   for (int k = 1; k < 4; ++k) {
-    const double coupling = eigen.eigenvectors().col(k).dot(change);
-    here.curvature +=
-        2 * coupling * coupling / std::max(eigen.eigenvalues()[k] - here.value, epsilon * phi.scale);
+    const double coupling = eigen.vectors.col(k).dot(change);
+    here.curvature += 2 * coupling * coupling / std::max(eigen.values[k] - here.value, epsilon * phi.scale);
   }
   return here;
 }

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/solvers/sdp.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/sqp.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/lmi.hpp"
 
 namespace egocal {
@@ -35,13 +35,12 @@ DualQuaternion with_best_dual(const Matrix8d& Q, const Eigen::Vector4d& r) {
   Eigen::Matrix<double, 5, 1> right;
   right << -Q.bottomLeftCorner<4, 4>() * r, 0;
   // the shortest of all solutions, where D leaves a choice
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(K);
-  const double floor = 1e-14 * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const detail::SymmetricEigen<5> eigen = detail::symmetric_eigen<5>(K);
+  const double floor = 1e-14 * eigen.values.cwiseAbs().maxCoeff();
   Eigen::Matrix<double, 5, 1> solution = Eigen::Matrix<double, 5, 1>::Zero();
   for (int i = 0; i < 5; ++i) {
-    const double value = eigen.eigenvalues()[i];
-    if (std::abs(value) > floor)
-      solution += eigen.eigenvectors().col(i).dot(right) / value * eigen.eigenvectors().col(i);
+    const double value = eigen.values[i];
+    if (std::abs(value) > floor) solution += eigen.vectors.col(i).dot(right) / value * eigen.vectors.col(i);
   }
   return normalized({r, solution.head<4>()});
 }
@@ -73,8 +72,8 @@ struct Best {
 /// combination u = v + s w with r_u . d_u = 0.
 Best recover(const Matrix8d& Q, const Matrix8d& Z, const Matrix8d& X) {
   Best best;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 8, 8>> null_space(Z);
-  const Vector8d v = null_space.eigenvectors().col(0), w = null_space.eigenvectors().col(1);
+  const detail::SymmetricEigen<8> null_space = detail::symmetric_eigen<8>(Z);
+  const Vector8d v = null_space.vectors.col(0), w = null_space.vectors.col(1);
   best.offer_null_vector(Q, v);
   const auto g2 = [](const Vector8d& x, const Vector8d& y) { return x.head<4>().dot(y.tail<4>()); };
   const double a = g2(w, w), b = 0.5 * (g2(v, w) + g2(w, v)), c = g2(v, v);  // a s^2 + 2 b s + c = 0
@@ -85,8 +84,8 @@ Best recover(const Matrix8d& Q, const Matrix8d& Z, const Matrix8d& X) {
     best.offer_null_vector(Q, numerator * v + c * w);
   }
   // the primal matrix holds q q'; where more than one answer is optimal, one of them
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> rotation(X.topLeftCorner<4, 4>());
-  best.offer(Q, with_best_dual(Q, rotation.eigenvectors().col(3)));
+  const detail::SymmetricEigen<4> rotation = detail::symmetric_eigen<4>(X.topLeftCorner<4, 4>());
+  best.offer(Q, with_best_dual(Q, rotation.vectors.col(3)));
   return best;
 }
 

@@ -3,10 +3,10 @@
 #include "egocal/solvers/sqp.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <limits>
 
 #include "egocal/problem/cost.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/newton.hpp"
 
 namespace egocal {
@@ -34,12 +34,12 @@ bool newton_step(const Matrix6d& H, const Vector6d& g, double shift, Vector6d& x
 /// The step in the directions that have curvature; none where the cost is flat, so that an answer stays where
 /// it is.
 Vector6d truncated_step(const Matrix6d& H, const Vector6d& g) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
-  const double floor = 64 * epsilon * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const detail::SymmetricEigen<6> eigen = detail::symmetric_eigen<6>(H);
+  const double floor = 64 * epsilon * eigen.values.cwiseAbs().maxCoeff();
   Vector6d x = Vector6d::Zero();
   for (int k = 0; k < 6; ++k) {
-    const double curvature = std::abs(eigen.eigenvalues()[k]);
-    if (curvature > floor) x -= eigen.eigenvectors().col(k).dot(g) / curvature * eigen.eigenvectors().col(k);
+    const double curvature = std::abs(eigen.values[k]);
+    if (curvature > floor) x -= eigen.vectors.col(k).dot(g) / curvature * eigen.vectors.col(k);
   }
   return x;
 }

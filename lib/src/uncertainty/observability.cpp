@@ -3,7 +3,6 @@
 #include "egocal/uncertainty/observability.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 
 #include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
@@ -35,8 +35,8 @@ struct Spectrum {
 };
 
 Spectrum spectrum(const Matrix6d& H) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
-  return {eigen.eigenvectors(), eigen.eigenvalues()};
+  const detail::SymmetricEigen<6> eigen = detail::symmetric_eigen<6>(H);
+  return {eigen.vectors, eigen.values};
 }
 
 /// Whether all curvatures are larger than that.
@@ -363,9 +363,7 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   const double count = std::max(1.0, static_cast<double>(all.count));
   const double fluctuation = 4 / std::sqrt(count);
   const double noise = rotation_noise(Q, T_p);
-  const double D_least =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Q.block<2, 2>(5, 5), Eigen::EigenvaluesOnly)
-          .eigenvalues()[0];
+  const double D_least = detail::symmetric_eigen<2>(Q.block<2, 2>(5, 5)).values[0];
   const Solution best = solve_planar(Q);
   DualQuaternion turned = best.q;  // the other eigenvector of the 2 x 2 Schur complement is the worst yaw
   turned.real = {-best.q.real[3], 0, 0, best.q.real[0]};

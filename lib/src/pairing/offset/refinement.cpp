@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/offset/refinement.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "pairing/offset/turning.hpp"
 
 namespace egocal::detail {
@@ -246,15 +246,12 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
     parts.push_back(part);
   }
   const Matrix8d Q = cost_matrix(sum_blocks(statistics_[1]), balance);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> curvature(2 * tangent.transpose() * Q *
-                                                                             tangent);
+  const SymmetricEigen<6> curvature = symmetric_eigen<6>(2 * tangent.transpose() * Q * tangent);
   // directions that the motions do not show change nothing
   Vector6 inverse = Vector6::Zero();
   for (int k = 0; k < 6; ++k)
-    if (curvature.eigenvalues()[k] > 1e-9 * curvature.eigenvalues()[5])
-      inverse[k] = 1 / curvature.eigenvalues()[k];
-  const Matrix62 follow =
-      curvature.eigenvectors() * inverse.asDiagonal() * curvature.eigenvectors().transpose() * mixed;
+    if (curvature.values[k] > 1e-9 * curvature.values[5]) inverse[k] = 1 / curvature.values[k];
+  const Matrix62 follow = curvature.vectors * inverse.asDiagonal() * curvature.vectors.transpose() * mixed;
   H -= mixed.transpose() * follow;
 
   NewtonStep result;
