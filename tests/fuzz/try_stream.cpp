@@ -65,8 +65,7 @@ void try_stream(const std::uint8_t* data, std::size_t size) {
     } else if (choice < 248) {
       stream.be_patient((choice & 1) != 0);
     } else if (choice < 252) {
-      pushed -= static_cast<std::int64_t>(stream.state().held.size());  // they will be sent again
-      stream.settle();
+      stream.settle();  // what was held back is counted, and is sent again
     } else {
       Stream other(options);
       other.restore(stream.state());
