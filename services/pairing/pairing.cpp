@@ -82,10 +82,13 @@ void Pairing::not_saved(const std::string& why) {
 }
 
 void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
-  ++arrivals_[channel].count;
-  arrivals_[channel].heard_mono_us = loop_.mono_us();
+  Arrivals& arrivals = arrivals_[channel];
+  const std::int64_t repeated = accumulation_.stream(channel).repeated();
+  ++arrivals.count;
+  arrivals.heard_mono_us = loop_.mono_us();
   ++unacknowledged_;
   feed({Input::Kind::message, channel, arrival.bytes, arrival.mono_us});
+  if (accumulation_.stream(channel).repeated() != repeated) arrivals.repeated_mono_us = loop_.mono_us();
   if (unacknowledged_ >= options_.acknowledge_every && leads()) heartbeat_.publish();
 }
 
@@ -172,9 +175,14 @@ void Pairing::watch_gaps() {
     const auto i = static_cast<std::uint16_t>(channel);
     Arrivals& arrivals = arrivals_[i];
     const Stream& stream = accumulation_.stream(i);
+    // a player that was restarted comes to what is missing at the speed of the recording
+    const bool comes = now - arrivals.repeated_mono_us <= options_.patience_us;
     if (!stream.waiting()) {
       arrivals.gap_mono_us = 0;
       if (stream.settling() && now > settle_until_mono_us_) feed({Input::Kind::give_up, i});
+    } else if (patient_ && comes && arrivals.repeated_mono_us > 0) {
+      arrivals.gap_mono_us = now;
+      arrivals.expected = stream.expected();
     } else if (arrivals.gap_mono_us == 0 || arrivals.expected != stream.expected()) {
       arrivals.gap_mono_us = now;
       arrivals.expected = stream.expected();

@@ -152,6 +152,18 @@ TEST(Stream, APatientOneGivesUpWhatTheSenderDoesNotHave) {
   EXPECT_FALSE(stream.waiting());
 }
 
+TEST(Stream, ASenderThatGoesBackIsSeenByWhatItRepeatsFromBeforeTheGap) {
+  Stream stream;
+  stream.be_patient(true);
+  feed(stream, {sample(0, 0), sample(1, 1), sample(4, 4), sample(5, 5)});
+  EXPECT_EQ(stream.repeated(), 0);
+  feed(stream, {sample(4, 4), sample(5, 5)});  // behind the gap
+  EXPECT_EQ(stream.repeated(), 0);
+  feed(stream, {sample(0, 0), sample(1, 1)});
+  EXPECT_EQ(stream.repeated(), 2);
+  EXPECT_THAT(feed(stream, {sample(2, 2), sample(3, 3)}), ElementsAre(2, 3, 4, 5));
+}
+
 TEST(Stream, WithoutNumbersLateOnesPassOnceForTheDriveToJudge) {
   Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, -1), sample(2, -1), sample(1, -1), sample(3, -1), sample(1, -1)}),

@@ -11,12 +11,12 @@
 
 namespace egocal::simulation {
 
-/// Problems, answers and verdicts begin alike: eight bytes each, big endian.
+/// Problems, answers and verdicts begin alike: eight bytes each, big endian; 0 where the message ends before.
 enum Field : std::size_t { utime_at = 8, session_at = 16, seq_at = 24 };
 inline std::int64_t field(bus::Bytes message, std::size_t at) {
+  if (message.size() < at + 8) return 0;
   std::uint64_t value = 0;
-  for (std::size_t i = at; i < at + 8 && i < message.size(); ++i)
-    value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
+  for (std::size_t i = at; i < at + 8; ++i) value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
   return static_cast<std::int64_t>(value);
 }
 

@@ -237,6 +237,7 @@ std::vector<NumberedPose> Stream::push(NumberedPose sample) {
     ++state_.counts.jump;
     return {};
   }
+  if (state_.newest_us && sample.pose.time_us <= *state_.newest_us) ++repeated_;
   if (state_.settling) return hold(std::move(sample));
   return options_.look_ahead ? look_ahead(std::move(sample)) : in_order(std::move(sample));
 }

@@ -91,6 +91,9 @@ class Stream {
   std::int64_t expected() const { return state_.next_seq.value_or(-1); }
   std::optional<std::int64_t> newest_us() const { return state_.newest_us; }
   const StreamCounts& counts() const { return state_.counts; }
+  /// How many messages came again from before what it waits for. Where it grows, the sender has gone back (it
+  /// was restarted) and will come to what is missing. Not part of the state.
+  std::int64_t repeated() const { return repeated_; }
 
   /// While the sender sends again what is missing, however long that takes in measured time, it is waited
   /// for: until flush(), or until the first message behind the gap has come twice again, for then the sender
@@ -123,6 +126,7 @@ class Stream {
 
   StreamOptions options_;
   StreamState state_;
+  std::int64_t repeated_ = 0;
 };
 
 }  // namespace egocal
