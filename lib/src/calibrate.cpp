@@ -70,6 +70,14 @@ std::string span_in_words(const char* label, const Trajectory& trajectory) {
   return text;
 }
 
+/// Other clocks, such as the time since the start of a log beside that since 1970.
+std::string overlap_in_words(const Trajectory& a, const Trajectory& b) {
+  if (a.empty() || b.empty() ||
+      (a.front().time_us <= b.back().time_us && b.front().time_us <= a.back().time_us))
+    return "";
+  return "; their times do not overlap: --time-offset auto if they are of one drive";
+}
+
 /// Mode, planes, balance and prior; no motions yet.
 Problem formulation(const PairingOptions& options) {
   Problem problem;
@@ -155,7 +163,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
     throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
-                rejections_in_words(pairing.counts()));
+                rejections_in_words(pairing.counts()) + overlap_in_words(a, b));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;

@@ -235,7 +235,29 @@ TEST_F(Tables, WordsWrittenTogetherNameATime) {
 }
 
 TEST_F(Tables, AWordWhereANumberIsExpectedNamesTheCure) {
-  expect_error("1000000000,5,odom,base,1,2,3,0,0,0,1\n1000000000,105,odom,base,1,2,3,0,0,0,1\n", "--columns");
+  expect_error("1000000000,5,odom,base,1,2,3,0,0,0\n1000000000,105,odom,base,1,2,3,0,0,0\n", "--columns");
+}
+
+TEST_F(Tables, WhatRos2EchoesAsCsv) {
+  for (const char* frames : {"odom", "odom,base", ",", ""})
+    for (const char* more : {"", ",0.1,0.1,0.0"})
+      expect_two_poses("1000000000,0," + std::string(frames) + ",1,2,3,0,0,0.70710678,0.70710678" + more +
+                       "\n1000000000,100000000," + frames + ",4,5,6,0,0,0.70710678,0.70710678" + more + "\n");
+  // no quaternion
+  expect_error("1000000000,0,odom,1,2,3,0,0,0.5,0.5\n", "expected a number, got 'odom'");
+}
+
+TEST_F(Tables, ElementsOfArraysAreColumns) {
+  expect_two_poses(
+      "timestamp,position[0],position[1],position[2],q[0],q[1],q[2],q[3],velocity[0],position_offset[0]\n"
+      "1000000000000000,1,2,3,0.70710678,0,0,0.70710678,9,9\n"
+      "1000000000100000,4,5,6,0.70710678,0,0,0.70710678,9,9\n");
+}
+
+TEST_F(Tables, VelocitiesWrittenTogetherAreNoPositions) {
+  expect_two_poses(
+      "GPSTime,easting,northing,altitude,vel_east,roll,pitch,yaw,angvel_z,linacc_x\n"
+      "1000000000.0,1,2,3,9,0,0,1.5707963,9,9\n1000000000.1,4,5,6,9,0,0,1.5707963,9,9\n");
 }
 
 /// COLMAP holds T_camera_world: for the poses that expect_two_poses() wants, q is -90 degrees about z and t =

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 
 namespace egocal::detail {
 
 namespace {
 
 using Words = std::initializer_list<std::string_view>;
+
+constexpr std::string_view rates[] = {"vel", "velocity", "acc", "accel", "acceleration", "rate"};
 
 bool is_one_of(std::string_view word, Words words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -18,8 +21,9 @@ bool is_one_of(std::string_view word, Words words) {
 /// A column's name in lower-case words, and its unit.
 struct ColumnName {
   std::vector<std::string> words;
-  std::string joined;  ///< all words in one
-  std::string unit;
+  std::string joined;        ///< all words in one
+  std::string unit;          ///< "Yaw (deg)"
+  std::optional<int> index;  ///< "q[0]"
 
   bool any_of(Words list) const {
     return std::any_of(words.begin(), words.end(), [&](const std::string& w) { return is_one_of(w, list); });
@@ -34,6 +38,10 @@ ColumnName parse(std::string_view text) {
     for (const char c : text.substr(bracket + 1, end == std::string_view::npos ? end : end - bracket - 1))
       if (c != ' ') name.unit += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     text = text.substr(0, bracket);
+    if (name.unit.size() == 1 && name.unit[0] >= '0' && name.unit[0] <= '9') {
+      name.index = name.unit[0] - '0';
+      name.unit.clear();
+    }
   }
   std::string word;
   const auto finish = [&] {
@@ -64,6 +72,26 @@ struct Meaning {
 
 bool ends_with(std::string_view word, std::string_view end) {
   return word.size() >= end.size() && word.substr(word.size() - end.size()) == end;
+}
+
+/// Velocities, rates, biases and uncertainties are named like poses; words may be written together
+/// ("angvel_z").
+bool is_no_pose(std::string_view word) {
+  return is_one_of(word, {"v", "linear", "angular", "twist", "gyro", "covariance", "cov", "std", "sigma",
+                          "stddev", "sd", "b", "bias", "var", "error"}) ||
+         std::any_of(std::begin(rates), std::end(rates),
+                     [&](std::string_view end) { return ends_with(word, end); });
+}
+
+/// Elements of an array: "q[0]" is w, as PX4 and Eigen's constructors order them; "position[0]" is x.
+Meaning meaning_of_element(const ColumnName& name) {
+  const std::string_view last = name.words.back();
+  const int index = *name.index;
+  constexpr Quantity rotations[] = {Quantity::qw, Quantity::qx, Quantity::qy, Quantity::qz};
+  constexpr Quantity positions[] = {Quantity::x, Quantity::y, Quantity::z};
+  if (index < 4 && is_one_of(last, {"q", "quat", "quaternion"})) return {rotations[index], 2};
+  if (index < 3 && is_one_of(last, {"p", "pos", "position", "translation"})) return {positions[index], 2};
+  return {};
 }
 
 Meaning meaning_of_time(const ColumnName& name) {
@@ -124,13 +152,9 @@ Meaning meaning_of_velocity(const ColumnName& name) {
 
 Meaning meaning_of(const ColumnName& name) {
   if (name.words.empty()) return {};
+  if (name.index) return meaning_of_element(name);
   if (const Meaning velocity = meaning_of_velocity(name); velocity.rank > 0) return velocity;
-  // velocities, rates, biases and uncertainties are named like poses
-  if (name.words.size() > 1 &&
-      name.any_of({"v",     "vel",          "velocity", "linear", "angular",    "twist", "acc",
-                   "accel", "acceleration", "gyro",     "rate",   "covariance", "cov",   "std",
-                   "sigma", "stddev",       "sd",       "b",      "bias",       "var",   "error"}))
-    return {};
+  if (name.words.size() > 1 && std::any_of(name.words.begin(), name.words.end(), is_no_pose)) return {};
   const std::string_view last = name.words.back();
   if (is_one_of(last, {"lat", "latitude"})) return {Quantity::latitude, 2};
   if (is_one_of(last, {"lon", "long", "lng", "longitude"})) return {Quantity::longitude, 2};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 
 #include "egocal/error.hpp"
 #include "io/text/rotation_rows.hpp"
@@ -145,6 +146,35 @@ void set_euroc(TextLayout& layout) {
   layout.format = "EuRoC csv";
   layout.fields = 8;
   layout.more_fields = true;
+}
+
+/// What `ros2 topic echo --csv` writes of a stamped pose, transform or odometry: seconds, nanoseconds, one or
+/// two names of frames, position, quaternion x y z w, and perhaps a covariance and a velocity.
+bool set_ros2_csv(TextLayout& layout, const std::vector<std::string_view>& row) {
+  using enum Quantity;
+  if (layout.separator != ',' || row.size() < 10 || !is_number(row[0]) || !is_number(row[1]) ||
+      is_number(row[2]))
+    return false;
+  const std::size_t first = is_number(row[3]) ? 3 : 4;
+  if (row.size() < first + 7) return false;
+  double square = 0;
+  for (std::size_t i = first; i < first + 7; ++i) {
+    double value = 0;
+    if (!parse_number(row[i], value)) return false;
+    if (i >= first + 3) square += value * value;
+  }
+  if (!(std::abs(square - 1) < 0.01)) return false;
+  layout.columns.set(seconds, 0);
+  layout.columns.set(nanoseconds, 1);
+  constexpr Quantity pose[] = {x, y, z, qx, qy, qz, qw};
+  for (std::size_t i = 0; i < std::size(pose); ++i) layout.columns.set(pose[i], first + i);
+  layout.names = {"sec", "nanosec", "frame_id"};
+  if (first == 4) layout.names.emplace_back("child_frame_id");
+  for (const char* name : {"x", "y", "z", "qx", "qy", "qz", "qw"}) layout.names.emplace_back(name);
+  layout.format = "ROS 2 csv";
+  layout.fields = first + 7;
+  layout.more_fields = true;
+  return true;
 }
 
 /// A table whose columns have names, from the option or a header.
@@ -295,8 +325,8 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
                          sample.find('.') == std::string_view::npos;
   std::vector<std::string_view> row;
   split(sniffed.data.front().text, layout.separator, row);
-  if (!set_named(layout, sniffed, options, source.file()) && !set_matrix(layout, row) &&
-      !set_untimed(layout, row)) {
+  if (!set_named(layout, sniffed, options, source.file()) && !set_ros2_csv(layout, row) &&
+      !set_matrix(layout, row) && !set_untimed(layout, row)) {
     if (layout.separator == ' ') {
       set_tum(layout);
     } else {
