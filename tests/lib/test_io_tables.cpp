@@ -247,6 +247,23 @@ TEST_F(Tables, WhatRos2EchoesAsCsv) {
   expect_error("1000000000,0,odom,1,2,3,0,0,0.5,0.5\n", "expected a number, got 'odom'");
 }
 
+TEST_F(Tables, FieldsInQuotes) {
+  expect_two_poses(
+      "\"t\",\"x\",\"y\",\"z\",\"roll\",\"pitch\",\"yaw\"\n"
+      "\"1000000000.0\", \"1\" ,\"2\",\"3\",\"0\",\"0\",\"1.5707963\"\n"
+      "\"1000000000.1\",\"4\",\"5\",\"6\",\"0\",\"0\",\"1.5707963\"\n");
+  expect_error("t,x,y,yaw\n\"1,2,3,4\n", ":2: time: expected a number, got '\"1'");
+}
+
+TEST_F(Tables, OtherBinaryFilesAreNamedWithTheCure) {
+  const auto starting = [](std::string begin) { return begin.append("\0\1\0", 3); };
+  expect_error(starting("PK\x03\x04"), "is a zip archive: unpack it");
+  expect_error(starting("\x93NUMPY"), "numpy.savetxt");
+  expect_error(starting("ULog"), "ulog2csv");
+  expect_error(starting("\x28\xb5\x2f\xfd"), "zstd -d");
+  expect_error(starting("\xff\xfe"), "UTF-16");
+}
+
 TEST_F(Tables, ElementsOfArraysAreColumns) {
   expect_two_poses(
       "timestamp,position[0],position[1],position[2],q[0],q[1],q[2],q[3],velocity[0],position_offset[0]\n"

@@ -69,6 +69,7 @@ void split(std::string_view text, char separator, std::vector<std::string_view>&
   const auto trimmed = [](std::string_view part) {
     while (!part.empty() && blank(part.front())) part.remove_prefix(1);
     while (!part.empty() && blank(part.back())) part.remove_suffix(1);
+    if (part.size() >= 2 && part.front() == '"' && part.back() == '"') part = part.substr(1, part.size() - 2);
     return part;
   };
   while (begin <= text.size()) {

@@ -32,6 +32,35 @@ void refuse_other_text(const std::string& file, std::string_view text) {
                        ", not a trajectory; write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw");
 }
 
+/// What people have beside recordings, by its first bytes.
+struct BinaryKind {
+  std::string_view begin;
+  const char* words;
+};
+constexpr BinaryKind binary_kinds[] = {
+    {"PK\x03\x04", "is a zip archive: unpack it (an .npz of numpy: numpy.savetxt)"},
+    {"\x93NUMPY", "is an array of numpy: write it as text by numpy.savetxt"},
+    {"\x89HDF", "is an HDF5 file: write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw"},
+    {"PAR1", "is a Parquet file: write it as csv"},
+    {"ARROW1", "is a Feather file: write it as csv"},
+    {"ULog", "is a log of PX4: ulog2csv writes its topics as csv"},
+    {"\xfd"
+     "7zXZ",
+     "is compressed by xz: unpack it"},
+    {"(\xb5/\xfd", "is compressed by zstd: unpack it by zstd -d"},
+    {"BZh", "is compressed by bzip2: unpack it"},
+    {"7z\xbc\xaf", "is a 7z archive: unpack it"},
+    {"\xff\xfe", "is text of two bytes a character (UTF-16): save it as UTF-8"},
+    {"\xfe\xff", "is text of two bytes a character (UTF-16): save it as UTF-8"}};
+
+[[noreturn]] void refuse_binary(const std::string& file, std::string_view bytes) {
+  for (const BinaryKind& kind : binary_kinds)
+    if (bytes.substr(0, kind.begin.size()) == kind.begin) throw error_at(file, 0, "", kind.words);
+  throw error_at(file, 0, "",
+                 "is neither text nor a known recording; expected TUM, KITTI, EuRoC csv, a table with named "
+                 "columns, MCAP, a ROS 1 bag or a rosbag2 database");
+}
+
 /// The first lines of a file.
 struct Sniffed {
   std::vector<Line> comments;  ///< before the first data
@@ -46,11 +75,7 @@ Sniffed sniff(ByteSource& source) {
   ByteSpan bytes = source.peek(sniffed_bytes);
   const bool all = bytes.size() < sniffed_bytes;
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.find('\0') != std::string_view::npos)
-    throw error_at(
-        source.file(), 0, "",
-        "is neither text nor a known recording; expected TUM, KITTI, EuRoC csv, a table with named "
-        "columns, MCAP, a ROS 1 bag or a rosbag2 database");
+  if (text.find('\0') != std::string_view::npos) refuse_binary(source.file(), text);
   if (text.rfind("version https://git-lfs", 0) == 0)
     throw error_at(source.file(), 0, "", "is a pointer of git-lfs, not the file itself: run `git lfs pull`");
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
