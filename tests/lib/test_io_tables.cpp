@@ -260,7 +260,6 @@ TEST_F(Tables, OtherBinaryFilesAreNamedWithTheCure) {
   expect_error(starting("PK\x03\x04"), "is a zip archive: unpack it");
   expect_error(starting("\x93NUMPY"), "numpy.savetxt");
   expect_error(starting("ULog"), "ulog2csv");
-  expect_error(starting("\x28\xb5\x2f\xfd"), "zstd -d");
   expect_error(starting("\xff\xfe"), "UTF-16");
 }
 
