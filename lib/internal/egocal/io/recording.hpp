@@ -58,8 +58,8 @@ class Recording {
 };
 
 /// Opens a file by its content: MCAP, rosbag 1 and 2, or text (TUM, KITTI, EuRoC, tables with named columns),
-/// each also as .gz or .zst. A folder is taken as a bag of rosbag2. Throws Error where the file cannot be
-/// opened, or is known and not readable.
+/// each also as .gz, .zst, .bz2 or .lz4. A folder is taken as a bag of rosbag2. Throws Error where the file
+/// cannot be opened, or is known and not readable.
 std::unique_ptr<Recording> open_recording(const std::string& file, const ReadOptions& options = {});
 
 /// "drive.mcap:/lidar/odom" in its parts. A colon that belongs to the name of an existing file stays there.

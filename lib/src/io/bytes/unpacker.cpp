@@ -149,6 +149,8 @@ std::unique_ptr<Unpacker> make_unpacker(std::span<const unsigned char> first_byt
   };
   if (begins_with({0x1f, 0x8b})) return std::make_unique<Gzip>();
   if (begins_with({0x28, 0xb5, 0x2f, 0xfd})) return std::make_unique<Zstd>();
+  if (begins_with({'B', 'Z', 'h'})) return std::make_unique<Bzip2>();
+  if (begins_with({0x04, 0x22, 0x4d, 0x18})) return std::make_unique<Lz4>();
   return nullptr;
 }
 

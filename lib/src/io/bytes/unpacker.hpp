@@ -24,7 +24,7 @@ class Unpacker {
   virtual bool complete() const = 0;
 };
 
-/// For a whole file by its first bytes: gzip or zstd; empty for anything else.
+/// For a whole file by its first bytes: gzip, zstd, bzip2 or lz4; empty for anything else.
 std::unique_ptr<Unpacker> make_unpacker(std::span<const unsigned char> first_bytes);
 /// By the name that bags use: "zstd", "lz4", "bz2". Empty for an unknown name.
 std::unique_ptr<Unpacker> make_unpacker(std::string_view name);

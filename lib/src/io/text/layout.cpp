@@ -47,7 +47,6 @@ constexpr BinaryKind binary_kinds[] = {
     {"\xfd"
      "7zXZ",
      "is compressed by xz: unpack it"},
-    {"BZh", "is compressed by bzip2: unpack it"},
     {"7z\xbc\xaf", "is a 7z archive: unpack it"},
     {"\xff\xfe", "is text of two bytes a character (UTF-16): save it as UTF-8"},
     {"\xfe\xff", "is text of two bytes a character (UTF-16): save it as UTF-8"}};
