@@ -11,11 +11,31 @@ namespace egocal {
 
 namespace {
 
+std::ptrdiff_t place(const std::vector<double>& values, double part) {
+  return static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+}
+
 double quantile(std::vector<double>& values, double part) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  const auto at = values.begin() + place(values, part);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
+
+struct Quartiles {
+  double low = 0, median = 0, high = 0;
+
+  explicit Quartiles(std::vector<double>& values) {
+    const auto first = values.begin() + place(values, 0.25), second = values.begin() + place(values, 0.5),
+               third = values.begin() + place(values, 0.75);
+    std::nth_element(values.begin(), second, values.end());
+    median = *second;
+    // each of the others is on one side of the median
+    if (first != second) std::nth_element(values.begin(), first, second);
+    if (third != second) std::nth_element(second + 1, third, values.end());
+    low = *first;
+    high = *third;
+  }
+};
 
 /// By which both sensors turn at least [rad].
 double smaller_angle(const Step& step) {
@@ -37,6 +57,7 @@ struct Component {
 
   void learn(const std::vector<double>& weights, double floor, const JumpOptions& options) {
     std::vector<double> sizes, absolute, part;
+    for (std::vector<double>* values : {&sizes, &absolute, &part}) values->reserve(size.size());
     for (std::size_t i = 0; i < size.size(); ++i)
       if (weights[i] > options.least_weight) sizes.push_back(size[i]);
     if (sizes.size() < options.least_steps) return;
@@ -46,9 +67,10 @@ struct Component {
       absolute.push_back(residual[i]);
       part.push_back(relative(i));
     }
-    typical = std::max(quantile(absolute, 0.5), floor);
-    limit = typical * factor(absolute, options);
-    limit_relative = quantile(part, 0.5) * factor(part, options);
+    const Quartiles of_residuals(absolute), of_parts(part);
+    typical = std::max(of_residuals.median, floor);
+    limit = typical * factor(of_residuals, options);
+    limit_relative = of_parts.median * factor(of_parts, options);
   }
 
   /// Squared, as a multiple of the limit: above one it is a jump.
@@ -63,9 +85,8 @@ struct Component {
   double multiple(std::size_t i) const { return typical > 0 ? residual[i] / typical : 0; }
 
  private:
-  static double factor(std::vector<double>& values, const JumpOptions& options) {
-    const double low = quantile(values, 0.25), high = quantile(values, 0.75);
-    const double ratio = low > 0 ? std::sqrt(high / low) : options.most_ratio;
+  static double factor(const Quartiles& of, const JumpOptions& options) {
+    const double ratio = of.low > 0 ? std::sqrt(of.high / of.low) : options.most_ratio;
     return std::pow(std::clamp(ratio, options.least_ratio, options.most_ratio), options.tail);
   }
 };
@@ -107,13 +128,17 @@ class Judge {
     return largest;
   }
 
-  /// Geman-McClure weights.
-  void weigh(double mu) {
+  /// Geman-McClure weights. False: the steps that count in what is typical are still the same.
+  bool weigh(double mu) {
+    bool other = false;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       if (!steps_[i].usable) continue;
       const double w = mu / (excess(i) + mu);
+      const bool counted = weights[i] > options_.least_weight;
       weights[i] = w * w;
+      other = other || (weights[i] > options_.least_weight) != counted;
     }
+    return other;
   }
 
   /// Of rotations in units of the typical residuals; the dual rows see half of a translation.
@@ -180,7 +205,7 @@ std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q, int most_
     std::vector<Jump> next = judge.jumps();
     if (next == jumps) break;
     jumps = std::move(next);
-    judge.weigh(1);
+    if (!judge.weigh(1)) break;  // another look would see the same
   }
   return judge.verdicts(jumps);
 }

@@ -67,25 +67,34 @@ struct Halves {
   std::vector<double> large_sizes;
 
   explicit Halves(const std::deque<Seen>& newest) {
-    std::vector<double> sizes, differences;
+    const std::size_t count = newest.size(), half = count / 2;
+    std::vector<double> sizes(count), differences(count);
+    std::size_t i = 0;
     for (const Seen& one : newest) {
-      sizes.push_back(one.size);
-      differences.push_back(one.difference);
+      sizes[i] = one.size;
+      differences[i++] = one.difference;
     }
-    const std::size_t half = sizes.size() / 2;
     const double least_large = detail::order_statistic(sizes, half);
     std::size_t below = 0;
     for (const double size : sizes) below += size < least_large ? 1 : 0;
     std::size_t equal_small = half - below;  // of equal ones the oldest are the small ones
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-      if (sizes[i] < least_large || (sizes[i] == least_large && equal_small > 0)) {
-        if (sizes[i] == least_large) --equal_small;
-        small.push_back(differences[i]);
-      } else {
-        large.push_back(differences[i]);
-        large_sizes.push_back(sizes[i]);
-      }
+    small.resize(count);
+    large.resize(count);
+    large_sizes.resize(count);
+    std::size_t smalls = 0, larges = 0;
+    for (i = 0; i < count; ++i) {  // without a branch that the processor could guess wrongly
+      const unsigned is_equal = sizes[i] == least_large ? 1 : 0;
+      const unsigned equal_and_small = is_equal & (equal_small > 0 ? 1U : 0U);
+      const unsigned is_small = (sizes[i] < least_large ? 1U : 0U) | equal_and_small;
+      equal_small -= equal_and_small;
+      small[smalls] = large[larges] = differences[i];
+      large_sizes[larges] = sizes[i];
+      smalls += is_small;
+      larges += 1 - is_small;
     }
+    small.resize(smalls);
+    large.resize(larges);
+    large_sizes.resize(larges);
   }
 };
 

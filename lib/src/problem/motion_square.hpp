@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-
 #include "egocal/problem/cost.hpp"
 
 namespace egocal::detail {
@@ -40,28 +38,24 @@ struct QuaternionDifference {
   }
 };
 
-/// M_d'M_d over the dual rows M_d = [E_d E_r] of one motion pair (14), both triangles. Computed
-/// once, added to several sums.
+/// M_d'M_d over the dual rows M_d = [E_d E_r] of one motion pair (14), as the 36 numbers that it has.
+/// Computed once, added to several sums.
 class MotionSquare {
  public:
   /// For the signs of a and b that make their scalars >= 0.
   MotionSquare(const DualQuaternion& a, const DualQuaternion& b);
 
-  /// Adds it, multiplied by eta.
-  void add_to(Matrix8d& sum, double eta = 1) const { sum += eta * values_; }
+  /// Adds it, multiplied by eta, to both triangles.
+  void add_to(Matrix8d& sum, double eta = 1) const;
   /// translation times this, and rotation times its lower right block (the rotation part D) added to the
   /// upper left one. rotation_only: the latter alone.
-  MotionSquare weighted(double rotation, double translation, bool rotation_only) const {
-    MotionSquare result;
-    result.values_ = (rotation_only ? 0.0 : translation) * values_;
-    result.values_.topLeftCorner<4, 4>() += rotation * values_.bottomRightCorner<4, 4>();
-    return result;
-  }
+  MotionSquare weighted(double rotation, double translation, bool rotation_only) const;
 
  private:
   MotionSquare() = default;
 
-  Matrix8d values_;
+  double dual_[10], real_[10];  ///< E_d'E_d and E_r'E_r, the upper triangles
+  double product_[16];          ///< E_d'E_r
 };
 
 }  // namespace egocal::detail
