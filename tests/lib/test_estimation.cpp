@@ -195,6 +195,37 @@ TEST(Estimation, StrideSumsContinueFromTheirState) {
   for (const std::size_t cut : {10u, 99u, 150u, 199u}) EXPECT_EQ(run(cut), expected) << cut;
 }
 
+/// What only the answers need may be done after every pose, at the end, or when it is asked for.
+TEST(Estimation, StrideSumsSettledLaterHaveTheSameBits) {
+  testing::Streams s = with_heavy_tails(with_pose_noise(free_drive(4), 0.005, 0.05, 4), 4);
+  const std::size_t middle = s.a.size() / 2;
+  for (std::size_t i = middle; i < s.a.size(); ++i) s.a[i].pose.dual += QuaternionVector(0, 0.5, 0, 0);
+  for (StampedPose& pose : s.a) pose.pose = normalized(pose.pose);
+  StrideSumsOptions tuning;
+  tuning.most_open = 64;  // most instants are committed before the end
+  StrideSums each{PairingOptions{}, tuning}, end{PairingOptions{}, tuning};
+  int compared = 0;
+  for (StrideSums* sums : {&each, &end}) sums->begin(100'000);
+  for (std::size_t i = 0; i < s.a.size(); ++i) {
+    for (StrideSums* sums : {&each, &end}) {
+      sums->add({s.a[i].time_us, s.a[i].pose, s.b[i].pose, 0, i + 1});
+      if (sums->choice_is_due()) sums->choose();
+    }
+    each.settle();
+    if (i % 17 != 0 || !each.in_force()) continue;
+    ++compared;
+    Problem settled, asked;
+    each.fill(settled);
+    end.fill(asked);
+    EXPECT_EQ(cost_matrix(settled), cost_matrix(asked)) << i;
+    const auto blocks = each.state().weighted.state().blocks, later = end.state().weighted.state().blocks;
+    ASSERT_EQ(blocks.size(), later.size());
+    for (std::size_t k = 0; k < blocks.size(); ++k)
+      EXPECT_EQ(blocks[k].dual_rows, later[k].dual_rows) << i << ' ' << k;
+  }
+  EXPECT_GT(compared, 5);
+}
+
 /// Noise that adds up from motion to motion is what neighbours show best; given settings are kept.
 TEST(Estimation, GivenSettingsAndPlainWeightsAreNeverSummed) {
   const testing::Streams s = with_pose_noise(free_drive(1), 0.005, 0.05, 1);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "problem/motion_square.hpp"
+
 namespace egocal {
 
 namespace {
@@ -56,11 +58,19 @@ void StrideBlocks::add_instant(std::uint64_t index) {
 
 void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a,
                        const DualQuaternion& b, bool rotation_only, double weight) {
+  add(stride, first_index, detail::MotionSquare(a, b), rotation_only, weight);
+}
+
+void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const detail::MotionSquare& motion,
+                       bool rotation_only, double weight) {
   StrideSum& sum = state_.strides[stride];
   const std::size_t first = block_of(first_index);
   const std::size_t last = block_of(first_index + static_cast<std::uint64_t>(sum.stride));
   StrideCell& cell = (last - first == offset(sum.stride, state_.block_length) ? sum.near : sum.far)[first];
-  (rotation_only ? cell.rotations : cell.motions).add(a, b, weight);
+  Statistics& sum_of_cell = rotation_only ? cell.rotations : cell.motions;
+  motion.add_to(sum_of_cell.dual_rows, weight);
+  sum_of_cell.weight += weight;
+  ++sum_of_cell.count;
 }
 
 void StrideBlocks::merge() {

@@ -8,6 +8,7 @@
 
 #include "egocal/robust/consensus.hpp"
 #include "pairing/motions_between.hpp"
+#include "problem/motion_square.hpp"
 
 namespace egocal {
 
@@ -30,7 +31,8 @@ StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& t
     : options_(options),
       tuning_(tuning),
       least_scalar_(std::cos(0.5 * options.accumulator.most_rotation)),
-      state_(std::move(state)) {
+      state_(std::move(state)),
+      first_pending_(state_.next_index) {
   if (options_.mode == Mode::planar) {
     G_a_ = plane_frame(options_.plane_a);
     G_b_ = plane_frame(options_.plane_b);
@@ -107,22 +109,46 @@ StrideBlocks StrideSums::sums() const {
   return sums;
 }
 
-void StrideSums::weigh_newest() {
-  const JudgedInstant& to = state_.instants.back();
-  const std::uint64_t index = to.index;
-  if (!state_.weighted.has_room(index)) return weigh_all(sums());
+/// Adds the motions that end at the instant at this position, by the choice in force.
+void StrideSums::weigh(WeightedBlocks& weighted, std::size_t position) const {
+  const JudgedInstant& to = state_.instants[position];
   const StrideWeights& weights = state_.choice->weights;
-  state_.weighted.add_instant(index);
-  each_motion(state_.instants.size() - 1, [&](std::size_t stride, const JudgedInstant& from,
-                                              const Step& motion, bool rotation_only) {
-    state_.weighted.add(from.index, index, motion.a, motion.b,
-                        {weights.rotation[stride], weights.translation[stride], certainty(from, to)},
-                        rotation_only);
+  weighted.add_instant(to.index);
+  each_motion(position, [&](std::size_t stride, const JudgedInstant& from, const Step& motion,
+                            bool rotation_only) {
+    weighted.add(from.index, to.index, detail::MotionSquare(motion.a, motion.b),
+                 {weights.rotation[stride], weights.translation[stride], certainty(from, to)}, rotation_only);
   });
+}
+
+void StrideSums::weigh_pending(WeightedBlocks& weighted) const {
+  if (state_.instants.empty()) return;
+  const std::uint64_t first_kept = state_.instants.front().index;
+  for (std::uint64_t index = first_pending_; index < state_.next_index; ++index)
+    weigh(weighted, static_cast<std::size_t>(index - first_kept));
+}
+
+void StrideSums::settle() {
+  weigh_pending(state_.weighted);
+  first_pending_ = state_.next_index;
+}
+
+void StrideSums::fill(Problem& problem) const {
+  if (first_pending_ == state_.next_index) return state_.weighted.fill(problem);
+  WeightedBlocks weighted = state_.weighted;
+  weigh_pending(weighted);
+  weighted.fill(problem);
+}
+
+StrideSumsState StrideSums::state() const {
+  StrideSumsState state = state_;
+  weigh_pending(state.weighted);
+  return state;
 }
 
 void StrideSums::weigh_all(const StrideBlocks& sums) {
   state_.weighted = in_force() ? TouchingSums(sums).weighted(state_.choice->weights) : WeightedBlocks();
+  first_pending_ = state_.next_index;
 }
 
 void StrideSums::add(const Instant& instant, bool doubtful) {
@@ -130,7 +156,10 @@ void StrideSums::add(const Instant& instant, bool doubtful) {
   JudgedInstant judged{instant, state_.next_index++, Jump::none, 0, 0, doubtful, 0, 0};
   append(judged, before, {});
   state_.instants.push_back(judged);
-  if (in_force()) weigh_newest();
+  if (!in_force())
+    first_pending_ = state_.next_index;
+  else if (!state_.weighted.has_room(judged.index))
+    weigh_all(sums());
   if (in_force() && state_.next_index >= state_.next_look) {
     state_.next_look = state_.next_index + std::clamp(state_.next_index / tuning_.look_part,
                                                       tuning_.least_look, tuning_.most_look);
@@ -142,11 +171,32 @@ void StrideSums::add(const Instant& instant, bool doubtful) {
   if (state_.next_index - state_.first_open > tuning_.most_open) commit_oldest();
 }
 
+/// add_motions() to what is committed, and weigh().
+void StrideSums::commit_pending(std::size_t position) {
+  const JudgedInstant& to = state_.instants[position];
+  const StrideWeights& weights = state_.choice->weights;
+  state_.committed.add_instant(to.index);
+  state_.weighted.add_instant(to.index);
+  each_motion(
+      position, [&](std::size_t stride, const JudgedInstant& from, const Step& motion, bool rotation_only) {
+        const detail::MotionSquare square(motion.a, motion.b);
+        const double weight = certainty(from, to);
+        state_.committed.add(stride, from.index, square, rotation_only, weight);
+        state_.weighted.add(from.index, to.index, square,
+                            {weights.rotation[stride], weights.translation[stride], weight}, rotation_only);
+      });
+}
+
 /// The oldest of the open instants keeps its verdict for good.
 void StrideSums::commit_oldest() {
   const std::uint64_t first_kept = state_.instants.front().index;
   const auto position = static_cast<std::size_t>(state_.first_open - first_kept);
-  add_motions(state_.committed, position);
+  if (state_.first_open == first_pending_ && first_pending_ < state_.next_index) {
+    commit_pending(position);
+    ++first_pending_;
+  } else {
+    add_motions(state_.committed, position);
+  }
   if (state_.instants[position].jump != Jump::none) ++state_.jumps;
   ++state_.first_open;
   const auto longest = static_cast<std::uint64_t>(tuning_.strides.back());
@@ -167,11 +217,15 @@ StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) 
       find_jumps(steps, state_.committed.total(0).motions, options_.mode, q, tuning_.jumps);
   for (std::size_t i = first; i < state_.instants.size(); ++i) {
     const StepVerdict& verdict = verdicts[i - first];
+    const double before = state_.instants[i].step_variance;
     changes.jumps = changes.jumps || verdict.jump != state_.instants[i].jump;
-    changes.variances = changes.variances || differ(verdict.extra_variance, state_.instants[i].step_variance,
-                                                    tuning_.least_change);
-    append(state_.instants[i], &state_.instants[i - 1], verdict);
+    changes.variances = changes.variances || differ(verdict.extra_variance, before, tuning_.least_change);
+    changes.any = changes.any || verdict.extra_variance != before;
   }
+  // all motions are weighed anew after a change, except for one that is too small for that
+  if (changes.any && !changes.jumps && !changes.variances) settle();
+  for (std::size_t i = first; i < state_.instants.size(); ++i)
+    append(state_.instants[i], &state_.instants[i - 1], verdicts[i - first]);
   return changes;
 }
 

@@ -20,15 +20,15 @@ void WeightedBlocks::add_instant(std::uint64_t index) {
   ++state_.blocks[block].count;
 }
 
-void WeightedBlocks::add(std::uint64_t first_index, std::uint64_t last_index, const DualQuaternion& a,
-                         const DualQuaternion& b, MotionWeights weights, bool rotation_only) {
+void WeightedBlocks::add(std::uint64_t first_index, std::uint64_t last_index,
+                         const detail::MotionSquare& square, MotionWeights weights, bool rotation_only) {
   if (!(weights.rotation > 0) && !(weights.translation > 0)) return;
   const auto first = static_cast<std::size_t>(first_index / state_.block_length);
   const auto last = static_cast<std::size_t>(last_index / state_.block_length);
   if (state_.left_out[first] != 0 || state_.left_out[last] != 0) return;
   const double translation = weights.certainty * weights.translation;
   const detail::MotionSquare motion =
-      detail::MotionSquare(a, b).weighted(weights.certainty * weights.rotation, translation, rotation_only);
+      square.weighted(weights.certainty * weights.rotation, translation, rotation_only);
   const auto add = [&](Statistics& sum) {
     motion.add_to(sum.dual_rows);
     sum.weight += translation;

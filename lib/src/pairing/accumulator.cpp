@@ -44,6 +44,10 @@ void Accumulator::begin(std::int64_t period_us) {
     state_.strides.push_back({stride, {}});
 }
 
+void Accumulator::settle() {
+  if (sums_) sums_->settle();
+}
+
 void Accumulator::restart() {
   for (AccumulatorState::PerStride& entry : state_.strides) entry.statistics = {};
   state_.instants.clear();

@@ -49,6 +49,7 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
   if (!options_.track_time_offset) {
     if (side == Side::b) pose.time_us += std::llround(options_.time_offset * 1e6);
     take(synchroniser_.push(side, pose), pairs);
+    if (settles_) accumulator_.settle();
     return pairs;
   }
   const std::uint64_t given_up = clock_.state().given_up;
@@ -60,6 +61,7 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
     segment_ = one.segment;
     take(synchroniser_.push(one.side, one.pose), pairs);
   }
+  if (settles_) accumulator_.settle();
   return pairs;
 }
 
@@ -67,6 +69,7 @@ std::vector<MotionPair> MotionPairing::finish() {
   std::vector<MotionPair> pairs;
   take(synchroniser_.finish(), pairs);
   screening_.finish();
+  accumulator_.settle();
   return pairs;
 }
 
@@ -120,6 +123,7 @@ namespace {
 template <typename Take>
 MotionPairing pair_all(const PairingOptions& options, const Trajectory& a, const Trajectory& b, Take take) {
   MotionPairing drive(options);
+  drive.read_at_end();
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
     const bool from_a = j == b.size() || (i < a.size() && a[i].time_us <= b[j].time_us);

@@ -10,6 +10,10 @@
 
 namespace egocal {
 
+namespace detail {
+class MotionSquare;
+}
+
 /// Motions that begin in one block of instants and end in another (or the same).
 struct StrideCell {
   Statistics motions;    ///< that count in rotation and translation
@@ -54,6 +58,8 @@ class StrideBlocks {
   /// Adds a motion of strides()[stride] that begins at an instant and ends at the newest one, by this weight.
   void add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a, const DualQuaternion& b,
            bool rotation_only, double weight = 1);
+  void add(std::size_t stride, std::uint64_t first_index, const detail::MotionSquare& motion,
+           bool rotation_only, double weight);
   /// One verdict a block.
   void leave_out(std::vector<std::uint8_t> outlier) { state_.outlier = std::move(outlier); }
 

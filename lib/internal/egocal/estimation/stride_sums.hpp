@@ -85,6 +85,9 @@ class StrideSums {
   /// Takes the next instant; chains must not decrease. doubtful: its motion contradicts the others, as judged
   /// outside; it is not used.
   void add(const Instant& instant, bool doubtful = false);
+  /// Does what only fill() and state() need, so that these are fast: to be called before they are, or once
+  /// at the end of a drive. Left for later it costs less, and the result is the same to the last bit.
+  void settle();
   /// The drive has grown by an eighth since the last choice.
   bool choice_is_due() const { return state_.next_index >= state_.next_choice; }
   /// Judges the open instants again and chooses the weights. rival: the best single stride.
@@ -95,10 +98,10 @@ class StrideSums {
   /// A choice was made, and its spread is clearly smaller than the rival's.
   bool in_force() const { return state_.choice && state_.choice->beats_single; }
   /// Sets blocks and balance of a problem, at the choice in force.
-  void fill(Problem& problem) const { state_.weighted.fill(problem); }
+  void fill(Problem& problem) const;
   /// Steps between neighbouring instants across which an odometry jumps: no motion spans them.
   std::uint64_t jumps() const;
-  const StrideSumsState& state() const { return state_; }
+  StrideSumsState state() const;
 
  private:
   Problem empty_problem() const;
@@ -108,12 +111,15 @@ class StrideSums {
   template <typename Take>
   void each_motion(std::size_t position, const Take& take) const;
   void add_motions(StrideBlocks& blocks, std::size_t position) const;
+  void weigh(WeightedBlocks& weighted, std::size_t position) const;
+  void weigh_pending(WeightedBlocks& weighted) const;
   StrideBlocks sums() const;
-  void weigh_newest();
   void weigh_all(const StrideBlocks& sums);
   void commit_oldest();
+  void commit_pending(std::size_t position);
   struct Changes {
     bool jumps = false, variances = false;
+    bool any = false;  ///< to the last bit
   };
   Changes rejudge(const std::optional<DualQuaternion>& q);
   StrideBlocks judge_open();
@@ -124,6 +130,8 @@ class StrideSums {
   double least_scalar_;       ///< of a rotation that is not too large: cosine of half its angle
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
   StrideSumsState state_;
+  /// Index of the first instant whose motions are not in state_.weighted yet; all later ones are not either.
+  std::uint64_t first_pending_ = 0;
 };
 
 }  // namespace egocal

@@ -9,6 +9,10 @@
 
 namespace egocal {
 
+namespace detail {
+class MotionSquare;
+}
+
 /// Weights of one motion, per motion: of the real rows [1/rad^2] and of the dual rows [1/m^2], up to a common
 /// factor.
 struct MotionWeights {
@@ -39,8 +43,8 @@ class WeightedBlocks {
   void add_instant(std::uint64_t index);
   /// A motion between two instants that were added, where neither of their blocks is omitted. rotation_only:
   /// it spans a jump of a translation.
-  void add(std::uint64_t first_index, std::uint64_t last_index, const DualQuaternion& a,
-           const DualQuaternion& b, MotionWeights weights, bool rotation_only);
+  void add(std::uint64_t first_index, std::uint64_t last_index, const detail::MotionSquare& motion,
+           MotionWeights weights, bool rotation_only);
 
   /// Sets blocks and balance of a problem. Where motions are shared the last block has a negative weight and
   /// takes them off.

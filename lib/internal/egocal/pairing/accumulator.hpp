@@ -58,6 +58,8 @@ class Accumulator {
   /// Takes the next instant; chains must not decrease. Returns the motion pairs of the chosen stride that it
   /// completed.
   std::vector<MotionPair> add(const Instant& instant);
+  /// Does what only problem() and state() need, so that these are fast (StrideSums::settle).
+  void settle();
   /// Forgets all instants and statistics, but not the choice.
   void restart();
 

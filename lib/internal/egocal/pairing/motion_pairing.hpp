@@ -43,6 +43,9 @@ class MotionPairing {
   /// Takes the next pose of one stream. Returns the motion pairs of the chosen stride that it completed.
   std::vector<MotionPair> push(Side side, const StampedPose& pose);
 
+  /// Nothing is asked before finish(): what only the answers need is left for then, which takes less time.
+  void read_at_end() { settles_ = false; }
+
   /// No more poses will come: pairs what a drive too short to show its slower stream has held back.
   std::vector<MotionPair> finish();
 
@@ -72,6 +75,7 @@ class MotionPairing {
   Synchroniser synchroniser_;
   Screening screening_;
   Accumulator accumulator_;
+  bool settles_ = true;  ///< after every pose
 };
 
 /// Both trajectories through a MotionPairing, in the order of time.
