@@ -200,46 +200,46 @@ std::string event_line(const Event& event, int utc_offset_s) {
   return text;
 }
 
-std::string json_line(const Model& model) {
-  json j;
-  j["time_us"] = model.now().wall_us;
-  j["pairs"] = json::array();
-  for (const PairState& pair : model.pairs()) {
-    json p;
-    p["a"] = clean(pair.a, 200);
-    p["b"] = clean(pair.b, 200);
-    p["session"] = pair.session;
-    if (pair.has_problem) {
-      p["mode"] = pair.problem.mode == 1 ? "planar" : "spatial";
-      p["seq"] = pair.problem.seq;
-      p["matched"] = pair.problem.matched;
-      p["left_out"] = pair.problem.left_out;
-      p["rejected"] = pair.problem.rejected;
-      p["stride"] = pair.problem.stride;
-      p["time_offset"] = real(pair.problem.time_offset);
-      p["time_offset_stddev"] =
-          pair.problem.time_offset_stddev < 0 ? json(nullptr) : real(pair.problem.time_offset_stddev);
-    }
-    p["paused"] = pair_is_paused(model, pair);
-    p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
-    verdict_into(p, pair);
-    p["scale"] = scale_json(pair);
-    p["answer"] = pair.counted_solver() ? answer_json(pair, *pair.counted_solver()) : json(nullptr);
-    p["previous_session"] = nullptr;
-    if (pair.previous) {
-      const calibration_t& answer = *pair.previous;
-      p["previous_session"] = {{"session", answer.session},
-                               {"utime", answer.utime},
-                               {"pairs", answer.pairs},
-                               {"translation", reals(answer.pos, 3)},
-                               {"rotation_wxyz", reals(answer.quat, 4)},
-                               {"stddev", reals(answer.stddev, 6)},
-                               {"certified", answer.status == 0}};
-    }
-    p["solvers"] = json::array();
-    for (const SolverTrack& solver : pair.solvers) p["solvers"].push_back(answer_json(pair, solver));
-    j["pairs"].push_back(p);
+namespace {
+
+json pair_json(const Model& model, const PairState& pair) {
+  json p;
+  p["a"] = clean(pair.a, 200);
+  p["b"] = clean(pair.b, 200);
+  p["session"] = pair.session;
+  if (pair.has_problem) {
+    p["mode"] = pair.problem.mode == 1 ? "planar" : "spatial";
+    p["seq"] = pair.problem.seq;
+    p["matched"] = pair.problem.matched;
+    p["left_out"] = pair.problem.left_out;
+    p["rejected"] = pair.problem.rejected;
+    p["stride"] = pair.problem.stride;
+    p["time_offset"] = real(pair.problem.time_offset);
+    p["time_offset_stddev"] =
+        pair.problem.time_offset_stddev < 0 ? json(nullptr) : real(pair.problem.time_offset_stddev);
   }
+  p["paused"] = pair_is_paused(model, pair);
+  p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
+  verdict_into(p, pair);
+  p["scale"] = scale_json(pair);
+  p["answer"] = pair.counted_solver() ? answer_json(pair, *pair.counted_solver()) : json(nullptr);
+  p["previous_session"] = nullptr;
+  if (pair.previous) {
+    const calibration_t& answer = *pair.previous;
+    p["previous_session"] = {{"session", answer.session},
+                             {"utime", answer.utime},
+                             {"pairs", answer.pairs},
+                             {"translation", reals(answer.pos, 3)},
+                             {"rotation_wxyz", reals(answer.quat, 4)},
+                             {"stddev", reals(answer.stddev, 6)},
+                             {"certified", answer.status == 0}};
+  }
+  p["solvers"] = json::array();
+  for (const SolverTrack& solver : pair.solvers) p["solvers"].push_back(answer_json(pair, solver));
+  return p;
+}
+
+void loops_into(json& j, const Model& model) {
   const std::vector<Loop> loops = loops_of(model);
   j["loops"] = json::array();
   for (const Loop& loop : loops)
@@ -252,6 +252,16 @@ std::string json_line(const Model& model) {
          {"open", loop.open()}});
   const std::string blamed = sensor_to_blame(loops);
   j["blamed"] = blamed.empty() ? json(nullptr) : json(clean(blamed, 200));
+}
+
+}  // namespace
+
+std::string json_line(const Model& model) {
+  json j;
+  j["time_us"] = model.now().wall_us;
+  j["pairs"] = json::array();
+  for (const PairState& pair : model.pairs()) j["pairs"].push_back(pair_json(model, pair));
+  loops_into(j, model);
   j["processes"] = json::array();
   for (const ProcessState& process : model.processes()) {
     const status_t& status = process.status;

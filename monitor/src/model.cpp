@@ -23,10 +23,10 @@ std::string rounded(double value, int decimals) {
   return buffer;
 }
 
-double share_left_out(const problem_t& problem) {
+double share_of_outliers(const problem_t& problem) {
   const double matched = std::max(0.0, static_cast<double>(problem.matched)),
-               left_out = std::max(0.0, static_cast<double>(problem.left_out));
-  return left_out > 0 && matched + left_out >= 20 ? left_out / (matched + left_out) : 0;
+               outliers = std::max(0.0, static_cast<double>(problem.left_out));
+  return outliers > 0 && matched + outliers >= 20 ? outliers / (matched + outliers) : 0;
 }
 
 Optimality optimality_of(const calibration_t& answer) {
@@ -159,7 +159,7 @@ void Model::on_problem(const problem_t& message, Now now) {
     note(Severity::info, name, "stride is now " + std::to_string(kept.stride) + " (" + kept.choice + ")",
          now);
 
-  const double share = share_left_out(kept);
+  const double share = share_of_outliers(kept);
   if (share > options_.many_outliers && share > 2 * pair->reported_left_out) {
     pair->reported_left_out = share;
     note(Severity::warning, name,
@@ -218,6 +218,39 @@ Shown shown_of(const PairState& pair, const calibration_t& answer) {
   }
   return shown;
 }
+
+namespace {
+
+/// The answer with texts of limited length; what is no transform is not certified.
+calibration_t bounded_answer(const calibration_t& message, const PairState& pair) {
+  calibration_t answer = message;
+  answer.sensor_a = pair.a;
+  answer.sensor_b = pair.b;
+  answer.solver = bounded(message.solver);
+  answer.method = bounded(message.method);
+  answer.hint = bounded(message.hint);
+  if (message.status == 0 && (!pose_from(message.pos, message.quat) || std::isnan(message.scaled_gap)))
+    answer.status = bus::wire_status(Optimality::undecided);
+  return answer;
+}
+
+std::array<double, curve_count> curve_values(const Shown& own, const calibration_t& message, Role role) {
+  std::array<double, curve_count> values{};
+  values[rotation_error] = own.error_rotation;
+  values[translation_error] = own.error_translation;
+  if (own.reference == ReferenceKind::none) {
+    values[translation_error] = std::max({message.stddev[0], message.stddev[1], message.stddev[2]});
+    values[rotation_error] = std::max({message.stddev[3], message.stddev[4], message.stddev[5]});
+  }
+  // where the fast process solved globally itself, its own solution is not known
+  const bool own_solution = role != Role::fast || (message.method != "dual" && message.method != "sdp");
+  values[scaled_gap] = own_solution ? message.scaled_gap : not_a_number;
+  values[execution_time] =
+      (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
+  return values;
+}
+
+}  // namespace
 
 void Model::count_answer(PairState& pair, Now now) {
   int best = -1;
@@ -286,16 +319,8 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   ++track->answers;
   if (!newer) return;  // overtaken on the way
 
-  track->answer = message;
-  track->answer.sensor_a = pair->a;
-  track->answer.sensor_b = pair->b;
-  track->answer.solver = solver;
-  track->answer.method = bounded(message.method);
-  track->answer.hint = bounded(message.hint);
+  track->answer = bounded_answer(message, *pair);
   track->verified = verified;
-  // defence in depth: what is no transform is not certified
-  if (message.status == 0 && (!pose_from(message.pos, message.quat) || std::isnan(message.scaled_gap)))
-    track->answer.status = bus::wire_status(Optimality::undecided);
   track->role = role_of(track->answer);
 
   const double time = seconds(pair->session, message.utime);
@@ -315,21 +340,8 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   }
 
   // every solver's own course, so that two can be compared
-  const Shown own = shown_of(*pair, message);
-  std::array<double, curve_count> values{};
-  values[rotation_error] = own.error_rotation;
-  values[translation_error] = own.error_translation;
-  if (own.reference == ReferenceKind::none) {
-    values[translation_error] = std::max({message.stddev[0], message.stddev[1], message.stddev[2]});
-    values[rotation_error] = std::max({message.stddev[3], message.stddev[4], message.stddev[5]});
-  }
-  // where the fast process solved globally itself, its own solution is not known
-  const bool own_solution =
-      track->role != Role::fast || (message.method != "dual" && message.method != "sdp");
-  values[scaled_gap] = own_solution ? message.scaled_gap : not_a_number;
-  values[execution_time] =
-      (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
-  if (time >= 0 && time < options_.longest_session) track->history.add(time, values);
+  if (time >= 0 && time < options_.longest_session)
+    track->history.add(time, curve_values(shown_of(*pair, message), message, track->role));
   count_answer(*pair, now);
 }
 

@@ -10,6 +10,56 @@
 
 namespace egocal::monitor {
 
+namespace {
+
+/// What the monitor uses of a status, with texts of limited length; without its counters.
+status_t bounded_status(const status_t& message) {
+  status_t status{};
+  status.utime = message.utime;
+  status.name = bounded(message.name);
+  status.role = bounded(message.role);
+  status.host = bounded(message.host);
+  status.pid = message.pid;
+  status.run = message.run;
+  status.version = bounded(message.version);
+  status.state = bounded(message.state);
+  status.last_error = bounded(message.last_error);
+  return status;
+}
+
+void sum_counters(ProcessState& process, const status_t& message) {
+  process.in = process.out = process.lost = process.rejected = 0;
+  for (const counter_t& counter : message.counters) {
+    // a hostile count must not overflow the sums
+    const std::int64_t value =
+        std::clamp<std::int64_t>(counter.value, -(std::int64_t{1} << 50), std::int64_t{1} << 50);
+    const auto add = [&](std::int64_t& sum) { sum = std::min(sum + value, std::int64_t{1} << 60); };
+    if (counter.name == "in") add(process.in);
+    if (counter.name == "out") add(process.out);
+    if (counter.name.starts_with("lost") || counter.name.starts_with("dropped")) add(process.lost);
+    if (counter.name.starts_with("rejected")) add(process.rejected);
+  }
+}
+
+/// Messages per second since the last update; -1 where they are not known.
+void update_rates(ProcessState& process, Now now) {
+  const double elapsed = seconds(process.rate_mono_us, now.mono_us);
+  if (process.rate_mono_us == 0 || process.in < process.rate_in_count || elapsed < 0) {
+    process.rate_in = process.rate_out = -1;
+  } else if (elapsed >= 0.7) {
+    process.rate_in = static_cast<double>(process.in - process.rate_in_count) / elapsed;
+    process.rate_out = static_cast<double>(process.out - process.rate_out_count) / elapsed;
+  } else {
+    return;  // changes come in bursts, a rate needs a while
+  }
+  if (!process.alive) process.rate_in = process.rate_out = -1;
+  process.rate_mono_us = now.mono_us;
+  process.rate_in_count = process.in;
+  process.rate_out_count = process.out;
+}
+
+}  // namespace
+
 void Model::on_status(const status_t& message, Now now) {
   now_ = now;
   ++messages_;
@@ -53,43 +103,12 @@ void Model::on_status(const status_t& message, Now now) {
     if (restarted) process->rate_mono_us = 0;
   }
   process->at = now;
-  process->status = status_t();
-  process->status.utime = message.utime;
-  process->status.name = name;
-  process->status.role = bounded(message.role);
-  process->status.host = host;
-  process->status.pid = message.pid;
-  process->status.run = message.run;
-  process->status.version = bounded(message.version);
-  process->status.state = state_text;
+  process->status = bounded_status(message);
   process->state = state;
-  process->status.last_error = error;
 
   watch_rejections(*process, message, now);
-  process->in = process->out = process->lost = process->rejected = 0;
-  for (const counter_t& counter : message.counters) {
-    // a hostile count must not overflow the sums
-    const std::int64_t value =
-        std::clamp<std::int64_t>(counter.value, -(std::int64_t{1} << 50), std::int64_t{1} << 50);
-    const auto add = [&](std::int64_t& sum) { sum = std::min(sum + value, std::int64_t{1} << 60); };
-    if (counter.name == "in") add(process->in);
-    if (counter.name == "out") add(process->out);
-    if (counter.name.starts_with("lost") || counter.name.starts_with("dropped")) add(process->lost);
-    if (counter.name.starts_with("rejected")) add(process->rejected);
-  }
-  const double elapsed = seconds(process->rate_mono_us, now.mono_us);
-  if (process->rate_mono_us == 0 || process->in < process->rate_in_count || elapsed < 0) {
-    process->rate_in = process->rate_out = -1;
-  } else if (elapsed >= 0.7) {
-    process->rate_in = static_cast<double>(process->in - process->rate_in_count) / elapsed;
-    process->rate_out = static_cast<double>(process->out - process->rate_out_count) / elapsed;
-  } else {
-    return;  // changes come in bursts, a rate needs a while
-  }
-  if (!process->alive) process->rate_in = process->rate_out = -1;
-  process->rate_mono_us = now.mono_us;
-  process->rate_in_count = process->in;
-  process->rate_out_count = process->out;
+  sum_counters(*process, message);
+  update_rates(*process, now);
 }
 
 void Model::on_command(const command_t& message, Now now) {

@@ -89,11 +89,8 @@ nominal: (4, 4), taken where the motions show nothing.
 Returns a Calibration. Raises egocal.Error where nothing can be paired, ValueError for arguments that cannot be
 understood. Releases the GIL.)";
 
-}  // namespace
-
-void bind_calibration(py::module_& module) {
-  py::class_<Calibration>(module, "Calibration", "Everything known about one pair of sensors [m, rad].")
-      .def_property_readonly(
+void bind_answer(py::class_<Calibration>& type) {
+  type.def_property_readonly(
           "T_a_b", [](const Calibration& c) { return to_matrix(c.T_a_b); },
           "(4, 4): pose of sensor b in the frame of sensor a, p_a = T_a_b p_b")
       .def_property_readonly(
@@ -128,8 +125,11 @@ void bind_calibration(py::module_& module) {
           "lower_bound", [](const Calibration& c) { return c.certificate.lower_bound; },
           "no extrinsic has a lower cost than this")
       .def_property_readonly(
-          "gap", [](const Calibration& c) { return c.certificate.gap; }, "cost - lower_bound")
-      .def_property_readonly(
+          "gap", [](const Calibration& c) { return c.certificate.gap; }, "cost - lower_bound");
+}
+
+void bind_details(py::class_<Calibration>& type) {
+  type.def_property_readonly(
           "observable", [](const Calibration& c) { return c.observability.observable; },
           "six booleans: x y z roll pitch yaw in the frame of a")
       .def_property_readonly(
@@ -171,7 +171,14 @@ void bind_calibration(py::module_& module) {
                ", " + std::to_string(t.z()) + "] m, " + std::string(to_string(c.certificate.optimality)) +
                ">";
       });
+}
 
+}  // namespace
+
+void bind_calibration(py::module_& module) {
+  py::class_<Calibration> type(module, "Calibration", "Everything known about one pair of sensors [m, rad].");
+  bind_answer(type);
+  bind_details(type);
   module.def("solve", &solve_trajectories, solve_doc, "a"_a, "b"_a, py::kw_only(), "method"_a = "global",
              "plane_a"_a = py::none(), "plane_b"_a = py::none(), "stride"_a = py::none(),
              "weights"_a = "auto", "time_offset"_a = 0.0, "max_gap"_a = PairingOptions{}.max_gap,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "moves/change_place.hpp"
 #include "moves/change_test.hpp"
 #include "moves/linear_blocks.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -32,6 +33,30 @@ detail::Vector6d in_frame_a(const Parameters& x, double length, const Problem& p
   }
   result.head<3>() *= length;
   return result;
+}
+
+/// Sets the change of a move and its standard deviations in sensor a's frame. covariance: in tangent
+/// coordinates, with unit lengths of the block.
+void describe_change(const detail::ParameterMatrix& covariance, double length, const Problem& problem,
+                     Move& move) {
+  detail::Vector6d variance = detail::Vector6d::Constant(infinity);
+  if (problem.mode == Mode::spatial) {
+    variance = covariance.diagonal();
+  } else {
+    // plane a's axes in sensor a; the directions that the planes fix have no variance of their own
+    const Eigen::Matrix3d R = to_pose(plane_frame(problem.plane_a)).rotation.toRotationMatrix();
+    Eigen::Matrix3d shift = Eigen::Matrix3d::Zero();
+    shift.topLeftCorner<2, 2>() = covariance.topLeftCorner(2, 2);
+    variance.head<3>() = (R * shift * R.transpose()).diagonal();
+    variance.tail<3>() = covariance(2, 2) * R.col(2).cwiseAbs2();
+  }
+  variance.head<3>() *= length * length;
+  const detail::Vector6d change = detail::frame_a_difference(move.before, move.after);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    move.change[i] = change[k];
+    move.stddev[i] = std::sqrt(std::max(0.0, variance[k]));
+  }
 }
 
 /// Blocks on each side of a change, at least.
@@ -164,50 +189,13 @@ class Finder {
     return 1e-6 * static_cast<double>(time_us - pairs_.front().begin_us);
   }
 
-  /// First pair after the change and the least and most that fit about as well, by the cost of both answers.
-  struct Place {
-    std::size_t at = 0, earliest = 0, latest = 0;
-  };
-  Place place(const Found& found, const DualQuaternion& before, const DualQuaternion& after) const {
-    std::vector<double> first, second;
-    for (std::size_t i = found.from; i < found.to; ++i) {
-      first.push_back(detail::pair_residual(pairs_[i], before, problem_.balance));
-      second.push_back(detail::pair_residual(pairs_[i], after, problem_.balance));
-    }
-    // of the answer that fits better; longer ones do not decide
-    std::vector<double> fits;
-    for (std::size_t i = 0; i < first.size(); ++i) fits.push_back(std::min(first[i], second[i]));
-    std::vector<double> sorted = fits;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const double median = sorted[sorted.size() / 2];
-    const double longest = options_.place_residual;
-    double noise = 0;
-    for (const double fit : fits) noise += std::min(fit, longest * median);
-    const double parameters = problem_.mode == Mode::planar ? 3 : 6;
-    noise /= parameters * static_cast<double>(fits.size());
-
-    double sum = 0;
-    for (const double value : second) sum += std::min(value, longest * median);
-    std::vector<double> total = {sum};
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      sum += std::min(first[i], longest * median) - std::min(second[i], longest * median);
-      total.push_back(sum);
-    }
-    const std::size_t margin = std::min(options_.least_block_pairs, total.size() / 2 - 1);
-    const auto least = std::min_element(total.begin() + static_cast<std::ptrdiff_t>(margin),
-                                        total.end() - static_cast<std::ptrdiff_t>(margin));
-    const double limit =
-        *least + options_.time_interval * noise * found.test.correlation * static_cast<double>(overlap_);
-    Place result;
-    result.at = found.from + static_cast<std::size_t>(least - total.begin());
-    result.earliest = result.latest = result.at;
-    for (std::size_t i = 0; i < total.size(); ++i) {
-      if (total[i] > limit) continue;
-      result.earliest = std::min(result.earliest, found.from + i);
-      result.latest = std::max(result.latest, found.from + i);
-    }
-    return result;
+  detail::ChangePlace place(const Found& found, const DualQuaternion& before,
+                            const DualQuaternion& after) const {
+    detail::ChangePlace place =
+        detail::locate_change(pairs_.subspan(found.from, found.to - found.from), problem_, before, after,
+                              found.test.correlation, overlap_, options_);
+    for (std::size_t* index : {&place.at, &place.earliest, &place.latest}) *index += found.from;
+    return place;
   }
 
   Move described(const Found& found) const {
@@ -226,7 +214,7 @@ class Finder {
       move.latest = seconds(pairs_[found.to - 1].end_us);
     } else {
       DualQuaternion before = minimiser(found.from, found.at), after = minimiser(found.at, found.to);
-      Place at = place(found, before, after);
+      detail::ChangePlace at = place(found, before, after);
       // once more, with the answers of the better division
       if (at.at != found.at && at.at > found.from && at.at < found.to) {
         before = minimiser(found.from, at.at);
@@ -243,31 +231,8 @@ class Finder {
       move.earliest = seconds(pairs_[at.earliest > 0 ? at.earliest - 1 : 0].begin_us);
       move.latest = seconds(pairs_[std::min(at.latest, pairs_.size() - 1)].end_us);
     }
-    describe_change(found, move);
+    describe_change(found.test.covariance, found.stretch.length, problem_, move);
     return move;
-  }
-
-  void describe_change(const Found& found, Move& move) const {
-    const detail::Vector6d change = detail::frame_a_difference(move.before, move.after);
-    move.stddev.fill(infinity);
-    const auto& C = found.test.covariance;
-    detail::Vector6d variance = detail::Vector6d::Constant(infinity);
-    if (problem_.mode == Mode::spatial) {
-      variance = C.diagonal();
-    } else {
-      // plane a's axes in sensor a; the directions that the planes fix have no variance of their own
-      const Eigen::Matrix3d R = to_pose(plane_frame(problem_.plane_a)).rotation.toRotationMatrix();
-      Eigen::Matrix3d shift = Eigen::Matrix3d::Zero();
-      shift.topLeftCorner<2, 2>() = C.topLeftCorner(2, 2);
-      variance.head<3>() = (R * shift * R.transpose()).diagonal();
-      variance.tail<3>() = C(2, 2) * R.col(2).cwiseAbs2();
-    }
-    variance.head<3>() *= found.stretch.length * found.stretch.length;
-    for (std::size_t i = 0; i < 6; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      move.change[i] = change[k];
-      move.stddev[i] = std::sqrt(std::max(0.0, variance[k]));
-    }
   }
 
   Pairs pairs_;

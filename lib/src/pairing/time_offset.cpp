@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pairing/offset/correlation.hpp"
-#include "pairing/offset/line_fit.hpp"
+#include "pairing/offset/part_search.hpp"
 #include "pairing/offset/refinement.hpp"
 #include "pairing/offset/schedule.hpp"
 #include "pairing/offset/turning.hpp"
@@ -20,19 +20,6 @@ using namespace detail;
 namespace {
 
 constexpr double second_us = 1e6;  // unit
-/// Offset of one part of the drive.
-struct WindowOffset {
-  double time = 0;    ///< of its middle [s since the begin of b]
-  double offset = 0;  ///< [grid steps]
-};
-
-/// offset = level + slope * time. Needs two different times.
-std::pair<double, double> line_through(const std::vector<WindowOffset>& points) {
-  LineFit line;
-  for (const WindowOffset& point : points) line.add(point.time, point.offset);
-  const double slope = line.slope();
-  return {line.level(slope), slope};
-}
 
 }  // namespace
 
@@ -151,77 +138,11 @@ struct TimeOffsetSearch::Impl {
     return part;
   }
 
-  /// The offset in each part of a long drive, outwards from where both streams agree best. A clock that
-  /// drifts smears the correlation of the whole.
   void track() {
     if (!(best.significance > 0)) return;
-    const std::size_t size = points(options.part), count = b.angles.size() / std::max<std::size_t>(1, size);
-    if (count < 3) return refine(static_cast<double>(best.lag), 0);
-    windows.assign(count, {});
-    for (std::size_t i = 0; i < count; ++i)
-      schedule.add(size / 2, [this, i] { windows[i] = best_in_window(i, best.lag, points(1)); });
-    schedule.add(count, [this] { track_outwards(); });
-  }
-
-  Correlation best_in_window(std::size_t i, std::ptrdiff_t centre, std::size_t reach) const {
-    const std::size_t size = points(options.part);
-    Correlation result;
-    const auto far = static_cast<std::ptrdiff_t>(reach);
-    for (std::ptrdiff_t lag = centre - far; lag <= centre + far; ++lag) {
-      const Correlation here = correlation_at(a.angles, b.angles, i * size, (i + 1) * size, lag, size / 4);
-      if (here.significance > result.significance) result = here;
-    }
-    return result;
-  }
-
-  void track_outwards() {
-    std::size_t start = 0;
-    for (std::size_t i = 1; i < windows.size(); ++i)
-      if (windows[i].significance > windows[start].significance) start = i;
-    const std::size_t reach = std::max<std::size_t>(1, points(options.part_drift * options.part)) + 1;
-    const auto follow = [this, reach](std::size_t i, std::ptrdiff_t& lag) {
-      windows[i] = best_in_window(i, lag, reach);
-      // a part without turns shows no offset
-      if (windows[i].value > options.part_correlation) lag = windows[i].lag;
-    };
-    schedule.add(1, [this, start, follow, forwards = std::make_shared<std::ptrdiff_t>(windows[start].lag),
-                     backwards = std::make_shared<std::ptrdiff_t>(windows[start].lag)] {
-      for (std::size_t i = start + 1; i < windows.size(); ++i)
-        schedule.add(points(options.part) / 4, [follow, i, forwards] { follow(i, *forwards); });
-      for (std::size_t i = start; i-- > 0;)
-        schedule.add(points(options.part) / 4, [follow, i, backwards] { follow(i, *backwards); });
-      schedule.add(windows.size(), [this] { fit_line(); });
-    });
-  }
-
-  void fit_line() {
-    std::vector<WindowOffset> points_;
-    for (std::size_t i = 0; i < windows.size(); ++i)
-      if (windows[i].value > options.part_correlation)
-        points_.push_back(
-            {(static_cast<double>(i) + 0.5) * options.part, static_cast<double>(windows[i].lag)});
-    const auto global = static_cast<double>(best.lag);
-    if (points_.size() < 3) return refine(global, 0);
-    auto [level, slope] = line_through(points_);
-    // parts that found another peak
-    std::vector<double> distances;
-    for (const WindowOffset& point : points_)
-      distances.push_back(std::abs(point.offset - level - slope * point.time));
-    std::vector<double> sorted = distances;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const double limit = 1 + 3 * sorted[sorted.size() / 2];
-    std::vector<WindowOffset> near;
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      if (distances[i] <= limit) near.push_back(points_[i]);
-    if (near.size() >= 3) std::tie(level, slope) = line_through(near);
-    const double step = static_cast<double>(step_us) / second_us;
-    const double middle = 0.5 * options.part * static_cast<double>(windows.size());
-    const double rate = slope * step;
-    // what three grid points at both ends cannot show is left to the refinement
-    if (!(std::abs(rate) < 2 * options.part_drift) || std::abs(rate) * middle < 3 * step)
-      return refine(global, 0);
-    refine(level + slope * middle, rate);
+    parts.emplace(a.angles, b.angles, step_us, options, schedule,
+                  [this](double lag, double rate) { refine(lag, rate); });
+    parts->begin(best.lag);
   }
 
   /// lag [grid steps], in the middle of b where the clock drifts.
@@ -233,9 +154,8 @@ struct TimeOffsetSearch::Impl {
                        to = std::min(b.poses.back().time_us, a.poses.back().time_us - offset_us);
     if (to <= from) return;
     ClockLine model;
-    model.at_b_us = rate != 0 ? begin_b + static_cast<std::int64_t>(0.5 * options.part * second_us *
-                                                                    static_cast<double>(windows.size()))
-                              : from + (to - from) / 2;
+    model.at_b_us =
+        rate != 0 ? begin_b + static_cast<std::int64_t>(parts->middle() * second_us) : from + (to - from) / 2;
     model.at_a_us = model.at_b_us + offset_us;
     model.rate = rate;
     refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [] {});
@@ -249,7 +169,7 @@ struct TimeOffsetSearch::Impl {
   std::optional<LagSearch> lags;
   Correlation best;
   bool searched_part = false;
-  std::vector<Correlation> windows;
+  std::optional<PartSearch> parts;
   std::optional<Refinement> refinement;
 };
 
