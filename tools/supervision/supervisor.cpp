@@ -64,6 +64,43 @@ std::string ending(int status) {
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }
 
+/// What the supervisor reports. Where the screen is the monitor's, lines go to a file, the last one also to
+/// the screen in the end.
+class Messages {
+ public:
+  explicit Messages(const SupervisorOptions& options) : options_(options) {}
+  ~Messages() {
+    if (output_ >= 0) close(output_);
+  }
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+
+  void report(const std::string& line, bool at_the_end_too = false) {
+    if (!options_.quiet || options_.output_dir.empty()) {
+      fmt::print(stderr, "egocal up: {}\n", line);
+      return;
+    }
+    if (at_the_end_too) last_line_ = line;
+    try {
+      if (output_ < 0) output_ = open_output(options_.output_dir + "/up.out");
+    } catch (const Error&) {
+      last_line_ = line;
+      return;
+    }
+    const std::string text = line + "\n";
+    if (write(output_, text.data(), text.size()) < 0) last_line_ = line;
+  }
+
+  void end() {
+    if (!last_line_.empty()) fmt::print(stderr, "egocal up: {}\n", last_line_);
+  }
+
+ private:
+  const SupervisorOptions& options_;
+  int output_ = -1;
+  std::string last_line_;
+};
+
 class Supervisor {
  public:
   Supervisor(const std::vector<Program>& programs, const SupervisorOptions& options) : options_(options) {
@@ -77,8 +114,7 @@ class Supervisor {
   }
   ~Supervisor() {
     close(signals_);
-    if (own_output_ >= 0) close(own_output_);
-    if (!last_words_.empty()) fmt::print(stderr, "egocal up: {}\n", last_words_);
+    messages_.end();  // before a signal that waits can end us
     sigprocmask(SIG_SETMASK, &old_mask_, nullptr);
   }
   Supervisor(const Supervisor&) = delete;
@@ -138,7 +174,7 @@ class Supervisor {
       return open_output(output_file(child));
     } catch (const Error& error) {
       if (!child.has_started) throw;
-      say(std::string(error.what()) + "; its output is not kept");
+      messages_.report(std::string(error.what()) + "; its output is not kept");
       return open("/dev/null", O_WRONLY | O_CLOEXEC);
     }
   }
@@ -186,9 +222,9 @@ class Supervisor {
         end_at_ = Clock::now() + (child.program.foreground ? milliseconds(0) : options_.settle);
         return;
       case Restarts::Next::hopeless:
-        say(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
-                        options_.output_dir.empty() ? "" : ", see " + output_file(child)),
-            true);
+        messages_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
+                                     options_.output_dir.empty() ? "" : ", see " + output_file(child)),
+                         true);
         failed_ = true;
         end_all(SIGTERM, false);
         return;
@@ -207,8 +243,8 @@ class Supervisor {
       return;
     child.reported = reason;
     child.reported_at = now;
-    say(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason,
-                    child.restarts.pause().count()));
+    messages_.report(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason,
+                                 child.restarts.pause().count()));
   }
 
   /// How it ended, and what it said last.
@@ -216,23 +252,6 @@ class Supervisor {
     const std::string said =
         options_.output_dir.empty() || child.program.foreground ? "" : last_line(output_file(child));
     return ending(status) + (said.empty() ? "" : ": " + said);
-  }
-
-  /// Where the screen is the monitor's, messages go to a file, the last one also to the screen in the end.
-  void say(const std::string& line, bool last_words = false) {
-    if (!options_.quiet || options_.output_dir.empty()) {
-      fmt::print(stderr, "egocal up: {}\n", line);
-      return;
-    }
-    if (last_words) last_words_ = line;
-    try {
-      if (own_output_ < 0) own_output_ = open_output(options_.output_dir + "/up.out");
-    } catch (const Error&) {
-      last_words_ = line;
-      return;
-    }
-    const std::string text = line + "\n";
-    if (write(own_output_, text.data(), text.size()) < 0) last_words_ = line;
   }
 
   void end_all(int signal, bool foreground_knows) {
@@ -245,7 +264,7 @@ class Supervisor {
   void kill_all() {
     for (const Child& child : children_) {
       if (child.pid <= 0) continue;
-      say(fmt::format("{} did not end and is killed", child.program.name));
+      messages_.report(fmt::format("{} did not end and is killed", child.program.name));
       kill(child.pid, SIGKILL);
     }
     kill_at_ = Clock::now() + options_.patience;
@@ -261,8 +280,8 @@ class Supervisor {
   SupervisorOptions options_;
   std::vector<Child> children_;
   sigset_t old_mask_{};
-  int signals_ = -1, own_output_ = -1;
-  std::string last_words_;
+  int signals_ = -1;
+  Messages messages_{options_};
   std::optional<Clock::time_point> end_at_;
   Clock::time_point kill_at_{};
   bool ending_ = false, failed_ = false;
