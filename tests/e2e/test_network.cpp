@@ -6,7 +6,10 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <utility>
 
 #include "processes.hpp"
 
@@ -223,6 +226,29 @@ TEST_F(Network, LcmsOwnLoggerAndPlayerUnderstandOurs) {
   ChildProcess lcm_player({"lcm-logplayer", "--lcm-url=" + url, "--speed=4", log}, folder / "player.log");
   EXPECT_TRUE(until([&] { return problem && problem->matched == 39; }, 20s));
   EXPECT_EQ(received, large.size());
+}
+
+/// "routing or firewall" was blamed for a limit of the user's shell.
+TEST_F(Network, IsNotBlamedWhereTooFewFilesMayBeOpen) {
+  for (const std::string program : {"egocal-pairing", "egocal-fast", "egocal-global"}) {
+    const auto limited = [&](const std::string& most) {
+      const std::string log = folder / (program + most + ".log");
+      return std::pair{log, ChildProcess({"sh", "-c", "ulimit -n " + most + "; exec \"$0\" \"$@\"",
+                                          bin + "/" + program, "--rig", rig_file, "--lcm-url", url},
+                                         log)};
+    };
+    auto [few_log, few] = limited("5");
+    EXPECT_EQ(few.wait(5s), 1) << program;
+    std::ifstream in(few_log);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(text.find("Too many open files"), std::string::npos) << text;
+    EXPECT_EQ(text.find("route"), std::string::npos) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+
+    statuses.clear();
+    const auto enough = limited("12");
+    EXPECT_TRUE(until([&] { return statuses.contains(program); }, 5s)) << program;
+  }
 }
 
 }  // namespace
