@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -138,6 +139,7 @@ struct BlockForm {
 template <typename Block>
 std::vector<Block> doubled(const std::vector<Block>& blocks) {
   std::vector<Block> result;
+  result.reserve((blocks.size() + 1) / 2);
   for (std::size_t i = 0; i < blocks.size(); ++i)
     if (i % 2 == 0)
       result.push_back(blocks[i]);
@@ -172,9 +174,16 @@ void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
     detail::solve_factorised(factors, column, directions.shown);
     inverse.col(i) = column;
   }
+  // x'Hx as the sum over the upper triangle of H, its entries beside the diagonal twice
+  Eigen::Matrix<double, 6, 21> products;
+  for (int j = 0, k = 0; j < 6; ++j)
+    for (int i = 0; i <= j; ++i)
+      products.col(k++) = (i == j ? 1.0 : 2.0) * inverse.row(i).cwiseProduct(inverse.row(j)).transpose();
   for (BlockForm& block : blocks) {
-    const Matrix6d H_inverse = block.form.curvature.lazyProduct(inverse);
-    block.information = inverse.cwiseProduct(H_inverse).colwise().sum().transpose().cwiseMax(0.0);
+    Vector6d information = Vector6d::Zero();
+    for (int j = 0, k = 0; j < 6; ++j)
+      for (int i = 0; i <= j; ++i) information += block.form.curvature(i, j) * products.col(k++);
+    block.information = information.cwiseMax(0.0);
   }
 }
 
@@ -182,13 +191,22 @@ void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
 Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& all, double pairs,
                        const ShownDirections& directions) {
   Jackknife jackknife(pairs);
-  for (const BlockForm& block : blocks) {
+  const auto without = [&](const BlockForm& block) {
     TangentForm rest = all;
     rest -= block.form;
-    const Vector6d step = TangentSpace::newton_step(rest, directions.shown);
+    return rest;
+  };
+  std::size_t i = 0;
+  for (; directions.shown == 6 && i + 1 < blocks.size(); i += 2) {
+    const auto steps = TangentSpace::newton_steps(without(blocks[i]), without(blocks[i + 1]));
+    jackknife.leave_out(blocks[i].pairs, steps[0], blocks[i].information);
+    jackknife.leave_out(blocks[i + 1].pairs, steps[1], blocks[i + 1].information);
+  }
+  for (; i < blocks.size(); ++i) {
+    const Vector6d step = TangentSpace::newton_step(without(blocks[i]), directions.shown);
     const bool as_they_are = directions.shown == 6;
-    jackknife.leave_out(block.pairs, as_they_are ? step : Vector6d(directions.basis.lazyProduct(step)),
-                        block.information);
+    jackknife.leave_out(blocks[i].pairs, as_they_are ? step : Vector6d(directions.basis.lazyProduct(step)),
+                        blocks[i].information);
   }
   return jackknife;
 }
@@ -208,18 +226,23 @@ double scatter_of_long_parts(const Jackknife& of_four, const Vector6d& spread) {
 }
 
 /// Per direction the larger of the variances with single and with double blocks, times what longer parts say.
-Vector6d spatial_variance(const Problem& problem, const Statistics& all, const ShownDirections& directions,
+Vector6d spatial_variance(const Problem& problem, double pairs, const ShownDirections& directions,
                           ErrorCorrelation errors, const ObservabilityOptions& options) {
   std::vector<BlockForm> blocks;
+  blocks.reserve(problem.blocks.size());
   TangentForm sum;
-  for (const Statistics& block : problem.blocks) {
-    const TangentForm form = directions.space.form(block);
+  const auto take = [&](const Statistics& block, const TangentForm& form) {
     sum += form;
     if (!detail::takes_off(block))
       blocks.push_back({form, static_cast<double>(block.count), Vector6d::Zero()});
+  };
+  for (std::size_t i = 0; i < problem.blocks.size(); i += 2) {
+    const Statistics& next = problem.blocks[std::min(i + 1, problem.blocks.size() - 1)];
+    const std::array<TangentForm, 2> forms = directions.space.forms(problem.blocks[i], next);
+    take(problem.blocks[i], forms[0]);
+    if (i + 1 < problem.blocks.size()) take(next, forms[1]);
   }
   set_information(blocks, sum, directions);
-  const auto pairs = static_cast<double>(all.count);
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
   Vector6d variance = single.variance();
   if (looks_at_double_blocks(problem, errors, options)) {
@@ -254,7 +277,8 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
                                     const ObservabilityOptions& options) {
   Observability result;
   result.stddev.fill(infinity);
-  const Statistics all = sum_blocks(problem.blocks);
+  double pairs = 0;
+  for (const Statistics& block : problem.blocks) pairs += static_cast<double>(block.count);
   const double length = detail::length_scale(Q_metres);
   const Matrix8d Q = detail::in_units_of(length, Q_metres);
   const DualQuaternion q = detail::in_units_of(length, T_a_b);
@@ -265,7 +289,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   // rotation noise adds to D (a quarter, as d = t r / 2), in the rotations the fluctuation of J, whose mean
   // lambda_1 takes off already.
   const double noise = rotation_noise(Q, q);
-  const double fluctuation = 4 / std::sqrt(std::max(1.0, static_cast<double>(all.count)));
+  const double fluctuation = 4 / std::sqrt(std::max(1.0, pairs));
   Matrix6d clean = H;
   clean.diagonal().head<3>().array() -= 0.25 * noise * (options.independent_noise + fluctuation);
   clean.diagonal().tail<3>().array() -= 0.25 * fluctuation * std::max(0.0, cost(Q, q));
@@ -307,7 +331,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
   const Matrix6d basis = hidden == 0 ? Matrix6d::Identity() : Matrix6d(seen.vectors.rowwise().reverse());
   const Matrix86d tangent = hidden == 0 ? T : Matrix86d(T.lazyProduct(basis));
   const ShownDirections directions{TangentSpace(q, length, tangent, problem.balance), basis, 6 - hidden};
-  const Vector6d variance = spatial_variance(problem, all, directions, errors, options);
+  const Vector6d variance = spatial_variance(problem, pairs, directions, errors, options);
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();

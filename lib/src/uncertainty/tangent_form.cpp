@@ -49,27 +49,27 @@ TangentForm TangentSpace::form(const Statistics& statistics) const {
   return form;
 }
 
-Vector6d TangentSpace::newton_step(const TangentForm& form, int directions) {
-  Matrix6d factors = form.curvature;
-  if (!factorise(factors, directions)) return Vector6d::Constant(std::numeric_limits<double>::infinity());
-  Vector6d step = -form.gradient;
-  for (int i = directions; i < 6; ++i) step[i] = 0;
-  solve_factorised(factors, step, directions);
-  return step;
-}
-
 namespace {
 
+/// Numbers of two problems side by side.
+using Both = Eigen::Array2d;
+
+bool positive(double x) {
+  return x > 0;
+}
+bool positive(const Both& x) {
+  return x[0] > 0 && x[1] > 0;
+}
+
 /// n: a number that is known when this is compiled makes straight code of the loops.
-template <typename N>
-bool factorise_leading(Matrix6d& A, N n) {
-  double* const a = A.data();
+template <typename Number, typename N>
+bool factorise_leading(Number* const a, N n) {
   for (int j = 0; j < n; ++j) {
-    const double pivot = a[7 * j];
-    if (!(pivot > 0)) return false;
-    const double inverse = 1 / pivot;
+    const Number pivot = a[7 * j];
+    if (!positive(pivot)) return false;
+    const Number inverse = 1 / pivot;
     for (int k = j + 1; k < n; ++k) {
-      const double scaled = a[6 * j + k] * inverse;
+      const Number scaled = a[6 * j + k] * inverse;
       for (int i = k; i < n; ++i) a[6 * k + i] -= a[6 * j + i] * scaled;
       a[6 * j + k] = scaled;
     }
@@ -78,9 +78,8 @@ bool factorise_leading(Matrix6d& A, N n) {
   return true;
 }
 
-template <typename N>
-void solve_leading(const Matrix6d& factors, Vector6d& x, N n) {
-  const double* const a = factors.data();
+template <typename Number, typename N>
+void solve_leading(const Number* const a, Number* const x, N n) {
   for (int j = 0; j < n; ++j)
     for (int i = j + 1; i < n; ++i) x[i] -= a[6 * j + i] * x[j];
   for (int j = n - 1; j >= 0; --j) {
@@ -94,11 +93,88 @@ using All = std::integral_constant<int, 6>;
 }  // namespace
 
 bool factorise(Matrix6d& A, int n) {
-  return n == 6 ? factorise_leading(A, All()) : factorise_leading(A, n);
+  return n == 6 ? factorise_leading(A.data(), All()) : factorise_leading(A.data(), n);
 }
 
 void solve_factorised(const Matrix6d& factors, Vector6d& x, int n) {
-  n == 6 ? solve_leading(factors, x, All()) : solve_leading(factors, x, n);
+  n == 6 ? solve_leading(factors.data(), x.data(), All()) : solve_leading(factors.data(), x.data(), n);
+}
+
+/// As form(), number by number: matrices of two problems have no packets of their own.
+std::array<TangentForm, 2> TangentSpace::forms(const Statistics& first, const Statistics& second) const {
+  if (!starts_with_translations_) return {form(first), form(second)};
+  const Matrix8d &x = first.dual_rows, &y = second.dual_rows;
+  const double rotation = balance_.rotation, translation = balance_.translation;
+  Both A[4][4], B[4][4], D[4][4];
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) {
+      const Both real{x(i + 4, j + 4), y(i + 4, j + 4)};
+      A[i][j] = translation * Both{x(i, j), y(i, j)} + rotation * real;
+      B[i][j] = translation * Both{x(i, j + 4), y(i, j + 4)};
+      D[i][j] = translation * real;
+    }
+  const auto &U = upper_, &L = lower_;
+  Both upper[4][7], lower[4][7];  // S [T, q]; the translations' columns of the upper one are not needed
+  for (int i = 0; i < 4; ++i)
+    for (int c = 0; c < 7; ++c) {
+      lower[i][c] = D[i][0] * L(0, c) + D[i][1] * L(1, c) + D[i][2] * L(2, c) + D[i][3] * L(3, c);
+      if (c < 3) continue;
+      lower[i][c] += B[0][i] * U(0, c) + B[1][i] * U(1, c) + B[2][i] * U(2, c) + B[3][i] * U(3, c);
+      upper[i][c] = B[i][0] * L(0, c) + B[i][1] * L(1, c) + B[i][2] * L(2, c) + B[i][3] * L(3, c);
+      upper[i][c] += A[i][0] * U(0, c) + A[i][1] * U(1, c) + A[i][2] * U(2, c) + A[i][3] * U(3, c);
+    }
+  Both norm = Both::Zero(), orthogonal = Both::Zero();
+  for (int i = 0; i < 4; ++i) {
+    norm += multipliers_(i, 0) * upper[i][6] + length_ * multipliers_(i + 4, 0) * lower[i][6];
+    orthogonal += multipliers_(i, 1) * upper[i][6] + length_ * multipliers_(i + 4, 1) * lower[i][6];
+  }
+  std::array<TangentForm, 2> result;
+  const auto product = [&](int row, int column) {
+    Both sum = L(0, row) * lower[0][column] + L(1, row) * lower[1][column] + L(2, row) * lower[2][column] +
+               L(3, row) * lower[3][column];
+    if (row >= 3)
+      sum += U(0, row) * upper[0][column] + U(1, row) * upper[1][column] + U(2, row) * upper[2][column] +
+             U(3, row) * upper[3][column];
+    return sum;
+  };
+  for (int j = 0; j < 6; ++j) {
+    for (int i = j; i < 6; ++i) {
+      // T'ST is symmetric: the rows of the translations are the shorter ones
+      const Both sum = i >= 3 && j < 3 ? product(j, i) : product(i, j);
+      const Both curvature = sum - norm * norm_(i, j) + orthogonal * orthogonal_(i, j);
+      for (std::size_t k = 0; k < 2; ++k)
+        result[k].curvature(i, j) = result[k].curvature(j, i) = curvature[static_cast<Eigen::Index>(k)];
+    }
+    const Both gradient = product(j, 6);
+    for (std::size_t k = 0; k < 2; ++k) result[k].gradient[j] = gradient[static_cast<Eigen::Index>(k)];
+  }
+  return result;
+}
+
+std::array<Vector6d, 2> TangentSpace::newton_steps(const TangentForm& first, const TangentForm& second) {
+  std::array<Both, 36> factors;  // the lower triangle
+  std::array<Both, 6> x;
+  for (int j = 0; j < 6; ++j)
+    for (int i = j; i < 6; ++i)
+      factors[static_cast<std::size_t>(6 * j + i)] = {first.curvature(i, j), second.curvature(i, j)};
+  for (int i = 0; i < 6; ++i) x[static_cast<std::size_t>(i)] = {-first.gradient[i], -second.gradient[i]};
+  if (!factorise_leading(factors.data(), All())) return {newton_step(first), newton_step(second)};
+  solve_leading(factors.data(), x.data(), All());
+  std::array<Vector6d, 2> steps;
+  for (int i = 0; i < 6; ++i) {
+    steps[0][i] = x[static_cast<std::size_t>(i)][0];
+    steps[1][i] = x[static_cast<std::size_t>(i)][1];
+  }
+  return steps;
+}
+
+Vector6d TangentSpace::newton_step(const TangentForm& form, int directions) {
+  Matrix6d factors = form.curvature;
+  if (!factorise(factors, directions)) return Vector6d::Constant(std::numeric_limits<double>::infinity());
+  Vector6d step = -form.gradient;
+  for (int i = directions; i < 6; ++i) step[i] = 0;
+  solve_factorised(factors, step, directions);
+  return step;
 }
 
 }  // namespace egocal::detail

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 
 #include "egocal/problem/cost.hpp"
@@ -37,9 +39,13 @@ class TangentSpace {
   /// Its curvature is that of Z = S - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0] at the least squares
   /// multipliers, which are linear in S as well.
   TangentForm form(const Statistics& statistics) const;
+  /// Of two, up to rounding, at little more than the cost of one.
+  std::array<TangentForm, 2> forms(const Statistics& first, const Statistics& second) const;
   /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
   /// Infinite where the curvature is not positive definite.
   static Vector6d newton_step(const TangentForm& form, int directions = 6);
+  /// The same bits for two forms in all six coordinates, at little more than the cost of one.
+  static std::array<Vector6d, 2> newton_steps(const TangentForm& first, const TangentForm& second);
 
  private:
   Balance balance_;
