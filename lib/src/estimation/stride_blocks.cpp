@@ -11,8 +11,8 @@ namespace egocal {
 namespace {
 
 void add(StrideCell& to, const StrideCell& cell) {
-  to.motions += cell.motions;
-  to.rotations += cell.rotations;
+  if (cell.motions.count > 0) to.motions += cell.motions;
+  if (cell.rotations.count > 0) to.rotations += cell.rotations;  // few cells have any
 }
 
 bool empty(const StrideCell& cell) {
@@ -49,6 +49,8 @@ void StrideBlocks::add_instant(std::uint64_t index) {
     state_.instants.push_back(0);
     state_.outlier.push_back(0);
     for (StrideSum& sum : state_.strides) {
+      sum.near.reserve(most_blocks);
+      sum.far.reserve(most_blocks);
       sum.near.emplace_back();
       sum.far.emplace_back();
     }

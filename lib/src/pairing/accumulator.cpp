@@ -139,13 +139,15 @@ void Accumulator::choose() {
   const Problem problem = empty_problem();
   std::vector<Candidate> candidates;
   std::optional<std::size_t> current;
+  candidates.reserve(state_.strides.size() * options_.accumulator.balances.size());
   for (const AccumulatorState::PerStride& entry : state_.strides) {
+    const std::vector<Statistics> inliers = entry.statistics.inliers();
     for (const double translation : options_.accumulator.balances) {
       const Balance balance = options_.balance.value_or(Balance{1, translation});
       if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
           balance.translation == state_.choice.balance.translation)
         current = candidates.size();
-      candidates.push_back({entry.stride, balance, entry.statistics.inliers()});
+      candidates.push_back({entry.stride, balance, inliers});
       if (options_.balance) break;
     }
   }

@@ -21,10 +21,34 @@ double score(const Spread& spread, int stride, const SelectionOptions& options) 
   return noise ? sum - options.longer * std::log2(stride) : sum;
 }
 
+/// parts: with blocks of at least two strides' length.
+std::optional<Spread> spread_of(const Problem& parts, const SelectionOptions& options) {
+  if (parts.blocks.size() < options.least_parts) return std::nullopt;
+  const Matrix8d Q = cost_matrix(parts);
+  const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
+  const Observability known = assess_observability(parts, Q, answer.T_a_b, ErrorCorrelation::independent);
+  Spread result;
+  double rotation = 0, translation = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!known.observable[i] || !std::isfinite(known.stddev[i])) continue;
+    ++result.directions;
+    (i < 3 ? translation : rotation) += known.stddev[i] * known.stddev[i];
+  }
+  if (result.directions == 0) return std::nullopt;
+  result.rotation = std::sqrt(rotation);
+  result.translation = std::sqrt(translation);
+  return result;
+}
+
+std::uint64_t two_motions(int stride) {
+  return 2 * static_cast<std::uint64_t>(stride);
+}
+
 }  // namespace
 
 std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std::uint64_t least_pairs) {
   std::vector<Statistics> parts;
+  parts.reserve(blocks.size());
   for (const Statistics& block : blocks) {
     if (parts.empty() || parts.back().count >= least_pairs) parts.emplace_back();
     parts.back() += block;
@@ -47,22 +71,8 @@ std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks
 
 std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options) {
   Problem parts = problem;
-  parts.blocks = merge_blocks(problem.blocks, 2 * static_cast<std::uint64_t>(stride));
-  if (parts.blocks.size() < options.least_parts) return std::nullopt;
-  const Matrix8d Q = cost_matrix(parts);
-  const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
-  const Observability known = assess_observability(parts, Q, answer.T_a_b, ErrorCorrelation::independent);
-  Spread result;
-  double rotation = 0, translation = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    if (!known.observable[i] || !std::isfinite(known.stddev[i])) continue;
-    ++result.directions;
-    (i < 3 ? translation : rotation) += known.stddev[i] * known.stddev[i];
-  }
-  if (result.directions == 0) return std::nullopt;
-  result.rotation = std::sqrt(rotation);
-  result.translation = std::sqrt(translation);
-  return result;
+  parts.blocks = merge_blocks(problem.blocks, two_motions(stride));
+  return spread_of(parts, options);
 }
 
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
@@ -70,11 +80,11 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
                                           const SelectionOptions& options) {
   std::optional<Selection> best;
   double best_score = 0;
+  Problem trial = problem;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    Problem trial = problem;
     trial.balance = candidates[i].balance;
-    trial.blocks = candidates[i].blocks;
-    const std::optional<Spread> here = answer_spread(trial, candidates[i].stride, options);
+    trial.blocks = merge_blocks(candidates[i].blocks, two_motions(candidates[i].stride));
+    const std::optional<Spread> here = spread_of(trial, options);
     if (!here) continue;
     const double here_score =
         score(*here, candidates[i].stride, options) - (current == i ? 2 * options.hysteresis : 0);

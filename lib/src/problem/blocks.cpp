@@ -58,6 +58,7 @@ std::vector<Statistics> BlockStatistics::inliers() const {
     if (!block.outlier) kept.push_back(block.statistics);
   if (kept.size() <= max_inlier_blocks) return kept;
   std::vector<Statistics> joined;
+  joined.reserve((kept.size() + 1) / 2);
   for (std::size_t i = 0; i < kept.size(); i += 2) {
     joined.push_back(kept[i]);
     if (i + 1 < kept.size()) joined.back() += kept[i + 1];
