@@ -37,15 +37,11 @@ Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpr
   Goal goal;
   goal.reached = missing.empty();
   if (goal.reached) return goal;
-  std::vector<std::size_t> indices;
-  for (const auto& [ratio, i] : missing) {
-    goal.missing.emplace_back(directions[i]);
-    indices.push_back(i);
-  }
+  for (const auto& [ratio, i] : missing) goal.missing.emplace_back(directions[i]);
   const double worst = missing.front().first;
   if (std::isfinite(worst) && answered.seconds > 0)
     goal.seconds_left = answered.seconds * (std::pow(worst, 1 / tuning.exponent) - 1);
-  goal.next = next_manoeuvre(answered, options, indices);
+  goal.next = next_manoeuvre(answered, options, missing, goal.seconds_left, tuning.exponent);
   return goal;
 }
 

@@ -3,6 +3,7 @@
 #include "diagnosis/manoeuvres.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,7 +20,7 @@ namespace {
 struct Manoeuvre {
   const char* words;
   Eigen::Vector3d turn;    ///< amplitude about forward, left, up
-  Eigen::Vector3d travel;  ///< part of the typical length of a motion
+  Eigen::Vector3d travel;  ///< part of the typical length of a motion; bumps are driven slowly
   bool turns_alternate;    ///< from side to side; otherwise one way all the time
 };
 
@@ -27,17 +28,26 @@ constexpr double degree = std::numbers::pi / 180;
 /// Motions that one manoeuvre gives: 16 s at a motion a second. Part of the catalogue, which ranks manoeuvres
 /// against each other; changes no answer.
 constexpr int motions = 16;
+constexpr double motions_per_second = 1;  ///< at most
+/// A manoeuvre is advised where it reaches the goal within this part of the time that more of the same takes.
+constexpr double most_of_the_time = 0.5;
+
+const char* as_before(Platform platform) {
+  if (platform == Platform::car) return "Drive on as before: no manoeuvre would be much faster.";
+  return "Go on as before: no manoeuvre would be much faster.";
+}
 
 std::vector<Manoeuvre> catalogue(Platform platform) {
   using V = Eigen::Vector3d;
   if (platform == Platform::car)
-    return {{"Drive tight curves both ways: a figure eight, twice.", V(0, 0, 20) * degree, V(1, 0, 0), true},
-            {"Drive a slalom.", V(1, 0, 8) * degree, V(1, 0, 0), true},
-            {"Drive straight over speed bumps or a ramp, five times.", V(0, 4, 0) * degree, V(1, 0, 0), true},
-            {"Drive over a kerb or a ramp at an angle, both ways, five times.", V(4, 4, 2) * degree,
-             V(1, 0, 0), true},
-            {"Drive banked curves.", V(3, 1, 10) * degree, V(1, 0, 0), false},
-            {"Drive straight on for a while.", V(0, 0, 0.5) * degree, V(1, 0, 0), true}};
+    return {
+        {"Drive tight curves both ways: a figure eight, twice.", V(0, 0, 20) * degree, V(0.6, 0, 0), true},
+        {"Drive a slalom.", V(1, 0, 8) * degree, V(0.7, 0, 0), true},
+        {"Drive straight over speed bumps or a ramp, five times.", V(0, 4, 0) * degree, V(0.4, 0, 0), true},
+        {"Drive over a kerb or a ramp at an angle, both ways, five times.", V(4, 4, 2) * degree, V(0.3, 0, 0),
+         true},
+        {"Drive banked curves.", V(3, 1, 10) * degree, V(0.8, 0, 0), false},
+        {"Drive straight on for a while.", V(0, 0, 0.5) * degree, V(1, 0, 0), true}};
   const bool arm = platform == Platform::arm, drone = platform == Platform::drone;
   return {{arm     ? "Turn the hand about its x axis, both ways, by 30 degrees and more."
            : drone ? "Fly sideways, left and right, with strong roll."
@@ -80,10 +90,12 @@ Body body_of(const Answered& answered, const Matrix6d& shown) {
   if (forward.norm() < 0.1) forward = up.unitOrthogonal();
   forward.normalize();
   body.axes << forward, up.cross(forward), up;
-  // tr A_dual / tr D is about the squared length over the squared half-angle of the motions
+  // the upper left block is (16)'s rotation part, which the lower right one holds as well, and for each
+  // motion 4 (|a_d|^2 + |b_d|^2), about twice its squared length
   const Matrix8d Q = cost_matrix(answered.problem);
-  const double length2 =
-      Q.topLeftCorner<4, 4>().trace() / std::max(1e-12, answered.problem.balance.translation);
+  const double weight = std::max(1e-12, answered.problem.balance.translation);
+  const double of_rotation = answered.problem.balance.rotation / weight * Q.bottomRightCorner<4, 4>().trace();
+  const double length2 = (Q.topLeftCorner<4, 4>().trace() - of_rotation) / (2 * weight);
   body.length = std::clamp(std::sqrt(std::max(0.0, length2)), 0.05, 50.0);
   return body;
 }
@@ -109,7 +121,8 @@ Matrix6d information_of(const Manoeuvre& manoeuvre, const Body& body, const Answ
 }  // namespace
 
 std::string next_manoeuvre(const Answered& answered, const GoalOptions& options,
-                           const std::vector<std::size_t>& missing) {
+                           const std::vector<Missing>& missing, std::optional<double> seconds_left,
+                           double exponent) {
   const Problem& problem = answered.problem;
   if (problem.mode == Mode::planar) return "Drive curves both ways: a figure eight, twice.";
   const Matrix8d Q = cost_matrix(problem);
@@ -139,25 +152,46 @@ std::string next_manoeuvre(const Answered& answered, const GoalOptions& options,
   const SymmetricEigen<6> spectrum = symmetric_eigen<6>(known);
   known = spectrum.vectors * spectrum.values.cwiseMax(0.0).asDiagonal() * spectrum.vectors.transpose();
 
+  const auto covariance_with = [&](const Matrix6d& added) {
+    Matrix6d sum = count * known + added;
+    sum += 1e-12 * sum.diagonal().cwiseAbs().sum() * Matrix6d::Identity();
+    return Matrix6d(noise * sum.ldlt().solve(Matrix6d::Identity()));
+  };
+  const Matrix6d now = covariance_with(Matrix6d::Zero());
+  // of the direction that is known worst then: its standard deviation as a part of the wanted one
+  const auto worst_with = [&](const Matrix6d& added) {
+    const Matrix6d covariance = covariance_with(added);
+    double worst = 0;
+    for (const auto& [ratio, i] : missing) {
+      const int k = static_cast<int>(i);
+      const double wanted = i < 3 ? options.translation : options.rotation;
+      // from its own spread, where it has one, and as spreads fall with the information
+      worst = std::max(worst, std::isfinite(ratio)
+                                  ? ratio * std::pow(std::abs(covariance(k, k) / now(k, k)), exponent)
+                                  : std::sqrt(std::abs(covariance(k, k))) / wanted);
+    }
+    return worst;
+  };
+  // a manoeuvre again and again, against more of what was driven so far: as many motions as the drive counts
+  // for in this time
+  const double rate =
+      answered.seconds > 0 ? std::min(motions_per_second, count / answered.seconds) : motions_per_second;
+  const double number = seconds_left ? most_of_the_time * *seconds_left * rate : motions;
   const char* best = "";
   double least = INFINITY;
   for (const Manoeuvre& manoeuvre : catalogue(platform)) {
-    Matrix6d sum =
-        count * known + motions * information_of(manoeuvre, body, answered, platform == Platform::car);
-    sum += 1e-12 * sum.diagonal().cwiseAbs().sum() * Matrix6d::Identity();
-    const Matrix6d covariance = noise * sum.ldlt().solve(Matrix6d::Identity());
-    double worst = 0;
-    for (const std::size_t i : missing) {
-      const int k = static_cast<int>(i);
-      const double wanted = i < 3 ? options.translation : options.rotation;
-      worst = std::max(worst, std::abs(covariance(k, k)) / (wanted * wanted));
-    }
+    const double worst =
+        worst_with(number * information_of(manoeuvre, body, answered, platform == Platform::car));
     if (worst < least) {
       least = worst;
       best = manoeuvre.words;
     }
   }
-  return best;
+  if (!(answered.seconds > 0)) return best;
+  // twice the information of the same driving in the same time, or it is not worth a detour
+  const Matrix6d more_of_the_same = number / (rate * answered.seconds) * count * known;
+  const bool helps = least <= std::pow(most_of_the_time, exponent) * worst_with(more_of_the_same);
+  return helps && (!seconds_left || least <= 1) ? best : as_before(platform);
 }
 
 }  // namespace egocal::detail
