@@ -164,13 +164,14 @@ Table mistakes(const Study& study, Totals& totals) {
   return table;
 }
 
-Table clean(const Study& study, std::size_t series, int poses, Totals& totals) {
+/// The drives of the series from first on, as many as series states, besides the drives of the study.
+Table clean(const Study& study, std::size_t first, std::size_t series, int poses, Totals& totals) {
   Table table{"clean", {{"drives", "number", "good", "incomplete", "doubtful", "contradictory"}}};
   std::map<std::string, Totals> rows;
   const Mistake none = testing::mistakes().front();
   const auto take = [&](const StudyDrive& drive) { run(drive, none, rows[drive.kind], study.verbose); };
   for (const StudyDrive& drive : study.simulated) take(drive);
-  for (std::size_t i = 0; i < series; ++i) take(bench::drive_of_series(i, poses));
+  for (std::size_t i = first; i < first + series; ++i) take(bench::drive_of_series(i, poses));
   for (const StudyDrive& drive : study.real) take(drive);
   for (const auto& [kind, row] : rows) {
     table.rows.push_back({kind, count(row.runs)});
@@ -185,7 +186,8 @@ Table clean(const Study& study, std::size_t series, int poses, Totals& totals) {
 int main(int argc, char** argv) {
   cli::Program program("mistake_study", "verdicts on mistakes that users make, and on clean drives", "");
   Study study;
-  int seeds = 1, poses = 1001, series = 0, few = 0;
+  int seeds = 1, poses = 1001, first = 0, series = 0, few = 0;
+  bool no_real = false;
   bool few_real = false, only_clean = false;
   std::string write, check;
   program.add_option("--seeds", seeds, "of the simulated drives; 0: none");
@@ -193,19 +195,22 @@ int main(int argc, char** argv) {
   program.add_option("--mistake", study.only, "this one alone");
   program.add_option("--few", few, "simulated drives and one real one for each mistake; 0: all");
   program.add_option("--series", series, "clean simulated drives besides");
+  program.add_option("--first", first, "number of the series' first drive, to run it in parts");
   program.add_option("--write", write, "a page: put the tables in their places");
   program.add_option("--check", check, "a page: exit 1 where its tables differ");
   program.add_flag("--small", few_real, "two real drives");
+  program.add_flag("--simulated", no_real, "no real drives");
   program.add_flag("--clean", only_clean, "without mistakes");
   program.add_flag("--verbose", study.verbose, "every run");
   program.callback([&] {
     study.simulated = bench::simulated_study_drives(seeds, poses);
-    study.real = bench::real_study_drives(few_real);
+    if (!no_real) study.real = bench::real_study_drives(few_real);
     study.few = static_cast<std::size_t>(std::max(0, few));
     Totals totals;
     std::vector<Table> tables;
     if (study.only.empty())
-      tables.push_back(clean(study, static_cast<std::size_t>(std::max(0, series)), poses, totals));
+      tables.push_back(clean(study, static_cast<std::size_t>(std::max(0, first)),
+                             static_cast<std::size_t>(std::max(0, series)), poses, totals));
     if (!only_clean) tables.push_back(mistakes(study, totals));
     std::string page = write.empty() ? "" : bench::read_page(write);
     bool same = true;

@@ -146,6 +146,16 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   return {best.as_is, twin};
 }
 
+/// Positions mirrored at the origin in one stream are those of the other one mirrored, for every rotation.
+std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explanation& found,
+                                         const DiagnosisOptions& options) {
+  const bool in_b = std::string_view(found.code) == "axes_b";
+  const PoseReading& reading = in_b ? found.read_b : found.read_a;
+  if (reading.conjugate || reading.axes != -Eigen::Matrix3d::Identity()) return std::nullopt;
+  return explained(evidence, in_b ? "axes_a" : "axes_b", in_b ? reading : PoseReading{},
+                   in_b ? PoseReading{} : reading, options);
+}
+
 /// Positions of one file in other axes than its rotations. Exchanged columns are what people do; turned axes
 /// have three more unknowns and must explain clearly more. Turned axes of one stream are up to the lever arm
 /// those of the other one turned likewise: where both fit better, both are named.
@@ -171,7 +181,7 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     if (turned_other && !fits_better(turned_other, *turned)) std::swap(turned, turned_other);
   }
   BestReading result = given;
-  if (exchanged) result = {*exchanged, {}};
+  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options)};
   if (!turned || !better(compare(result.best.explained, turned->explained), options.gain, options))
     return result;
   result = {*turned, {}};

@@ -100,6 +100,14 @@ bool casts_doubt(const Finding& finding) {
          finding.code != "clock_drift";
 }
 
+/// Another reading fits far better and has another answer. Which one it is may be open, not that the streams
+/// as given are wrong.
+bool refutes(const Finding& finding, double far, const DiagnosisOptions& options) {
+  const bool reading = finding.code == "inverted_a" || finding.code == "inverted_b" ||
+                       finding.code.starts_with("quaternion_order_");
+  return reading && far > 1 && finding.improvement > options.overwhelming;
+}
+
 struct Opinion {
   Verdict verdict = Verdict::good;
   std::string reason;
@@ -114,7 +122,8 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
       verdict = Verdict::incomplete;
     else if (stream_fault(finding))
       verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
-    else if (misread(finding) || (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
+    else if (misread(finding) || refutes(finding, far, options) ||
+             (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
       verdict = Verdict::contradictory;
     else if ((finding.certain && (far > 0.5 || finding.code == "mount_moved")) ||
              (casts_doubt(finding) && far > 1))

@@ -14,8 +14,12 @@ namespace egocal::detail {
 namespace {
 
 std::string fits(const Finding& finding) {
-  if (!finding.certain) return "the motions fit both readings";
-  return format("the squared residuals are %.3g times smaller then", finding.improvement);
+  const std::string smaller =
+      format("the squared residuals are %.3g times smaller then", finding.improvement);
+  if (finding.certain) return smaller;
+  constexpr double alike = 2;
+  return finding.improvement > alike ? smaller + ", and another reading fits as well"
+                                     : "the motions fit both readings";
 }
 
 /// "x from -y, y from x, z from z": the columns of the position that were meant.
