@@ -47,7 +47,7 @@ std::string fault(const Statistics& block) {
              : "statistics that are not a sum of squares";
 }
 
-/// What a certificate says about itself: the gap is that between cost and bound, no cost is negative by more
+/// Whether a certificate is consistent: the gap is that between cost and bound, no cost is negative by more
 /// than rounding, and only what keeps to the gap's limit, or is proven to lie close to the optimum, is
 /// certified.
 bool contradicts_itself(const calibration_t& message) {

@@ -102,8 +102,8 @@ bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
   } else if (run_) {
     ++run_->length;
   }
-  // Two numbers in a row bear each other out. One that comes after damaged bytes can be believed as far as
-  // these can have held the events in between; one that stands alone is damaged itself.
+  // Two numbers in a row confirm each other. One that comes after damaged bytes is plausible as far as
+  // these can have held the events in between; a single one is damaged itself.
   const std::uint64_t most_between = damaged_bytes / (header_size + 1) + 1;
   const bool close =
       damaged_bytes > 0 && number > last_ &&
@@ -253,9 +253,9 @@ std::string LogReader::channel_of(const Place& place) const {
   return channel;
 }
 
-/// Whether the header found inside of an event is the log going on there, and not a piece of a log that
+/// Whether the header found inside of an event is the continuation of the log, and not a piece of a log that
 /// another program has sent as a message. The next number alone proves nothing: every log has a 1. It is
-/// borne out by a higher one after it, wherever that stands (the events in between may be damaged, too), or
+/// confirmed by a higher one after it, wherever that is (the events in between may be damaged, too), or
 /// by an end where the outer event has its own.
 bool LogReader::goes_on(const Place& inner, const Place& outer) const {
   if (!follows(inner.number, outer.number)) return false;

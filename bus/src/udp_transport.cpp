@@ -120,7 +120,7 @@ class UdpTransport final : public Transport {
   int fd() const override { return receiver_.fd(); }
   bool ready() const override { return next_ < fetched_; }
 
-  /// Joining is idempotent: it fails with EADDRINUSE while the membership stands, and joins on another
+  /// Joining is idempotent: it fails with EADDRINUSE while the membership is there, and joins on another
   /// interface where the route has moved there.
   void check_network() override {
     ip_mreqn group{};
@@ -137,7 +137,7 @@ class UdpTransport final : public Transport {
   }
 
   std::string network_error() const override {
-    // joining says "No such device" where there is no route; sending says it in better words
+    // joining reports "No such device" where there is no route; the error of sending is clearer
     const int error = join_error_ == ENODEV ? ENETUNREACH : join_error_ != 0 ? join_error_ : send_error_;
     return error == 0 ? std::string{}
                       : "no multicast to " + url_.group + ": " + std::strerror(error) + remedy;

@@ -215,7 +215,7 @@ Calibration calibrate_pairs(std::span<const MotionPair> given, const Calibration
   return judged(result, diagnose(given, answered(result, problem, scale), options.diagnosis));
 }
 
-/// Scales one stream, then calibrates as always.
+/// Scales one stream, then calibrates as without a scale.
 Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
   std::optional<ScaleSolution> estimate;
   PairingOptions pairing = options.pairing;

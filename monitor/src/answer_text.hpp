@@ -13,19 +13,19 @@
 
 namespace egocal::monitor {
 
-// What an answer says, in words and numbers for people: degrees and centimetres.
+// An answer in words and numbers for people: degrees and centimetres.
 
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double centimetres_per_metre = 100.0;  // unit
 inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
-/// From one time to another [s]; no overflow, whatever a sender says.
+/// From one time to another [s]; no overflow, whatever was sent.
 double seconds(std::int64_t from_us, std::int64_t to_us);
 /// What is kept of a text from a sender: its first Model::max_text bytes.
 std::string bounded(const std::string& text);
 /// From SI to what is shown, by direction (x y z roll pitch yaw).
 double scale_of(int direction);
-/// In planar mode the ground planes say what the motions cannot.
+/// In planar mode the ground planes give what the motions cannot show.
 bool from_ground(const PairState& pair, int direction);
 bool shown_by_motion(const calibration_t& answer, int direction);
 /// x y z [m], roll pitch yaw [rad].
@@ -33,7 +33,7 @@ std::array<double, 6> components(const Pose& T);
 /// Of three standard deviations, for instance.
 double largest(const double* values);
 
-/// "+-0.94", or "plane" where the ground says it.
+/// "+-0.94", or "plane" where the ground plane gives it.
 std::string spread(const PairState& pair, const calibration_t& answer, int direction, int decimals,
                    Charset charset);
 /// "14.34 cm" or "0.262 deg": as many decimals as the size deserves.

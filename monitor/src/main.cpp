@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
                  "--once: wait at most this long for an answer of every pair [s]")
       .check(egocal::cli::Check::range(0.0, 1e6))
       .show_default();
-  app.add_option("--duration", options.duration_s, "end by itself after this long [s]; 0: never")
+  app.add_option("--duration", options.duration_s, "end after this time [s]; 0: never")
       .check(egocal::cli::Check::range(0.0, 1e9));
   app.add_option("--screen", options.screen, "screen to begin with: overview, detail or events")
       .check(egocal::cli::Check::one_of({"overview", "detail", "events"}));

@@ -39,7 +39,7 @@ bus::StandingRank rank_of(const SolverTrack& track) {
           {answer.session, answer.seq, optimality_of(answer), answer.cost}};
 }
 
-/// The mean distance of the motions between two problems says whether the stream had a gap: problems that
+/// The mean distance of the motions between two problems shows whether the stream had a gap: problems that
 /// were skipped are no gap.
 bool is_gap(const problem_t& before, const problem_t& message, double max_gap) {
   if (message.seq <= before.seq) return false;

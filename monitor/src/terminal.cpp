@@ -198,7 +198,7 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
   }
 
   const bool utf8 = std::strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
-  // the Linux console has no braille, a vt100 knows nothing of UTF-8
+  // the Linux console has no braille, a vt100 has no UTF-8
   const std::string_view k = kind;
   const bool plain = k == "linux" || k.starts_with("vt1") || k.starts_with("vt2");
   s.charset = options.charset.value_or(utf8 && !plain ? Charset::unicode : Charset::ascii);

@@ -9,8 +9,8 @@
 
 namespace egocal::services {
 
-/// The library's remedies are options of the command line. Live, what can be cured in the rig file is said in
-/// its words, the rest is for the sender.
+/// The library's remedies are options of the command line. Live, what can be cured in the rig file is worded
+/// as its fields, the rest is for the sender.
 void word_remedies(const bus::Rig& rig, const bus::PairConfig& pair, std::vector<Finding>& findings);
 
 }  // namespace egocal::services

@@ -131,7 +131,7 @@ void Pairing::publish_new_problems() {
     });
 }
 
-/// What has been said to others survives this process, unless the disk does not take it, which is shown.
+/// What was sent to others is saved beyond this process, unless the disk does not take it, which is shown.
 bool Pairing::saved_or_known_not_to_be() const {
   return !saved_ || saved_->complete() || !save_error_.empty();
 }

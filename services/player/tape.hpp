@@ -21,7 +21,7 @@ struct TapeOptions {
   // Study of both: tests/services/player/test_tape.cpp.
   /// Events of several sources are not exactly in order: up to this is no damage [us].
   std::int64_t disorder_us = 1'000'000;
-  /// Where only one neighbour says what to believe, a longer gap is damage [us].
+  /// Where only one neighbour shows what is plausible, a longer gap is damage [us].
   std::int64_t longest_gap_us = 3'600'000'000;
 };
 

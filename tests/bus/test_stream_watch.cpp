@@ -122,7 +122,7 @@ TEST_F(Watch, IsBoundedWhateverArrives) {
   EXPECT_LT(stream_lines(watch, 11'000).size(), 5u);
 }
 
-TEST_F(Watch, ItsOwnChannelsAreNobodysOdometry) {
+TEST_F(Watch, ItsOwnChannelsAreNoOdometry) {
   watch.hear("EGOCAL_STATUS", std::vector<std::byte>(10), 1000);
   EXPECT_TRUE(watch.others().empty());
 }

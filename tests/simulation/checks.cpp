@@ -118,8 +118,8 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
   check_leader(from);
 }
 
-/// Of several pairing processes of one name the one that sent first goes on. Before that it is the older one,
-/// as far as the dates of their starts say so.
+/// Of several pairing processes of one name the one that sent first continues. Before that it is the older
+/// one, as far as the dates of their starts say so.
 void Checks::check_leader(const Process& from) {
   const auto object = [&](const Process& other, const std::string& which) {
     fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
@@ -215,12 +215,12 @@ void Checks::check_wishes(const Process& from, const std::string& channel, std::
   if (anew && wish.reset_us < 0) fail('e', "a session of " + channel + " begins anew without a reason");
   if (anew || before == sessions_.end()) wish.reset_us = -1;
   sessions_[channel] = session;
-  // a process that was not there when the command came knows nothing of it
+  // a process that started after the command has not received it
   if (from.lives() > 1) return;
   if (wish.reset_us >= 0 && now > wish.reset_us + heard_us && wish.paused_us < 0 && !anew)
-    fail('h', channel + " goes on in its session after a reset");
+    fail('h', channel + " continues its session after a reset");
   if (wish.paused_us < 0 || now < wish.paused_us + heard_us) return;
-  if (wish.paused_seq >= 0 && seq > wish.paused_seq) fail('h', channel + " goes on although it is paused");
+  if (wish.paused_seq >= 0 && seq > wish.paused_seq) fail('h', channel + " continues although it is paused");
   wish.paused_seq = seq;
 }
 

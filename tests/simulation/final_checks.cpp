@@ -121,7 +121,7 @@ void Checks::compare_with_undisturbed() {
   if (all_promised)
     for (const auto& [channel, session] : begun_before_)
       if (field(newest_problem_[channel], session_at) <= session)
-        fail('e', "the log was begun anew, and " + channel + " goes on in its session");
+        fail('e', "the log began again, and " + channel + " continues its session");
   ++compared_;
   const std::vector<problem_t> expected = undisturbed(surroundings_.drive, all_promised ? nullptr : &times);
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -152,7 +152,7 @@ void Checks::check_counts() {
     for (const auto& [channel, sensor] : lineage.sensors) received += sensor.received;
     const auto in = lineage.counters.find("in");
     if (in == lineage.counters.end() || in->second != received)
-      fail('d', "pairing says that " + std::to_string(in == lineage.counters.end() ? 0 : in->second) +
+      fail('d', "pairing reports that " + std::to_string(in == lineage.counters.end() ? 0 : in->second) +
                     " messages came in; " + std::to_string(received) + " did");
     if (!plan.numbered || player_starts_ > 1 || !keeps_order()) continue;
     std::int64_t lost = 0, held_back = 0;
@@ -162,7 +162,7 @@ void Checks::check_counts() {
       if (name.starts_with("held back")) held_back += value;
     const auto shown = lineage.counters.find("lost");
     if (held_back == 0 && shown != lineage.counters.end() && shown->second != lost)
-      fail('d', "pairing says that " + std::to_string(shown->second) + " messages were lost; " +
+      fail('d', "pairing reports that " + std::to_string(shown->second) + " messages were lost; " +
                     std::to_string(lost) + " were" + counts_of(lineage.counters));
   }
 }

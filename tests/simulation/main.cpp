@@ -55,7 +55,7 @@ void write_to(const std::string& file, const Progress& progress) {
 
 volatile std::sig_atomic_t asked_to_end = 0;
 
-/// What services write for people belongs to nobody here, and nobody types.
+/// What services write for people is discarded, and no keys are typed.
 void silence_services() {
   const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
   if (null < 0) return;
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
   app.add_option("--minutes", options.minutes, "instead of --seeds: as many as fit");
   app.add_option("--corpus", options.corpus, "file with the seeds, one a line");
   app.add_option("--resume", options.resume,
-                 "file in which a long run keeps how far it is, and goes on from");
+                 "file with the progress of a long run, which continues from there");
   app.add_flag("--twice", options.twice, "live each life twice and compare the traces");
   app.add_flag("--story", options.story, "print what happens");
   app.add_flag("--everything", options.everything, "print each message as well");

@@ -60,7 +60,7 @@ struct Inbox {
   std::size_t bytes = 0;
   std::int64_t overflow = 0;
   int burst_left = 0;                               ///< datagrams that are still to be lost
-  std::map<std::string, bool, std::less<>> wanted;  ///< as its process said last
+  std::map<std::string, bool, std::less<>> wanted;  ///< as its process asked last
 };
 
 class Network::End final : public bus::Transport {

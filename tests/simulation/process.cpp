@@ -33,7 +33,7 @@ bus::Role role_of(Part part) {
   }
 }
 
-/// Those that nobody hears of: they have no heartbeat.
+/// Processes without a heartbeat.
 bool is_silent(Part part) {
   return part == Part::odometry || part == Part::exporter;
 }

@@ -67,7 +67,7 @@ std::string rig_text(const std::vector<MountedSensor>& sensors, const std::strin
   return text;
 }
 
-/// A pose on its way into the log: by the time of the drive at which it was sent, whatever its clock said.
+/// A pose on its way into the log: by the time of the drive at which it was sent, whatever its stamp.
 struct Sent {
   std::int64_t time_us = 0;
   std::size_t sensor = 0, index = 0;

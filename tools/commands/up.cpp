@@ -34,11 +34,11 @@ struct Options {
 /// Every process sends its status once a second.
 constexpr std::chrono::milliseconds listen_before_start{1200};
 
-/// The folder of our own executable: the other programs lie beside it.
+/// The folder of our own executable: the other programs are beside it.
 std::filesystem::path programs_directory() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) throw Error("up: cannot find out where this program lies: " + error.message());
+  if (error) throw Error("up: cannot find the folder of this program: " + error.message());
   return self.parent_path();
 }
 
@@ -77,7 +77,7 @@ void report_left_behind(const std::string& directory) {
 }
 
 /// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
-/// offline is named; the answer of the processes stands.
+/// offline is named; the answer of the processes remains.
 void write_reports(const Options& options, const bus::Rig& rig, const std::string& directory) {
   for (const bus::PairConfig& pair : rig.pairs) {
     const std::string file = fmt::format("{}/report-{}-{}.html", directory, pair.a, pair.b);

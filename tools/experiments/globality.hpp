@@ -12,7 +12,7 @@
 
 namespace egocal::tools {
 
-/// Section V-F: the optimum falsified by growing amounts, and what verification says of it.
+/// Section V-F: the optimum falsified by growing amounts, and the result of its verification.
 struct GlobalityOptions {
   std::vector<double> rotations = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 20};             ///< [deg]
   std::vector<double> translations = {0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 20};  ///< [m]

@@ -128,8 +128,8 @@ std::vector<MotionPair> pairs_of(const Motions& motions, const CalibrationOption
   return pair_motions(pairing, motions.a, offset ? on_clock_of_a(*offset, motions.b) : motions.b).pairs;
 }
 
-/// Puts the answer of one of the paper's baselines in the place of ours. They minimise other things: what
-/// their answer is worth is what our certificate says of it.
+/// Puts the answer of one of the paper's baselines in the place of ours. They minimise other things: our
+/// certificate shows what their answer is worth.
 void answer_by_baseline(const std::string& method, const std::vector<MotionPair>& pairs,
                         SolveResult& result) {
   const auto run = [&] {

@@ -57,7 +57,7 @@ std::string last_line(const std::string& file) {
   std::string line, last;
   while (std::getline(stream, line)) {
     if (line.rfind(header, 0) == 0)
-      last.clear();  // nothing has been said since
+      last.clear();  // nothing was written since
     else if (!line.empty())
       last = line;
   }

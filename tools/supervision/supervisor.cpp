@@ -247,7 +247,7 @@ class Supervisor {
                                  child.restarts.pause().count()));
   }
 
-  /// How it ended, and what it said last.
+  /// How it ended, and its last line of output.
   std::string reason(const Child& child, int status) const {
     const std::string said =
         options_.output_dir.empty() || child.program.foreground ? "" : last_line(output_file(child));

@@ -67,7 +67,7 @@ double extended_cost(const Square<N>& Q, const Column<N>& v) {
   return static_cast<double>(sum);
 }
 
-/// Proves that a symmetric matrix is positive semidefinite; false says nothing. A factorisation L D L' that
+/// Proves that a symmetric matrix is positive semidefinite; false proves nothing. A factorisation L D L' that
 /// runs to its end in floating point factors a matrix whose entries differ from the given ones by at most
 /// (n + 2) u sqrt(m_ii m_jj), u = epsilon / 2 (Higham, theorems 10.5 and 10.7, and the reciprocal), so
 /// n (n + 2) u of the diagonal would be enough to be given away. Twice n (n + 1) epsilon is, which covers the
@@ -93,7 +93,7 @@ bool proven_semidefinite(ExtendedSquare<N> M) {
   return true;
 }
 
-/// Where a variable stands in the matrices to be proven: the second half first, where elimination is best
+/// The place of a variable in the matrices to be proven: the second half first, where elimination is best
 /// conditioned.
 template <int N>
 constexpr int reordered(std::size_t i) {

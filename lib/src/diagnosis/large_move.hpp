@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A mounting that changed by so much that neither part of the drive says anything near the answer of the
+// A mounting that changed by so much that neither part of the drive has an answer near that of the
 // other one: a camera that was turned round, or poses in other axes from some time on. find_moves()
 // linearises around the answer of the whole and sees changes of up to about 30 degrees.
 #pragma once

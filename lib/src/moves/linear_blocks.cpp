@@ -102,7 +102,7 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
 namespace {
 
 /// Mean time of pairs [from, to), from -1 at the begin of all to 1 at their end. A long drive is not kept
-/// evenly, so the index says little of the time.
+/// evenly, so the index shows little of the time.
 double time_of(std::span<const MotionPair> pairs, std::size_t from, std::size_t to) {
   const auto middle = [&](std::size_t i) {
     return 0.5 * static_cast<double>(pairs[i].begin_us - pairs.front().begin_us) +

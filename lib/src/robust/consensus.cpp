@@ -294,7 +294,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
 
   std::vector<Fit> starts;
   for (const std::size_t pieces : {1u, 2u, 4u}) fit_pieces(search, pieces, starts);
-  // the tightest fit of half of the motion says what typical is
+  // the tightest fit of half of the motion shows what is typical
   ResidualScale scale = search.scale_of(starts.front());
   const auto tighten = [&](const Fit& fit) {
     const ResidualScale here = search.scale_of(fit);

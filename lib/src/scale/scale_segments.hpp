@@ -9,7 +9,7 @@
 
 namespace egocal::detail {
 
-/// At a known extrinsic the cost of one motion is square s^2 - 2 product s + rest: what it says of the scale
+/// At a known extrinsic the cost of one motion is square s^2 - 2 product s + rest: what it shows of the scale
 /// alone.
 struct ScaleSample {
   double square = 0, product = 0, rest = 0;

@@ -14,7 +14,7 @@ double hotelling_exceeded(double t2, double p, double nu);
 /// Student's t(0.975) over the normal 1.96: by how much a standard deviation with this many degrees of
 /// freedom
 /// (> 0) is raised, so that 1.96 of it cover 95 %. The first terms of the expansion in 1 / freedom: to 0.3 %
-/// from five degrees on, to 3 % from two; below two it says too little.
+/// from five degrees on, to 3 % from two; below two it is too small.
 double student_factor(double freedom);
 
 }  // namespace egocal::detail

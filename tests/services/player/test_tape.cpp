@@ -49,7 +49,7 @@ TEST_F(TapeOfLog, PlaysARangeAndAgain) {
   EXPECT_THROW(Tape(file, {.start = 9, .end = {}, .channel = ""}), Error);
 }
 
-TEST_F(TapeOfLog, AFlippedBitInATimeMakesNobodyWait) {
+TEST_F(TapeOfLog, AFlippedBitInATimeCausesNoWait) {
   const double years = 1e9;
   for (const auto& [times, played] : std::vector<std::pair<std::vector<double>, std::vector<double>>>{
            {{0, 1, years, 3}, {0, 1, 1, 3}},    // forwards
