@@ -27,6 +27,7 @@ std::string short_name(const std::string& source) {
 std::vector<std::string> names_of(const std::vector<std::string>& sources, bool files) {
   if (!files) return sources;
   std::vector<std::string> names;
+  names.reserve(sources.size());
   for (const std::string& source : sources) names.push_back(short_name(source));
   std::vector<std::string> sorted = names;
   std::sort(sorted.begin(), sorted.end());

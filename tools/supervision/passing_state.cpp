@@ -75,6 +75,7 @@ std::vector<std::string> PassingState::left_behind(const std::string& folder) {
   }
   std::sort(found.begin(), found.end());
   std::vector<std::string> files;
+  files.reserve(found.size());
   for (auto& [time, file] : found) files.push_back(std::move(file));
   return files;
 }
