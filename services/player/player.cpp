@@ -314,9 +314,9 @@ void Player::report() {
   if (tape_.damaged_times() > 0)
     say(text("%llu events with damaged times were played when their neighbours were",
              static_cast<unsigned long long>(tape_.damaged_times())));
-  if (tape_.left_out() > 0)
+  if (tape_.skipped() > 0)
     say(text("%llu events of egocal's own channels (EGOCAL_*) were skipped; --channel plays them",
-             static_cast<unsigned long long>(tape_.left_out())));
+             static_cast<unsigned long long>(tape_.skipped())));
 }
 
 void Player::show_progress(bool last) {

@@ -38,7 +38,7 @@ Tape::Tape(const std::string& file, const TapeOptions& options) : log_(file), op
   if (!next()) {
     throw error_at(file, 0, "",
                    "nothing to play: no event of the channels and times asked for" +
-                       std::string(left_out_ > 0 ? "; its EGOCAL_ channels are played with --channel" : ""));
+                       std::string(skipped_ > 0 ? "; its EGOCAL_ channels are played with --channel" : ""));
   }
   rewind(options.start);
 }
@@ -52,7 +52,7 @@ void Tape::rewind(double from) {
     log_.rewind();
   ahead_.clear();
   last_us_.reset();
-  damaged_times_ = left_out_ = 0;
+  damaged_times_ = skipped_ = 0;
   from_ = from;
 }
 
@@ -95,7 +95,7 @@ void Tape::repair_time() {
 bool Tape::wanted(const std::string& channel) {
   if (channel_) return std::regex_match(channel, *channel_);
   const bool ours = channel.rfind("EGOCAL_", 0) == 0;
-  left_out_ += ours;
+  skipped_ += ours;
   return !ours;
 }
 

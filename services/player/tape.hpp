@@ -41,8 +41,8 @@ class Tape {
   std::int64_t begin_us() const { return begin_us_; }  ///< recorded time of the log's first event
   const bus::LogDamage& damage() const { return log_.damage(); }
   std::uint64_t damaged_times() const { return damaged_times_; }  ///< since it began
-  std::uint64_t left_out() const { return left_out_; }  ///< events of egocal's own channels, since then
-  double part() const;                                  ///< of the file that has been read
+  std::uint64_t skipped() const { return skipped_; }  ///< events of egocal's own channels, since then
+  double part() const;                                ///< of the file that has been read
 
  private:
   void look_ahead();
@@ -56,7 +56,7 @@ class Tape {
   std::optional<std::int64_t> last_us_;
   std::int64_t begin_us_ = 0;
   double from_ = 0;
-  std::uint64_t damaged_times_ = 0, left_out_ = 0;
+  std::uint64_t damaged_times_ = 0, skipped_ = 0;
 };
 
 }  // namespace egocal::services

@@ -11,6 +11,7 @@ Deviations deviations(const std::vector<Eigen::Vector3d>& errors) {
   if (errors.empty()) return result;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<double> component;
+    component.reserve(errors.size());
     for (const Eigen::Vector3d& error : errors) component.push_back(error[axis]);
     result.common[axis] = median(component);
   }

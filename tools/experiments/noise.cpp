@@ -148,6 +148,7 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
                                          const std::function<void(double)>& progress) {
   const std::vector<int> sizes = sizes_of(options);
   std::vector<NoisyDrive> drives;
+  drives.reserve(static_cast<std::size_t>(std::max(0, options.sensors)));
   for (int sensor = 0; sensor < options.sensors; ++sensor)
     drives.emplace_back(DriveOptions{options.most_pairs, options.step, options.roughness,
                                      options.seed + static_cast<std::uint64_t>(sensor)},

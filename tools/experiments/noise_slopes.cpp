@@ -32,6 +32,7 @@ Exponent exponent(const std::vector<const NoisePoint*>& points,
   const std::size_t runs = points.empty() ? 0 : (points.front()->*errors_of_runs).size();
   for (std::size_t run = 0; run < runs; ++run) {
     std::vector<double> errors;
+    errors.reserve(points.size());
     for (const NoisePoint* point : points) errors.push_back((point->*errors_of_runs)[run]);
     slopes.push_back(slope(sizes, errors));
   }

@@ -98,7 +98,7 @@ std::string reproduce_paper(const PaperOptions& options,
   page += fmt::format(
       "<p>egocal {}. The numbers of each figure are in a CSV file beside this page.</p>\n</body>\n</html>\n",
       version());
-  const std::string name = options.out + "/paper.html";
+  std::string name = options.out + "/paper.html";
   write_whole_file(name, page);
   if (progress) progress("done", 1);
   return name;

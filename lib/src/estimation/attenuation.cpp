@@ -19,7 +19,7 @@ namespace {
 constexpr double least_left = 1e-6;
 
 /// The eigenvectors of D across r (columns of `across`, ascending) and what the noise is of each.
-struct Curvatures {
+struct NoiseCurvatures {
   DualQuaternion q;
   double noise = 0;      ///< r'Dr
   double cost = 0;       ///< q'Qq
@@ -35,12 +35,12 @@ struct Curvatures {
   double pull(int i) const { return 2 * std::abs(length[i]) * part(i) / (1 - part(i)); }
 };
 
-std::optional<Curvatures> curvatures(const Problem& problem) {
+std::optional<NoiseCurvatures> curvatures(const Problem& problem) {
   if (problem.mode == Mode::planar) return std::nullopt;
   const Matrix8d Q = cost_matrix(problem);
   const Solution solution = solve_dual(Q);
   if (solution.status != SolverStatus::converged) return std::nullopt;
-  Curvatures result;
+  NoiseCurvatures result;
   result.q = solution.q;
   const Eigen::Vector4d r = solution.q.real, d = solution.q.dual;
   const Eigen::Matrix4d D = Q.bottomRightCorner<4, 4>();
@@ -63,7 +63,7 @@ std::optional<Curvatures> curvatures(const Problem& problem) {
 /// How much of the noise must be left along r, as a part of it. D stays positive semidefinite with `needed`;
 /// and a dual part along r, which only rotations far from r may have, must not pay for them: what it can gain
 /// there, |Br|^2 / noise, is to be a part of the least cost.
-double left_along_rotation(const Curvatures& all, double reserve) {
+double left_along_rotation(const NoiseCurvatures& all, double reserve) {
   double needed = all.dual_gain / (all.noise * all.cost);
   for (int i = 0; i < 3; ++i)
     needed += all.coupling[i] * all.coupling[i] / ((all.curvature[i] - all.noise) * all.noise);
@@ -76,7 +76,7 @@ bool positive_definite(const Matrix8d& Q) {
 }
 
 /// Empty where no noise left along the rotation keeps Q positive definite.
-std::optional<Attenuation> taking_off(const Problem& problem, const Curvatures& all,
+std::optional<Attenuation> taking_off(const Problem& problem, const NoiseCurvatures& all,
                                       const std::array<bool, 3>& corrected,
                                       const AttenuationOptions& options) {
   Attenuation result;
@@ -96,7 +96,7 @@ std::optional<Attenuation> taking_off(const Problem& problem, const Curvatures& 
   }
 }
 
-Eigen::Vector3d standard_deviations(const Problem& problem, const Curvatures& all) {
+Eigen::Vector3d standard_deviations(const Problem& problem, const NoiseCurvatures& all) {
   const auto differences = leave_out_differences(problem, cost_matrix(problem), all.q);
   const auto blocks = static_cast<double>(differences.size());
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
@@ -110,7 +110,7 @@ Eigen::Vector3d standard_deviations(const Problem& problem, const Curvatures& al
 
 std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options) {
   if (problem.blocks.size() < options.least_blocks) return std::nullopt;
-  const std::optional<Curvatures> all = curvatures(problem);
+  const std::optional<NoiseCurvatures> all = curvatures(problem);
   if (!all) return std::nullopt;
   const Eigen::Vector3d stddev = standard_deviations(problem, *all);
   if (!stddev.allFinite()) return std::nullopt;
@@ -138,7 +138,7 @@ std::optional<Attenuation> find_attenuation(const Problem& problem, const Attenu
 }
 
 std::optional<Attenuation> whole_attenuation(const Problem& problem, const AttenuationOptions& options) {
-  const std::optional<Curvatures> all = curvatures(problem);
+  const std::optional<NoiseCurvatures> all = curvatures(problem);
   if (!all) return std::nullopt;
   std::array<bool, 3> corrected{};
   for (int i = 0; i < 3; ++i) corrected[static_cast<std::size_t>(i)] = all->part(i) < options.most_noise;

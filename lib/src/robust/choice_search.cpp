@@ -40,7 +40,7 @@ class Search {
       : parts_(parts), outlier_(outlier), undecided_(undecided), cost_(cost), options_(options) {
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       all_ += parts_[k].Q;
-      if (outlier_[k]) left_out_ += parts_[k].Q;
+      if (outlier_[k]) outliers_ += parts_[k].Q;
     }
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       if (std::binary_search(undecided_.begin(), undecided_.end(), k)) continue;
@@ -53,7 +53,7 @@ class Search {
 
   ChoiceSearch run() {
     // the outliers may be the better choice: a search in order would find that late
-    for (const Matrix8d& Q : {all_, left_out_}) {
+    for (const Matrix8d& Q : {all_, outliers_}) {
       ++result_.solves;
       if (cheaper(minimum_of(Q).q)) return result_;
     }
@@ -93,7 +93,7 @@ class Search {
   std::vector<std::size_t> undecided_;
   double cost_;
   OutlierProofOptions options_;
-  Matrix8d all_ = Matrix8d::Zero(), left_out_ = Matrix8d::Zero();
+  Matrix8d all_ = Matrix8d::Zero(), outliers_ = Matrix8d::Zero();
   Matrix8d Q_ = Matrix8d::Zero();  ///< of the parts that are kept in any case
   double limits_ = 0;
   ChoiceSearch result_;
