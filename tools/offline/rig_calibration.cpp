@@ -65,6 +65,7 @@ std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
   if (request.append.size() % trajectories.size() != 0)
     throw UsageError("--append: expected one file for each sensor");
   std::vector<Trajectory*> sensors;
+  sensors.reserve(trajectories.size());
   for (Trajectory& trajectory : trajectories) sensors.push_back(&trajectory);
   for (std::size_t i = 0; i < request.append.size(); i += trajectories.size()) {
     std::vector<Trajectory> drive;
