@@ -197,7 +197,7 @@ TEST_F(Command, TheScaleOfACameraIsFound) {
   const json given = run("solve --json --scale-b 2.7" + turned).object();
   EXPECT_EQ(given["scale_applied"], 2.7);
   EXPECT_FALSE(given.contains("scale"));
-  for (int i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(given["translation"][i].get<double>(), on_b["translation"][i].get<double>(), 0.02);
   for (const char* wrong :
        {" --scale 0", " --scale -1", " --scale nan", " --scale x", " --scale 1 --scale-b 1"}) {
@@ -268,7 +268,7 @@ TEST_F(Command, AKittiCameraWithoutScaleGivesTheSameExtrinsic) {
   EXPECT_NEAR(found["scale"]["value"].get<double>() * 0.37, whole["scale"]["value"].get<double>(), 1e-4);
   EXPECT_NEAR(found["scale"]["value"].get<double>() * 0.37, 1, 0.005);
   double difference = 0, length = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     difference += std::pow(found["translation"][i].get<double>() - whole["translation"][i].get<double>(), 2);
     length += std::pow(whole["translation"][i].get<double>(), 2);
   }

@@ -5,10 +5,12 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "egocal/io/trajectory_file.hpp"
 #include "support/arm_samples.hpp"
@@ -23,6 +25,12 @@ std::string content_of(const std::string& file) {
   std::stringstream text;
   text << stream.rdbuf();
   return text.str();
+}
+
+/// The largest difference of three numbers from a vector.
+double furthest(const nlohmann::json& numbers, const Eigen::Vector3d& vector) {
+  const auto values = numbers.get<std::vector<double>>();
+  return values.size() == 3 ? (Eigen::Vector3d(values.data()) - vector).cwiseAbs().maxCoeff() : INFINITY;
 }
 
 class SamplesCommand : public ::testing::Test {
@@ -71,10 +79,8 @@ TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
     EXPECT_EQ(json["samples"]["wrong"], nlohmann::json::array({1}));
     EXPECT_EQ(json["samples"]["setup"], to_hand ? "eye_to_hand" : "eye_in_hand");
     const Pose X = to_pose(drawn.X), Y = to_pose(drawn.Y);
-    for (int i = 0; i < 3; ++i) {
-      EXPECT_NEAR(json["translation"][i].get<double>(), X.translation[i], 5e-3);
-      EXPECT_NEAR(json["samples"]["target"]["translation"][i].get<double>(), Y.translation[i], 5e-3);
-    }
+    EXPECT_LT(furthest(json["translation"], X.translation), 5e-3);
+    EXPECT_LT(furthest(json["samples"]["target"]["translation"], Y.translation), 5e-3);
     EXPECT_LT(json["samples"]["spread_mm"]["median"].get<double>(), 3);
   }
 }
