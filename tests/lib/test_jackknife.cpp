@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
@@ -13,6 +15,7 @@
 #include "egocal/uncertainty/observability.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
+#include "uncertainty/tangent_form.hpp"
 
 namespace egocal {
 namespace {
@@ -133,6 +136,31 @@ TEST(Jackknife, WithoutNoiseSingleStepsWithEqualWeightsAreChosen) {
     const Choice choice = paired({}, s.a, s.b).choice();
     EXPECT_EQ(choice.stride, 1) << seed;
     EXPECT_EQ(choice.balance.translation, 1) << seed;
+  }
+}
+
+/// Two blocks at once are the same as one after the other, also where a curvature is not positive definite.
+TEST(Jackknife, TwoAtATimeIsOneAfterTheOther) {
+  const Problem problem = noisy_problem(7, {1, 0.3});
+  const DualQuaternion q = solve(problem, Method::dual).T_a_b;
+  const detail::TangentSpace space(q, 1, detail::frame_a_basis(q), problem.balance);
+  for (std::size_t i = 0; i + 1 < problem.blocks.size(); ++i) {
+    const auto& first = problem.blocks[i];
+    const auto& second = problem.blocks[i + 1];
+    const std::array<detail::TangentForm, 2> both = space.forms(first, second);
+    for (const auto& [one, block] : {std::pair{both[0], first}, {both[1], second}}) {
+      const detail::TangentForm expected = space.form(block);
+      EXPECT_LT((one.curvature - expected.curvature).norm(), 1e-13 * expected.curvature.norm());
+      EXPECT_LT((one.gradient - expected.gradient).norm(), 1e-13 * block.dual_rows.norm());
+      EXPECT_EQ(one.curvature, one.curvature.transpose());
+    }
+    detail::TangentForm negative = both[0];
+    negative.curvature *= -1;
+    for (const detail::TangentForm& other : {both[1], negative}) {
+      const std::array<Vector6d, 2> steps = detail::TangentSpace::newton_steps(both[0], other);
+      EXPECT_EQ(steps[0], detail::TangentSpace::newton_step(both[0]));
+      EXPECT_EQ(steps[1], detail::TangentSpace::newton_step(other));
+    }
   }
 }
 
