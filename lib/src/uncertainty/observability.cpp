@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "egocal/solvers/global.hpp"
@@ -14,6 +13,7 @@
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
+#include "uncertainty/hint.hpp"
 #include "uncertainty/takes_off.hpp"
 #include "uncertainty/tangent_form.hpp"
 
@@ -101,25 +101,6 @@ class Jackknife {
   Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
   Vector6d information_ = Vector6d::Zero(), information_squares_ = Vector6d::Zero();
 };
-
-std::string text_of(const Eigen::Vector3d& v) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
-  return text;
-}
-
-/// What would help, from the translation directions that are not seen (columns of `hidden`, orthonormal) and
-/// whether rotation is.
-std::string spatial_hint(int hidden_translations, bool rotation_hidden,
-                         const Eigen::Vector3d& hidden_direction) {
-  if (hidden_translations >= 2 && rotation_hidden) return "still needed: motion with turns";
-  if (hidden_translations >= 2) return "still needed: turns";
-  if (rotation_hidden) return "still needed: turns, or motion in another direction";
-  if (hidden_translations == 1)
-    return "still needed: rotation about an axis across " + text_of(hidden_direction) +
-           " of a (on the ground: ramps, bumps, banked curves)";
-  return "";
-}
 
 /// A block around the minimiser.
 struct BlockForm {
@@ -325,7 +306,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q_me
     }
     if (v.tail<3>().norm() > options.hinted_part) rotation_hidden = true;
   }
-  result.hint = spatial_hint(hidden_translations, rotation_hidden, direction);
+  result.hint = detail::spatial_hint(hidden_translations, rotation_hidden, direction);
 
   if (hidden == 6 || problem.blocks.size() < options.least_blocks) return result;
   const Matrix6d basis = hidden == 0 ? Matrix6d::Identity() : Matrix6d(seen.vectors.rowwise().reverse());

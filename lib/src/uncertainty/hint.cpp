@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "uncertainty/hint.hpp"
+
+#include <cstdio>
+
+namespace egocal::detail {
+
+namespace {
+
+std::string text_of(const Eigen::Vector3d& v) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
+  return text;
+}
+
+}  // namespace
+
+std::string spatial_hint(int hidden_translations, bool rotation_hidden,
+                         const Eigen::Vector3d& hidden_direction) {
+  if (hidden_translations >= 2 && rotation_hidden) return "still needed: motion with turns";
+  if (hidden_translations >= 2) return "still needed: turns";
+  if (rotation_hidden) return "still needed: turns, or motion in another direction";
+  if (hidden_translations == 1)
+    return "still needed: rotation about an axis across " + text_of(hidden_direction) +
+           " of a (on the ground: ramps, bumps, banked curves)";
+  return "";
+}
+
+}  // namespace egocal::detail
