@@ -155,6 +155,7 @@ void run(Options options) {
   simulation.T_vehicle_sensor.clear();
   for (const MountedSensor& sensor : sensors) simulation.T_vehicle_sensor.push_back(sensor.T_vehicle_sensor);
   std::vector<std::string> names;
+  names.reserve(sensors.size());
   for (const MountedSensor& sensor : sensors) names.push_back(sensor.name);
   simulation.faults = understood(options.faults, names);
   const std::vector<Trajectory> trajectories = simulate(simulation);
