@@ -56,10 +56,9 @@ void check_state(const std::string& file) {
 
 std::string output_directory(const Options& options) {
   if (options.output_dir == "-") return {};
-  const std::string directory =
-      options.output_dir.empty()
-          ? default_output_directory() + "/" + std::filesystem::path(options.rig).stem().string()
-          : options.output_dir;
+  std::string directory = options.output_dir.empty() ? default_output_directory() + "/" +
+                                                           std::filesystem::path(options.rig).stem().string()
+                                                     : options.output_dir;
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw error_at(directory, 0, "", "cannot be made: " + error.message());
