@@ -138,6 +138,16 @@ TEST(Moves, SeveralBumpsAreDistinguished) {
   }
 }
 
+TEST(Moves, NoiseThatWandersForLongerThanABlockIsNone) {
+  SimulationOptions options = drive(Terrain::rough, 9134, 100);  // one of 600 that were tried
+  options.random_walk = true;
+  const auto trajectories = simulate(options);
+  MovesOptions short_blocks;
+  short_blocks.most_correlation = INFINITY;
+  EXPECT_EQ(moves_of(trajectories[0], trajectories[1], {}, short_blocks).moves.size(), 1u);
+  EXPECT_TRUE(moves_of(trajectories[0], trajectories[1]).moves.empty());
+}
+
 TEST(Moves, SlowCreepIsCalledThat) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
     SimulationOptions options = drive(terrain, 500, 300);

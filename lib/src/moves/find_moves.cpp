@@ -99,8 +99,8 @@ class Finder {
   }
 
   /// The best change within the stretch, if it is significant and large enough to report.
-  std::optional<Found> best(std::size_t from, std::size_t to) {
-    const std::size_t count = blocks_in(from, to);
+  std::optional<Found> best(std::size_t from, std::size_t to) { return best(from, to, blocks_in(from, to)); }
+  std::optional<Found> best(std::size_t from, std::size_t to, std::size_t count) {
     if (count < options_.least_blocks) return std::nullopt;
     Found found;
     found.from = from;
@@ -119,6 +119,18 @@ class Finder {
     if (!(found.test.false_alarm <= options_.false_alarms) || !large_enough(found)) return std::nullopt;
     found.at = from + found.stretch.begin[found.test.split];
     return found;
+  }
+
+  /// Noise that wanders for longer than a block makes neighbouring blocks alike, and the test believes it.
+  bool shows_in_longer_blocks(const Found& found) {
+    double correlation = found.test.correlation;
+    for (std::size_t count = blocks_in(found.from, found.to) / 2;
+         correlation > options_.most_correlation && count >= options_.least_blocks; count /= 2) {
+      const std::optional<Found> longer = best(found.from, found.to, count);
+      if (!longer) return false;
+      correlation = longer->test.correlation;
+    }
+    return true;
   }
 
   bool large_enough(const Found& found) const {
@@ -155,18 +167,19 @@ class Finder {
     search(found->at, to);
   }
 
-  /// Every change once more between its neighbours; what is no longer significant there was an echo of them.
+  /// Every change once more between its neighbours; what is no longer significant there was an echo of them,
+  /// or of noise that wanders. Only here, for other changes make neighbouring blocks alike as well.
   void settle() {
     std::sort(found_.begin(), found_.end(), [](const Found& x, const Found& y) { return x.at < y.at; });
     for (std::size_t i = 0; i < found_.size();) {
-      if (found_[i].creep || found_.size() == 1) {
+      if (found_[i].creep) {
         ++i;
         continue;
       }
       const std::size_t from = i > 0 ? found_[i - 1].at : 0;
       const std::size_t to = i + 1 < found_.size() ? found_[i + 1].at : pairs_.size();
       const std::optional<Found> again = best(from, to);
-      if (blocks_in(from, to) >= options_.least_blocks && !again) {
+      if (blocks_in(from, to) >= options_.least_blocks && !(again && shows_in_longer_blocks(*again))) {
         found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
         continue;
       }
