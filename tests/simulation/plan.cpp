@@ -212,6 +212,8 @@ class Draw {
     sort_incidents();
     if (!plan_.diagnosed && chance(0.02)) {
       plan_.auto_scale = true;
+      if (plan_.estimation == Estimation::robust)
+        plan_.estimation = Estimation::plain;  // no stride is chosen
       if (plan_.scale == 1) plan_.scale = random_.log_uniform(0.5, 2);
       plan_.bump_s = plan_.clock_drift = 0;
       plan_.quiet_us = 18'000'000;  // the first scale takes 13 s
