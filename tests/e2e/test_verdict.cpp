@@ -66,6 +66,7 @@ TEST_F(LiveVerdict, NamesAMistakeAndOutlivesAKill) {
 
   processes.at("egocal-diagnosis").signal(SIGKILL);
   processes.erase("egocal-diagnosis");
+  until([] { return false; }, 200ms);  // what it sent before is in the receive buffer
   verdict.reset();
   start("egocal-diagnosis");
   ASSERT_TRUE(judged()) << "it judges again, by what pairing still knows";
