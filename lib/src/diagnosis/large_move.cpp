@@ -47,14 +47,15 @@ double misfit_of(const std::vector<double>& squares, double floor) {
 std::size_t best_place(const Motions& motions, const Division& division, std::size_t margin, double floor) {
   const RobustFit before = evaluated(motions, division.before.T),
                   after = evaluated(motions, division.after.T);
+  const std::size_t n = motions.all.size();
   double sum = 0, least = 0;
   std::size_t place = margin;
-  for (std::size_t i = 0; i + margin <= motions.all.size(); ++i) {
+  for (std::size_t i = 0; i + margin <= n; ++i) {
     if (i >= margin && (i == margin || sum < least)) {
       least = sum;
       place = i;
     }
-    sum += std::log(before.squares[i] + floor) - std::log(after.squares[i] + floor);
+    if (i < n) sum += std::log(before.squares[i] + floor) - std::log(after.squares[i] + floor);
   }
   return place;
 }
