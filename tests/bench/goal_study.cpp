@@ -193,10 +193,6 @@ Tally study(const Kind& kind, int count, int poses, int looks, bool verbose, std
   return tally;
 }
 
-std::string part(int x, int of) {
-  return std::to_string(x) + " of " + std::to_string(of);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -222,8 +218,8 @@ int main(int argc, char** argv) {
   for (const Kind& kind : kinds) {
     const Tally tally = study(kind, drives, poses, looks, verbose, records);
     table.rows.push_back({kind.name, std::to_string(tally.drives), std::to_string(tally.said),
-                          part(tally.right, tally.said), part(tally.in_time, tally.said),
-                          part(tally.near, tally.asked)});
+                          bench::part(tally.right, tally.said), bench::part(tally.in_time, tally.said),
+                          bench::part(tally.near, tally.asked)});
     said += tally.said;
     right += tally.right;
   }

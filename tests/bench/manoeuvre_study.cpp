@@ -250,10 +250,6 @@ GoalOptions goal_of_kind(const Kind& kind, int drives, double seconds) {
   return {kind.loose * rms.tail<3>().maxCoeff(), rms.head<3>().maxCoeff(), kind.platform};
 }
 
-std::string part(int x, int of) {
-  return std::to_string(x) + " of " + std::to_string(of);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -301,8 +297,8 @@ int main(int argc, char** argv) {
       std::sort(values.begin(), values.end());
       return std::to_string(std::llround(values[values.size() / 2]));
     };
-    table.rows.push_back({kind.name, std::to_string(asked), part(advice, asked), part(halved, advice),
-                          median(before), median(with)});
+    table.rows.push_back({kind.name, std::to_string(asked), bench::part(advice, asked),
+                          bench::part(halved, advice), median(before), median(with)});
   }
   std::printf("%s\n", bench::markdown(table).c_str());
   if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));

@@ -78,6 +78,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
+std::string part(int x, int of) {
+  return std::to_string(x) + " of " + std::to_string(of);
+}
+
 std::string markdown(const Table& table) {
   std::string text;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {

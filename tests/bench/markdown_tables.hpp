@@ -13,6 +13,9 @@ struct Table {
   std::vector<std::vector<std::string>> rows;  ///< cells; the first row is the heading
 };
 
+/// "3 of 4".
+std::string part(int x, int of);
+
 std::string markdown(const Table& table);
 
 /// The text of a page; empty where there is no such file.
