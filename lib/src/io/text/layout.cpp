@@ -142,17 +142,21 @@ void set_tum(TextLayout& layout) {
   layout.fields = 8;
 }
 
-/// Seven numbers a row and no time: a position and a quaternion of length one, x y z w.
-bool set_untimed(TextLayout& layout, const std::vector<std::string_view>& row) {
-  using enum Quantity;
-  if (row.size() != 7) return false;
+/// Four numbers from a field on, as a quaternion of length one.
+bool is_unit_quaternion(const std::vector<std::string_view>& row, std::size_t first) {
   double square = 0;
-  for (std::size_t i = 3; i < 7; ++i) {
+  for (std::size_t i = first; i < first + 4; ++i) {
     double value = 0;
     if (!parse_number(row[i], value)) return false;
     square += value * value;
   }
-  if (!(std::abs(square - 1) < 0.01)) return false;
+  return std::abs(square - 1) < 0.01;
+}
+
+/// Seven numbers a row and no time: a position and a quaternion of length one, x y z w.
+bool set_untimed(TextLayout& layout, const std::vector<std::string_view>& row) {
+  using enum Quantity;
+  if (row.size() != 7 || !is_unit_quaternion(row, 3)) return false;
   set_columns(layout, {{"tx", x}, {"ty", y}, {"tz", z}, {"qx", qx}, {"qy", qy}, {"qz", qz}, {"qw", qw}});
   layout.format = "TUM without times";
   layout.fields = 7;
@@ -179,14 +183,9 @@ bool set_ros2_csv(TextLayout& layout, const std::vector<std::string_view>& row) 
       is_number(row[2]))
     return false;
   const std::size_t first = is_number(row[3]) ? 3 : 4;
-  if (row.size() < first + 7) return false;
-  double square = 0;
-  for (std::size_t i = first; i < first + 7; ++i) {
-    double value = 0;
-    if (!parse_number(row[i], value)) return false;
-    if (i >= first + 3) square += value * value;
-  }
-  if (!(std::abs(square - 1) < 0.01)) return false;
+  if (row.size() < first + 7 || !is_unit_quaternion(row, first + 3)) return false;
+  for (std::size_t i = first; i < first + 3; ++i)
+    if (!is_number(row[i])) return false;
   layout.columns.set(seconds, 0);
   layout.columns.set(nanoseconds, 1);
   constexpr Quantity pose[] = {x, y, z, qx, qy, qz, qw};
