@@ -176,14 +176,12 @@ void Pairing::watch_gaps() {
     Arrivals& arrivals = arrivals_[i];
     const Stream& stream = accumulation_.stream(i);
     // a player that was restarted comes to what is missing at the speed of the recording
-    const bool comes = now - arrivals.repeated_mono_us <= options_.patience_us;
+    const bool comes =
+        patient_ && arrivals.repeated_mono_us > 0 && now - arrivals.repeated_mono_us <= options_.patience_us;
     if (!stream.waiting()) {
       arrivals.gap_mono_us = 0;
       if (stream.settling() && now > settle_until_mono_us_) feed({Input::Kind::give_up, i});
-    } else if (patient_ && comes && arrivals.repeated_mono_us > 0) {
-      arrivals.gap_mono_us = now;
-      arrivals.expected = stream.expected();
-    } else if (arrivals.gap_mono_us == 0 || arrivals.expected != stream.expected()) {
+    } else if (comes || arrivals.gap_mono_us == 0 || arrivals.expected != stream.expected()) {
       arrivals.gap_mono_us = now;
       arrivals.expected = stream.expected();
     } else if (patient_ || stream.settling() ? now - arrivals.gap_mono_us > options_.patience_us

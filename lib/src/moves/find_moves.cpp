@@ -178,7 +178,8 @@ class Finder {
       }
       const std::size_t from = i > 0 ? found_[i - 1].at : 0;
       const std::size_t to = i + 1 < found_.size() ? found_[i + 1].at : pairs_.size();
-      const std::optional<Found> again = best(from, to);
+      const bool tested = found_[i].from == from && found_[i].to == to;
+      const std::optional<Found> again = tested ? found_[i] : best(from, to);
       if (blocks_in(from, to) >= options_.least_blocks && !(again && shows_in_longer_blocks(*again))) {
         found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
         continue;
