@@ -358,22 +358,84 @@ TEST_F(Processes, TheyEndCleanlyAndSayWhatIsWrong) {
   }
 }
 
-TEST_F(Processes, TheMedianAnswerComesWithinAMillisecond) {
+/// Two processes that only hand a message on, as pairing and a solver hand a pose on: the peer of an answer.
+class RelayedMessage {
+ public:
+  static constexpr const char* channel = "PEER";
+
+  RelayedMessage(const std::string& from, const std::filesystem::path& folder) {
+    const std::string program =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "egocal_lossy_relay";
+    const std::string between = "udpm://239.255.76.67:7798?ttl=0", to = "udpm://239.255.76.67:7799?ttl=0";
+    for (const auto& [in, out] : {std::pair(from, between), std::pair(between, to)})
+      relays_.emplace_back(
+          std::vector<std::string>{program, "--from", in, "--to", out, "--channel", channel, "--drop", "0",
+                                   "--double", "0", "--reorder", "0", "--flip", "0"},
+          folder / "relay.log");
+    loop_ = std::make_unique<bus::Loop>(to, bus::LoopOptions{.handle_signals = false});
+    loop_->subscribe_bytes(channel, [this](const bus::Arrival& arrival) { arrived_us_ = arrival.mono_us; });
+  }
+
+  /// From sending to arrival [us]; none: it did not arrive within the time.
+  std::optional<std::int64_t> send(bus::Loop& sender, bus::Bytes bytes, std::chrono::milliseconds within) {
+    arrived_us_.reset();
+    const std::int64_t sent_us = loop_->mono_us();
+    sender.publish_bytes(channel, bytes);
+    while (!arrived_us_ && loop_->mono_us() < sent_us + within / 1us) loop_->run_once(1ms);
+    if (!arrived_us_) return std::nullopt;
+    return *arrived_us_ - sent_us;
+  }
+
+ private:
+  std::vector<ChildProcess> relays_;
+  std::unique_ptr<bus::Loop> loop_;
+  std::optional<std::int64_t> arrived_us_;
+};
+
+// Wall time on a machine that does other things says nothing. Two relays run beside, in turns with the poses,
+// and the fastest quarter of both is compared: these waited for no other program. docs/benchmarks.md has the
+// times of an idle machine.
+TEST_F(Processes, AnAnswerTakesAFewTimesAsLongAsARelayedMessage) {
   start("egocal-pairing");
   start("egocal-fast");
   start("egocal-global");
-  const auto trajectories = drive(400);
-  for (const Event& event : events(trajectories)) {
-    loop->publish(channel(event.side), bus::to_message(event.pose, event.seq));
-    const auto end = std::chrono::steady_clock::now() + 2500us;
-    while (std::chrono::steady_clock::now() < end) loop->run_once(end - std::chrono::steady_clock::now());
+  RelayedMessage peer(url, folder);
+  ASSERT_TRUE(until([&] { return peer.send(*loop, {}, 100ms).has_value(); }, 10s))
+      << "the relays do not start";
+
+  std::vector<std::int64_t> answered_us, relayed_us;
+  std::optional<std::int64_t> arrived_us;
+  std::int64_t newest = 0;
+  loop->subscribe_bytes(bus::calibration_channel("left", "right"), [&](const bus::Arrival& arrival) {
+    calibration_t answer{};
+    if (bus::decode(arrival.bytes, answer) && answer.solver == "egocal-fast" && answer.status == 0 &&
+        answer.pairs > newest) {
+      newest = answer.pairs;
+      arrived_us = arrival.mono_us;
+    }
+  });
+  for (const Event& event : events(drive(400))) {
+    const std::vector<std::byte> bytes = bus::encode(bus::to_message(event.pose, event.seq));
+    if (const auto relayed = peer.send(*loop, bytes, 200ms)) relayed_us.push_back(*relayed);
+    arrived_us.reset();
+    const std::int64_t sent_us = loop->mono_us();
+    loop->publish_bytes(channel(event.side), bytes);
+    // a pair of motions ends with a pose of the second sensor
+    const auto end = std::chrono::steady_clock::now() + (event.side == Side::b ? 50ms : 1ms);
+    while (!arrived_us && std::chrono::steady_clock::now() < end) loop->run_once(1ms);
+    if (arrived_us) answered_us.push_back(*arrived_us - sent_us);
   }
-  ASSERT_GT(latencies.size(), 300u);
-  std::sort(latencies.begin(), latencies.end());
-  const auto p50 = latencies[latencies.size() / 2], p99 = latencies[latencies.size() * 99 / 100];
-  std::printf("latency p50 %ld us, p99 %ld us\n", static_cast<long>(p50), static_cast<long>(p99));
-  // bounds for a machine that is busy with other tests; docs/benchmarks.md has the numbers of an idle one
-  EXPECT_LT(p50, 1000);
+  ASSERT_GT(answered_us.size(), 300u);
+  ASSERT_GT(relayed_us.size(), 700u);
+  const auto quantile = [](std::vector<std::int64_t>& values, std::size_t percent) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() * percent / 100];
+  };
+  for (const std::size_t percent : {25u, 50u, 90u, 99u})
+    std::printf("p%zu: an answer %ld us, two relays %ld us\n", percent,
+                static_cast<long>(quantile(answered_us, percent)),
+                static_cast<long>(quantile(relayed_us, percent)));
+  EXPECT_LT(quantile(answered_us, 25), 10 * quantile(relayed_us, 25)) << "2 to 7 times is usual";
 }
 
 }  // namespace
