@@ -12,7 +12,10 @@ namespace {
 
 using Words = std::initializer_list<std::string_view>;
 
-constexpr std::string_view rates[] = {"vel", "velocity", "acc", "accel", "acceleration", "rate"};
+const Words rates = {"vel", "velocity", "acc", "accel", "acceleration", "rate"};
+const Words accelerations = {"acc", "accel", "acceleration"};
+const Words uncertainties = {"covariance", "cov", "std",  "sigma", "stddev",
+                             "sd",         "b",   "bias", "var",   "error"};
 
 bool is_one_of(std::string_view word, Words words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -77,10 +80,8 @@ bool ends_with(std::string_view word, std::string_view end) {
 /// Velocities, rates, biases and uncertainties are named like poses; words may be written together
 /// ("angvel_z").
 bool is_no_pose(std::string_view word) {
-  return is_one_of(word, {"v", "linear", "angular", "twist", "gyro", "covariance", "cov", "std", "sigma",
-                          "stddev", "sd", "b", "bias", "var", "error"}) ||
-         std::any_of(std::begin(rates), std::end(rates),
-                     [&](std::string_view end) { return ends_with(word, end); });
+  return is_one_of(word, {"v", "linear", "angular", "twist", "gyro"}) || is_one_of(word, uncertainties) ||
+         std::any_of(rates.begin(), rates.end(), [&](std::string_view end) { return ends_with(word, end); });
 }
 
 /// Elements of an array: "q[0]" is w, as PX4 and Eigen's constructors order them; "position[0]" is x.
@@ -130,9 +131,7 @@ Meaning meaning_of_axis(const ColumnName& name) {
 /// "vx", "v", "linear.x", "twist.angular.z", "yaw_rate", ...
 Meaning meaning_of_velocity(const ColumnName& name) {
   const std::string_view last = name.words.back();
-  if (name.any_of({"covariance", "cov", "std", "sigma", "stddev", "sd", "b", "bias", "var", "error", "acc",
-                   "accel", "acceleration"}))
-    return {};
+  if (name.any_of(uncertainties) || name.any_of(accelerations)) return {};
   if (is_one_of(name.joined, {"v", "vel", "velocity", "speed"})) return {Quantity::vx, 1};
   if (is_one_of(name.joined, {"yawrate", "turnrate", "omega"})) return {Quantity::wz, 1};
   const char axis = last.back();
