@@ -6,13 +6,6 @@
 
 namespace egocal::services {
 
-std::int64_t time_in(bus::Bytes message) {
-  if (message.size() < 16) return 0;
-  std::uint64_t value = 0;
-  for (std::size_t i = 8; i < 16; ++i) value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
-  return static_cast<std::int64_t>(value);
-}
-
 Accumulation::Accumulation(const bus::Rig& rig) {
   StreamOptions options;
   options.reorder_window = rig.reorder_window;
@@ -24,9 +17,11 @@ void Accumulation::apply(const Input& input) {
   switch (input.kind) {
     case Input::Kind::message:
       return take(channels_.at(input.index), input);
-    case Input::Kind::give_up: {
+    case Input::Kind::give_up:
+    case Input::Kind::nothing_sent: {
       Channel& channel = channels_.at(input.index);
-      const std::vector<NumberedPose> samples = channel.stream.flush();
+      const std::vector<NumberedPose> samples =
+          input.kind == Input::Kind::give_up ? channel.stream.flush() : channel.stream.give_up_first_gap();
       if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
       return route(channel, samples);
     }
@@ -44,7 +39,7 @@ void Accumulation::apply(const Input& input) {
 
 void Accumulation::take(Channel& channel, const Input& input) {
   ++channel.state.in;
-  channel.state.utime = time_in(input.bytes);
+  channel.state.utime = bus::utime_in(input.bytes);
   const bus::ReceivedOdometry odometry = bus::decode_odometry(channel.sensor, input.bytes);
   if (!odometry.decoded) {
     ++channel.state.undecodable;

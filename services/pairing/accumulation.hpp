@@ -24,7 +24,8 @@ struct Input {
     impatient,    ///< all channels: it will not
     new_session,  ///< a pair: the next pose begins one
     pause,        ///< a pair
-    resume        ///< a pair
+    resume,       ///< a pair
+    nothing_sent  ///< a channel: its sender has nothing for the first gap
   };
   Kind kind = Kind::message;
   std::uint16_t index = 0;   ///< of the channel or pair in the rig
@@ -65,7 +66,8 @@ class Accumulation {
   const bus::Sensor& sensor(std::size_t channel) const { return channels_[channel].sensor; }
   const Stream& stream(std::size_t channel) const { return channels_[channel].stream; }
   /// Time of the newest message before which nothing is missing [us]; for acknowledgements. After a message
-  /// that has no place in the stream (a second time, damaged) it is that one's time_in(): it is done with.
+  /// that has no place in the stream (a second time, damaged) it is that one's bus::utime_in(): it is done
+  /// with.
   std::int64_t complete_until(std::size_t channel) const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 
@@ -83,9 +85,5 @@ class Accumulation {
   std::map<std::string, std::int64_t> rejected_;
   std::vector<MotionOut> motions_;
 };
-
-/// Both odometry types begin with the fingerprint and then utime, 8 bytes each, big endian: what a player
-/// knows a message by, even a damaged one. 0: too short.
-std::int64_t time_in(bus::Bytes message);
 
 }  // namespace egocal::services

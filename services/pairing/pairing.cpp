@@ -219,11 +219,22 @@ void Pairing::begin_to_send() {
   if (leads()) heartbeat_.publish();  // from where senders have to continue
 }
 
+/// A player states what follows in its log after the newest message that it knows to be here. Where that is
+/// the first one behind a gap, nothing was recorded in between, and no repeat will bring it.
+void Pairing::give_up_what_was_not_sent(const status_t& player) {
+  for (const acknowledgement_t& next : player.acknowledgements)
+    for (std::size_t i = 0; i < arrivals_.size(); ++i)
+      if (accumulation_.sensor(i).channel == next.channel &&
+          accumulation_.stream(i).behind_gap_us() == next.utime)
+        feed({Input::Kind::nothing_sent, static_cast<std::uint16_t>(i)});
+}
+
 /// What starts need not wait for the second to be over, and a namesake that precedes this one silences it at
 /// once.
 void Pairing::hear(const status_t& status) {
   if (status.name == heartbeat_.identity().name) show_state();
   const bool player = status.role == "player";
+  if (player) give_up_what_was_not_sent(status);
   if ((status.role != "fast" && status.role != "global" && !player) || status.state == "ended" ||
       known_runs_.contains(status.run) || known_runs_.size() >= options_.most_known_runs)
     return;  // a flood of invented ones gains nothing

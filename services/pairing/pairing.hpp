@@ -52,6 +52,7 @@ class Pairing {
   void publish_all_problems();
   void publish_motions();
   void be_patient_if_it_helps();
+  void give_up_what_was_not_sent(const status_t& player);
   void watch_gaps();
   void every_second();
   void obey(Verb verb, const command_t& command);

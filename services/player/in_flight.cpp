@@ -6,6 +6,7 @@
 #include <set>
 
 #include "egocal/bus/check.hpp"
+#include "egocal/bus/odometry.hpp"
 
 namespace egocal::services {
 
@@ -13,19 +14,11 @@ namespace {
 const std::string held_back_prefix = "held back: ";
 }  // namespace
 
-std::optional<std::int64_t> utime_of(const bus::LogEvent& event) {
-  // both types begin with the fingerprint and then utime, 8 bytes each, big endian
-  if (event.data.size() < 16) return std::nullopt;
-  std::uint64_t value = 0;
-  for (std::size_t i = 8; i < 16; ++i) value = value << 8 | std::to_integer<std::uint64_t>(event.data[i]);
-  return static_cast<std::int64_t>(value);
-}
-
 void InFlight::sent(const bus::LogEvent& event) {
   const auto channel = channels_.find(event.channel);
   if (channel == channels_.end()) return;
   channel->second.was_sent = true;
-  channel->second.messages.push_back({order_++, utime_of(event).value_or(0), event});
+  channel->second.messages.push_back({order_++, bus::utime_in(event.data), event});
 }
 
 InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
@@ -57,8 +50,9 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
       channel.sent_again = 0;
       channel.next_try = acknowledgement.count;
     }
-    if (held_back.contains(acknowledgement.channel) && !channel.messages.empty() &&
-        channel.sent_again < options_.most_tries && acknowledgement.count >= channel.next_try) {
+    channel.held_back = held_back.contains(acknowledgement.channel);
+    if (channel.held_back && !channel.messages.empty() && channel.sent_again < options_.most_tries &&
+        acknowledgement.count >= channel.next_try) {
       ++channel.sent_again;
       channel.next_try = acknowledgement.count + static_cast<std::int64_t>(channel.messages.size());
       progress.send_again = true;
@@ -66,6 +60,22 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
   }
   if (new_process && !first && count() > 0) progress.send_again = true;
   return progress;
+}
+
+std::vector<acknowledgement_t> InFlight::following() const {
+  std::vector<acknowledgement_t> following;
+  for (const auto& [name, channel] : channels_) {
+    if (!channel.held_back || channel.sent_again < options_.most_tries) continue;
+    std::optional<std::int64_t> next;
+    for (const Message& message : channel.messages)
+      if (message.utime > channel.utime) next = std::min(next.value_or(message.utime), message.utime);
+    if (!next) continue;
+    following.emplace_back();
+    following.back().channel = name;
+    following.back().utime = *next;
+    following.back().count = channel.sent_again;
+  }
+  return following;
 }
 
 /// Among many names that nothing was sent on the true ones come again with the next true status.

@@ -19,7 +19,9 @@ namespace egocal::services {
 struct InFlightOptions {
   /// Names of channels that are remembered: a status can be forged. Four times the sensors of a large rig.
   std::size_t most_channels = 256;
-  /// After this many attempts without success pairing takes it that there is nothing to fill the gap with.
+  /// Attempts to fill a gap, each as soon as what was sent before has arrived. Later ones wait for
+  /// Pace::stall_us. After them what the log holds next is stated: a log may hold messages in another order
+  /// than that of their numbers.
   int most_tries = 2;
 };
 
@@ -40,6 +42,11 @@ class InFlight {
   /// counter "held back: <channel>" says that something came behind a gap.
   Progress acknowledged(const status_t& pairing);
 
+  /// Of each channel on which something came behind a gap and most_tries have not filled it: the time of the
+  /// next message of the log after the acknowledged one. Where that is what came, the log holds nothing for
+  /// the gap.
+  std::vector<acknowledgement_t> following() const;
+
   bool heard() const { return run_.has_value(); }            ///< any pairing process, ever
   std::size_t count() const;                                 ///< messages on the way
   std::size_t channels() const { return channels_.size(); }  ///< that are remembered
@@ -56,6 +63,7 @@ class InFlight {
   struct Channel {
     std::int64_t count = 0, utime = 0;  ///< of the last acknowledgement
     std::optional<std::int64_t> gap;    ///< utime of an acknowledgement with something held back
+    bool held_back = false;             ///< with that acknowledgement
     int sent_again = 0;                 ///< because of this gap
     std::int64_t next_try = 0;          ///< count at which all that was sent again has arrived
     bool was_sent = false;              ///< anything, ever
@@ -67,8 +75,5 @@ class InFlight {
   std::optional<std::int64_t> run_;  ///< of the pairing process
   std::uint64_t order_ = 0;
 };
-
-/// Time of the measurement in an odometry message of either type [us].
-std::optional<std::int64_t> utime_of(const bus::LogEvent& event);
 
 }  // namespace egocal::services

@@ -41,6 +41,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
   anchor(next_->time_us);
   heartbeat_.on_status([this](const status_t& status) { hear(status); });
   heartbeat_.before_publish([this] {
+    heartbeat_.acknowledgements() = in_flight_.following();
     heartbeat_.counter("out") = static_cast<std::int64_t>(out_);
     heartbeat_.counter("lost: damaged bytes of the log") = static_cast<std::int64_t>(tape_.damage().bytes);
     heartbeat_.counter("lost: damaged regions of the log") =
@@ -195,6 +196,7 @@ void Player::send_again() {
     send(event);
     ++heartbeat_.counter("sent again");
   }
+  if (!in_flight_.following().empty()) heartbeat_.publish();
 }
 
 void Player::wait_until(std::int64_t mono_us) {

@@ -79,7 +79,7 @@ void try_pairing(const std::uint8_t* data, std::size_t size) {
       if (choice >= 210) message[input.byte() % message.size()] ^= std::byte{0x10};
       accumulation.apply({Input::Kind::message, channel, message, 0});
     } else if (choice < 228) {
-      accumulation.apply({Input::Kind::give_up, channel});
+      accumulation.apply({choice < 224 ? Input::Kind::give_up : Input::Kind::nothing_sent, channel});
     } else if (choice < 234) {
       accumulation.apply({pair ? Input::Kind::patient : Input::Kind::impatient});
     } else if (choice < 240) {

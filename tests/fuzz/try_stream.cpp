@@ -60,8 +60,10 @@ void try_stream(const std::uint8_t* data, std::size_t size) {
       if (choice < 200) seq = pose.seq = input.near(seq, 1);
       ++pushed;
       received.take(stream.push(pose));
-    } else if (choice < 244) {
+    } else if (choice < 242) {
       received.take(stream.flush());
+    } else if (choice < 244) {
+      received.take(stream.give_up_first_gap());
     } else if (choice < 248) {
       stream.be_patient((choice & 1) != 0);
     } else if (choice < 252) {

@@ -34,8 +34,10 @@ TEST(Baselines, FindTheTruthWithoutNoise) {
     EXPECT_LT(extrinsic_error(T, analytic.T_a_b).translation, 1e-12) << seed;
     const BaselineAnswer matrix = solve_matrix(pairs);
     EXPECT_TRUE(matrix.valid && matrix.certified) << matrix.note;
-    EXPECT_LT(extrinsic_error(T, matrix.T_a_b).rotation, 1e-6) << seed;
-    EXPECT_LT(extrinsic_error(T, matrix.T_a_b).translation, 1e-6) << seed;
+    // its interior-point method ends at a relative gap of 1e-14; the answer is less exact: 1e-6 on x86-64,
+    // 3e-6 on aarch64
+    EXPECT_LT(extrinsic_error(T, matrix.T_a_b).rotation, 1e-5) << seed;
+    EXPECT_LT(extrinsic_error(T, matrix.T_a_b).translation, 1e-5) << seed;
     const BaselineAnswer local = solve_local(pairs, near_start(T, random));
     EXPECT_TRUE(local.valid) << local.note;
     EXPECT_LT(extrinsic_error(T, local.T_a_b).rotation, 1e-12) << seed;

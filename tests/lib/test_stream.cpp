@@ -143,13 +143,64 @@ TEST(Stream, APatientOneWaitsForWhatWillBeSentAgain) {
 }
 
 TEST(Stream, APatientOneGivesUpWhatTheSenderDoesNotHave) {
-  Stream stream;
+  StreamOptions options;
+  options.repeats_of_nothing = 2;
+  Stream stream(options);
   stream.be_patient(true);
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(2, 2), sample(3, 3), sample(2, 2), sample(3, 3)}),
               ElementsAre(0));
   EXPECT_THAT(feed(stream, {sample(2, 2), sample(3, 3)}), ElementsAre(2, 3));
   EXPECT_EQ(stream.counts().lost, 1);
   EXPECT_FALSE(stream.waiting());
+}
+
+TEST(Stream, ASenderStatesThatItHasNothingForAGap) {
+  Stream stream;
+  stream.be_patient(true);
+  EXPECT_EQ(stream.behind_gap_us(), std::nullopt);
+  EXPECT_TRUE(stream.give_up_first_gap().empty());
+  feed(stream, {sample(0, 0), sample(3, 3), sample(5, 5), sample(6, 6)});
+  EXPECT_EQ(stream.behind_gap_us(), sample(3, 3).pose.time_us);
+  EXPECT_EQ(stream.give_up_first_gap().size(), 1u);
+  EXPECT_EQ(stream.counts().lost, 2);
+  EXPECT_EQ(stream.behind_gap_us(), sample(5, 5).pose.time_us) << "the second gap is another question";
+  EXPECT_THAT(feed(stream, {sample(4, 4)}), ElementsAre(4, 5, 6));
+  EXPECT_EQ(stream.counts().lost, 2);
+}
+
+// a burst of lost messages: time goes on far behind the newest, as no damaged message would three times
+TEST(Stream, APatientOneWaitsForABurstOfLostMessages) {
+  for (const bool patient : {true, false}) {
+    Stream stream;
+    stream.be_patient(patient);
+    feed(stream, {sample(0, 0), sample(2, 2), sample(30, 30), sample(31, 31)});
+    const auto out = feed(stream, {sample(33, 33), sample(1, 1)});
+    if (patient)
+      EXPECT_THAT(out, ElementsAre(1, 2));
+    else
+      EXPECT_THAT(out, ElementsAre(2, 30, 31, 33));
+    EXPECT_EQ(stream.counts().lost, patient ? 0 : 27 + 1);
+  }
+}
+
+TEST(Stream, WhatAnotherOneOvertookIsNotADamagedTime) {
+  Stream stream;
+  EXPECT_THAT(feed(stream, {sample(0, 0), sample(13, 13), sample(14, 14), sample(7, 7), sample(15, 15),
+                            sample(16, 16)}),
+              ElementsAre(0, 7, 13, 14, 15, 16));
+  EXPECT_EQ(stream.counts().jump, 0);
+  EXPECT_EQ(stream.counts().lost, 6 + 5);
+}
+
+// without numbers: they were lost when the log was sent first, and it is sent again
+TEST(Stream, LateMessagesAmongRepeatedOnesBeginNoNewTimeline) {
+  Stream stream;
+  for (int i = 0; i < 30; ++i)
+    if (i != 2 && i != 6 && i != 11) feed(stream, {sample(i, -1)});
+  for (int i = 0; i < 18; ++i) EXPECT_TRUE(feed(stream, {sample(i, -1)}).empty()) << i;
+  EXPECT_EQ(stream.counts().out_of_order, 3);
+  EXPECT_EQ(stream.counts().duplicate, 15);
+  EXPECT_THAT(feed(stream, {sample(30, -1)}), ElementsAre(30));
 }
 
 TEST(Stream, ASenderThatGoesBackIsSeenByWhatItRepeatsFromBeforeTheGap) {

@@ -15,6 +15,7 @@
 #include <iterator>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/odometry.hpp"
 #include "egocal/error.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "pairing/state/saved_state.hpp"
@@ -128,7 +129,8 @@ TEST_F(SavedStates, GoOnWithTheSameBits) {
         for (std::uint16_t k = 0; k < 2; ++k) {
           std::size_t missing = 0;
           for (std::size_t i = 0; i < messages.size(); ++i)
-            if (messages[i].channel == k && time_in(messages[i].bytes) == accumulation.complete_until(k))
+            if (messages[i].channel == k &&
+                bus::utime_in(messages[i].bytes) == accumulation.complete_until(k))
               missing = i + 1;
           first_missing = std::min(first_missing, missing);
         }

@@ -80,7 +80,8 @@ Drive make_drive(const Plan& plan) {
   for (int i = 0; i < plan.sensors; ++i) {
     options.T_vehicle_sensor.push_back({rotation_exp(random.normal3(0.8)), random.normal3(1)});
     SensorFaults& faults = options.faults.emplace_back();
-    faults.phase = random.uniform(0, 0.5 / plan.rate_hz);
+    const double phase = random.uniform(0, 0.5 / plan.rate_hz);
+    faults.phase = plan.measured_together() && i < 2 ? 0 : phase;
     if (i != 1) continue;
     faults.scale = plan.scale;
     faults.clock_drift = plan.clock_drift;

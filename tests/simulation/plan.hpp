@@ -121,6 +121,10 @@ struct Plan {
   NetworkFaults network;
   ClockFaults clocks[most_hosts];
   std::vector<Incident> incidents;
+
+  /// The first two sensors measure at the same times, so that nothing is interpolated: every second run in
+  /// which a scale is to be found.
+  bool measured_together() const { return auto_scale && seed % 2 == 0; }
 };
 
 /// Processes of a plan by their numbers: pairing, fast, global, monitor, export, what sends odometry,

@@ -14,8 +14,6 @@ namespace egocal {
 
 namespace {
 
-// format: after the message behind the gap came twice the player has no older one (docs/processes.md)
-constexpr std::int32_t repeats_of_nothing = 2;
 constexpr std::int64_t no_time = std::numeric_limits<std::int64_t>::min();
 
 std::int64_t microseconds(double seconds) {
@@ -75,11 +73,29 @@ bool Stream::known(std::int64_t time_us) const {
          has_time(state_.early, time_us);
 }
 
+/// With those that wait behind a gap; newest_us is known.
+std::int64_t Stream::newest_us_of_all() const {
+  return state_.early.empty() ? *state_.newest_us : newest_time(state_.early);
+}
+
+std::int64_t Stream::largest_jump_us() const {
+  return std::max(microseconds(options_.largest_jump), options_.jump_periods * state_.period_us);
+}
+
+/// A sender that repeats this one goes over the same timeline again: what came just before it for the first
+/// time had been lost, is late now, and begins nothing.
+void Stream::drop_late_candidates(std::int64_t repeated_us) {
+  if (state_.candidates.empty() || !state_.newest_us) return;
+  const std::int64_t last_us = state_.candidates.back().pose.time_us;
+  if (last_us > repeated_us || repeated_us - last_us > largest_jump_us()) return;
+  state_.counts.out_of_order += static_cast<std::int64_t>(state_.candidates.size());
+  state_.candidates.clear();
+}
+
 bool Stream::plausible(const NumberedPose& sample) const {
   if (!state_.newest_us) return true;
-  const std::int64_t limit =
-      std::max(microseconds(options_.largest_jump), options_.jump_periods * state_.period_us);
-  const std::int64_t newest = state_.early.empty() ? *state_.newest_us : newest_time(state_.early);
+  const std::int64_t limit = largest_jump_us();
+  const std::int64_t newest = newest_us_of_all();
   // numbers that are missing take their time
   std::int64_t ahead = 0;
   if (sample.seq >= 0 && state_.next_seq) {
@@ -139,9 +155,17 @@ void Stream::release_early(std::vector<NumberedPose>& out, bool give_up) {
   }
 }
 
-void Stream::give_up_first_gap(std::vector<NumberedPose>& out) {
+std::optional<std::int64_t> Stream::behind_gap_us() const {
+  if (state_.early.empty()) return std::nullopt;
+  return state_.early.begin()->second.pose.time_us;
+}
+
+std::vector<NumberedPose> Stream::give_up_first_gap() {
+  std::vector<NumberedPose> out;
+  if (state_.early.empty()) return out;
   give_up_until(state_.early.begin()->first);
   release_early(out, false);
+  return out;
 }
 
 std::vector<NumberedPose> Stream::flush() {
@@ -181,8 +205,16 @@ void Stream::restore(StreamState state) {
 
 std::vector<NumberedPose> Stream::take_candidates() {
   std::vector<NumberedPose> out;
+  const bool backwards = state_.candidates.front().pose.time_us <= newest_us_of_all();
+  if (state_.patient && !backwards && lost_between(state_, state_.candidates.front(), options_) &&
+      state_.candidates.front().seq - *state_.next_seq <= options_.most_missing) {
+    // many were lost in a row, and will be sent again
+    for (NumberedPose& sample : std::exchange(state_.candidates, {}))
+      state_.early.emplace(sample.seq, std::move(sample));
+    release_early(out, false);
+    return out;
+  }
   release_early(out, true);
-  const bool backwards = state_.candidates.front().pose.time_us <= *state_.newest_us;
   if (backwards) {
     state_.newest_us.reset();
     state_.recent.fill(no_time);
@@ -275,13 +307,11 @@ void Stream::pass_checked(std::vector<NumberedPose>& out) {
 std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
   if (known(sample.pose.time_us)) {
     ++state_.counts.duplicate;
-    std::vector<NumberedPose> out;
-    if (state_.patient && !state_.early.empty() &&
-        state_.early.begin()->second.pose.time_us == sample.pose.time_us) {
-      if (std::exchange(state_.gap, *state_.next_seq) != state_.gap) state_.gap_repeats = 0;
-      if (++state_.gap_repeats == repeats_of_nothing) give_up_first_gap(out);
-    }
-    return out;
+    drop_late_candidates(sample.pose.time_us);
+    if (!state_.patient || behind_gap_us() != sample.pose.time_us) return {};
+    if (std::exchange(state_.gap, *state_.next_seq) != state_.gap) state_.gap_repeats = 0;
+    if (++state_.gap_repeats < options_.repeats_of_nothing) return {};
+    return give_up_first_gap();
   }
   if (sample.seq >= 0 && state_.newest_us && sample.pose.time_us < *state_.newest_us &&
       state_.lost.erase(sample.seq) > 0) {
@@ -306,9 +336,20 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
     if (state_.candidates.size() < options_.confirmations) return {};
     return take_candidates();
   }
-  state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
-  state_.candidates.clear();
+  if (state_.candidates.empty()) return place(std::move(sample));
+  const std::vector<NumberedPose> candidates = std::exchange(state_.candidates, {});
+  const NumberedPose believed = sample;
+  std::vector<NumberedPose> out = place(std::move(sample));
+  for (const NumberedPose& candidate : candidates)
+    // far off only because some of those in between were late
+    if (candidate.seq >= 0 && follows(believed, candidate) && plausible(candidate))
+      append(out, place(candidate));
+    else
+      ++state_.counts.jump;
+  return out;
+}
 
+std::vector<NumberedPose> Stream::place(NumberedPose sample) {
   std::vector<NumberedPose> out;
   if (sample.seq < 0 || !state_.next_seq) {
     if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
@@ -317,11 +358,10 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
     ++state_.counts.out_of_order;
   } else {
     const std::int64_t seq = sample.seq;
-    if (!state_.early.emplace(seq, std::move(sample)).second) {
+    if (state_.early.emplace(seq, std::move(sample)).second)
+      release_early(out, false);
+    else
       ++state_.counts.duplicate;
-      return out;
-    }
-    release_early(out, false);
   }
   return out;
 }

@@ -45,5 +45,31 @@ TEST(InFlight, ForgedChannelsTakeNoMemoryAndDisplaceNoTrueOnes) {
   EXPECT_EQ(in_flight.count(), 0u);
 }
 
+TEST(InFlight, WhatFollowsInTheLogIsStatedAfterTwoAttempts) {
+  InFlight in_flight;
+  in_flight.acknowledged(status(1, {{"LIDAR", -1}}));
+  for (const std::int64_t step : {0, 1, 3, 2, 5}) in_flight.sent(event("LIDAR", step));
+  const auto held_back_after = [&](std::int64_t step, std::int64_t received) {
+    status_t message = status(1, {{"LIDAR", step}});
+    message.acknowledgements[0].count = received;
+    message.counters.resize(1);
+    message.counters[0].name = "held back: LIDAR";
+    message.counters[0].value = 1;
+    return in_flight.acknowledged(message).send_again;
+  };
+  EXPECT_TRUE(held_back_after(1, 4));
+  EXPECT_TRUE(in_flight.following().empty()) << "more of the log may still fill the gap";
+  EXPECT_TRUE(held_back_after(1, 7));
+  ASSERT_EQ(in_flight.following().size(), 1u);
+  EXPECT_EQ(in_flight.following()[0].channel, "LIDAR");
+  EXPECT_EQ(in_flight.following()[0].utime, event("LIDAR", 2).time_us) << "logged behind number 3";
+  EXPECT_FALSE(held_back_after(1, 10)) << "later ones wait";
+  EXPECT_EQ(in_flight.following().size(), 1u);
+  EXPECT_TRUE(held_back_after(3, 12));
+  EXPECT_TRUE(in_flight.following().empty()) << "the next gap";
+  EXPECT_FALSE(in_flight.acknowledged(status(1, {{"LIDAR", 5}})).send_again);
+  EXPECT_TRUE(in_flight.following().empty());
+}
+
 }  // namespace
 }  // namespace egocal::services
