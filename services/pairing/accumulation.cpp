@@ -64,7 +64,8 @@ void Accumulation::route(const Channel& channel, const std::vector<NumberedPose>
 
 std::int64_t Accumulation::complete_until(std::size_t index) const {
   const Channel& channel = channels_[index];
-  if (channel.stream.waiting()) return channel.stream.newest_us().value_or(0);
+  if (channel.stream.waiting() || channel.stream.unconfirmed() > 0)
+    return channel.stream.newest_us().value_or(0);
   return channel.state.utime;
 }
 

@@ -33,11 +33,11 @@ void check(const Stream& stream, std::int64_t pushed, std::int64_t received) {
   const StreamState& state = stream.state();
   const StreamCounts& counts = stream.counts();
   const std::size_t most = static_cast<std::size_t>(StreamOptions{}.most_missing) + 1;
-  require(stream.held_back() <= 2 * most && state.lost.size() <= most && state.candidates.size() <= 3 &&
-              state.ahead.size() <= 3,
+  require(state.early.size() + state.held.size() <= 2 * most && state.lost.size() <= most &&
+              state.candidates.size() <= 3 && state.ahead.size() <= 3,
           "memory is bounded");
-  const auto waiting =
-      static_cast<std::int64_t>(stream.held_back() + state.candidates.size() + state.ahead.size());
+  const auto waiting = static_cast<std::int64_t>(state.early.size() + state.held.size() +
+                                                 state.candidates.size() + state.ahead.size());
   require(pushed == received + counts.duplicate + counts.out_of_order + counts.jump + waiting,
           "every pose is handed on, counted or held back");
   require(counts.lost >= 0, "no less than nothing is lost");

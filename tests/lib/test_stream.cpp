@@ -203,6 +203,29 @@ TEST(Stream, LateMessagesAmongRepeatedOnesBeginNoNewTimeline) {
   EXPECT_THAT(feed(stream, {sample(30, -1)}), ElementsAre(30));
 }
 
+TEST(Stream, ACopyThatTheNetworkMadeSettlesNothing) {
+  Stream stream;
+  feed(stream, {sample(0, -1), sample(1, -1)});
+  stream.settle();
+  EXPECT_TRUE(feed(stream, {sample(4, -1), sample(4, -1), sample(5, -1)}).empty());
+  EXPECT_TRUE(stream.settling());
+  EXPECT_THAT(feed(stream, {sample(2, -1), sample(3, -1), sample(4, -1)}), ElementsAre(2, 3, 4, 5));
+  EXPECT_EQ(stream.counts().duplicate, 2);
+}
+
+// acknowledged, they would take with them what was lost before them
+TEST(Stream, WhatIsFarOffIsHeldBackUntilItIsConfirmed) {
+  Stream stream;
+  stream.be_patient(true);
+  feed(stream, {sample(0, 0), sample(30, 30)});
+  EXPECT_EQ(stream.unconfirmed(), 1u);
+  EXPECT_EQ(stream.held_back(), 1u);
+  EXPECT_FALSE(stream.waiting()) << "it may be damaged";
+  feed(stream, {sample(1, 1)});
+  EXPECT_EQ(stream.unconfirmed(), 0u);
+  EXPECT_TRUE(stream.waiting()) << "as far ahead as its number";
+}
+
 TEST(Stream, ASenderThatGoesBackIsSeenByWhatItRepeatsFromBeforeTheGap) {
   Stream stream;
   stream.be_patient(true);

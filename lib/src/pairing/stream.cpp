@@ -236,6 +236,7 @@ void Stream::settle() {
   // not acknowledged yet: they come again, in order
   state_.counts.duplicate += static_cast<std::int64_t>(state_.held.size());
   state_.held.clear();
+  state_.held_last_us.reset();
 }
 
 std::vector<NumberedPose> Stream::settled() {
@@ -251,8 +252,13 @@ std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
   const std::int64_t time_us = sample.pose.time_us;
   const bool backwards = state_.newest_us && time_us <= *state_.newest_us;
   const bool again = state_.held.contains(time_us);
+  if (again && state_.held_last_us == time_us) {
+    ++state_.counts.duplicate;
+    return {};
+  }
   if (!backwards && !again && !too_many(state_.held.size() + 1)) {
     state_.held.emplace(time_us, std::move(sample));
+    state_.held_last_us = time_us;
     return {};
   }
   if (backwards && known(time_us)) {  // the sender has begun a little before what is missing

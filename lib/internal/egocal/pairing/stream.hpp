@@ -69,6 +69,7 @@ struct StreamState {
   std::int32_t gap_repeats = 0;                ///< and how often
   bool settling = false;                       ///< see settle()
   std::map<std::int64_t, NumberedPose> held;   ///< by time, while settling
+  std::optional<std::int64_t> held_last_us;    ///< time of the one that was held last
   StreamCounts counts;
 };
 
@@ -95,7 +96,9 @@ class Stream {
   std::vector<NumberedPose> give_up_first_gap();
   /// Something is missing before what is held back.
   bool waiting() const { return !state_.early.empty() || !state_.held.empty(); }
-  std::size_t held_back() const { return state_.early.size() + state_.held.size(); }
+  std::size_t held_back() const { return state_.early.size() + state_.held.size() + unconfirmed(); }
+  /// How many are far off and not confirmed yet, of a sender that can send again what is missing before them.
+  std::size_t unconfirmed() const { return state_.patient ? state_.candidates.size() : 0; }
   /// The number that it waits for or expects next; -1: none.
   std::int64_t expected() const { return state_.next_seq.value_or(-1); }
   std::optional<std::int64_t> newest_us() const { return state_.newest_us; }
@@ -110,7 +113,8 @@ class Stream {
   void be_patient(bool patient) { state_.patient = patient; }
   bool settling() const { return state_.settling; }
   /// After an interruption: the messages of a stream without numbers, or of one not received before, are
-  /// collected, and put in order when one of them comes a second time, or by flush().
+  /// collected, and put in order when one of them comes a second time after others (at once it is a copy that
+  /// the network made), or by flush().
   void settle();
 
   const StreamState& state() const { return state_; }
