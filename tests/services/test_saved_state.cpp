@@ -279,6 +279,46 @@ TEST_F(SavedStates, ADiskThatTakesNothingEndsNothing) {
   EXPECT_EQ(saved.not_saved(), "");
 }
 
+/// A file system that becomes read-only.
+class ReadOnlyForNow : public StateMedium {
+ public:
+  ReadOnlyForNow(const std::string& file, const bool& read_only)
+      : medium_(open_state_medium(file)), read_only_(read_only) {}
+  const std::string& name() const override { return medium_->name(); }
+  std::optional<Found> read(std::string_view begins) override { return medium_->read(begins); }
+  void replace(std::span<const std::byte> bytes) override { allowed(), medium_->replace(bytes); }
+  void add(std::span<const std::byte> bytes) override { allowed(), medium_->add(bytes); }
+  bool in_place() const override { return medium_->in_place(); }
+  std::string keep_aside() override { return allowed(), medium_->keep_aside(); }
+
+ private:
+  void allowed() const {
+    if (read_only_) throw Error("cannot be written: Read-only file system");
+  }
+  std::unique_ptr<StateMedium> medium_;
+  const bool& read_only_;
+};
+
+TEST_F(SavedStates, ARefusedOneThatCannotBeKeptAsideEndsNothingAndIsNotOverwritten) {
+  const bus::Rig config = rig("egocal.odometry_t"), other = rig("egocal.odometry_t", "stride = 3\n");
+  write_state(config, 100);
+  const std::string before = content();
+  bool read_only = true;
+  SavedState saved(std::make_unique<ReadOnlyForNow>(file, read_only), other, boot_time);
+  Accumulation accumulation = saved.restore();
+  EXPECT_FALSE(saved.restored());
+  EXPECT_THAT(saved.refused(), HasSubstr("it stays there: cannot be written: Read-only file system"));
+  EXPECT_THAT(saved.not_saved(), HasSubstr("Read-only file system"));
+  EXPECT_THROW(saved.save(accumulation), Error);
+  EXPECT_EQ(content(), before);
+  read_only = false;
+  saved.save(accumulation);
+  EXPECT_THAT(saved.refused(), HasSubstr("it is kept as"));
+  EXPECT_NE(content(), before);
+  std::ifstream aside(file + ".refused", std::ios::binary);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(aside), {}), before);
+}
+
 TEST_F(SavedStates, AFolderThatIsRemovedWhileRunningCostsNothing) {
   const bus::Rig config = rig("egocal.odometry_t");
   const auto messages = drive("egocal.odometry_t", 50);

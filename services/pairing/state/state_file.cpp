@@ -134,15 +134,19 @@ std::optional<StateFile::Content> StateFile::read() {
 }
 
 void StateFile::refuse(const std::string& why) {
+  const std::string begin = medium_->name() + ": " + why + "; starting from nothing, ";
   try {
-    refused_ =
-        medium_->name() + ": " + why + "; starting from nothing, it is kept as " + medium_->keep_aside();
+    refused_ = begin + "it is kept as " + medium_->keep_aside();
+    in_the_way_.clear();
   } catch (const Error& error) {
-    throw error_at(medium_->name(), 0, "", why + ", and " + error.what());
+    in_the_way_ = why;
+    refused_ = begin + "it stays there: " + error.what();
   }
 }
 
 void StateFile::snapshot(std::span<const std::byte> bytes) {
+  if (!in_the_way_.empty()) refuse(in_the_way_);
+  if (!in_the_way_.empty()) throw Error(refused_);
   const auto begin = as_bytes(magic);
   std::vector<std::byte> parts(begin.begin(), begin.end());
   const BootTime now = clock_();

@@ -39,7 +39,8 @@ class StateFile {
   std::optional<Content> read();
   /// One line: why what was there is refused; empty: it is not.
   const std::string& refused() const { return refused_; }
-  /// Refuses what read() returned: it is kept aside as FILE.refused (or FILE.refused-2, ...).
+  /// Refuses what read() returned: it is kept aside as FILE.refused (or FILE.refused-2, ...). Where the disk
+  /// does not allow that now, the next snapshot does it first.
   void refuse(const std::string& why);
 
   /// Throws Error where the disk does not take it; the old content is then still there.
@@ -54,6 +55,7 @@ class StateFile {
  private:
   std::unique_ptr<StateMedium> medium_;
   std::string identity_, refused_;
+  std::string in_the_way_;  ///< why a file is refused that could not be kept aside yet; empty: there is none
   Clock clock_;
   StateOptions options_;
   std::uint64_t added_ = 0;
