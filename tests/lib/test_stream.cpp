@@ -203,6 +203,18 @@ TEST(Stream, LateMessagesAmongRepeatedOnesBeginNoNewTimeline) {
   EXPECT_THAT(feed(stream, {sample(30, -1)}), ElementsAre(30));
 }
 
+// without numbers: a whole burst was lost the first time
+TEST(Stream, ABurstThatAPlayerSendsAgainBeginsNoNewTimeline) {
+  Stream stream;
+  stream.be_patient(true);
+  for (int i = 100; i < 130; ++i)
+    if (i < 103 || i > 108) feed(stream, {sample(i, -1)});
+  for (int i = 95; i < 118; ++i) EXPECT_TRUE(feed(stream, {sample(i, -1)}).empty()) << i;
+  EXPECT_EQ(stream.counts().out_of_order, 5 + 6);
+  EXPECT_THAT(feed(stream, {sample(130, -1)}), ElementsAre(130));
+  EXPECT_THAT(feed(stream, {sample(0, -1), sample(1, -1), sample(2, -1)}), ElementsAre(-1, 0, 1, 2));
+}
+
 TEST(Stream, ACopyThatTheNetworkMadeSettlesNothing) {
   Stream stream;
   feed(stream, {sample(0, -1), sample(1, -1)});

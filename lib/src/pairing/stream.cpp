@@ -73,6 +73,11 @@ bool Stream::known(std::int64_t time_us) const {
          has_time(state_.early, time_us);
 }
 
+std::size_t Stream::unconfirmed() const {
+  const bool numbered = !state_.candidates.empty() && state_.candidates.front().seq >= 0;
+  return state_.patient && numbered ? state_.candidates.size() : 0;
+}
+
 /// With those that wait behind a gap; newest_us is known.
 std::int64_t Stream::newest_us_of_all() const {
   return state_.early.empty() ? *state_.newest_us : newest_time(state_.early);
@@ -90,6 +95,20 @@ void Stream::drop_late_candidates(std::int64_t repeated_us) {
   if (last_us > repeated_us || repeated_us - last_us > largest_jump_us()) return;
   state_.counts.out_of_order += static_cast<std::int64_t>(state_.candidates.size());
   state_.candidates.clear();
+}
+
+/// Without numbers: from among the messages that a player may still send again (as many as are remembered).
+/// They were lost the first time, and begin no new timeline, however many come in a row.
+bool Stream::sent_again_too_late(const NumberedPose& sample) const {
+  if (!state_.patient || sample.seq >= 0 || !state_.newest_us || sample.pose.time_us >= *state_.newest_us)
+    return false;
+  std::int64_t oldest_us = *state_.newest_us, not_remembered = 0;
+  for (const std::int64_t time_us : state_.recent)
+    if (time_us == no_time)
+      ++not_remembered;
+    else
+      oldest_us = std::min(oldest_us, time_us);
+  return sample.pose.time_us >= oldest_us - not_remembered * state_.period_us;
 }
 
 bool Stream::plausible(const NumberedPose& sample) const {
@@ -326,6 +345,10 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
     return {};
   }
   if (!plausible(sample)) {
+    if (sent_again_too_late(sample)) {
+      ++state_.counts.out_of_order;
+      return {};
+    }
     // a copy, which the network made, contradicts nothing
     const auto same = [&](const NumberedPose& candidate) {
       return candidate.pose.time_us == sample.pose.time_us && candidate.seq == sample.seq;

@@ -98,7 +98,8 @@ class Stream {
   bool waiting() const { return !state_.early.empty() || !state_.held.empty(); }
   std::size_t held_back() const { return state_.early.size() + state_.held.size() + unconfirmed(); }
   /// How many are far off and not confirmed yet, of a sender that can send again what is missing before them.
-  std::size_t unconfirmed() const { return state_.patient ? state_.candidates.size() : 0; }
+  /// Without numbers nothing is known to be missing.
+  std::size_t unconfirmed() const;
   /// The number that it waits for or expects next; -1: none.
   std::int64_t expected() const { return state_.next_seq.value_or(-1); }
   std::optional<std::int64_t> newest_us() const { return state_.newest_us; }
@@ -129,6 +130,7 @@ class Stream {
   std::int64_t newest_us_of_all() const;
   std::int64_t largest_jump_us() const;
   void drop_late_candidates(std::int64_t repeated_us);
+  bool sent_again_too_late(const NumberedPose& sample) const;
   std::vector<NumberedPose> look_ahead(NumberedPose sample);
   void pass_checked(std::vector<NumberedPose>& out);
   std::vector<NumberedPose> in_order(NumberedPose sample);
