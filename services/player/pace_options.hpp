@@ -21,6 +21,10 @@ struct PaceOptions {
   /// What was not acknowledged is sent again after this time [us]: pairing acknowledges within
   /// milliseconds, or has lost it.
   std::int64_t stall_us = 500'000;
+  /// While the network is away a message is tried again this often [us]; where it is there and still takes no
+  /// message for that long, the message is lost [us]. The network is looked at once a second.
+  std::int64_t retry_us = 100'000;
+  std::int64_t refused_us = 2'500'000;
   /// Waits that are longer are announced [us].
   std::int64_t announced_wait_us = 5'000'000;
   /// After the last message the player waits this long for its acknowledgement [us].

@@ -184,11 +184,30 @@ double Player::into_log(std::int64_t recorded_us) const {
   return 1e-6 * (static_cast<double>(recorded_us) - static_cast<double>(tape_.begin_us()));
 }
 
-void Player::send(const bus::LogEvent& event) {
-  if (loop_.publish_bytes(event.channel, event.data))
-    ++out_;
-  else if (heartbeat_.counter("lost: could not be sent")++ == 0)
+bool Player::send(const bus::LogEvent& event) {
+  if (!loop_.publish_bytes(event.channel, event.data)) return false;
+  ++out_;
+  refused_mono_us_.reset();
+  return true;
+}
+
+/// After a message that could not be sent: the log waits while the network is away. False: the network is
+/// there, and this message is lost.
+bool Player::network_may_return() {
+  const std::int64_t now = loop_.mono_us();
+  if (!refused_mono_us_) {
+    refused_mono_us_ = now;
     say(loop_.send_error());
+  }
+  const bool away = !loop_.network_error().empty();
+  if (!away && now - *refused_mono_us_ > options_.pace.refused_us) {
+    refused_mono_us_.reset();
+    ++heartbeat_.counter("lost: could not be sent");
+    return false;
+  }
+  anchor(next_->time_us);
+  wait_until(now + options_.pace.retry_us);
+  return true;
 }
 
 void Player::send_again() {
@@ -240,7 +259,7 @@ void Player::play() {
       heartbeat_.set_error("");
     }
     if (in_flight_.count() == 0) progress_mono_us_ = loop_.mono_us();
-    send(*next_);
+    if (!send(*next_) && network_may_return()) return;
     in_flight_.sent(*next_);
     played_us_ = next_->time_us;
     if (step_ || options_.speed == 0) anchor(played_us_);

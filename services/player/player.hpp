@@ -45,7 +45,8 @@ class Player {
   void wait_until(std::int64_t mono_us);
   void load();
   bool begin_again();
-  void send(const bus::LogEvent& event);
+  bool send(const bus::LogEvent& event);
+  bool network_may_return();
   void send_again();
   void watch_over();
   void finish();
@@ -68,6 +69,7 @@ class Player {
   std::int64_t anchor_us_ = 0;       ///< recorded time that ...
   std::int64_t anchor_mono_us_ = 0;  ///< ... is played at this time of the clock
   std::int64_t started_mono_us_ = 0, progress_mono_us_ = 0, shown_mono_us_ = 0;
+  std::optional<std::int64_t> refused_mono_us_;   ///< since when the next message cannot be sent
   std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported
   std::optional<bus::Loop::TimerId> timer_;
   bool paused_ = false, step_ = false, alone_ = false, ended_ = false, terminal_ = false, line_open_ = false;

@@ -299,6 +299,13 @@ void Checks::ended(const Process& process, const Process::Ending& ending) {
   if (ending.next == tools::Restarts::Next::hopeless) fail('f', process.spec().name + " is given up");
 }
 
+/// Without a problem the scale was never known; and messages without numbers cannot be missed, so that a
+/// network that loses most of a short drive leaves no motion.
+bool Checks::may_lack_motions() const {
+  const NetworkFaults& network = surroundings_.plan.network;
+  return !surroundings_.plan.numbered && (network.lost > 0 || network.burst > 0);
+}
+
 std::string Checks::missing_answer() const {
   const std::int64_t data_us = surroundings_.schedule.now_us() + HostClock::start_of_all_us;
   const std::int64_t end_us = surroundings_.drive.messages.back().time_us;
@@ -310,7 +317,7 @@ std::string Checks::missing_answer() const {
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
         const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (scaled && newest == newest_problem_.end()) continue;  // the scale was never known
+        if (newest == newest_problem_.end() && (scaled || may_lack_motions())) continue;
         if (!answer) return whose + "no answer";
         if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
         if (answer->status != 0) return whose + "an answer that is not certified";
@@ -325,7 +332,7 @@ std::string Checks::missing_answer() const {
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
         const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (scaled && newest == newest_problem_.end()) continue;
+        if (newest == newest_problem_.end() && (scaled || may_lack_motions())) continue;
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
         if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)

@@ -252,14 +252,12 @@ std::vector<NumberedPose> Stream::take_candidates() {
 void Stream::settle() {
   state_.settling = !state_.next_seq;
   state_.gap_repeats = 0;
-  // not acknowledged yet: they come again, in order
-  state_.counts.duplicate += static_cast<std::int64_t>(state_.held.size());
-  state_.held.clear();
   state_.held_last_us.reset();
+  state_.held_before = !state_.held.empty();
 }
 
 std::vector<NumberedPose> Stream::settled() {
-  state_.settling = false;
+  state_.settling = state_.held_before = false;
   std::vector<NumberedPose> out;
   for (auto& [time_us, sample] : std::exchange(state_.held, {})) {
     append(out, in_order(std::move(sample)));
@@ -268,6 +266,11 @@ std::vector<NumberedPose> Stream::settled() {
 }
 
 std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
+  if (std::exchange(state_.held_before, false)) {
+    // not acknowledged: the sender is there, and they come again, in order
+    state_.counts.duplicate += static_cast<std::int64_t>(state_.held.size());
+    state_.held.clear();
+  }
   const std::int64_t time_us = sample.pose.time_us;
   const bool backwards = state_.newest_us && time_us <= *state_.newest_us;
   const bool again = state_.held.contains(time_us);

@@ -256,9 +256,9 @@ void fields(auto& archive, services::Is<StreamCounts> auto& value) {
 
 void fields(auto& archive, services::Is<StreamState> auto& value) {
   auto& [newest_us, period_us, next_seq, lost, early, candidates, ahead, checked_us, recent, recent_next,
-         patient, gap, gap_repeats, settling, held, held_last_us, counts] = value;
+         patient, gap, gap_repeats, settling, held, held_last_us, held_before, counts] = value;
   archive(newest_us, period_us, next_seq, lost, early, candidates, ahead, checked_us, recent, recent_next,
-          patient, gap, gap_repeats, settling, held, held_last_us, counts);
+          patient, gap, gap_repeats, settling, held, held_last_us, held_before, counts);
 }
 
 void fields(auto& archive, services::Is<ScaleStatistics> auto& value) {

@@ -70,6 +70,7 @@ struct StreamState {
   bool settling = false;                       ///< see settle()
   std::map<std::int64_t, NumberedPose> held;   ///< by time, while settling
   std::optional<std::int64_t> held_last_us;    ///< time of the one that was held last
+  bool held_before = false;                    ///< held is of before the last interruption
   StreamCounts counts;
 };
 
