@@ -72,6 +72,31 @@ TEST_F(Network, ThatIsAwayIsWaitedForAndNothingIsForgotten) {
   EXPECT_TRUE(answered("egocal-fast"));
 }
 
+// poses without numbers: what is sent into nothing is missed by nobody
+TEST_F(Network, ThatIsAwayStopsThePlayer) {
+  write_rig("bot_core.pose_t");
+  const auto trajectories = drive(200);
+  const std::string log = folder / "drive.log";
+  {
+    bus::LogWriter writer(log);
+    for (const Event& event : events(trajectories))
+      writer.write(event.pose.time_us, channel(event.side), bus::encode(bus::to_pose_message(event.pose)));
+    writer.close();
+  }
+  start("egocal-pairing");
+  processes.emplace("egocal-player",
+                    ChildProcess({bin + "/egocal-player", log, "--speed", "8", "--lcm-url", url},
+                                 folder / "egocal-player.log"));
+  ASSERT_TRUE(until([&] { return problem && problem->matched > 40; }, 10s));
+  set_route(false);
+  until([] { return false; }, 3s);
+  EXPECT_LT(problem->matched, 199);
+  set_route(true);
+  EXPECT_TRUE(until([&] { return problem->matched == 199; }, 15s)) << problem->matched;
+  expect_statistics(offline(trajectories));
+  EXPECT_EQ(processes.at("egocal-player").wait(5s), 0);
+}
+
 TEST_F(Network, ThatIsAwayAtTheStartIsWaitedFor) {
   set_route(false);
   processes.emplace("egocal-pairing",
