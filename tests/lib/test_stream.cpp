@@ -215,6 +215,18 @@ TEST(Stream, ABurstThatAPlayerSendsAgainBeginsNoNewTimeline) {
   EXPECT_THAT(feed(stream, {sample(0, -1), sample(1, -1), sample(2, -1)}), ElementsAre(-1, 0, 1, 2));
 }
 
+TEST(Stream, WhatIsLateIsADuplicateTheNextTime) {
+  Stream stream;
+  for (int i = 0; i < 40; ++i)
+    if (i < 10 || i > 14) feed(stream, {sample(i, i)});
+  EXPECT_EQ(stream.counts().lost, 5);
+  for (int again = 0; again < 3; ++again)
+    EXPECT_TRUE(feed(stream, {sample(10, 10), sample(11, 11), sample(12, 12), sample(13, 13)}).empty());
+  EXPECT_EQ(stream.counts().lost, 1);
+  EXPECT_EQ(stream.counts().out_of_order, 4);
+  EXPECT_EQ(stream.counts().duplicate, 8);
+}
+
 TEST(Stream, ACopyThatTheNetworkMadeSettlesNothing) {
   Stream stream;
   feed(stream, {sample(0, -1), sample(1, -1)});

@@ -333,6 +333,7 @@ void World::cut_power(int number, std::int64_t duration_us) {
 }
 
 void World::damage_something() {
+  if (schedule_.now_us() >= plan_.disturbed_us) return;
   const PacketPtr original = network_->recent(random_);
   if (!original) return;
   Packet packet = *original;
@@ -351,6 +352,7 @@ void World::flood(std::int64_t count) {
 
 /// Another user of the group: its own channels and types, and now and then its types on our channels.
 void World::send_foreign() {
+  if (schedule_.now_us() >= plan_.disturbed_us) return;
   const bus::PairConfig& pair = drive_.rig.pairs.front();
   const std::string ours[] = {drive_.rig.sensors.front().channel, bus::problem_channel(pair.a, pair.b),
                               bus::calibration_channel(pair.a, pair.b), bus::status_channel,

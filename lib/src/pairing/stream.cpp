@@ -93,8 +93,7 @@ void Stream::drop_late_candidates(std::int64_t repeated_us) {
   if (state_.candidates.empty() || !state_.newest_us) return;
   const std::int64_t last_us = state_.candidates.back().pose.time_us;
   if (last_us > repeated_us || repeated_us - last_us > largest_jump_us()) return;
-  state_.counts.out_of_order += static_cast<std::int64_t>(state_.candidates.size());
-  state_.candidates.clear();
+  for (const NumberedPose& candidate : std::exchange(state_.candidates, {})) reject_late(candidate);
 }
 
 /// Without numbers: from among the messages that a player may still send again (as many as are remembered).
@@ -125,23 +124,30 @@ bool Stream::plausible(const NumberedPose& sample) const {
          sample.pose.time_us <= newest + limit + std::max<std::int64_t>(0, ahead) * state_.period_us;
 }
 
+void Stream::remember(std::int64_t time_us) {
+  state_.recent[state_.recent_next] = time_us;
+  state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
+}
+
+/// Counted, and remembered: what is sent again and again is late once, then a duplicate, and begins no new
+/// timeline.
+void Stream::reject_late(const NumberedPose& sample) {
+  ++state_.counts.out_of_order;
+  remember(sample.pose.time_us);
+}
+
 void Stream::release(NumberedPose sample, std::vector<NumberedPose>& out) {
   const bool late = state_.newest_us && sample.pose.time_us <= *state_.newest_us;
-  if (late && sample.seq >= 0) {
-    ++state_.counts.out_of_order;
-    return;
-  }
+  if (late && sample.seq >= 0) return reject_late(sample);
   if (late) {
     // not numbered, so nothing waited for it: the synchroniser knows whether it can still use it
-    state_.recent[state_.recent_next] = sample.pose.time_us;
-    state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
+    remember(sample.pose.time_us);
     out.push_back(std::move(sample));
     return;
   }
   if (state_.newest_us) state_.period_us = sample.pose.time_us - *state_.newest_us;
   state_.newest_us = sample.pose.time_us;
-  state_.recent[state_.recent_next] = sample.pose.time_us;
-  state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
+  remember(sample.pose.time_us);
   out.push_back(std::move(sample));
 }
 
@@ -343,13 +349,13 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
   }
   if (sample.seq >= 0 && state_.newest_us && sample.pose.time_us < *state_.newest_us &&
       state_.lost.erase(sample.seq) > 0) {
-    ++state_.counts.out_of_order;
+    reject_late(sample);
     --state_.counts.lost;
     return {};
   }
   if (!plausible(sample)) {
     if (sent_again_too_late(sample)) {
-      ++state_.counts.out_of_order;
+      reject_late(sample);
       return {};
     }
     // a copy, which the network made, contradicts nothing
@@ -387,7 +393,7 @@ std::vector<NumberedPose> Stream::place(NumberedPose sample) {
     if (sample.seq >= 0) state_.next_seq = sample.seq + 1;
     release(std::move(sample), out);
   } else if (sample.seq < *state_.next_seq) {
-    ++state_.counts.out_of_order;
+    reject_late(sample);
   } else {
     const std::int64_t seq = sample.seq;
     if (state_.early.emplace(seq, std::move(sample)).second)

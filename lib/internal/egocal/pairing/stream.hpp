@@ -62,7 +62,7 @@ struct StreamState {
   std::vector<NumberedPose> candidates;        ///< for a jump
   std::vector<NumberedPose> ahead;             ///< see StreamOptions::look_ahead
   std::optional<std::int64_t> checked_us;      ///< time of the last one that left ahead
-  std::array<std::int64_t, 64> recent{};       ///< times released last
+  std::array<std::int64_t, 64> recent{};       ///< times released, or late, last
   std::uint64_t recent_next = 0;               ///< in recent
   bool patient = false;                        ///< see be_patient()
   std::int64_t gap = -1;                       ///< the number last missed by a sender that went back,
@@ -138,6 +138,8 @@ class Stream {
   std::vector<NumberedPose> place(NumberedPose sample);
   std::vector<NumberedPose> hold(NumberedPose sample);
   std::vector<NumberedPose> settled();
+  void remember(std::int64_t time_us);
+  void reject_late(const NumberedPose& sample);
   void release(NumberedPose sample, std::vector<NumberedPose>& out);
   void give_up_until(std::int64_t number);
   void release_early(std::vector<NumberedPose>& out, bool give_up);
