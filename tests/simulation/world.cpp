@@ -239,7 +239,8 @@ void World::happens(const Incident& incident) {
       later([this, host_number] { network_->set_partition(host_number, false); });
       return;
     case IncidentKind::clog:
-      network_->set_clogged_until(host_number, schedule_.now_us() + incident.duration_us);
+      network_->set_clogged_until(host_number,
+                                  std::min(schedule_.now_us() + incident.duration_us, plan_.disturbed_us));
       return;
     case IncidentKind::set_date:
       host.clock.set_date(incident.amount);
