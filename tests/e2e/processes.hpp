@@ -76,12 +76,9 @@ class Processes : public ::testing::Test {
     loop = std::make_unique<bus::Loop>(url, bus::LoopOptions{.handle_signals = false});
     loop->subscribe<problem_t>(bus::problem_channel("left", "right"),
                                [this](const problem_t& m, const bus::Arrival&) { problem = m; });
-    loop->subscribe<calibration_t>(bus::calibration_channel("left", "right"),
-                                   [this](const calibration_t& m, const bus::Arrival&) {
-                                     answers[m.solver] = m;
-                                     if (m.latency_us >= 0 && m.status == 0)
-                                       latencies.push_back(m.latency_us);
-                                   });
+    loop->subscribe<calibration_t>(
+        bus::calibration_channel("left", "right"),
+        [this](const calibration_t& m, const bus::Arrival&) { answers[m.solver] = m; });
     loop->subscribe<status_t>(bus::status_channel,
                               [this](const status_t& m, const bus::Arrival&) { statuses[m.name] = m; });
   }
@@ -209,7 +206,6 @@ class Processes : public ::testing::Test {
   std::optional<problem_t> problem;
   std::map<std::string, calibration_t> answers;
   std::map<std::string, status_t> statuses;
-  std::vector<std::int64_t> latencies;
 };
 
 }  // namespace egocal::test

@@ -299,11 +299,11 @@ void Checks::ended(const Process& process, const Process::Ending& ending) {
   if (ending.next == tools::Restarts::Next::hopeless) fail('f', process.spec().name + " is given up");
 }
 
-/// Without a problem the scale was never known; and messages without numbers cannot be missed, so that a
-/// network that loses most of a short drive leaves no motion.
-bool Checks::may_lack_motions() const {
+/// Pairing sends no problem before it knows the scale, nor without motions: it does not ask again for
+/// messages without numbers, and a network may lose most of a short drive.
+bool Checks::may_lack_a_problem(bool scaled) const {
   const NetworkFaults& network = surroundings_.plan.network;
-  return !surroundings_.plan.numbered && (network.lost > 0 || network.burst > 0);
+  return scaled || (!surroundings_.plan.numbered && (network.lost > 0 || network.burst > 0));
 }
 
 std::string Checks::missing_answer() const {
@@ -317,7 +317,7 @@ std::string Checks::missing_answer() const {
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
         const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (newest == newest_problem_.end() && (scaled || may_lack_motions())) continue;
+        if (newest == newest_problem_.end() && may_lack_a_problem(scaled)) continue;
         if (!answer) return whose + "no answer";
         if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
         if (answer->status != 0) return whose + "an answer that is not certified";
@@ -332,7 +332,7 @@ std::string Checks::missing_answer() const {
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
         const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (newest == newest_problem_.end() && (scaled || may_lack_motions())) continue;
+        if (newest == newest_problem_.end() && may_lack_a_problem(scaled)) continue;
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
         if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)

@@ -94,7 +94,7 @@ class Checks {
   void check_scales();
   void verdict_sent(const Process& from, bus::Bytes message);
   std::string missing_answer() const;
-  bool may_lack_motions() const;
+  bool may_lack_a_problem(bool scaled) const;
   void compare_with_undisturbed();
   void check_counts();
   void check_losses();

@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::initializer_list<std::string_view>;
 
-const Words rates = {"vel", "velocity", "acc", "accel", "acceleration", "rate"};
+const Words rates = {"vel", "velocity", "rate"};
 const Words accelerations = {"acc", "accel", "acceleration"};
 const Words uncertainties = {"covariance", "cov", "std",  "sigma", "stddev",
                              "sd",         "b",   "bias", "var",   "error"};
@@ -77,11 +77,15 @@ bool ends_with(std::string_view word, std::string_view end) {
   return word.size() >= end.size() && word.substr(word.size() - end.size()) == end;
 }
 
+bool ends_with_any(std::string_view word, Words ends) {
+  return std::any_of(ends.begin(), ends.end(), [&](std::string_view end) { return ends_with(word, end); });
+}
+
 /// Velocities, rates, biases and uncertainties are named like poses; words may be written together
 /// ("angvel_z").
 bool is_no_pose(std::string_view word) {
   return is_one_of(word, {"v", "linear", "angular", "twist", "gyro"}) || is_one_of(word, uncertainties) ||
-         std::any_of(rates.begin(), rates.end(), [&](std::string_view end) { return ends_with(word, end); });
+         ends_with_any(word, rates) || ends_with_any(word, accelerations);
 }
 
 /// Elements of an array: "q[0]" is w, as PX4 and Eigen's constructors order them; "position[0]" is x.
