@@ -20,8 +20,8 @@ struct InFlightOptions {
   /// Names of channels that are remembered: a status can be forged. Four times the sensors of a large rig.
   std::size_t most_channels = 256;
   /// Attempts to fill a gap, each as soon as what was sent before has arrived. Later ones wait for
-  /// Pace::stall_us. After them what the log holds next is stated: a log may hold messages in another order
-  /// than that of their numbers.
+  /// PaceOptions::stall_us. Only after these attempts does the player state what its log holds next: the log
+  /// may hold messages in another order than that of their numbers.
   int most_tries = 2;
 };
 

@@ -21,9 +21,10 @@ struct PaceOptions {
   /// What was not acknowledged is sent again after this time [us]: pairing acknowledges within
   /// milliseconds, or has lost it.
   std::int64_t stall_us = 500'000;
-  /// While the network is away a message is tried again this often [us]; where it is there and still takes no
-  /// message for that long, the message is lost [us]. The network is looked at once a second.
+  /// A message that could not be sent is tried again this often [us]. Study: tests/e2e/test_network.cpp.
   std::int64_t retry_us = 100'000;
+  /// A message that cannot be sent for this time while the network is there is given up [us]. The loop looks
+  /// at the network once a second, so a network that is away is known by then.
   std::int64_t refused_us = 2'500'000;
   /// Waits that are longer are announced [us].
   std::int64_t announced_wait_us = 5'000'000;

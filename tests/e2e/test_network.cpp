@@ -72,7 +72,7 @@ TEST_F(Network, ThatIsAwayIsWaitedForAndNothingIsForgotten) {
   EXPECT_TRUE(answered("egocal-fast"));
 }
 
-// poses without numbers: what is sent into nothing is missed by nobody
+// Without numbers a receiver cannot tell that a pose is missing.
 TEST_F(Network, ThatIsAwayStopsThePlayer) {
   write_rig("bot_core.pose_t");
   const auto trajectories = drive(200);

@@ -34,9 +34,9 @@ struct StreamOptions {
   std::int64_t jump_periods = 4;
   /// Nor numbers that jump by more; and at most this is held back or remembered as lost. 10 s at 100 Hz.
   std::int64_t most_missing = 1000;
-  /// Where a sender that goes back sends the first message behind a gap so often again and nothing for the
-  /// gap, it has nothing: seven in a row are lost once in 7,000 times on a network that loses 28 %. A player
-  /// of ours states it instead, see give_up_first_gap(). Study: egocal_simulation, seeds 10007613 and
+  /// A sender that repeats the first message behind a gap this often, and sends nothing for the gap, has
+  /// nothing for it: the missing message would have been lost seven times, once in 7,000 at a loss of 28 %.
+  /// egocal-player states this instead, see give_up_first_gap(). Study: egocal_simulation, seeds 10007613 and
   /// 10012590.
   std::int32_t repeats_of_nothing = 6;
   /// Messages in a row that confirm a jump. One damaged message must not, two might be damaged alike.
