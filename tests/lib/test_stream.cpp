@@ -233,8 +233,9 @@ TEST(Stream, ACopyThatTheNetworkMadeSettlesNothing) {
   stream.settle();
   EXPECT_TRUE(feed(stream, {sample(4, -1), sample(4, -1), sample(5, -1)}).empty());
   EXPECT_TRUE(stream.settling());
-  EXPECT_THAT(feed(stream, {sample(2, -1), sample(3, -1), sample(4, -1)}), ElementsAre(2, 3, 4, 5));
-  EXPECT_EQ(stream.counts().duplicate, 2);
+  EXPECT_THAT(feed(stream, {sample(2, -1), sample(3, -1), sample(4, -1)}), ElementsAre(2, 3, 4));
+  EXPECT_THAT(feed(stream, {sample(5, -1)}), ElementsAre(5));
+  EXPECT_EQ(stream.counts().duplicate, 3);
 }
 
 // acknowledged, they would take with them what was lost before them
@@ -299,6 +300,45 @@ TEST(Stream, AfterAnInterruptionMessagesWithoutNumbersArePutInOrder) {
                             sample(4, -1)}),
               ElementsAre());
   EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(7, -1)}), ElementsAre(2, 3, 4, 5, 6, 7));
+}
+
+// egocal_simulation, seed 10256792: 4 was lost while nobody listened, and the sender was restarted
+TEST(Stream, WithoutNumbersWhatIsMissingAmongThoseHeldComesInItsPlace) {
+  Stream stream;
+  feed(stream, {sample(0, -1), sample(1, -1)});
+  stream.settle();
+  EXPECT_THAT(feed(stream, {sample(5, -1), sample(2, -1), sample(3, -1), sample(0, -1), sample(1, -1)}),
+              ElementsAre());
+  EXPECT_THAT(feed(stream, {sample(2, -1), sample(3, -1)}), ElementsAre(2, 3));
+  EXPECT_TRUE(stream.settling());
+  EXPECT_THAT(feed(stream, {sample(4, -1), sample(5, -1), sample(6, -1)}), ElementsAre(4, 5, 6));
+  EXPECT_FALSE(stream.settling());
+  EXPECT_EQ(stream.counts().duplicate, 5);
+}
+
+// seed 10140070: the network changed the order of what was sent again at once
+TEST(Stream, TheBeginningOfALogThatTheNetworkDelayedIsWaitedFor) {
+  for (const std::int64_t first : {0, 7}) {
+    Stream stream;
+    stream.be_patient(true);
+    stream.settle();
+    const auto message = [first](std::int64_t i) { return sample(i, first + i); };
+    EXPECT_THAT(feed(stream, {message(4), message(2), message(1), message(4), message(3)}), ElementsAre());
+    EXPECT_THAT(feed(stream, {message(0)}), ElementsAre());
+    EXPECT_THAT(feed(stream, {message(4)}).size(), first == 0 ? 5u : 0u) << "nothing is before number 0";
+    EXPECT_THAT(feed(stream, {message(1), message(0)}).size(), first == 0 ? 0u : 5u);
+    EXPECT_EQ(stream.counts().out_of_order, 0);
+    EXPECT_EQ(stream.counts().lost, 0);
+  }
+}
+
+// seed 10315660
+TEST(Stream, WhatConfirmsAJumpMayComeInAnotherOrder) {
+  Stream stream;
+  EXPECT_THAT(feed(stream, {sample(0, 0), sample(70, 7), sample(60, 6), sample(80, 8), sample(90, 9)}),
+              ElementsAre(0, 60, 70, 80, 90));
+  EXPECT_EQ(stream.counts().jump, 0);
+  EXPECT_EQ(stream.counts().lost, 5);
 }
 
 TEST(Stream, WhatIsDroppedByASecondInterruptionIsCounted) {

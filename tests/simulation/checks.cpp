@@ -22,8 +22,6 @@ namespace {
 constexpr std::int64_t recovery_us = 5'000'000, longest_pause_us = 5'100'000;
 /// Answers are that recent while data come.
 constexpr std::int64_t recent_us = 1'000'000;
-/// StreamOptions::largest_jump.
-constexpr std::int64_t largest_jump_us = 1'000'000;
 /// Messages of a sensor that pairing knows again.
 constexpr double remembered = 64;
 /// After this time a command has been obeyed, and what was on its way has arrived.

@@ -11,6 +11,9 @@
 
 namespace egocal::simulation {
 
+/// StreamOptions::largest_jump.
+constexpr std::int64_t largest_jump_us = 1'000'000;
+
 /// Problems, answers and verdicts begin alike: eight bytes each, big endian; 0 where the message ends before.
 enum Field : std::size_t { utime_at = 8, session_at = 16, seq_at = 24 };
 inline std::int64_t field(bus::Bytes message, std::size_t at) {

@@ -68,6 +68,18 @@ bool Stream::follows(const NumberedPose& x, const NumberedPose& y) const {
   return sent_in_order(x, y) && y.seq - x.seq <= options_.most_missing;
 }
 
+/// Behind the one that it follows and before the one that follows it; the network may have changed their
+/// order. -1: it contradicts them.
+std::ptrdiff_t Stream::place_among_candidates(const NumberedPose& sample) const {
+  const std::vector<NumberedPose>& others = state_.candidates;
+  const auto next = std::find_if(others.begin(), others.end(), [&](const NumberedPose& other) {
+    return other.pose.time_us > sample.pose.time_us;
+  });
+  if (next != others.end() && !follows(sample, *next)) return -1;
+  if (next != others.begin() && !follows(*std::prev(next), sample)) return -1;
+  return next - others.begin();
+}
+
 bool Stream::known(std::int64_t time_us) const {
   return std::find(state_.recent.begin(), state_.recent.end(), time_us) != state_.recent.end() ||
          has_time(state_.early, time_us);
@@ -257,13 +269,14 @@ std::vector<NumberedPose> Stream::take_candidates() {
 
 void Stream::settle() {
   state_.settling = !state_.next_seq;
+  state_.going_over = false;
   state_.gap_repeats = 0;
   state_.held_last_us.reset();
   state_.held_before = !state_.held.empty();
 }
 
 std::vector<NumberedPose> Stream::settled() {
-  state_.settling = state_.held_before = false;
+  state_.settling = state_.held_before = state_.going_over = false;
   std::vector<NumberedPose> out;
   for (auto& [time_us, sample] : std::exchange(state_.held, {})) {
     append(out, in_order(std::move(sample)));
@@ -280,21 +293,41 @@ std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
   const std::int64_t time_us = sample.pose.time_us;
   const bool backwards = state_.newest_us && time_us <= *state_.newest_us;
   const bool again = state_.held.contains(time_us);
-  if (again && state_.held_last_us == time_us) {
+  const bool at_once = std::exchange(state_.held_last_us, time_us) == time_us;
+  if ((again && !settled_by(sample, at_once)) || (backwards && known(time_us))) {
     ++state_.counts.duplicate;
     return {};
   }
-  if (!backwards && !again && !too_many(state_.held.size() + 1)) {
+  if (!backwards && !again && !state_.going_over && !too_many(state_.held.size() + 1)) {
     state_.held.emplace(time_us, std::move(sample));
-    state_.held_last_us = time_us;
     return {};
   }
-  if (backwards && known(time_us)) {  // the sender has begun a little before what is missing
-    ++state_.counts.duplicate;
-    return {};
-  }
+  if (sample.seq < 0 && !backwards && !state_.held.empty() && time_us <= state_.held.rbegin()->first)
+    return go_over(std::move(sample));
   std::vector<NumberedPose> out = settled();
   append(out, in_order(std::move(sample)));
+  return out;
+}
+
+/// The sender goes over what is held. At once it would be a copy that the network made. Of numbered messages
+/// the network may have changed the order as well: where a log may have begun earlier than what is held, its
+/// first one has to come again, for whatever was sent before that one has come by then, too.
+bool Stream::settled_by(const NumberedPose& again, bool at_once) const {
+  if (at_once) return state_.going_over;
+  const auto& [first_us, first] = *state_.held.begin();
+  return again.seq < 0 || first.seq == 0 || first_us == again.pose.time_us;
+}
+
+/// Without numbers nobody knows what is missing among those held: each is released when the sender has come
+/// to it again, with what it has sent before it.
+std::vector<NumberedPose> Stream::go_over(NumberedPose sample) {
+  state_.going_over = true;
+  const std::int64_t time_us = sample.pose.time_us;
+  if (!state_.held.emplace(time_us, std::move(sample)).second) ++state_.counts.duplicate;
+  std::vector<NumberedPose> out;
+  while (!state_.held.empty() && state_.held.begin()->first <= time_us)
+    append(out, in_order(std::move(state_.held.extract(state_.held.begin()).mapped())));
+  if (state_.held.empty()) settled();
   return out;
 }
 
@@ -366,11 +399,13 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
       ++state_.counts.duplicate;
       return {};
     }
-    if (!state_.candidates.empty() && !follows(state_.candidates.back(), sample)) {
+    const auto place = place_among_candidates(sample);
+    if (place < 0) {
       state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
       state_.candidates.clear();
     }
-    state_.candidates.push_back(std::move(sample));
+    state_.candidates.insert(state_.candidates.begin() + std::max<std::ptrdiff_t>(0, place),
+                             std::move(sample));
     if (state_.candidates.size() < options_.confirmations) return {};
     return take_candidates();
   }

@@ -256,9 +256,9 @@ void fields(auto& archive, services::Is<StreamCounts> auto& value) {
 
 void fields(auto& archive, services::Is<StreamState> auto& value) {
   auto& [newest_us, period_us, next_seq, lost, early, candidates, ahead, checked_us, recent, recent_next,
-         patient, gap, gap_repeats, settling, held, held_last_us, held_before, counts] = value;
+         patient, gap, gap_repeats, settling, held, held_last_us, held_before, going_over, counts] = value;
   archive(newest_us, period_us, next_seq, lost, early, candidates, ahead, checked_us, recent, recent_next,
-          patient, gap, gap_repeats, settling, held, held_last_us, held_before, counts);
+          patient, gap, gap_repeats, settling, held, held_last_us, held_before, going_over, counts);
 }
 
 void fields(auto& archive, services::Is<ScaleStatistics> auto& value) {
@@ -295,7 +295,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 16;
+constexpr int state_layout = 17;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -69,8 +70,9 @@ struct StreamState {
   std::int32_t gap_repeats = 0;                ///< and how often
   bool settling = false;                       ///< see settle()
   std::map<std::int64_t, NumberedPose> held;   ///< by time, while settling
-  std::optional<std::int64_t> held_last_us;    ///< time of the one that was held last
+  std::optional<std::int64_t> held_last_us;    ///< time of the one that came last
   bool held_before = false;                    ///< held is of before the last interruption
+  bool going_over = false;                     ///< the sender is among those held again
   StreamCounts counts;
 };
 
@@ -115,8 +117,7 @@ class Stream {
   void be_patient(bool patient) { state_.patient = patient; }
   bool settling() const { return state_.settling; }
   /// After an interruption: the messages of a stream without numbers, or of one not received before, are
-  /// collected, and put in order when one of them comes a second time after others (at once it is a copy that
-  /// the network made), or by flush().
+  /// collected, and put in order when the sender goes over them again, or by flush().
   void settle();
 
   const StreamState& state() const { return state_; }
@@ -127,6 +128,7 @@ class Stream {
   bool plausible(const NumberedPose& sample) const;
   bool follows(const NumberedPose& x, const NumberedPose& y) const;
   bool too_many(std::size_t count) const { return count > static_cast<std::size_t>(options_.most_missing); }
+  std::ptrdiff_t place_among_candidates(const NumberedPose& sample) const;
   bool known(std::int64_t time_us) const;
   std::int64_t newest_us_of_all() const;
   std::int64_t largest_jump_us() const;
@@ -137,6 +139,8 @@ class Stream {
   std::vector<NumberedPose> in_order(NumberedPose sample);
   std::vector<NumberedPose> place(NumberedPose sample);
   std::vector<NumberedPose> hold(NumberedPose sample);
+  bool settled_by(const NumberedPose& again, bool at_once) const;
+  std::vector<NumberedPose> go_over(NumberedPose sample);
   std::vector<NumberedPose> settled();
   void remember(std::int64_t time_us);
   void reject_late(const NumberedPose& sample);

@@ -17,6 +17,7 @@ namespace egocal::detail {
 namespace {
 
 constexpr std::size_t window_size = 256 << 10;  // [bytes]; larger ones are not faster from the page cache
+constexpr std::size_t smallest_window = 4 << 10;
 
 }  // namespace
 
@@ -31,13 +32,14 @@ ByteSource::ByteSource(const std::string& file) : file_(file) {
   }
   seekable_ = S_ISREG(status.st_mode);
   size_ = seekable_ ? static_cast<std::uint64_t>(status.st_size) : 0;
-  window_.resize(window_size);
+  window_.resize(size_ > 0 ? std::clamp<std::uint64_t>(size_, smallest_window, window_size) : window_size);
   fill(8);
   unpacker_ = make_unpacker({window_.data(), filled_});
   if (!unpacker_) return;
   packed_.assign(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(filled_));
   packed_end_ = filled_;
-  packed_.resize(window_size);
+  packed_.resize(window_.size());
+  window_.resize(window_size);
   filled_ = 0;
   end_ = false;
 }

@@ -16,8 +16,8 @@ namespace egocal::detail {
 using ByteSpan = std::span<const unsigned char>;
 
 /// The bytes of a file from its beginning to its end, unpacked on the way where it is gzip, zstd, bzip2 or
-/// lz4 (recognised by its first bytes). Memory: a window of 256 KiB, or as much as peek() asks for. Throws
-/// Error where the file cannot be opened or read.
+/// lz4 (recognised by its first bytes). Memory: a window of 256 KiB (of a smaller file: its
+/// size), or as much as peek() asks for. Throws Error where the file cannot be opened or read.
 class ByteSource {
  public:
   explicit ByteSource(const std::string& file);
