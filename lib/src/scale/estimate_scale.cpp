@@ -14,6 +14,9 @@ namespace egocal {
 
 namespace {
 
+/// SynchroniserOptions::slower_by with which the stamps are those of a, and of b, whatever their periods.
+constexpr double least_slower_by = 0, most_slower_by = 1e9;
+
 /// Motions of a fixed stride, none rejected: nothing is congruent at a wrong scale.
 std::vector<MotionPair> first_pairs(const Trajectory& a, const Trajectory& b, PairingOptions pairing,
                                     double first_motion) {
@@ -25,6 +28,56 @@ std::vector<MotionPair> first_pairs(const Trajectory& a, const Trajectory& b, Pa
   pairing.balance = Balance{};
   pairing.robust = false;
   return pair_motions(pairing, a, b).pairs;
+}
+
+double median_period(const Trajectory& trajectory) {
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    periods.push_back(1e-6 * static_cast<double>(trajectory[i].time_us - trajectory[i - 1].time_us));
+  return detail::median(std::move(periods));
+}
+
+bool measured_together(const Trajectory& keys, const Trajectory& others) {
+  std::size_t together = 0;
+  for (std::size_t i = 0, j = 0; i < keys.size(); ++i) {
+    while (j < others.size() && others[j].time_us < keys[i].time_us) ++j;
+    together += j < others.size() && others[j].time_us == keys[i].time_us ? 1 : 0;
+  }
+  return 2 * together >= keys.size();
+}
+
+struct Stamps {  ///< whose are used, and typical times between two poses [s]
+  Side keys = Side::b;
+  double period = 0, other_period = 0;
+};
+
+Stamps stamps_of(const MotionPairing& drive, const Trajectory& a, const Trajectory& b) {
+  const Side keys = drive.state().synchroniser.keys.value_or(Side::b);
+  const double period_a = median_period(a), period_b = median_period(b);
+  return keys == Side::a ? Stamps{keys, period_a, period_b} : Stamps{keys, period_b, period_a};
+}
+
+/// Motions with the stamps of the stream that `fixed` does not take them from, together with those given.
+/// Interpolation shortens the motions of the stream that is interpolated by a part that grows with the square
+/// of its period: weighted by these squares, both shorten alike.
+std::vector<MotionPair> with_other_stamps(std::vector<MotionPair> pairs, const Trajectory& a,
+                                          const Trajectory& b, PairingOptions fixed, const Stamps& stamps) {
+  // whatever the periods
+  fixed.synchroniser.slower_by = stamps.keys == Side::b ? least_slower_by : most_slower_by;
+  fixed.stride =
+      std::max(1, static_cast<int>(std::lround(*fixed.stride * stamps.period / stamps.other_period)));
+  std::vector<MotionPair> others = pair_motions(fixed, a, b).pairs;
+  if (others.empty()) return pairs;
+  const double slow = stamps.period * stamps.period, fast = stamps.other_period * stamps.other_period;
+  const double half = 0.5 * static_cast<double>(pairs.size() + others.size());
+  for (MotionPair& pair : pairs)
+    pair.eta *= 2 * slow / (slow + fast) * half / static_cast<double>(pairs.size());
+  for (MotionPair& pair : others)
+    pair.eta *= 2 * fast / (slow + fast) * half / static_cast<double>(others.size());
+  std::vector<MotionPair> all(pairs.size() + others.size());
+  std::merge(pairs.begin(), pairs.end(), others.begin(), others.end(), all.begin(),
+             [](const MotionPair& x, const MotionPair& y) { return x.end_us < y.end_us; });
+  return all;
 }
 
 }  // namespace
@@ -64,6 +117,8 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
   options.scale.balance = detail::even_balance(scale_blocks(first), side);
   ScaleSolution solution = estimate_scale(first, options);
   double applied = solution.scale;
+  const bool together = pairing.time_offset == 0 &&
+                        measured_together(a.size() < b.size() ? a : b, a.size() < b.size() ? b : a);
   for (int round = 0; round < options.rounds; ++round) {
     const Trajectory scaled_a = side == Side::a ? scaled(a, applied) : a;
     const Trajectory scaled_b = side == Side::b ? scaled(b, applied) : b;
@@ -73,13 +128,21 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
       fixed.stride = choice.stride;
       fixed.balance = choice.balance;
     }
-    const std::vector<MotionPair> pairs = pair_motions(fixed, scaled_a, scaled_b).pairs;
-    if (pairs.size() < 2) break;
+    PairingResult paired = pair_motions(fixed, scaled_a, scaled_b);
+    if (paired.pairs.size() < 2) break;
     DriveScaleOptions relative = options;
     relative.scale.balance = *fixed.balance;
     relative.scale.least = options.scale.least / applied;
     relative.scale.most = options.scale.most / applied;
-    solution = estimate_scale(pairs, relative);
+    solution = estimate_scale(paired.pairs, relative);
+    double doubt = 0;
+    if (const Stamps stamps = stamps_of(paired.drive, a, b); options.both_stamps && !together) {
+      const double one = solution.scale;
+      solution = estimate_scale(with_other_stamps(std::move(paired.pairs), scaled_a, scaled_b, fixed, stamps),
+                                relative);
+      doubt = options.interpolation_doubt * std::abs(solution.scale - one);
+    }
+    solution.stddev = std::hypot(solution.stddev, doubt);
     const double factor = solution.scale;
     solution.scale *= applied;
     solution.least_scale *= applied;

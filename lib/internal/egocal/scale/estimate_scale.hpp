@@ -16,6 +16,10 @@ struct DriveScaleOptions {
   /// A motion that fits this many times worse than the median one is omitted; the rest is solved again. Five
   /// standard deviations.
   double most_residual = 25;
+  /// Interpolates each stream at the stamps of the other one in turn, so that what interpolation takes off the
+  /// lengths cancels; of what it changes, this part joins the standard deviation. Study: docs/scale.md.
+  bool both_stamps = true;
+  double interpolation_doubt = 1;
   int rounds = 4;  ///< a limit: the pairing of the scaled streams is repeated until the scale stays
 };
 
