@@ -18,10 +18,13 @@ void Accumulation::apply(const Input& input) {
     case Input::Kind::message:
       return take(channels_.at(input.index), input);
     case Input::Kind::give_up:
-    case Input::Kind::nothing_sent: {
+    case Input::Kind::nothing_sent:
+    case Input::Kind::settled: {
       Channel& channel = channels_.at(input.index);
-      const std::vector<NumberedPose> samples =
-          input.kind == Input::Kind::give_up ? channel.stream.flush() : channel.stream.give_up_first_gap();
+      const std::vector<NumberedPose> samples = input.kind == Input::Kind::give_up ? channel.stream.flush()
+                                                : input.kind == Input::Kind::nothing_sent
+                                                    ? channel.stream.give_up_first_gap()
+                                                    : channel.stream.end_settling();
       if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
       return route(channel, samples);
     }

@@ -18,14 +18,15 @@ namespace egocal::services {
 /// snapshot and the inputs since then are enough to continue from.
 struct Input {
   enum class Kind : std::uint8_t {
-    message,      ///< of a channel, as it came
-    give_up,      ///< a channel: waits no longer for what is missing
-    patient,      ///< all channels: what is missing will be sent again
-    impatient,    ///< all channels: it will not
-    new_session,  ///< a pair: the next pose begins one
-    pause,        ///< a pair
-    resume,       ///< a pair
-    nothing_sent  ///< a channel: its sender has nothing for the first gap
+    message,       ///< of a channel, as it came
+    give_up,       ///< a channel: waits no longer for what is missing
+    patient,       ///< all channels: what is missing will be sent again
+    impatient,     ///< all channels: it will not
+    new_session,   ///< a pair: the next pose begins one
+    pause,         ///< a pair
+    resume,        ///< a pair
+    nothing_sent,  ///< a channel: its sender has nothing for the first gap
+    settled        ///< a channel: what its sender goes over again is all that it has sent so far
   };
   Kind kind = Kind::message;
   std::uint16_t index = 0;   ///< of the channel or pair in the rig

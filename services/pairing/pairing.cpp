@@ -89,7 +89,14 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   ++unacknowledged_;
   feed({Input::Kind::message, channel, arrival.bytes, arrival.mono_us});
   if (accumulation_.stream(channel).repeated() != repeated) arrivals.repeated_mono_us = loop_.mono_us();
-  if (unacknowledged_ >= options_.acknowledge_every && leads()) heartbeat_.publish();
+  if (unacknowledged_ >= options_.acknowledge_every && acknowledges_early()) heartbeat_.publish();
+}
+
+/// Within a batch only where a sender waits for it, and not again until the messages have taken as long as
+/// saving them did: a flood on a slow disk would be saved sixteen messages at a time.
+bool Pairing::acknowledges_early() const {
+  return leads() && heartbeat_.alive(bus::Role::player) &&
+         loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
 }
 
 void Pairing::after_batch(bool caught_up) {
@@ -175,6 +182,12 @@ void Pairing::watch_gaps() {
     const auto i = static_cast<std::uint16_t>(channel);
     Arrivals& arrivals = arrivals_[i];
     const Stream& stream = accumulation_.stream(i);
+    if (!stream.gone_over())
+      arrivals.gone_over_mono_us = 0;
+    else if (arrivals.gone_over_mono_us == 0)
+      arrivals.gone_over_mono_us = now;
+    else if (now - arrivals.gone_over_mono_us >= options_.latest_us)
+      feed({Input::Kind::settled, i});
     // a player that was restarted comes to what is missing at the speed of the recording
     const bool comes =
         patient_ && arrivals.repeated_mono_us > 0 && now - arrivals.repeated_mono_us <= options_.patience_us;
@@ -268,7 +281,10 @@ void Pairing::obey(Verb verb, const command_t& command) {
 }
 
 void Pairing::acknowledge() {
+  const std::int64_t begin_mono_us = loop_.mono_us();
   save();
+  acknowledged_mono_us_ = loop_.mono_us();
+  acknowledging_us_ = acknowledged_mono_us_ - begin_mono_us;
   std::map<std::string, std::int64_t> counters;
   accumulation_.count(counters);
   counters["out"] = sent_;

@@ -40,6 +40,8 @@ class Pairing {
     std::int64_t repeated_mono_us = 0;  // the last one from before what is waited for; 0: none
     std::int64_t gap_mono_us = 0;       // since when something is missing; 0: nothing is
     std::int64_t expected = -1;         // its number
+    std::int64_t gone_over_mono_us =
+        0;  // since when the sender goes over what it sent before; 0: it does not
   };
 
   void feed(const Input& input);
@@ -60,6 +62,7 @@ class Pairing {
   void hear(const status_t& status);
   void show_state();
   void begin_to_send();
+  bool acknowledges_early() const;
   bool saved_or_known_not_to_be() const;
   bool leads() const { return !waits_for_senior_ && !listening_; }
 
@@ -78,6 +81,7 @@ class Pairing {
   std::string save_error_;
   std::int64_t save_again_mono_us_ = 0;
   int unacknowledged_ = 0;
+  std::int64_t acknowledged_mono_us_ = 0, acknowledging_us_ = 0;  // the last time, and how long it took
   bool patient_ = false;
   bool listening_ = true;  ///< see begin_to_send()
   bool waits_for_senior_ = false;

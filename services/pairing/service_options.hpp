@@ -22,6 +22,9 @@ struct PairingServiceOptions {
   std::int64_t silence_us = 500'000;
   /// What a player sends again comes within this time [us], on the lossy network of tests/e2e too.
   std::int64_t patience_us = 1'000'000;
+  /// What the network delays comes within this time [us]: a sender that goes over its messages again has
+  /// sent all of them once. Study: egocal_simulation, seeds 10140070 and 10571754.
+  std::int64_t latest_us = 100'000;
   /// Problems of one pair are at least this far apart [us], so that a replay at full speed costs the solvers
   /// little; every pose at 1 kHz has an answer of its own, and at more an answer covers several
   /// (docs/benchmarks.md).

@@ -79,7 +79,10 @@ void try_pairing(const std::uint8_t* data, std::size_t size) {
       if (choice >= 210) message[input.byte() % message.size()] ^= std::byte{0x10};
       accumulation.apply({Input::Kind::message, channel, message, 0});
     } else if (choice < 228) {
-      accumulation.apply({choice < 224 ? Input::Kind::give_up : Input::Kind::nothing_sent, channel});
+      accumulation.apply({choice < 223   ? Input::Kind::give_up
+                          : choice < 226 ? Input::Kind::nothing_sent
+                                         : Input::Kind::settled,
+                          channel});
     } else if (choice < 234) {
       accumulation.apply({pair ? Input::Kind::patient : Input::Kind::impatient});
     } else if (choice < 240) {

@@ -63,7 +63,7 @@ void try_stream(const std::uint8_t* data, std::size_t size) {
     } else if (choice < 242) {
       received.take(stream.flush());
     } else if (choice < 244) {
-      received.take(stream.give_up_first_gap());
+      received.take(choice == 242 ? stream.give_up_first_gap() : stream.end_settling());
     } else if (choice < 248) {
       stream.be_patient((choice & 1) != 0);
     } else if (choice < 252) {

@@ -77,6 +77,12 @@ bool Checks::keeps_order() const {
   return plan.speed > 0 ? static_cast<double>(late_us) * plan.speed < largest_jump_us : late_us == 0;
 }
 
+/// Without numbers nobody can restore an order in which messages overtake others by more than what is taken
+/// for a log that begins again.
+bool Checks::in_an_order_of_its_own() const {
+  return !surroundings_.plan.numbered && !keeps_order();
+}
+
 bool Checks::forgets() const {
   return std::any_of(processes_.begin(), processes_.end(), [this](const auto& process) {
     return process->spec().part == Part::pairing && process->lives() > 1 && !keeps_state(*process);
@@ -350,7 +356,9 @@ void Checks::look_at_answers() {
   // a player that is fast has little left when the faults are over and all continues after a pause
   const bool little_left =
       plan.input == Input::player && plan.speed != 1 && has(plan, {IncidentKind::command});
-  if (corrupts() || plan.mistake > 0 || (plan.input == Input::player && forgets()) || little_left) return;
+  if (corrupts() || plan.mistake > 0 || (plan.input == Input::player && forgets()) || little_left ||
+      in_an_order_of_its_own())
+    return;
   const std::string missing = missing_answer();
   if (missing.empty()) {
     answers_missing_since_us_ = -1;

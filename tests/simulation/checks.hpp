@@ -78,6 +78,7 @@ class Checks {
   bool keeps_state(const Process& process) const;
   bool peaceful() const;
   bool keeps_order() const;
+  bool in_an_order_of_its_own() const;
   bool forgets() const;
   bool is_foreign(bus::Bytes message) const;
   bool corrupts() const;

@@ -73,7 +73,7 @@ void Checks::finish() {
         process->spec().part != Part::player)
       fail('f', process->spec().name + " is not running in the end");
   // pairing that was killed behind the end of the log without a state has nothing to send again
-  const bool forgot = corrupts() || surroundings_.plan.mistake > 0 ||
+  const bool forgot = corrupts() || surroundings_.plan.mistake > 0 || in_an_order_of_its_own() ||
                       (surroundings_.plan.input == Input::player &&
                        (forgets() || has(surroundings_.plan, {IncidentKind::command})));
   if (const std::string missing = missing_answer(); !missing.empty() && !forgot)

@@ -229,8 +229,9 @@ void Stream::restore(StreamState state) {
       state.candidates.size() <= options_.confirmations && state.ahead.size() <= 3 &&
       state.recent_next < state.recent.size() &&
       (state.early.empty() || (state.next_seq && state.newest_us)) &&
-      (state.candidates.empty() || state.newest_us) && all_possible(state.early) &&
-      all_possible(state.held) && std::all_of(state.candidates.begin(), state.candidates.end(), possible) &&
+      (state.candidates.empty() || state.newest_us) && (!state.going_over || !state.held.empty()) &&
+      all_possible(state.early) && all_possible(state.held) &&
+      std::all_of(state.candidates.begin(), state.candidates.end(), possible) &&
       std::all_of(state.ahead.begin(), state.ahead.end(), possible) &&
       std::all_of(state.early.begin(), state.early.end(), [&](const auto& entry) {
         return entry.first == entry.second.seq && entry.first >= *state.next_seq &&
@@ -275,6 +276,10 @@ void Stream::settle() {
   state_.held_before = !state_.held.empty();
 }
 
+std::vector<NumberedPose> Stream::end_settling() {
+  return state_.settling ? settled() : std::vector<NumberedPose>{};
+}
+
 std::vector<NumberedPose> Stream::settled() {
   state_.settling = state_.held_before = state_.going_over = false;
   std::vector<NumberedPose> out;
@@ -293,35 +298,27 @@ std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
   const std::int64_t time_us = sample.pose.time_us;
   const bool backwards = state_.newest_us && time_us <= *state_.newest_us;
   const bool again = state_.held.contains(time_us);
-  const bool at_once = std::exchange(state_.held_last_us, time_us) == time_us;
-  if ((again && !settled_by(sample, at_once)) || (backwards && known(time_us))) {
+  const bool copy = std::exchange(state_.held_last_us, time_us) == time_us;  // made by the network
+  const bool numbered = sample.seq >= 0;
+  state_.going_over = state_.going_over || (again && !copy);
+  if ((backwards && known(time_us)) || (again && (numbered || !state_.going_over))) {
     ++state_.counts.duplicate;
     return {};
   }
-  if (!backwards && !again && !state_.going_over && !too_many(state_.held.size() + 1)) {
+  if (!backwards && (numbered || !state_.going_over) && !too_many(state_.held.size() + 1)) {
     state_.held.emplace(time_us, std::move(sample));
     return {};
   }
-  if (sample.seq < 0 && !backwards && !state_.held.empty() && time_us <= state_.held.rbegin()->first)
+  if (!numbered && !backwards && state_.going_over && time_us <= state_.held.rbegin()->first)
     return go_over(std::move(sample));
   std::vector<NumberedPose> out = settled();
   append(out, in_order(std::move(sample)));
   return out;
 }
 
-/// The sender goes over what is held. At once it would be a copy that the network made. Of numbered messages
-/// the network may have changed the order as well: where a log may have begun earlier than what is held, its
-/// first one has to come again, for whatever was sent before that one has come by then, too.
-bool Stream::settled_by(const NumberedPose& again, bool at_once) const {
-  if (at_once) return state_.going_over;
-  const auto& [first_us, first] = *state_.held.begin();
-  return again.seq < 0 || first.seq == 0 || first_us == again.pose.time_us;
-}
-
 /// Without numbers nobody knows what is missing among those held: each is released when the sender has come
 /// to it again, with what it has sent before it.
 std::vector<NumberedPose> Stream::go_over(NumberedPose sample) {
-  state_.going_over = true;
   const std::int64_t time_us = sample.pose.time_us;
   if (!state_.held.emplace(time_us, std::move(sample)).second) ++state_.counts.duplicate;
   std::vector<NumberedPose> out;

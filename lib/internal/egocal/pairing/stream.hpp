@@ -117,8 +117,16 @@ class Stream {
   void be_patient(bool patient) { state_.patient = patient; }
   bool settling() const { return state_.settling; }
   /// After an interruption: the messages of a stream without numbers, or of one not received before, are
-  /// collected, and put in order when the sender goes over them again, or by flush().
+  /// collected, and put in order when the sender goes over them again, or by flush(). Those without numbers
+  /// one by one, as it comes to them.
   void settle();
+  /// The sender goes over numbered messages again: as soon as nothing is on its way any more that it sent the
+  /// first time, end_settling() puts them in order.
+  bool gone_over() const {
+    return state_.settling && state_.going_over && !state_.held.empty() &&
+           state_.held.begin()->second.seq >= 0;
+  }
+  std::vector<NumberedPose> end_settling();
 
   const StreamState& state() const { return state_; }
   /// Throws Error where no Stream can have had this state.
@@ -139,7 +147,6 @@ class Stream {
   std::vector<NumberedPose> in_order(NumberedPose sample);
   std::vector<NumberedPose> place(NumberedPose sample);
   std::vector<NumberedPose> hold(NumberedPose sample);
-  bool settled_by(const NumberedPose& again, bool at_once) const;
   std::vector<NumberedPose> go_over(NumberedPose sample);
   std::vector<NumberedPose> settled();
   void remember(std::int64_t time_us);
