@@ -92,11 +92,10 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   if (unacknowledged_ >= options_.acknowledge_every && acknowledges_early()) heartbeat_.publish();
 }
 
-/// Within a batch only where a sender waits for it, and not again until the messages have taken as long as
-/// saving them did: a flood on a slow disk would be saved sixteen messages at a time.
+/// Within a batch not again until the messages have taken as long as saving them did: a flood on a slow disk
+/// would be saved sixteen messages at a time.
 bool Pairing::acknowledges_early() const {
-  return leads() && heartbeat_.alive(bus::Role::player) &&
-         loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
+  return leads() && loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
 }
 
 void Pairing::after_batch(bool caught_up) {

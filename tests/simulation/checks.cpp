@@ -116,6 +116,7 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
                   text(now.first, now.second));
   lineage.problems[channel] = now;
   newest_problem_[channel].assign(message.begin(), message.end());
+  problem_sent_us_[channel] = surroundings_.schedule.now_us();
   certificates_.take_problem(channel, message);
   if (!peaceful()) return;
   check_wishes(from, channel, now.first, now.second);
@@ -310,6 +311,12 @@ bool Checks::may_lack_a_problem(bool scaled) const {
   return scaled || (!surroundings_.plan.numbered && (network.lost > 0 || network.burst > 0));
 }
 
+/// A problem is sent once a second, unless its session is too young to have one.
+bool Checks::no_longer_sent(const std::string& a, const std::string& b) const {
+  const auto sent = problem_sent_us_.find(bus::problem_channel(a, b));
+  return sent == problem_sent_us_.end() || surroundings_.schedule.now_us() - sent->second > 2'000'000;
+}
+
 std::string Checks::missing_answer() const {
   const std::int64_t data_us = surroundings_.schedule.now_us() + HostClock::start_of_all_us;
   const std::int64_t end_us = surroundings_.drive.messages.back().time_us;
@@ -321,7 +328,7 @@ std::string Checks::missing_answer() const {
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
         const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (newest == newest_problem_.end() && may_lack_a_problem(scaled)) continue;
+        if (no_longer_sent(pair.a, pair.b) && may_lack_a_problem(scaled)) continue;
         if (!answer) return whose + "no answer";
         if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
         if (answer->status != 0) return whose + "an answer that is not certified";
@@ -336,7 +343,7 @@ std::string Checks::missing_answer() const {
         const std::string whose = process->spec().name + " for " + pair.a + ", " + pair.b + ": ";
         const auto newest = newest_problem_.find(bus::problem_channel(pair.a, pair.b));
         const bool scaled = is_scale_to_be_found(pair.a, pair.b);
-        if (newest == newest_problem_.end() && may_lack_a_problem(scaled)) continue;
+        if (no_longer_sent(pair.a, pair.b) && may_lack_a_problem(scaled)) continue;
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
         if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)

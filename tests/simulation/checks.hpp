@@ -96,6 +96,7 @@ class Checks {
   void verdict_sent(const Process& from, bus::Bytes message);
   std::string missing_answer() const;
   bool may_lack_a_problem(bool scaled) const;
+  bool no_longer_sent(const std::string& a, const std::string& b) const;
   void compare_with_undisturbed();
   void check_counts();
   void check_losses();
@@ -106,6 +107,7 @@ class Checks {
   const std::vector<std::unique_ptr<Process>>& processes_;
   std::optional<Violation> violation_;
   std::map<std::string, Lineage> lineages_;
+  std::map<std::string, std::int64_t> problem_sent_us_;           // by channel
   std::map<std::string, std::vector<std::byte>> newest_problem_;  // by channel, of the leading pairing
   Commands commands_;
   Certificates certificates_;

@@ -31,7 +31,8 @@ class Disk {
   void set_read_only(bool read_only) { read_only_ = read_only; }
   /// Of every write from now on [us].
   void set_delay_us(std::int64_t delay_us) { delay_us_ = delay_us; }
-  /// What the writes since the last call have taken [us].
+  /// What the writes since the last call of the next one have taken [us].
+  std::int64_t waited_us() const { return waited_us_; }
   std::int64_t take_waited_us() { return std::exchange(waited_us_, 0); }
   void power_cut(testing::Random& random);
 

@@ -38,10 +38,25 @@ bool is_silent(Part part) {
   return part == Part::odometry || part == Part::exporter;
 }
 
+/// That of the host; what the disk takes in a turn passes in that turn.
+class OwnClock final : public bus::Clock {
+ public:
+  explicit OwnClock(const Host& host) : host_(host) {}
+  std::int64_t mono_ns() const override { return host_.clock.mono_ns() + 1000 * host_.disk.waited_us(); }
+  std::int64_t wall_us() const override { return host_.clock.wall_us() + host_.disk.waited_us(); }
+  int wait(std::span<pollfd>, std::chrono::nanoseconds) const override { return 0; }
+
+ private:
+  const Host& host_;
+};
+
 }  // namespace
 
 /// One life. Members end in reverse order, as those of a main().
 struct Process::Instance {
+  explicit Instance(const Host& host) : clock(host) {}
+
+  OwnClock clock;
   Life life;
   std::unique_ptr<bus::Loop> loop;
   std::unique_ptr<bus::Heartbeat> heartbeat;
@@ -119,12 +134,13 @@ std::optional<Process::Ending> Process::start() {
   Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
   ++lives_;
   started_us_ = surroundings_.schedule.now_us();
-  instance_ = std::make_unique<Instance>();
+  instance_ = std::make_unique<Instance>(host);
   instance_->life.kill_at_place(std::exchange(kill_next_at_, 0));
   try {
     instance_->loop = std::make_unique<bus::Loop>(
         surroundings_.network.open({number_, spec_.host, port()}, instance_->life, [this] { wake(); }),
-        host.clock, bus::LoopOptions{.handle_signals = false, .require_network = false, .host = host.name});
+        instance_->clock,
+        bus::LoopOptions{.handle_signals = false, .require_network = false, .host = host.name});
     if (!is_silent(spec_.part)) {
       const std::chrono::duration<double> timeout(surroundings_.drive.rig.heartbeat_timeout);
       instance_->heartbeat = std::make_unique<bus::Heartbeat>(
@@ -139,7 +155,19 @@ std::optional<Process::Ending> Process::start() {
     return over(1, error.what());
   }
   wake();
+  busy_until_ns_ = surroundings_.schedule.now_ns() + waited_ns();
   return std::nullopt;
+}
+
+/// For the disk, since the last call. A clock that is slow by up to 1000 ppm shows as much time then as it
+/// did while the disk was busy.
+std::int64_t Process::waited_ns() const {
+  const std::int64_t us = disk().take_waited_us();
+  return 1000 * us + 2 * us;
+}
+
+Disk& Process::disk() const {
+  return surroundings_.hosts[static_cast<std::size_t>(spec_.host)]->disk;
 }
 
 std::optional<Process::Ending> Process::turn() {
@@ -157,8 +185,7 @@ std::optional<Process::Ending> Process::turn() {
   const std::optional<std::int64_t> due = loop.next_timer_ns();
   const Host& host = *surroundings_.hosts[static_cast<std::size_t>(spec_.host)];
   wake_ns_ = due ? host.clock.schedule_ns(*due) : Schedule::never;
-  Disk& disk = surroundings_.hosts[static_cast<std::size_t>(spec_.host)]->disk;
-  busy_until_ns_ = surroundings_.schedule.now_ns() + 1000 * (burden_us() + disk.take_waited_us());
+  busy_until_ns_ = surroundings_.schedule.now_ns() + 1000 * burden_us() + waited_ns();
   return std::nullopt;
 }
 
@@ -205,6 +232,7 @@ void Process::kill_at_place(std::int64_t count) {
 Process::Ending Process::over(int exit_code, const std::string& error) {
   instance_->life.end();
   instance_.reset();
+  disk().take_waited_us();
   wake_ns_ = Schedule::never;
   busy_until_ns_ = 0;
   stopped_ = false;

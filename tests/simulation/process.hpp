@@ -89,6 +89,8 @@ class Process {
   Ending over(int exit_code, const std::string& error);
   void make_service();
   std::int64_t burden_us() const;
+  std::int64_t waited_ns() const;
+  Disk& disk() const;
 
   const Surroundings& surroundings_;
   ProcessSpec spec_;
