@@ -396,13 +396,12 @@ std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
       ++state_.counts.duplicate;
       return {};
     }
-    const auto place = place_among_candidates(sample);
-    if (place < 0) {
+    const std::ptrdiff_t at = place_among_candidates(sample);
+    if (at < 0) {
       state_.counts.jump += static_cast<std::int64_t>(state_.candidates.size());
       state_.candidates.clear();
     }
-    state_.candidates.insert(state_.candidates.begin() + std::max<std::ptrdiff_t>(0, place),
-                             std::move(sample));
+    state_.candidates.insert(state_.candidates.begin() + std::max<std::ptrdiff_t>(0, at), std::move(sample));
     if (state_.candidates.size() < options_.confirmations) return {};
     return take_candidates();
   }

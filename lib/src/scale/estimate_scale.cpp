@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "egocal/error.hpp"
+#include "egocal/limits.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "scale/kept_motions.hpp"
 
@@ -62,10 +63,10 @@ Stamps stamps_of(const MotionPairing& drive, const Trajectory& a, const Trajecto
 /// of its period: weighted by these squares, both shorten alike.
 std::vector<MotionPair> with_other_stamps(std::vector<MotionPair> pairs, const Trajectory& a,
                                           const Trajectory& b, PairingOptions fixed, const Stamps& stamps) {
-  // whatever the periods
+  if (!(stamps.period > 0 && stamps.other_period > 0)) return pairs;
   fixed.synchroniser.slower_by = stamps.keys == Side::b ? least_slower_by : most_slower_by;
-  fixed.stride =
-      std::max(1, static_cast<int>(std::lround(*fixed.stride * stamps.period / stamps.other_period)));
+  fixed.stride = static_cast<int>(std::clamp(std::round(*fixed.stride * stamps.period / stamps.other_period),
+                                             limits::stride.least, limits::stride.most));
   std::vector<MotionPair> others = pair_motions(fixed, a, b).pairs;
   if (others.empty()) return pairs;
   const double slow = stamps.period * stamps.period, fast = stamps.other_period * stamps.other_period;
@@ -74,10 +75,10 @@ std::vector<MotionPair> with_other_stamps(std::vector<MotionPair> pairs, const T
     pair.eta *= 2 * slow / (slow + fast) * half / static_cast<double>(pairs.size());
   for (MotionPair& pair : others)
     pair.eta *= 2 * fast / (slow + fast) * half / static_cast<double>(others.size());
-  std::vector<MotionPair> all(pairs.size() + others.size());
-  std::merge(pairs.begin(), pairs.end(), others.begin(), others.end(), all.begin(),
-             [](const MotionPair& x, const MotionPair& y) { return x.end_us < y.end_us; });
-  return all;
+  pairs.insert(pairs.end(), others.begin(), others.end());
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const MotionPair& x, const MotionPair& y) { return x.end_us < y.end_us; });
+  return pairs;
 }
 
 }  // namespace
@@ -117,8 +118,8 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
   options.scale.balance = detail::even_balance(scale_blocks(first), side);
   ScaleSolution solution = estimate_scale(first, options);
   double applied = solution.scale;
-  const bool together = pairing.time_offset == 0 &&
-                        measured_together(a.size() < b.size() ? a : b, a.size() < b.size() ? b : a);
+  const bool together =
+      pairing.time_offset == 0 && measured_together(a.size() < b.size() ? a : b, a.size() < b.size() ? b : a);
   for (int round = 0; round < options.rounds; ++round) {
     const Trajectory scaled_a = side == Side::a ? scaled(a, applied) : a;
     const Trajectory scaled_b = side == Side::b ? scaled(b, applied) : b;
