@@ -34,6 +34,7 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
     if (!make_room_for(acknowledgement.channel)) continue;
     Channel& channel = channels_[acknowledgement.channel];
     if (new_process) channel.gap.reset();
+    const bool began = channel.utime == 0 && acknowledgement.utime != 0;
     const bool news =
         new_process || acknowledgement.count != channel.count || acknowledgement.utime != channel.utime;
     channel.count = acknowledgement.count;
@@ -45,6 +46,8 @@ InFlight::Progress InFlight::acknowledged(const status_t& pairing) {
       channel.messages.erase(channel.messages.begin(), through + 1);
       progress.any = true;
     }
+    progress.any = progress.any || began;
+    if (began && !new_process && !channel.messages.empty()) progress.send_again = true;
     if (channel.gap != acknowledgement.utime) {
       channel.gap = acknowledgement.utime;
       channel.sent_again = 0;
@@ -78,6 +81,11 @@ std::vector<acknowledgement_t> InFlight::following() const {
   return following;
 }
 
+bool InFlight::begins(const std::string& channel) const {
+  const auto entry = channels_.find(channel);
+  return entry != channels_.end() && entry->second.utime == 0 && !entry->second.messages.empty();
+}
+
 /// Among many names that nothing was sent on the true ones come again with the next true status.
 bool InFlight::make_room_for(const std::string& channel) {
   if (channels_.size() < options_.most_channels || channels_.contains(channel)) return true;
@@ -98,7 +106,10 @@ std::size_t InFlight::count() const {
 std::vector<bus::LogEvent> InFlight::all() const {
   std::vector<const Message*> messages;
   for (const auto& [name, channel] : channels_)
-    for (const Message& message : channel.messages) messages.push_back(&message);
+    for (const Message& message : channel.messages) {
+      messages.push_back(&message);
+      if (channel.utime == 0) break;
+    }
   std::sort(messages.begin(), messages.end(),
             [](const Message* x, const Message* y) { return x->order < y->order; });
   std::vector<bus::LogEvent> events;

@@ -35,8 +35,9 @@ class InFlight {
   /// Takes note of a message that was sent. Of channels that pairing does not listen to nothing is kept.
   void sent(const bus::LogEvent& event);
   struct Progress {
-    bool any = false;         ///< something new was acknowledged, or it is a new process
-    bool send_again = false;  ///< all(): a new process has them not, or one before what it has is missing
+    bool any = false;  ///< something new was acknowledged, or it is a new process
+    /// all(): a new process has them not, or one before what it has is missing, or it has the first only
+    bool send_again = false;
   };
   /// A status of pairing. Its acknowledgements name the newest message before which nothing is missing; the
   /// counter "held back: <channel>" says that something came behind a gap.
@@ -47,10 +48,15 @@ class InFlight {
   /// the gap.
   std::vector<acknowledgement_t> following() const;
 
+  /// A message of the channel has been sent, and pairing has none. Where more were sent now and the first
+  /// were lost, pairing would take what it receives for the beginning.
+  bool begins(const std::string& channel) const;
+
   bool heard() const { return run_.has_value(); }            ///< any pairing process, ever
   std::size_t count() const;                                 ///< messages on the way
   std::size_t channels() const { return channels_.size(); }  ///< that are remembered
-  /// All of them, in the order in which they were sent.
+  /// What is to be sent again, in the order in which it was sent: all of them, and of a channel that begins()
+  /// the first.
   std::vector<bus::LogEvent> all() const;
   void clear();
 
@@ -61,7 +67,7 @@ class InFlight {
     bus::LogEvent event;
   };
   struct Channel {
-    std::int64_t count = 0, utime = 0;  ///< of the last acknowledgement
+    std::int64_t count = 0, utime = 0;  ///< of the last acknowledgement; time 0: pairing has nothing
     std::optional<std::int64_t> gap;    ///< utime of an acknowledgement with something held back
     bool held_back = false;             ///< with that acknowledgement
     int sent_again = 0;                 ///< because of this gap

@@ -232,8 +232,9 @@ void Player::play() {
   // what is sent before any pairing process is alive could not be sent again if that process ends
   const bool waits_for_pairing = !in_flight_.heard() && !alone_ && !step_;
   for (int sent = 0; next_ && (!paused_ || step_) && !waits_for_pairing; ++sent) {
-    if (in_flight_.count() >= options_.pace.most_in_flight)
-      return;  // continues with the next acknowledgement
+    // continues with the next acknowledgement
+    const bool begins = in_flight_.begins(next_->channel) && !alone_ && !step_;
+    if (begins || in_flight_.count() >= options_.pace.most_in_flight) return;
     const double speed = options_.speed == 0 && alone_ ? 1 : options_.speed;
     if (speed > 0 && !step_) {
       const double ahead_us = (static_cast<double>(next_->time_us) - static_cast<double>(anchor_us_)) / speed;

@@ -71,5 +71,35 @@ TEST(InFlight, WhatFollowsInTheLogIsStatedAfterTwoAttempts) {
   EXPECT_TRUE(in_flight.following().empty());
 }
 
+// egocal_simulation, seed 10692090: the first 23 messages were lost, and pairing took the next for the
+// beginning
+TEST(InFlight, AChannelBeginsWithOneMessageUntilItIsAcknowledged) {
+  InFlight in_flight;
+  EXPECT_FALSE(in_flight.begins("LIDAR"));
+  status_t nothing = status(1, {{"LIDAR", 0}});
+  nothing.acknowledgements[0].utime = 0;
+  in_flight.acknowledged(nothing);
+  EXPECT_FALSE(in_flight.begins("LIDAR"));
+  in_flight.sent(event("LIDAR", 0));
+  in_flight.sent(event("OTHER", 0));
+  EXPECT_TRUE(in_flight.begins("LIDAR"));
+  EXPECT_FALSE(in_flight.begins("OTHER")) << "pairing does not listen to it";
+  EXPECT_FALSE(in_flight.acknowledged(status(1, {{"LIDAR", 0}})).send_again);
+  EXPECT_FALSE(in_flight.begins("LIDAR"));
+  for (const std::int64_t step : {1, 2, 3}) in_flight.sent(event("LIDAR", step));
+  EXPECT_EQ(in_flight.all().size(), 3u);
+  // a new process that has nothing
+  nothing.run = 2;
+  EXPECT_TRUE(in_flight.acknowledged(nothing).send_again);
+  EXPECT_TRUE(in_flight.begins("LIDAR"));
+  EXPECT_EQ(in_flight.all().size(), 1u);
+  EXPECT_TRUE(in_flight.acknowledged(status(2, {{"LIDAR", 1}})).send_again);
+  EXPECT_EQ(in_flight.all().size(), 2u);
+  // and one that continues
+  EXPECT_TRUE(in_flight.acknowledged(status(3, {{"LIDAR", 1}})).send_again);
+  EXPECT_FALSE(in_flight.begins("LIDAR"));
+  EXPECT_EQ(in_flight.all().size(), 2u);
+}
+
 }  // namespace
 }  // namespace egocal::services
