@@ -18,8 +18,8 @@ namespace egocal::simulation {
 
 namespace {
 
-/// After the faults, of data time; and what a process may wait before it is started again.
-constexpr std::int64_t recovery_us = 5'000'000, longest_pause_us = 5'100'000;
+/// What a process may wait before it is started again.
+constexpr std::int64_t longest_pause_us = 5'100'000;
 /// Answers are that recent while data come.
 constexpr std::int64_t recent_us = 1'000'000;
 /// Messages of a sensor that pairing knows again.
@@ -117,6 +117,8 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
   lineage.problems[channel] = now;
   newest_problem_[channel].assign(message.begin(), message.end());
   problem_sent_us_[channel] = surroundings_.schedule.now_us();
+  const std::uint64_t last_sender = std::exchange(sender_of_problems_, from.port());
+  if (last_sender != 0 && last_sender != from.port()) sender_changed_us_ = surroundings_.schedule.now_us();
   certificates_.take_problem(channel, message);
   if (!peaceful()) return;
   check_wishes(from, channel, now.first, now.second);
@@ -373,7 +375,8 @@ void Checks::look_at_answers() {
     return;
   }
   if (answers_missing_since_us_ < 0) answers_missing_since_us_ = now;
-  const std::int64_t quiet_from = std::max({plan.disturbed_us, last_start_us_, answers_missing_since_us_});
+  const std::int64_t quiet_from =
+      std::max({plan.disturbed_us, last_start_us_, sender_changed_us_, answers_missing_since_us_});
   if (now > quiet_from + recovery_us && now < plan.disturbed_us + plan.quiet_us)
     fail('f', "5 s after the faults are over: " + missing);
 }

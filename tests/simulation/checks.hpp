@@ -107,6 +107,8 @@ class Checks {
   const std::vector<std::unique_ptr<Process>>& processes_;
   std::optional<Violation> violation_;
   std::map<std::string, Lineage> lineages_;
+  std::uint64_t sender_of_problems_ = 0;
+  std::int64_t sender_changed_us_ = 0;  // another pairing process may continue an older session
   std::map<std::string, std::int64_t> problem_sent_us_;           // by channel
   std::map<std::string, std::vector<std::byte>> newest_problem_;  // by channel, of the leading pairing
   Commands commands_;

@@ -11,6 +11,8 @@
 
 namespace egocal::simulation {
 
+/// After the faults, of data time.
+constexpr std::int64_t recovery_us = 5'000'000;
 /// StreamOptions::largest_jump.
 constexpr std::int64_t largest_jump_us = 1'000'000;
 

@@ -247,8 +247,10 @@ std::vector<NumberedPose> Stream::take_candidates() {
   if (state_.patient && !backwards && lost_between(state_, state_.candidates.front(), options_) &&
       state_.candidates.front().seq - *state_.next_seq <= options_.most_missing) {
     // many were lost in a row, and will be sent again
-    for (NumberedPose& sample : std::exchange(state_.candidates, {}))
-      state_.early.emplace(sample.seq, std::move(sample));
+    for (NumberedPose& sample : std::exchange(state_.candidates, {})) {
+      const std::int64_t seq = sample.seq;
+      if (!state_.early.emplace(seq, std::move(sample)).second) ++state_.counts.jump;
+    }
     release_early(out, false);
     return out;
   }
