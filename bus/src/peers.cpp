@@ -24,10 +24,17 @@ bool works(std::optional<State> state) {
 
 bool Peers::hear(const status_t& status, std::int64_t now_us) {
   const Key key{status.name, status.host, status.run, status.pid};
-  const bool is_new = !peers_.contains(key);
-  peers_[key] = {
-      status.name, status.host, role_from_name(status.role), state_from_name(status.state), status.pid,
-      status.run,  now_us};
+  const auto known = peers_.find(key);
+  const bool is_new = known == peers_.end();
+  if (!is_new && known->second.state == State::ended && status.utime <= known->second.utime) return false;
+  peers_[key] = {status.name,
+                 status.host,
+                 role_from_name(status.role),
+                 state_from_name(status.state),
+                 status.pid,
+                 status.run,
+                 now_us,
+                 status.utime};
   if (peers_.size() > max_peers)
     peers_.erase(std::min_element(peers_.begin(), peers_.end(), [](const auto& x, const auto& y) {
       return x.second.heard_us < y.second.heard_us;

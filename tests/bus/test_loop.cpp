@@ -204,6 +204,26 @@ TEST(Peers, AreForgottenWhenSilentEndedOrTooMany) {
   EXPECT_EQ(peers.role_of("egocal-fast"), std::nullopt);
 }
 
+// egocal_simulation, seed 10791898: the successor waited three seconds more for a process that had ended
+TEST(Peers, AStatusThatTheNetworkDelayedDoesNotReviveWhatHasEnded) {
+  Peers peers;
+  constexpr std::int64_t now = 0, timeout = 3'000'000;
+  status_t before{};
+  before.name = "egocal-pairing";
+  before.role = "pairing";
+  before.run = 10;
+  before.state = "running";
+  before.utime = 1000;
+  status_t last = before;
+  last.state = "ended";
+  last.utime = 1001;
+  for (const status_t* status : {&before, &last, &before}) peers.hear(*status, now);
+  EXPECT_FALSE(peers.alive(Role::pairing, now, timeout));
+  before.run = 11;  // its next start
+  peers.hear(before, now);
+  EXPECT_TRUE(peers.alive(Role::pairing, now, timeout));
+}
+
 TEST(Peers, ANamesakeThatWorksPrecedesOneThatDoesNotWhateverTheDatesOfTheirStarts) {
   constexpr std::int64_t now = 0, timeout = 3'000'000, early = 9, late = 11;
   const auto precedes = [&](const std::string& state, std::int64_t run, State own_state) {

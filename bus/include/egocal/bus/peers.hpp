@@ -21,6 +21,7 @@ struct Peer {
   std::int32_t pid = 0;
   std::int64_t run = 0;
   std::int64_t heard_us = 0;  ///< of the loop's clock
+  std::int64_t utime = 0;     ///< of its status, by its own date
 };
 
 /// What a process compares itself by with others of its name.
@@ -35,7 +36,8 @@ struct Namesake {
 /// are those of the loop's clock [us].
 class Peers {
  public:
-  /// True: not known before.
+  /// True: not known before. "ended" is the last status of a process: one that it sent before and that the
+  /// network delivers later does not revive it.
   bool hear(const status_t& status, std::int64_t now_us);
 
   /// Some process of this role is running and sent its status within the timeout.
