@@ -148,6 +148,36 @@ TEST_F(Commands, EveryMethodAnswers) {
   }
 }
 
+/// The labels of a figure's axes.
+std::vector<std::string> labels_of(const std::string& page, const std::string& title) {
+  std::vector<std::string> labels;
+  std::size_t at = page.find(title);
+  const std::size_t end = page.find("</svg>", at);
+  for (at = page.find("</text>", at); at < end; at = page.find("</text>", at + 1))
+    labels.push_back(page.substr(page.rfind('>', at) + 1, at - page.rfind('>', at) - 1));
+  return labels;
+}
+
+// The figures showed the streams as they were read, and the baselines solved them: 8 m of residual
+TEST_F(Commands, ReportAndBaselinesUseTheStreamsAsTheyAreSolved) {
+  const std::string drive = " --terrain free --poses 400 --noise 0.003 --out ";
+  ASSERT_EQ(egocal("simulate" + drive + path("known")).code, 0);
+  ASSERT_EQ(egocal("simulate --scale camera=4" + drive + path("scaled")).code, 0);
+  const std::string known = path("known/lidar.tum") + " " + path("known/camera.tum");
+  const std::string scaled = path("scaled/lidar.tum") + " " + path("scaled/camera.tum") + " --scale-b auto";
+  EXPECT_THAT(egocal("report " + known + " --out " + path("known.html")).out, HasSubstr("good"));
+  EXPECT_THAT(egocal("report " + scaled + " --out " + path("scaled.html")).out, HasSubstr("good"));
+  for (const char* figure : {"Translation residual of each motion", "Path of sensor a"}) {
+    const std::vector<std::string> labels = labels_of(read(path("known.html")), figure);
+    EXPECT_GT(labels.size(), 6u);
+    EXPECT_EQ(labels_of(read(path("scaled.html")), figure), labels);
+  }
+  EXPECT_THAT(read(path("scaled.html")), HasSubstr("times the lengths of b, estimated and proven"));
+  const json answer = solved(scaled), baseline = solved(scaled + " --method analytic");
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(baseline["translation"][i].get<double>(), answer["translation"][i].get<double>(), 0.05);
+}
+
 TEST_F(Commands, WhatTheMotionsDoNotShowIsNotInvented) {
   const auto observable = [this](const std::string& text) {
     const std::string name = file("same.tum", text);

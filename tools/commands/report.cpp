@@ -34,6 +34,10 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
   input.pairs = std::move(result.pairs);
   input.options = request.calibration;
   input.options.pairing.time_offset = result.calibration.time_offset_applied;
+  // the streams of the result are as they were solved
+  input.options.read_a = input.options.read_b = {};
+  input.options.estimate_scale = false;
+  input.options.scale = 1;
   input.method = result.method;
   input.verdict = headline(result.calibration);
   for (const Finding& finding : result.calibration.findings)

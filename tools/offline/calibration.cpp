@@ -116,7 +116,26 @@ double time_of_method(Method method, const Problem& problem) {
   return time;
 }
 
-/// The motion pairs of the stride and the weights that were chosen, from the beginning of the drive.
+/// The motions that the answer was made from: as their poses were read, with their scale.
+Motions as_solved(Motions motions, const CalibrationOptions& options, const SolveResult& result) {
+  const Side side = options.scale_side;
+  const double scale = result.calibration.scale_applied;
+  if (!motions.pairs.empty()) {
+    for (MotionPair& pair : motions.pairs) {
+      DualQuaternion& motion = side == Side::a ? pair.a : pair.b;
+      motion = scaled(motion, scale);
+    }
+    return motions;
+  }
+  motions.a = reread(motions.a, options.read_a);
+  motions.b = reread(motions.b, options.read_b);
+  Trajectory& stream = side == Side::a ? motions.a : motions.b;
+  stream = result.course ? scaled(stream, *result.course) : scaled(stream, scale);
+  return motions;
+}
+
+/// The motion pairs of the stride and the weights that were chosen, from the beginning of the drive. motions:
+/// as_solved().
 std::vector<MotionPair> pairs_of(const Motions& motions, const CalibrationOptions& options,
                                  const Calibration& calibration) {
   if (!motions.pairs.empty()) return motions.pairs;
@@ -192,14 +211,15 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   follow_scale(motions, options, result);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);
-  if (request.keep_motions) {
-    result.trajectory_a = motions.a;
-    result.trajectory_b = motions.b;
+  if (request.keep_motions || !method) {
+    motions = as_solved(std::move(motions), options, result);
     result.pairs = pairs_of(motions, options, result.calibration);
+    result.trajectory_a = std::move(motions.a);
+    result.trajectory_b = std::move(motions.b);
   }
   if (!method) {
     result.method = request.method;
-    answer_by_baseline(request.method, pairs_of(motions, options, result.calibration), result);
+    answer_by_baseline(request.method, result.pairs, result);
     return result;
   }
   const bool closed_form = options.pairing.mode == Mode::planar && *method != Method::slsqp;

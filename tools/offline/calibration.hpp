@@ -34,7 +34,7 @@ struct SolveRequest {
   std::vector<std::string> append;  ///< further drives of the same sensors: files of a and b alternately
   std::optional<Pose> truth;
   std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
-  bool keep_motions = false;              ///< hand back what was read, for a report
+  bool keep_motions = false;              ///< hand back what was solved, for a report
 };
 
 /// Times of one stream, for people who wonder why nothing matched.
@@ -56,7 +56,7 @@ struct SolveResult {
   MatchedSamples matched;                    ///< the rows that make them
   bool eye_to_hand = false;
 
-  /// Only with keep_motions.
+  /// Only with keep_motions: with inversions, orders and the scale applied, on the clock of the files.
   Trajectory trajectory_a, trajectory_b;  ///< empty for a file of pairs
   std::vector<MotionPair> pairs;          ///< of the stride and the weights in force
 };

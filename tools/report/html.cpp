@@ -228,6 +228,13 @@ std::string settings(const ReportInput& input) {
   if (calibration.time_offset)
     table += row("", fmt::format("estimated: &plusmn; {:.4f} s, correlation of the turning rates {:.2f}",
                                  calibration.time_offset->stddev, calibration.time_offset->correlation));
+  const char* scaled = input.options.scale_side == Side::a ? "a" : "b";
+  if (calibration.scale)
+    table += row("scale", fmt::format("{:.6g} &plusmn; {:.6g} times the lengths of {}, estimated{}",
+                                      calibration.scale->scale, calibration.scale->stddev, scaled,
+                                      calibration.scale->certified ? " and proven" : ""));
+  else if (calibration.scale_applied != 1)
+    table += row("scale", fmt::format("{:.6g} times the lengths of {}", calibration.scale_applied, scaled));
   for (const std::string& warning : input.warnings) table += row("warning", escaped(warning));
   table += row("method", escaped(input.method));
   table += row("version", std::string("egocal ") + version());
