@@ -173,6 +173,10 @@ TEST_F(Commands, ReportAndBaselinesUseTheStreamsAsTheyAreSolved) {
     EXPECT_EQ(labels_of(read(path("scaled.html")), figure), labels);
   }
   EXPECT_THAT(read(path("scaled.html")), HasSubstr("times the lengths of b, estimated and proven"));
+  EXPECT_EQ(egocal("align " + path("scaled/lidar.tum") + " " + path("scaled/camera.tum")).code, 3);
+  const Outcome aligned = egocal("align --json " + scaled);
+  EXPECT_EQ(aligned.code, 0);
+  EXPECT_LT(json::parse(aligned.out)["rms_translation_m"].get<double>(), 1);
   const json answer = solved(scaled), baseline = solved(scaled + " --method analytic");
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(baseline["translation"][i].get<double>(), answer["translation"][i].get<double>(), 0.05);

@@ -175,6 +175,7 @@ TEST_F(JsonKeys, OfTheOtherCommandsAreThoseOfThePage) {
             0);
   run("info", folder.path("drive.mcap"));
   run("align", files("drive"));
+  run("align", files("drive") + " --weights 1:0.01");
   run("compare", files("drive") + " --repeats 1 --truth 0.5,0.2,-0.3,0.5,-0.5,0.5,-0.5");
   run("log info", folder.path("drive.log"));
   printed["info"].insert("streams[].static");  // no program of ours writes static transforms

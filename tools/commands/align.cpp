@@ -7,28 +7,21 @@
 #include <numbers>
 
 #include "commands/commands.hpp"
-#include "commands/reading_options.hpp"
+#include "commands/request_options.hpp"
 #include "egocal/calibrate.hpp"
-#include "egocal/error.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "offline/provenance.hpp"
-#include "offline/trajectory_source.hpp"
+#include "offline/trust_report.hpp"
 
 namespace egocal::tools {
 
 namespace {
 
 struct Options {
-  std::string a, b, out;
-  ReadingOptions reading;
-  bool time_offset = false, json = false;
+  RequestOptions request;
+  std::string out;
+  bool json = false;
 };
-
-TrajectoryReading read(const std::string& name, const ReadOptions& options) {
-  TrajectoryReading result = read_any_trajectory(name, options);
-  for (const std::string& note : result.notes) fmt::print(stderr, "egocal: {}: {}\n", name, note);
-  return result;
-}
 
 nlohmann::ordered_json pose_json(const Pose& T) {
   return {{"translation", {T.translation.x(), T.translation.y(), T.translation.z()}},
@@ -41,42 +34,63 @@ std::string pose_text(const Pose& T) {
                      T.rotation.y(), T.rotation.z());
 }
 
-void run(const Options& options, const std::string& command_line) {
-  const Trajectory a = read(options.a, options.reading.of_a()).trajectory;
-  const Trajectory b = read(options.b, options.reading.of_b()).trajectory;
-  CalibrationOptions calibration_options;
-  calibration_options.estimate_time_offset = options.time_offset;
-  const Calibration calibration = calibrate(a, b, calibration_options);
-  const Alignment alignment = align(a, b, calibration.T_a_b, calibration.time_offset_applied);
+nlohmann::ordered_json as_json(const SolveRequest& request, const Calibration& calibration,
+                               const Alignment& alignment, const std::string& command_line) {
+  nlohmann::ordered_json json = trust_json(calibration);
+  json["T_a_b"] = pose_json(calibration.T_a_b);
+  json["T_world_a_world_b"] = pose_json(alignment.T_world_a_world_b);
+  json["certified"] = calibration.certificate.optimality == Optimality::certified;
+  json["poses"] = alignment.b_as_a.size();
+  json["compared"] = alignment.compared;
+  json["rms_translation_m"] = alignment.rms_translation;
+  json["rms_rotation_rad"] = alignment.rms_rotation;
+  json["time_offset_s"] = calibration.time_offset_applied;
+  json["scale_applied"] = calibration.scale_applied;
+  append_json(json, provenance_json(command_line));
+  json["settings"] = settings_json(request);
+  json["files"] = files_json(request);
+  return json;
+}
+
+std::string as_text(const SolveRequest& request, const Calibration& calibration, const Alignment& alignment) {
   const bool certified = calibration.certificate.optimality == Optimality::certified;
-  if (!options.out.empty()) write_tum(options.out, alignment.b_as_a);
+  std::string text = trust_text(calibration);
+  text +=
+      fmt::format("extrinsic     T_a_b, pose of sensor b in sensor a: {}{}\n", pose_text(calibration.T_a_b),
+                  certified ? ", optimal (proven)" : ", NOT proven to be optimal");
+  text += fmt::format("world frames  T_wa_wb, pose of b's world in a's world: {}\n",
+                      pose_text(alignment.T_world_a_world_b));
+  if (calibration.scale_applied != 1)
+    text += fmt::format("scale         {:.6g} times the lengths of {}\n", calibration.scale_applied,
+                        request.calibration.scale_side == Side::a ? "a" : "b");
   constexpr double degrees = 180 / std::numbers::pi;
+  text += fmt::format("agreement     {} poses compared, RMS {:.4f} m, {:.4f} deg\n", alignment.compared,
+                      alignment.rms_translation, alignment.rms_rotation * degrees);
+  return text;
+}
+
+void run(const Options& options, const std::string& command_line) {
+  SolveRequest request = understood(options.request);
+  if (!request.source.pairs.empty() || request.samples || !request.append.empty())
+    throw cli::UsageError("align: takes two trajectories; not --pairs, --samples, --append");
+  request.keep_motions = true;
+  const SolveResult result = calibrate_offline(request);
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: {}\n", warning);
+  const Calibration& calibration = result.calibration;
+  const Alignment alignment =
+      align(result.trajectory_a, result.trajectory_b, calibration.T_a_b, calibration.time_offset_applied);
+  if (!options.out.empty()) write_tum(options.out, alignment.b_as_a);
   if (options.json) {
-    nlohmann::ordered_json object{{"T_a_b", pose_json(calibration.T_a_b)},
-                                  {"T_world_a_world_b", pose_json(alignment.T_world_a_world_b)},
-                                  {"certified", certified},
-                                  {"poses", alignment.b_as_a.size()},
-                                  {"compared", alignment.compared},
-                                  {"rms_translation_m", alignment.rms_translation},
-                                  {"rms_rotation_rad", alignment.rms_rotation},
-                                  {"time_offset_s", calibration.time_offset_applied}};
-    append_json(object, provenance_json(command_line));
-    object["files"] = files_json({{"a", options.a},
-                                  {"b", options.b},
-                                  {"times_a", options.reading.of_a().times_file},
-                                  {"times_b", options.reading.of_b().times_file}});
-    fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    return;
+    fmt::print("{}\n", as_json(request, calibration, alignment, command_line)
+                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
+    fmt::print("{}", as_text(request, calibration, alignment));
+    if (!options.out.empty())
+      fmt::print("written       {}: b as a trajectory of sensor a in the world of a, {} poses (TUM)\n",
+                 options.out, alignment.b_as_a.size());
   }
-  fmt::print("extrinsic    T_a_b, pose of sensor b in sensor a: {}{}\n", pose_text(calibration.T_a_b),
-             certified ? " (certified)" : " (NOT certified)");
-  fmt::print("world frames T_wa_wb, pose of b's world in a's world: {}\n",
-             pose_text(alignment.T_world_a_world_b));
-  fmt::print("agreement    {} poses compared, RMS {:.4f} m, {:.4f} deg\n", alignment.compared,
-             alignment.rms_translation, alignment.rms_rotation * degrees);
-  if (!options.out.empty())
-    fmt::print("written      {}: b as a trajectory of sensor a in the world of a, {} poses (TUM)\n",
-               options.out, alignment.b_as_a.size());
+  if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
+    throw cli::Exit{3};
 }
 
 }  // namespace
@@ -85,10 +99,7 @@ void add_align(cli::App program) {
   const auto options = std::make_shared<Options>();
   cli::App command = program.add_subcommand(
       "align", "lays trajectory B over A: extrinsic, transform between the worlds, B in A's frames");
-  command.add_option("A", options->a, "FILE or FILE:TOPIC of sensor a").required();
-  command.add_option("B", options->b, "FILE or FILE:TOPIC of sensor b").required();
-  add_reading_options(command, options->reading);
-  command.add_flag("--time-offset", options->time_offset, "estimates the offset of the clocks first");
+  add_request_options(command, options->request);
   command.add_option("--out", options->out, "B as a trajectory of sensor a in the world of a, as TUM");
   command.add_flag("--json", options->json, "one JSON object on standard output");
   command.callback([options, command] { run(*options, command.command_line()); });
