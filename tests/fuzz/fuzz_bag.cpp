@@ -3,6 +3,7 @@
 // The bytes of a bag behind the magic bytes of its kind: 1 MCAP, 2 ROS 1 bag, 3 rosbag2 database.
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "egocal/error.hpp"
 #include "egocal/io/recording.hpp"
@@ -13,7 +14,7 @@ using namespace egocal;
 using fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const test::InMemoryFile file;
+  static const std::conditional_t<EGOCAL_BAG_KIND == 3, test::NamedMemoryFile, test::InMemoryFile> file;
   const std::string magic[] = {{"\x89MCAP0\r\n", 8}, "#ROSBAG V2.0\n", {"SQLite format 3\0", 16}};
   std::string content = magic[EGOCAL_BAG_KIND - 1];
   content.append(reinterpret_cast<const char*>(data), size);

@@ -140,7 +140,7 @@ void write_bag_seeds(const std::filesystem::path& folder) {
     write_seed("rosbag1", "seed_" + compression,
                egocal::testing::rosbag1_file(messages(MessageEncoder::Kind::ros1), {compression, 4}), 13);
   const std::string database = (folder / "seed.db3").string();
-  egocal::testing::write_db3(database, messages(MessageEncoder::Kind::cdr));
+  egocal::testing::write_db3(database, messages(MessageEncoder::Kind::cdr), 512);
   std::ifstream stream(database, std::ios::binary);
   write_seed("database", "seed", {std::istreambuf_iterator<char>(stream), {}}, 16);
   std::filesystem::remove(database);

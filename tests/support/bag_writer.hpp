@@ -226,14 +226,16 @@ inline std::string rosbag1_file(const std::vector<WrittenMessage>& messages, con
   return file;
 }
 
-/// Writes a rosbag2 database.
-inline void write_db3(const std::string& file, const std::vector<WrittenMessage>& messages) {
+/// Writes a rosbag2 database of pages of this size [bytes]: small ones make a small file.
+inline void write_db3(const std::string& file, const std::vector<WrittenMessage>& messages,
+                      int page_size = 4096) {
   std::filesystem::remove(file);
   sqlite3* database = nullptr;
   const auto run = [&](const std::string& sql) {
     if (sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) std::abort();
   };
   if (sqlite3_open(file.c_str(), &database) != SQLITE_OK) std::abort();
+  run("PRAGMA page_size = " + std::to_string(page_size));
   run("BEGIN; CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
       "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL); CREATE TABLE messages(id "
       "INTEGER "

@@ -30,4 +30,27 @@ class InMemoryFile {
   int fd_;
 };
 
+/// The same with a name of its own, for libraries that follow links (sqlite3). Removed at the end.
+class NamedMemoryFile {
+ public:
+  NamedMemoryFile() : fd_(mkstemp(name_.data())) {
+    if (fd_ < 0) std::abort();
+  }
+  ~NamedMemoryFile() {
+    close(fd_);
+    unlink(name_.c_str());
+  }
+  NamedMemoryFile(const NamedMemoryFile&) = delete;
+  NamedMemoryFile& operator=(const NamedMemoryFile&) = delete;
+
+  void set(const void* content, std::size_t size) const {
+    if (ftruncate(fd_, 0) != 0 || pwrite(fd_, content, size, 0) != static_cast<ssize_t>(size)) std::abort();
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_ = "/dev/shm/egocal_XXXXXX";
+  int fd_;
+};
+
 }  // namespace egocal::test
