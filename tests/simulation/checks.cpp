@@ -363,8 +363,9 @@ void Checks::look_at_answers() {
   // answer
   const Plan& plan = surroundings_.plan;
   // a player that is fast has little left when the faults are over and all continues after a pause
-  const bool little_left =
-      plan.input == Input::player && plan.speed != 1 && has(plan, {IncidentKind::command});
+  // and a player that was restarted first sends what was received before a reset
+  const bool little_left = plan.input == Input::player && (plan.speed != 1 || player_starts_ > 1) &&
+                           has(plan, {IncidentKind::command});
   if (corrupts() || plan.mistake > 0 || (plan.input == Input::player && forgets()) || little_left ||
       in_an_order_of_its_own())
     return;
