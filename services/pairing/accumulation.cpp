@@ -18,16 +18,11 @@ void Accumulation::apply(const Input& input) {
     case Input::Kind::message:
       return take(channels_.at(input.index), input);
     case Input::Kind::give_up:
+      return hand_on(channels_.at(input.index), channels_.at(input.index).stream.flush());
     case Input::Kind::nothing_sent:
-    case Input::Kind::settled: {
-      Channel& channel = channels_.at(input.index);
-      const std::vector<NumberedPose> samples = input.kind == Input::Kind::give_up ? channel.stream.flush()
-                                                : input.kind == Input::Kind::nothing_sent
-                                                    ? channel.stream.give_up_first_gap()
-                                                    : channel.stream.end_settling();
-      if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
-      return route(channel, samples);
-    }
+      return hand_on(channels_.at(input.index), channels_.at(input.index).stream.give_up_first_gap());
+    case Input::Kind::settled:
+      return hand_on(channels_.at(input.index), channels_.at(input.index).stream.end_settling());
     case Input::Kind::patient:
     case Input::Kind::impatient:
       for (Channel& channel : channels_) channel.stream.be_patient(input.kind == Input::Kind::patient);
@@ -49,15 +44,13 @@ void Accumulation::take(Channel& channel, const Input& input) {
   } else if (!odometry.pose) {
     ++rejected_[odometry.pose.reason];
   } else {
-    const std::vector<NumberedPose> samples =
-        channel.stream.push({*odometry.pose.value, odometry.seq, input.mono_us, false});
-    // one that fills a gap completes those behind it
-    if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
-    route(channel, samples);
+    hand_on(channel, channel.stream.push({*odometry.pose.value, odometry.seq, input.mono_us, false}));
   }
 }
 
-void Accumulation::route(const Channel& channel, const std::vector<NumberedPose>& samples) {
+void Accumulation::hand_on(Channel& channel, const std::vector<NumberedPose>& samples) {
+  // one that fills a gap completes those behind it
+  if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
   for (const NumberedPose& sample : samples)
     for (PairSession& pair : pairs_) {
       if (pair.config().a == channel.sensor.name) pair.push(Side::a, sample, motions_);

@@ -79,7 +79,7 @@ class Accumulation {
     ChannelState state;  // without the stream's
   };
   void take(Channel& channel, const Input& input);
-  void route(const Channel& channel, const std::vector<NumberedPose>& samples);
+  void hand_on(Channel& channel, const std::vector<NumberedPose>& samples);
 
   std::vector<Channel> channels_;
   std::vector<PairSession> pairs_;

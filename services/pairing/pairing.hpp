@@ -34,14 +34,13 @@ class Pairing {
   struct Channel {
     std::string problem, motion, scale_problem;  // of a pair
   };
-  struct Arrivals {                     // of a sensor
-    std::int64_t count = 0;             // since the start of the process
-    std::int64_t heard_mono_us = 0;     // the last one
-    std::int64_t repeated_mono_us = 0;  // the last one from before what is waited for; 0: none
-    std::int64_t gap_mono_us = 0;       // since when something is missing; 0: nothing is
-    std::int64_t expected = -1;         // its number
-    std::int64_t gone_over_mono_us =
-        0;  // since when the sender goes over what it sent before; 0: it does not
+  struct Arrivals {                      // of a sensor
+    std::int64_t count = 0;              // since the start of the process
+    std::int64_t heard_mono_us = 0;      // the last one
+    std::int64_t repeated_mono_us = 0;   // the last one from before what is waited for; 0: none
+    std::int64_t gap_mono_us = 0;        // since when something is missing; 0: nothing is
+    std::int64_t expected = -1;          // its number
+    std::int64_t gone_over_mono_us = 0;  // since when the sender repeats messages; 0: it does not
   };
 
   void feed(const Input& input);

@@ -181,14 +181,19 @@ TEST(Newest, OnlyTheNewestIsKept) {
   EXPECT_FALSE(newest.take(message));
 }
 
+status_t status_of(const std::string& name, const std::string& role, const std::string& state) {
+  status_t status{};
+  status.name = name;
+  status.role = role;
+  status.run = 10;
+  status.state = state;
+  return status;
+}
+
 TEST(Peers, AreForgottenWhenSilentEndedOrTooMany) {
   Peers peers;
   constexpr std::int64_t now = 0, timeout = 3'000'000;
-  status_t status{};
-  status.name = "egocal-fast";
-  status.role = "fast";
-  status.run = 10;
-  status.state = "running";
+  status_t status = status_of("egocal-fast", "fast", "running");
   peers.hear(status, now);
   EXPECT_TRUE(peers.alive(Role::fast, now + 1'000'000, timeout));
   EXPECT_FALSE(peers.alive(Role::fast, now + 4'000'000, timeout));
@@ -208,11 +213,7 @@ TEST(Peers, AreForgottenWhenSilentEndedOrTooMany) {
 TEST(Peers, AStatusThatTheNetworkDelayedDoesNotReviveWhatHasEnded) {
   Peers peers;
   constexpr std::int64_t now = 0, timeout = 3'000'000;
-  status_t before{};
-  before.name = "egocal-pairing";
-  before.role = "pairing";
-  before.run = 10;
-  before.state = "running";
+  status_t before = status_of("egocal-pairing", "pairing", "running");
   before.utime = 1000;
   status_t last = before;
   last.state = "ended";
@@ -228,12 +229,9 @@ TEST(Peers, ANamesakeThatWorksPrecedesOneThatDoesNotWhateverTheDatesOfTheirStart
   constexpr std::int64_t now = 0, timeout = 3'000'000, early = 9, late = 11;
   const auto precedes = [&](const std::string& state, std::int64_t run, State own_state) {
     Peers peers;
-    status_t status{};
-    status.name = "egocal-pairing";
-    status.role = "pairing";
+    status_t status = status_of("egocal-pairing", "pairing", state);
     status.host = "h";
     status.run = run;
-    status.state = state;
     peers.hear(status, now);
     return peers.senior_namesake({"egocal-pairing", "h", 10, 1, own_state}, now, timeout).has_value();
   };

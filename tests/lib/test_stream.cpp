@@ -302,7 +302,7 @@ TEST(Stream, AfterAnInterruptionMessagesWithoutNumbersArePutInOrder) {
   EXPECT_THAT(feed(stream, {sample(5, -1), sample(6, -1), sample(7, -1)}), ElementsAre(2, 3, 4, 5, 6, 7));
 }
 
-// egocal_simulation, seed 10256792: 4 was lost while nobody listened, and the sender was restarted
+// egocal_simulation, seed 10256792: message 4 was lost while pairing was down; then the sender was restarted
 TEST(Stream, WithoutNumbersWhatIsMissingAmongThoseHeldComesInItsPlace) {
   Stream stream;
   feed(stream, {sample(0, -1), sample(1, -1)});

@@ -77,8 +77,8 @@ bool Checks::keeps_order() const {
   return plan.speed > 0 ? static_cast<double>(late_us) * plan.speed < largest_jump_us : late_us == 0;
 }
 
-/// Without numbers nobody can restore an order in which messages overtake others by more than what is taken
-/// for a log that begins again.
+/// Messages have no numbers, and some arrive so late that they look like a log that begins again. Their order
+/// cannot be restored.
 bool Checks::in_an_order_of_its_own() const {
   return !surroundings_.plan.numbered && !keeps_order();
 }

@@ -11,6 +11,10 @@
 
 namespace egocal::test {
 
+inline void set_content(int fd, const void* content, std::size_t size) {
+  if (ftruncate(fd, 0) != 0 || pwrite(fd, content, size, 0) != static_cast<ssize_t>(size)) std::abort();
+}
+
 /// A file that is never on a disk, with a name that anybody in this process can open.
 class InMemoryFile {
  public:
@@ -21,9 +25,7 @@ class InMemoryFile {
   InMemoryFile(const InMemoryFile&) = delete;
   InMemoryFile& operator=(const InMemoryFile&) = delete;
 
-  void set(const void* content, std::size_t size) const {
-    if (ftruncate(fd_, 0) != 0 || pwrite(fd_, content, size, 0) != static_cast<ssize_t>(size)) std::abort();
-  }
+  void set(const void* content, std::size_t size) const { set_content(fd_, content, size); }
   std::string name() const { return "/proc/self/fd/" + std::to_string(fd_); }
 
  private:
@@ -43,9 +45,7 @@ class NamedMemoryFile {
   NamedMemoryFile(const NamedMemoryFile&) = delete;
   NamedMemoryFile& operator=(const NamedMemoryFile&) = delete;
 
-  void set(const void* content, std::size_t size) const {
-    if (ftruncate(fd_, 0) != 0 || pwrite(fd_, content, size, 0) != static_cast<ssize_t>(size)) std::abort();
-  }
+  void set(const void* content, std::size_t size) const { set_content(fd_, content, size); }
   const std::string& name() const { return name_; }
 
  private:

@@ -318,8 +318,8 @@ std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
   return out;
 }
 
-/// Without numbers nobody knows what is missing among those held: each is released when the sender has come
-/// to it again, with what it has sent before it.
+/// Among held messages without numbers a missing one cannot be seen. So each is released only when the sender
+/// repeats it: whatever belongs before it has been sent by then.
 std::vector<NumberedPose> Stream::go_over(NumberedPose sample) {
   const std::int64_t time_us = sample.pose.time_us;
   if (!state_.held.emplace(time_us, std::move(sample)).second) ++state_.counts.duplicate;

@@ -118,8 +118,9 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
   options.scale.balance = detail::even_balance(scale_blocks(first), side);
   ScaleSolution solution = estimate_scale(first, options);
   double applied = solution.scale;
-  const bool together =
-      pairing.time_offset == 0 && measured_together(a.size() < b.size() ? a : b, a.size() < b.size() ? b : a);
+  const bool both_stamps =
+      options.both_stamps && !(pairing.time_offset == 0 &&
+                               measured_together(a.size() < b.size() ? a : b, a.size() < b.size() ? b : a));
   for (int round = 0; round < options.rounds; ++round) {
     const Trajectory scaled_a = side == Side::a ? scaled(a, applied) : a;
     const Trajectory scaled_b = side == Side::b ? scaled(b, applied) : b;
@@ -136,14 +137,14 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
     relative.scale.least = options.scale.least / applied;
     relative.scale.most = options.scale.most / applied;
     solution = estimate_scale(paired.pairs, relative);
-    double doubt = 0;
-    if (const Stamps stamps = stamps_of(paired.drive, a, b); options.both_stamps && !together) {
+    if (both_stamps) {
       const double one = solution.scale;
-      solution = estimate_scale(with_other_stamps(std::move(paired.pairs), scaled_a, scaled_b, fixed, stamps),
+      solution = estimate_scale(with_other_stamps(std::move(paired.pairs), scaled_a, scaled_b, fixed,
+                                                  stamps_of(paired.drive, a, b)),
                                 relative);
-      doubt = options.interpolation_doubt * std::abs(solution.scale - one);
+      solution.stddev =
+          std::hypot(solution.stddev, options.interpolation_doubt * std::abs(solution.scale - one));
     }
-    solution.stddev = std::hypot(solution.stddev, doubt);
     const double factor = solution.scale;
     solution.scale *= applied;
     solution.least_scale *= applied;
