@@ -348,6 +348,7 @@ std::string Checks::missing_answer() const {
         if (no_longer_sent(pair.a, pair.b) && may_lack_a_problem(scaled)) continue;
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
+        if (!exporter->answers().certified({pair.a, pair.b})) return whose + "an answer without its scale";
         if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)
           return whose + "an old answer";
         if (newest == newest_problem_.end() || best->message.session != field(newest->second, session_at))

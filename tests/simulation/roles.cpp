@@ -30,6 +30,7 @@ Watcher::Watcher(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
 }
 
 Exporter::Exporter(bus::Loop& loop, const bus::Rig& rig) {
+  answers_.expect_scales(rig);
   for (const bus::PairConfig& pair : rig.pairs) {
     loop.subscribe<problem_t>(
         bus::problem_channel(pair.a, pair.b),

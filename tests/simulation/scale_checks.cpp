@@ -66,7 +66,7 @@ void Checks::check_scales() {
   for (const auto& process : processes_)
     if (const Exporter* exporter = process->exporter())
       for (const auto& [pair, best] : exporter->answers().all()) {
-        if (!best.certified() || !is_scale_to_be_found(pair.first, pair.second)) continue;
+        if (!exporter->answers().certified(pair) || !is_scale_to_be_found(pair.first, pair.second)) continue;
         const bus::CheckedScale* scale = exporter->answers().scale(pair);
         if (!scale)
           fail('c', "egocal-export takes an answer at a scale that it does not know");

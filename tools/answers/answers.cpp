@@ -69,6 +69,11 @@ std::string text(const PairName& pair) {
   return pair.first + "," + pair.second;
 }
 
+void Answers::expect_scales(const bus::Rig& rig) {
+  for (const bus::PairConfig& pair : rig.pairs)
+    if (bus::unscaled_side(rig, pair)) unscaled_.insert({pair.a, pair.b});
+}
+
 void Answers::hear(const problem_t& message) {
   if (!check_.take(message).empty()) return;
   note(message);
@@ -112,7 +117,10 @@ void Answers::hear(const verdict_t& message) {
 }
 
 void Answers::hear(const scale_problem_t& message) {
-  if (const std::string refused = scales_.take(message); !refused.empty()) ++refused_[refused];
+  if (const std::string refused = scales_.take(message); !refused.empty())
+    ++refused_[refused];
+  else
+    unscaled_.insert({message.sensor_a, message.sensor_b});
 }
 
 void Answers::hear(const scale_t& message) {
@@ -122,6 +130,16 @@ void Answers::hear(const scale_t& message) {
 const bus::CheckedScale* Answers::scale(const PairName& pair) const {
   const Best* answer = best(pair);
   return answer ? scales_.find(pair.first, pair.second, answer->message.session) : nullptr;
+}
+
+bool Answers::lacks_scale(const PairName& pair) const {
+  const bus::CheckedScale* const known = scale(pair);
+  return unscaled_.contains(pair) && !(known && known->verified);
+}
+
+bool Answers::certified(const PairName& pair) const {
+  const Best* const answer = best(pair);
+  return answer && answer->certified() && !lacks_scale(pair);
 }
 
 const Diagnosis* Answers::diagnosis(const PairName& pair) const {

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/bus/rig.hpp"
 #include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
 
@@ -31,6 +33,9 @@ class Answers {
     }
   };
 
+  /// The pairs of this rig whose scale is to be found: their answers hold only at a scale that is known.
+  void expect_scales(const bus::Rig& rig);
+
   void hear(const problem_t& message);
   void hear(const calibration_t& message);
   void hear(const verdict_t& message);
@@ -43,6 +48,11 @@ class Answers {
   const Diagnosis* diagnosis(const PairName& pair) const;
   /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
+  /// The scale of one of the pair's sensors is to be found, and none that was verified is known of the
+  /// session of the answer that counts.
+  bool lacks_scale(const PairName& pair) const;
+  /// There is an answer, it is verified and optimal, and the scale that it holds at is known.
+  bool certified(const PairName& pair) const;
   const std::map<PairName, Best>& all() const { return best_; }
   /// Answers that were refused, by reason.
   const std::map<std::string, std::int64_t>& refused() const { return refused_; }
@@ -68,6 +78,7 @@ class Answers {
   std::map<PairName, calibration_t> early_;  ///< received before its problem
   std::map<PairName, Judgement> judgements_;
   bus::ScaleCheck scales_;
+  std::set<PairName> unscaled_;  ///< expected, or a scale problem was received
   std::map<std::string, std::int64_t> refused_;
 };
 

@@ -66,6 +66,7 @@ Found live(const Options& options) {
   std::vector<PairName> pairs;
   for (const bus::PairConfig& pair : rig.pairs) pairs.emplace_back(pair.a, pair.b);
   Found found{options.all ? pairs : std::vector<PairName>{chosen(options.pair, pairs)}, {}};
+  found.answers.expect_scales(rig);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
   for (const auto& [a, b] : found.pairs) {
     loop.subscribe<problem_t>(bus::problem_channel(a, b), [&](const problem_t& message, const bus::Arrival&) {
@@ -84,11 +85,6 @@ Found live(const Options& options) {
       found.answers.hear(message);
     });
   }
-  const auto unscaled = [&](const PairName& name) {
-    return std::any_of(rig.pairs.begin(), rig.pairs.end(), [&](const bus::PairConfig& pair) {
-      return pair.a == name.first && pair.b == name.second && bus::unscaled_side(rig, pair);
-    });
-  };
   // verdicts are sent again every second, as heartbeats are: without a diagnosis none is waited for
   bool judged_here = false;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
@@ -100,10 +96,7 @@ Found live(const Options& options) {
   const auto done = [&] {
     const bool waits = judged_here || std::chrono::steady_clock::now() < heard_all;
     return std::all_of(found.pairs.begin(), found.pairs.end(), [&](const PairName& pair) {
-      const Answers::Best* best = found.answers.best(pair);
-      const bus::CheckedScale* scale = found.answers.scale(pair);
-      return best && best->certified() && (!waits || found.answers.diagnosis(pair)) &&
-             (!unscaled(pair) || (scale && scale->verified));
+      return found.answers.certified(pair) && (!waits || found.answers.diagnosis(pair));
     });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
@@ -111,8 +104,11 @@ Found live(const Options& options) {
   return found;
 }
 
-NamedExtrinsic named(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis,
-                     const bus::CheckedScale* scale) {
+/// Of a pair that has an answer; warns of what is missing for it to be certified.
+NamedExtrinsic named(const PairName& pair, const Answers& answers) {
+  const Answers::Best& best = *answers.best(pair);
+  const Diagnosis* const diagnosis = answers.diagnosis(pair);
+  const bus::CheckedScale* const scale = answers.scale(pair);
   const Answer& answer = best.checked.answer;
   if (best.checked.standing == bus::Standing::unverified)
     fmt::print(stderr,
@@ -120,10 +116,18 @@ NamedExtrinsic named(const PairName& pair, const Answers::Best& best, const Diag
                text(pair));
   else if (!best.certified())
     fmt::print(stderr, "egocal: warning: {}: this answer is not certified\n", text(pair));
+  if (answers.lacks_scale(pair))
+    fmt::print(stderr,
+               "egocal: warning: {}: the scale of this answer could not be verified: it was not received\n",
+               text(pair));
   if (diagnosis && diagnosis->verdict != Verdict::good)
     fmt::print(stderr, "egocal: {}: {}\n", text(pair), verdict_line(*diagnosis));
-  NamedExtrinsic extrinsic{pair.first,       pair.second,        to_pose(answer.T_a_b),
-                           best.certified(), best.message.pairs, answer.observability.stddev};
+  NamedExtrinsic extrinsic{pair.first,
+                           pair.second,
+                           to_pose(answer.T_a_b),
+                           answers.certified(pair),
+                           best.message.pairs,
+                           answer.observability.stddev};
   extrinsic.usable = !diagnosis || diagnosis->verdict != Verdict::contradictory;
   if (diagnosis) extrinsic.verdict = to_string(diagnosis->verdict);
   if (scale)
@@ -152,10 +156,10 @@ void run(const Options& options) {
   std::vector<NamedExtrinsic> extrinsics;
   bool refused = false;
   for (const PairName& pair : found.pairs)
-    if (const Answers::Best* best = found.answers.best(pair)) {
+    if (found.answers.best(pair)) {
       const Diagnosis* diagnosis = found.answers.diagnosis(pair);
       refused = refused || (diagnosis && unusable(*diagnosis));
-      extrinsics.push_back(named(pair, *best, diagnosis, found.answers.scale(pair)));
+      extrinsics.push_back(named(pair, found.answers));
     } else if (options.all)
       fmt::print(stderr, "egocal: warning: there is no answer for the pair {}\n", text(pair));
     else

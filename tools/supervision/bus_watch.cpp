@@ -38,8 +38,11 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 
 namespace {
 
-std::string line_of(const PairName& pair, const Answers::Best& best, const Diagnosis* diagnosis,
-                    const bus::CheckedScale* scale) {
+/// Of a pair that has an answer.
+std::string line_of(const PairName& pair, const Answers& answers) {
+  const Answers::Best& best = *answers.best(pair);
+  const Diagnosis* const diagnosis = answers.diagnosis(pair);
+  const bus::CheckedScale* const scale = answers.scale(pair);
   const Pose T = to_pose(best.checked.answer.T_a_b);
   const Eigen::Quaterniond& q = T.rotation;
   std::string text = fmt::format(
@@ -47,12 +50,14 @@ std::string line_of(const PairName& pair, const Answers::Best& best, const Diagn
       "{:.5f} "
       "{:.5f} {:.5f}\n",
       pair.first, pair.second, diagnosis ? verdict_line(*diagnosis) : "not judged",
-      best.certified() ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
+      answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
       T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
   if (scale)
     text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
                         scale->solution.stddev,
                         scale->verified && scale->solution.certified ? "optimal (proven)" : "not proven");
+  if (answers.lacks_scale(pair))
+    text += "  the scale could not be verified: this answer holds at a scale that is not known\n";
   return text;
 }
 
@@ -61,12 +66,11 @@ std::string report(const bus::Rig& rig, const Answers& answers) {
   Outcome outcome;
   for (const bus::PairConfig& config : rig.pairs) {
     const PairName pair{config.a, config.b};
-    const Answers::Best* best = answers.best(pair);
-    if (!best) continue;
+    if (!answers.best(pair)) continue;
     const Diagnosis* diagnosis = answers.diagnosis(pair);
     outcome.answered = true;
     outcome.unusable = outcome.unusable || (diagnosis && unusable(*diagnosis));
-    outcome.text += line_of(pair, *best, diagnosis, answers.scale(pair));
+    outcome.text += line_of(pair, answers);
   }
   return std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text;
 }
@@ -83,6 +87,7 @@ void write_all(int out, const std::string& text) {
   try {
     bus::Loop loop(url, {.require_network = false});
     Answers answers;
+    answers.expect_scales(rig);
     const auto hear = [&](const auto& message, const bus::Arrival&) { answers.hear(message); };
     for (const bus::PairConfig& pair : rig.pairs) {
       loop.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b), hear);
