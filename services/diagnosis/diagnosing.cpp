@@ -125,6 +125,7 @@ void Diagnosing::judge(Pair& pair) {
   DiagnosisOptions options;
   options.goal = pair.config.goal;
   options.platform = pair.config.platform;
+  options.mount.false_alarms = options_.false_alarms;
   PairingOptions pairing = bus::drive_options(rig_, pair.config);
   pairing.time_offset = message.time_offset;
   const auto poses_of = [&](Side side) {

@@ -27,6 +27,8 @@ struct DiagnosingOptions {
   double idle = 0.6;
   /// Fewer poses of a stream say nothing about a drive that began before this process did.
   std::size_t least_poses = 30;
+  /// Chance that one diagnosis calls a mount moved that did not (MountCheckOptions): a session has thousands.
+  double false_alarms = 1e-4;
   /// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
   int queue_capacity = 1024;
   DriveSampleOptions sample;

@@ -148,6 +148,39 @@ TEST(Moves, NoiseThatWandersForLongerThanABlockIsNone) {
   EXPECT_TRUE(moves_of(trajectories[0], trajectories[1]).moves.empty());
 }
 
+TEST(Moves, FifteenSecondsShowABump) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 15; ++seed)
+    for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+      SimulationOptions options = drive(terrain, 600 + seed, 135);
+      options.faults[1].mount_changes = {bump(120, seed)};
+      const MovesResult result = moves_of(options);
+      ASSERT_LE(result.moves.size(), 1u);
+      if (result.moves.empty()) continue;
+      ++found;
+      EXPECT_NEAR(result.moves[0].time, 120, 8);
+    }
+  EXPECT_GE(found, 27) << "of 30; 960 of 1000 in moves_study";
+}
+
+TEST(Moves, AChangeShowsWhereverItLiesWithinABlock) {
+  SimulationOptions options = drive(Terrain::free, 650, 135);
+  options.faults[1].mount_changes = {bump(120, 7)};
+  const auto trajectories = simulate(options);
+  PairingOptions pairing;
+  pairing.stride = 16;  // 27 blocks of 4.9 s, three of them after the change
+  const std::vector<MotionPair> pairs = pair_motions(pairing, trajectories[0], trajectories[1]).pairs;
+  const std::int64_t begin_us = pairs.front().begin_us;
+  for (double time = 118; time <= 122; time += 0.25) {
+    const auto time_us = begin_us + static_cast<std::int64_t>(1e6 * time);
+    const std::optional<double> chance = chance_of_move(pairs, Problem{}, MoveKind::bump, time_us);
+    ASSERT_TRUE(chance);
+    EXPECT_LT(*chance, 1e-3) << time << ": with the block before the change it is 2e-3";
+  }
+  EXPECT_FALSE(chance_of_move(std::span(pairs).first(100), Problem{}, MoveKind::bump, begin_us))
+      << "too few blocks";
+}
+
 TEST(Moves, SlowCreepIsCalledThat) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
     SimulationOptions options = drive(terrain, 500, 300);

@@ -96,9 +96,12 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
     return;
   }
   std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
-  // a mount that moved looks like many things
+  // a mount that moved looks like many things, and another reading of both streams like one that moved
   if (!moves.empty()) {
-    findings = std::move(moves);
+    std::erase_if(findings, [](const Finding& one) {
+      return one.code != "inverted_both" && one.code != "quaternion_order_both";
+    });
+    findings.insert(findings.begin(), moves.begin(), moves.end());
     return;
   }
   if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T))

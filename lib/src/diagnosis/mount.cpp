@@ -92,7 +92,9 @@ void word(const Move& move, double begin, double long_interval, Finding& finding
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
                                  const DiagnosisOptions& options) {
   const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options);
-  const MovesResult result = find_moves_of_strides(strides, answered.problem);
+  MovesOptions moves;
+  moves.false_alarms = options.mount.false_alarms;
+  const MovesResult result = find_moves_of_strides(strides, answered.problem, moves);
   std::vector<Finding> findings;
   if (result.moves.empty()) return findings;
   const double begin = 1e-6 * static_cast<double>(strides[result.stride].front().begin_us);

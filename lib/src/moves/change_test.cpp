@@ -37,6 +37,20 @@ struct Division {
   Parameters x1, x2;                  ///< optima
 };
 
+/// Where the blocks may be divided: with least_side blocks on either side that show the extrinsic. Of what
+/// happens while a vehicle stands the others say nothing, and their noise is another one.
+std::vector<std::size_t> splits_of(Blocks blocks, std::size_t least_side, const ChangeTestOptions& options) {
+  const Eigen::LDLT<ParameterMatrix> whole(curvature(blocks));
+  const double mean = static_cast<double>(blocks.front().g.size()) / static_cast<double>(blocks.size());
+  std::vector<std::size_t> shown{0};  // of the blocks before number i
+  for (const LinearBlock& block : blocks)
+    shown.push_back(shown.back() + (whole.solve(block.H).trace() > options.least_information * mean));
+  std::vector<std::size_t> splits;
+  for (std::size_t i = 1; i < blocks.size(); ++i)
+    if (shown[i] >= least_side && shown.back() - shown[i] >= least_side) splits.push_back(i);
+  return splits;
+}
+
 /// Where the lengths of residuals end: those of blocks that are longer count as if they were this long.
 double longest_length(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
   std::vector<double> lengths;
@@ -119,34 +133,26 @@ Evidence evidence(Blocks blocks, std::size_t split, const Division& d) {
   return result;
 }
 
-/// How much more the sums of neighbouring residuals vary than those of independent ones would, less the
-/// standard deviation of that: noise that wanders shows here.
-double correlation_of(const Division& d, std::size_t split) {
+/// How much more the sums of neighbouring residuals vary than those of independent ones would: noise that
+/// wanders shows here. Of noise that forgets, the correlation of blocks k apart is r1 phi^(k-1), so the
+/// variance of long sums is 1 + 2 r1 / (1 - phi) times that of independent blocks. Both correlations count
+/// less their standard deviation.
+double correlation_of(const Division& d, const ChangeTestOptions& options) {
   const std::size_t count = d.residuals.size();
-  double single = 0;
-  for (const Parameters& z : d.residuals) single += z.squaredNorm();
-  if (!(single > 0)) return 1;
-  double largest = 1;
-  for (std::size_t length = 2; 5 * length <= count; length *= 2) {
-    double grouped = 0, used = 0, groups = 0;
-    const auto add_side = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i + length <= end; i += length) {
-        Parameters sum = Parameters::Zero(d.x1.size());
-        for (std::size_t k = i; k < i + length; ++k)
-          sum += d.residuals[k], used += d.residuals[k].squaredNorm();
-        grouped += sum.squaredNorm();
-        ++groups;
-      }
-    };
-    add_side(0, split);
-    add_side(split, count);
-    if (!(used > 0)) continue;
-    // the residuals of either side sum to about zero, which takes this part off the sums
-    const double lost = 2.0 * static_cast<double>(length) / static_cast<double>(count);
-    const double scatter = std::sqrt(2 / (groups * static_cast<double>(d.x1.size())));
-    largest = std::max(largest, grouped / used / (1 - std::min(0.5, lost)) * (1 - scatter));
+  const auto n = static_cast<double>(count);
+  double square = 0, first = 0, second = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    square += d.residuals[i].squaredNorm();
+    if (i >= 1) first += d.residuals[i].dot(d.residuals[i - 1]);
+    if (i >= 2) second += d.residuals[i].dot(d.residuals[i - 2]);
   }
-  return largest;
+  if (!(square > 0)) return 1;
+  // the residuals of either side sum to about zero, which takes 2 / n off
+  const double lost = 2 / n, scatter = 1 / std::sqrt(n * static_cast<double>(d.x1.size()));
+  const double r1 = first / square + lost - scatter, r2 = second / square + lost - scatter;
+  if (!(r1 > 0)) return 1;
+  const double phi = std::clamp(r2 / r1, 0.0, options.longest_memory);
+  return 1 + 2 * r1 / (1 - phi);
 }
 
 /// Reduction of the cost by an optimum of their own for blocks [from, to).
@@ -237,7 +243,7 @@ void test_even_change(Blocks blocks, const EvenChange& fit, const ChangeTestOpti
         block.time * ParameterMatrix::Identity(C.rows(), C.cols()) - fit.mean.transpose();
     V += weight * (block.root * C * block.root) * weight.transpose();
   }
-  const double correlation = correlation_of(even, blocks.size());
+  const double correlation = correlation_of(even, options);
   const Eigen::LDLT<ParameterMatrix> factor(V);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return;
   const double t2 = fit.S.dot(factor.solve(fit.S)) / correlation;
@@ -279,8 +285,9 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   ChangeTest test;
   const std::size_t count = blocks.size();
   if (count < 2 * least_side + 1 || least_side == 0) return test;
+  const std::vector<std::size_t> splits = splits_of(blocks, least_side, options);
   double largest = 0;
-  for (std::size_t split = least_side; split + least_side <= count; ++split) {
+  for (const std::size_t split : splits) {
     const double t2 = evidence(blocks, split, divide(blocks, split, options)).t2;
     if (t2 > largest) largest = t2, test.split = split;
   }
@@ -288,8 +295,8 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
 
   const Division d = divide(blocks, test.split, options);
   const Evidence found = evidence(blocks, test.split, d);
-  test.correlation = correlation_of(d, test.split);
-  const double places = static_cast<double>(count + 1 - 2 * least_side);
+  test.correlation = correlation_of(d, options);
+  const auto places = static_cast<double>(splits.size());
   test.false_alarm =
       std::min(1.0, places * chance_of(found.t2 / test.correlation, d.x1.size(), count, options));
   test.change = d.x2 - d.x1;
@@ -305,10 +312,21 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   return test;
 }
 
-double chance_of_change_at(Blocks blocks, std::size_t split, const ChangeTestOptions& options) {
-  const Division d = divide(blocks, split, options);
-  const double t2 = evidence(blocks, split, d).t2 / correlation_of(d, split);
-  return chance_of(t2, d.x1.size(), blocks.size(), options);
+ChangeAt test_change_at(Blocks blocks, std::size_t split, std::size_t least_side,
+                        const ChangeTestOptions& options) {
+  ChangeAt best;
+  const std::vector<std::size_t> splits = splits_of(blocks, least_side, options);
+  if (splits.empty()) return best;
+  for (const std::size_t either : {split, split - std::min<std::size_t>(split, 1)}) {
+    const auto nearest = std::lower_bound(splits.begin(), splits.end(), either);
+    const std::size_t at = nearest == splits.end() ? splits.back() : *nearest;
+    const Division d = divide(blocks, at, options);
+    const double correlation = correlation_of(d, options);
+    const double t2 = evidence(blocks, at, d).t2 / correlation;
+    const double chance = std::min(1.0, 2 * chance_of(t2, d.x1.size(), blocks.size(), options));
+    if (either == split || chance < best.chance) best = {chance, correlation};
+  }
+  return best;
 }
 
 double chance_of_even_change(Blocks blocks, const ChangeTestOptions& options) {

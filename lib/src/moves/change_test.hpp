@@ -25,9 +25,17 @@ struct ChangeTest {
 ChangeTest test_change(std::span<const LinearBlock> blocks, std::size_t least_side,
                        const ChangeTestOptions& options);
 
-/// Chances of the evidence of a change before block `split`, and of an even one, where nothing changes.
-double chance_of_change_at(std::span<const LinearBlock> blocks, std::size_t split,
-                           const ChangeTestOptions& options);
+/// The evidence of a change at a place that was not searched for.
+struct ChangeAt {
+  double chance = 1;       ///< of such evidence where nothing changes
+  double correlation = 1;  ///< as of ChangeTest
+};
+
+/// Of a change within block `split` - 1, which may belong to either side: that which shows more, counted as
+/// two trials. least_side: blocks on each side at least.
+ChangeAt test_change_at(std::span<const LinearBlock> blocks, std::size_t split, std::size_t least_side,
+                        const ChangeTestOptions& options);
+/// Chance of the evidence of an even change where nothing changes.
 double chance_of_even_change(std::span<const LinearBlock> blocks, const ChangeTestOptions& options);
 
 }  // namespace egocal::detail

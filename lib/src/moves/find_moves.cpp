@@ -99,8 +99,8 @@ class Finder {
   }
 
   /// The best change within the stretch, if it is significant and large enough to report.
-  std::optional<Found> best(std::size_t from, std::size_t to) { return best(from, to, blocks_in(from, to)); }
-  std::optional<Found> best(std::size_t from, std::size_t to, std::size_t count) {
+  std::optional<Found> best(std::size_t from, std::size_t to) {
+    const std::size_t count = blocks_in(from, to);
     if (count < options_.least_blocks) return std::nullopt;
     Found found;
     found.from = from;
@@ -122,13 +122,19 @@ class Finder {
   }
 
   /// Noise that wanders for longer than a block makes neighbouring blocks alike, and the test believes it.
-  bool shows_in_longer_blocks(const Found& found) {
+  bool shows_in_longer_blocks(const Found& found) const {
     double correlation = found.test.correlation;
     for (std::size_t count = blocks_in(found.from, found.to) / 2;
          correlation > options_.most_correlation && count >= options_.least_blocks; count /= 2) {
-      const std::optional<Found> longer = best(found.from, found.to, count);
-      if (!longer) return false;
-      correlation = longer->test.correlation;
+      const Linearised stretch = detail::linearise(pairs_.subspan(found.from, found.to - found.from),
+                                                   problem_, count, options_.test);
+      if (stretch.blocks.empty()) return false;
+      const auto split = std::lower_bound(stretch.begin.begin(), stretch.begin.end(), found.at - found.from) -
+                         stretch.begin.begin();
+      const detail::ChangeAt longer = detail::test_change_at(stretch.blocks, static_cast<std::size_t>(split),
+                                                             least_side(count, options_), options_.test);
+      if (!(longer.chance <= options_.false_alarms)) return false;
+      correlation = longer.correlation;
     }
     return true;
   }
@@ -273,9 +279,8 @@ Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k
 bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_t origin_us,
               const MovesOptions& options) {
   const std::int64_t time_us = origin_us + static_cast<std::int64_t>(1e6 * move.time);
-  const double chance = chance_of_move(pairs, problem, move.kind, time_us, options);
-  const bool tested = chance < 1;
-  return !tested || chance <= options.confirmation;
+  const std::optional<double> chance = chance_of_move(pairs, problem, move.kind, time_us, options);
+  return !chance || *chance <= options.confirmation;
 }
 
 }  // namespace
@@ -317,20 +322,20 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
   return best;
 }
 
-double chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,
-                      const MovesOptions& options) {
-  if (pairs.size() < 2) return 1;
+std::optional<double> chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,
+                                     const MovesOptions& options) {
+  if (pairs.size() < 2) return std::nullopt;
   const std::size_t least = std::max(options.least_block_pairs, 3 * detail::overlap_of(pairs));
   const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));
   const std::size_t side = least_side(count, options);
-  if (count < options.least_blocks || count < 2 * side + 1) return 1;
+  if (count < options.least_blocks || count < 2 * side + 1) return std::nullopt;
   const Linearised stretch =
       detail::linearise(pairs, detail::weighted_by_noise(pairs, problem, options.test), count, options.test);
-  if (stretch.blocks.empty()) return 1;
+  if (stretch.blocks.empty()) return std::nullopt;
   if (kind == MoveKind::creep) return detail::chance_of_even_change(stretch.blocks, options.test);
   std::size_t split = 0;
   while (split < count && pairs[stretch.begin[split]].begin_us < time_us) ++split;
-  return detail::chance_of_change_at(stretch.blocks, std::clamp(split, side, count - side), options.test);
+  return detail::test_change_at(stretch.blocks, split, side, options.test).chance;
 }
 
 }  // namespace egocal

@@ -99,7 +99,8 @@ std::vector<RigMove> find_rig_moves(std::size_t sensors, std::span<const RigPair
       const auto part = part_of(pair, std::min(from, result[k].time), std::max(to, result[k].time));
       const double chance =
           chance_of_move(part, pair.problem, result[k].kind,
-                         pair.pairs.front().begin_us + std::llround(1e6 * result[k].time), options.moves);
+                         pair.pairs.front().begin_us + std::llround(1e6 * result[k].time), options.moves)
+              .value_or(1);
       decades.push_back(chance > 0 ? std::min(options.most_decades, -std::log10(chance))
                                    : options.most_decades);
     }

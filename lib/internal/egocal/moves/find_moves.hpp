@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,10 @@ struct ChangeTestOptions {
   double borrowed_curvature = 1e-3;
   /// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.
   double raised_curvature = 0.01;
+  /// A block counts on its side of a change where it shows this part of what a mean block shows: a vehicle
+  /// that stands shows nothing, and the errors of its odometry are others. EuRoC's drone lands at the end; in
+  /// moving drives blocks of a second show 0.3 and more.
+  double least_information = 0.1;
   /// A pair that fits this many times worse than the median of its block is rejected: ten standard
   /// deviations, beyond the tails of odometry and below the jumps that matter.
   double most_residual = 100;
@@ -31,15 +36,18 @@ struct ChangeTestOptions {
   /// Over 20 to 64 blocks and four shapes of noise the tail of T^2 is below that of Hotelling's with 2.5,
   /// to chances of 2e-5 (docs/moves.md, "The test").
   double freedom = 2.5;
+  /// Correlation from one block to the next, beyond the first, that the residuals are believed to have at
+  /// most: noise that is remembered for ten blocks and more looks like a change.
+  double longest_memory = 0.9;
   /// Chance of an even change above which it is not compared with steps: that takes time, and what is not
   /// reported need not be named.
   double even_looked_at = 1e-3;
 };
 
 struct MovesOptions {
-  /// Chance of a false alarm in one drive. The test's own statistics are approximate far out (docs/moves.md),
-  /// so it is far below what a user would accept.
-  double false_alarms = 1e-4;
+  /// Stated chance of a false alarm in one drive; the real one is about a fifth of it (MountCheckOptions,
+  /// docs/moves.md).
+  double false_alarms = 5e-4;
   /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
   /// systematic errors nearly as large that depend on where and how the vehicle drives (0.11 deg between two
   /// lidar odometries on KITTI 07, docs/moves.md).
@@ -54,7 +62,8 @@ struct MovesOptions {
   std::size_t least_blocks = 20;
   std::size_t least_block_pairs = 8;  ///< pairs of one block, and at least three motions that share no time
   /// Of the variance of sums of blocks to that of independent ones, at most. Where it is more, the noise
-  /// wanders for longer than a block, and what was found must show in blocks twice as long, until it is less.
+  /// wanders for longer than a block, and what was found must show in blocks twice as long, until it is less,
+  /// with the chance of a false alarm at this one place.
   /// Study: docs/moves.md; at 1.4 two of 650 drives of 100 s had a false alarm, at 1.2 one, without it three.
   double most_correlation = 1.2;
   std::size_t least_side_blocks = 2;  ///< blocks before and after a change
@@ -116,8 +125,8 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
                                   const MovesOptions& options = {});
 
 /// Chance of what the motions show of a change at this time, or of an even one all through them, where
-/// nothing changes; for one time that was not searched for. 1 where there are too few motions.
-double chance_of_move(std::span<const MotionPair> pairs, const Problem& problem, MoveKind kind,
-                      std::int64_t time_us, const MovesOptions& options = {});
+/// nothing changes; for one time that was not searched for. Empty where there are too few motions.
+std::optional<double> chance_of_move(std::span<const MotionPair> pairs, const Problem& problem, MoveKind kind,
+                                     std::int64_t time_us, const MovesOptions& options = {});
 
 }  // namespace egocal
