@@ -74,7 +74,7 @@ TEST(RealCongruence, StepsOfRealDrivesAreHardlyEverDoubtful) {
     int steps = 0, doubtful = 0;
     double largest = 0, growing = 0;
     for (const MotionPair& step : pair_motions(options, streams.a, streams.b).pairs) {
-      const double distance = incongruence(step.a, step.b, scale, limits.congruence);
+      const double distance = incongruence(step.a, step.b, 1, scale, limits.congruence);
       ++steps;
       doubtful += distance > limits.doubtful;
       largest = std::max(largest, distance);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
+#include "../support/standing.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -31,6 +33,39 @@ bool same_bits(const Problem& x, const Problem& y) {
 
 ExtrinsicError error_of(const Simulated& data, const MotionPairing& drive) {
   return extrinsic_error(data.T, solve(drive.problem(), Method::dual).T_a_b);
+}
+
+/// A vehicle that stands at the start shows no noise, or the little of its wheels' odometry: whatever it is,
+/// it says nothing of the drive that follows.
+TEST(MotionPairing, StandingRejectsNothingOfTheDriveThatFollows) {
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free})
+    for (const double jitter : {0.0, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3})
+      for (const std::size_t at : {std::size_t{1}, std::size_t{500}}) {
+        Simulated data = simulated(terrain, 0.01);
+        const MotionPairing plain = pair_motions({}, data.a, data.b).drive;
+        testing::Random random(3);
+        data.a = testing::with_stand(data.a, at, 700, 100'000, jitter, random);
+        data.b = testing::with_stand(data.b, at, 700, 100'000, jitter, random);
+        const MotionPairing drive = pair_motions({}, data.a, data.b).drive;
+        const PairingCounts counts = drive.counts();
+        const std::string what = std::to_string(static_cast<int>(terrain)) + " at " + std::to_string(at) +
+                                 " jitter " + std::to_string(1e9 * jitter) + "e-9";
+        EXPECT_EQ(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 0u) << what;
+        if (terrain == Terrain::flat) continue;  // shows no height
+        EXPECT_LT(error_of(data, drive).rotation, 3 * error_of(data, plain).rotation + 5e-4) << what;
+        EXPECT_LT(error_of(data, drive).translation, 3 * error_of(data, plain).translation + 0.02) << what;
+      }
+}
+
+TEST(MotionPairing, AfterStandingWrongPosesAreRejectedAsBefore) {
+  Simulated data = simulated(Terrain::rough, 0.01);
+  testing::Random random(4);
+  data.a = testing::with_stand(data.a, 1, 700, 100'000, 0, random);
+  data.b = testing::with_stand(data.b, 1, 700, 100'000, 0, random);
+  for (std::size_t i = 900; i < 1600; i += 50)
+    data.b[i].pose = data.b[i].pose * testing::displacement({0, 0, 0.1}, {1, 0, 0});
+  const PairingCounts counts = pair_motions({}, data.a, data.b).drive.counts();
+  EXPECT_EQ(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 14u);
 }
 
 TEST(MotionPairing, PerfectDataGiveThePerfectAnswer) {

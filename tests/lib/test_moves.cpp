@@ -12,6 +12,7 @@
 #include "../support/random_motion.hpp"
 #include "../support/real_drives.hpp"
 #include "../support/simulated_drive.hpp"
+#include "../support/standing.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/moves/find_moves.hpp"
 #include "egocal/online/answer.hpp"
@@ -179,6 +180,26 @@ TEST(Moves, AChangeShowsWhereverItLiesWithinABlock) {
   }
   EXPECT_FALSE(chance_of_move(std::span(pairs).first(100), Problem{}, MoveKind::bump, begin_us))
       << "too few blocks";
+}
+
+/// A quarter of the drive at lights, where the odometry has other errors than on the way.
+TEST(Moves, AVehicleThatStopsOftenHasNotMovedItsMount) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (const double jitter : {0.0, 1e-3})
+      for (const bool moved : {false, true}) {
+        SimulationOptions options = drive(terrain, 700);
+        if (moved) options.faults[1].mount_changes = {bump(60.05, 2, 3)};
+        auto trajectories = simulate(options);
+        testing::Random random(5);
+        for (const std::size_t at : {1000, 800, 600, 400, 200})
+          for (Trajectory& one : trajectories)
+            one = testing::with_stand(one, at, 400, 100'000, jitter, random);
+        const MovesResult result = moves_of(trajectories[0], trajectories[1]);
+        ASSERT_EQ(result.moves.size(), moved ? 1u : 0u) << jitter;
+        if (!moved) continue;
+        EXPECT_LE(result.moves[0].earliest, 140.1);  // stood from 140 to 180 s
+        EXPECT_GE(result.moves[0].latest, 140.1);
+      }
 }
 
 TEST(Moves, SlowCreepIsCalledThat) {

@@ -37,20 +37,6 @@ struct Division {
   Parameters x1, x2;                  ///< optima
 };
 
-/// Where the blocks may be divided: with least_side blocks on either side that show the extrinsic. Of what
-/// happens while a vehicle stands the others say nothing, and their noise is another one.
-std::vector<std::size_t> splits_of(Blocks blocks, std::size_t least_side, const ChangeTestOptions& options) {
-  const Eigen::LDLT<ParameterMatrix> whole(curvature(blocks));
-  const double mean = static_cast<double>(blocks.front().g.size()) / static_cast<double>(blocks.size());
-  std::vector<std::size_t> shown{0};  // of the blocks before number i
-  for (const LinearBlock& block : blocks)
-    shown.push_back(shown.back() + (whole.solve(block.H).trace() > options.least_information * mean));
-  std::vector<std::size_t> splits;
-  for (std::size_t i = 1; i < blocks.size(); ++i)
-    if (shown[i] >= least_side && shown.back() - shown[i] >= least_side) splits.push_back(i);
-  return splits;
-}
-
 /// Where the lengths of residuals end: those of blocks that are longer count as if they were this long.
 double longest_length(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
   std::vector<double> lengths;
@@ -285,9 +271,8 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   ChangeTest test;
   const std::size_t count = blocks.size();
   if (count < 2 * least_side + 1 || least_side == 0) return test;
-  const std::vector<std::size_t> splits = splits_of(blocks, least_side, options);
   double largest = 0;
-  for (const std::size_t split : splits) {
+  for (std::size_t split = least_side; split + least_side <= count; ++split) {
     const double t2 = evidence(blocks, split, divide(blocks, split, options)).t2;
     if (t2 > largest) largest = t2, test.split = split;
   }
@@ -296,7 +281,7 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   const Division d = divide(blocks, test.split, options);
   const Evidence found = evidence(blocks, test.split, d);
   test.correlation = correlation_of(d, options);
-  const auto places = static_cast<double>(splits.size());
+  const double places = static_cast<double>(count + 1 - 2 * least_side);
   test.false_alarm =
       std::min(1.0, places * chance_of(found.t2 / test.correlation, d.x1.size(), count, options));
   test.change = d.x2 - d.x1;
@@ -315,11 +300,8 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
 ChangeAt test_change_at(Blocks blocks, std::size_t split, std::size_t least_side,
                         const ChangeTestOptions& options) {
   ChangeAt best;
-  const std::vector<std::size_t> splits = splits_of(blocks, least_side, options);
-  if (splits.empty()) return best;
   for (const std::size_t either : {split, split - std::min<std::size_t>(split, 1)}) {
-    const auto nearest = std::lower_bound(splits.begin(), splits.end(), either);
-    const std::size_t at = nearest == splits.end() ? splits.back() : *nearest;
+    const std::size_t at = std::clamp(either, least_side, blocks.size() - least_side);
     const Division d = divide(blocks, at, options);
     const double correlation = correlation_of(d, options);
     const double t2 = evidence(blocks, at, d).t2 / correlation;

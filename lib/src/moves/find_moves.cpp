@@ -10,6 +10,7 @@
 #include "moves/change_place.hpp"
 #include "moves/change_test.hpp"
 #include "moves/linear_blocks.hpp"
+#include "moves/moving_pairs.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -67,8 +68,10 @@ std::size_t least_side(std::size_t blocks, const MovesOptions& options) {
 
 class Finder {
  public:
-  Finder(Pairs pairs, const Problem& problem, const MovesOptions& options)
+  /// pairs: of a vehicle that moves. Times are counted from origin_us.
+  Finder(Pairs pairs, std::int64_t origin_us, const Problem& problem, const MovesOptions& options)
       : pairs_(pairs),
+        origin_us_(origin_us),
         problem_(detail::weighted_by_noise(pairs, problem, options.test)),
         options_(options),
         overlap_(detail::overlap_of(pairs)) {}
@@ -205,9 +208,7 @@ class Finder {
     return extrinsic_from_planar(q, plane_frame(problem_.plane_a), plane_frame(problem_.plane_b));
   }
 
-  double seconds(std::int64_t time_us) const {
-    return 1e-6 * static_cast<double>(time_us - pairs_.front().begin_us);
-  }
+  double seconds(std::int64_t time_us) const { return 1e-6 * static_cast<double>(time_us - origin_us_); }
 
   detail::ChangePlace place(const Found& found, const DualQuaternion& before,
                             const DualQuaternion& after) const {
@@ -229,7 +230,6 @@ class Finder {
       };
       move.before = moved(found.test.begin);
       move.after = moved(found.test.end);
-      move.pair = found.from;
       move.time = move.earliest = seconds(pairs_[found.from].begin_us);
       move.latest = seconds(pairs_[found.to - 1].end_us);
     } else {
@@ -243,7 +243,6 @@ class Finder {
       }
       move.before = extrinsic(before);
       move.after = extrinsic(after);
-      move.pair = at.at;
       const auto middle = [&](std::size_t i) {
         return 0.5 * (seconds(pairs_[i].begin_us) + seconds(pairs_[i].end_us));
       };
@@ -256,6 +255,7 @@ class Finder {
   }
 
   Pairs pairs_;
+  std::int64_t origin_us_;
   Problem problem_;
   const MovesOptions& options_;
   std::size_t overlap_;
@@ -286,8 +286,9 @@ bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_
 }  // namespace
 
 MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& options) {
-  if (pairs.size() < 2) return {};
-  return Finder(pairs, problem, options).run();
+  const std::vector<MotionPair> moving = detail::moving_pairs(pairs, options.least_motion);
+  if (moving.size() < 2) return {};
+  return Finder(moving, pairs.front().begin_us, problem, options).run();
 }
 
 MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strides, const Problem& problem,
@@ -324,6 +325,8 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
 
 std::optional<double> chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,
                                      const MovesOptions& options) {
+  const std::vector<MotionPair> moving = detail::moving_pairs(pairs, options.least_motion);
+  pairs = moving;
   if (pairs.size() < 2) return std::nullopt;
   const std::size_t least = std::max(options.least_block_pairs, 3 * detail::overlap_of(pairs));
   const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));

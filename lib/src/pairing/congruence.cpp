@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -66,14 +67,18 @@ struct Halves {
   std::vector<double> small, large;  ///< differences
   std::vector<double> large_sizes;
 
-  explicit Halves(const std::deque<Seen>& newest) {
-    const std::size_t count = newest.size(), half = count / 2;
-    std::vector<double> sizes(count), differences(count);
-    std::size_t i = 0;
+  /// Of motions that are as large as this.
+  Halves(const std::deque<Seen>& newest, double least) {
+    std::vector<double> sizes(newest.size()), differences(newest.size());
+    std::size_t count = 0;
     for (const Seen& one : newest) {
-      sizes[i] = one.size;
-      differences[i++] = one.difference;
+      sizes[count] = one.size;
+      differences[count] = one.difference;
+      count += one.size >= least ? 1 : 0;
     }
+    sizes.resize(count);
+    differences.resize(count);
+    const std::size_t half = count / 2;
     const double least_large = detail::order_statistic(sizes, half);
     std::size_t below = 0;
     for (const double size : sizes) below += size < least_large ? 1 : 0;
@@ -82,7 +87,7 @@ struct Halves {
     large.resize(count);
     large_sizes.resize(count);
     std::size_t smalls = 0, larges = 0;
-    for (i = 0; i < count; ++i) {  // without a branch that the processor could guess wrongly
+    for (std::size_t i = 0; i < count; ++i) {  // without a branch that the processor could guess wrongly
       const unsigned is_equal = sizes[i] == least_large ? 1 : 0;
       const unsigned equal_and_small = is_equal & (equal_small > 0 ? 1U : 0U);
       const unsigned is_small = (sizes[i] < least_large ? 1U : 0U) | equal_and_small;
@@ -98,10 +103,20 @@ struct Halves {
   }
 };
 
+/// What a vehicle that moves exceeds in at least half of its motions, or in enough for an estimate.
+double moving_size(const std::deque<Seen>& newest, const CongruenceOptions& options) {
+  if (newest.empty()) return 0;
+  std::vector<double> sizes;
+  for (const Seen& one : newest) sizes.push_back(one.size);
+  const std::size_t larger = std::min(options.first_estimate, (sizes.size() + 1) / 2);
+  return detail::order_statistic(sizes, sizes.size() - larger);
+}
+
 /// The smaller half shows what there is without motion, the larger half what grows with it.
 void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
   if (typical.newest.size() < 4) return;
-  const Halves halves(typical.newest);
+  typical.moving = moving_size(typical.newest, options);
+  const Halves halves(typical.newest, options.still * typical.moving);
   const double before_small = typical.constant,
                before_large = typical.constant + typical.growing * typical.large;
   typical.large = 0;
@@ -116,14 +131,14 @@ void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
 }
 
 /// From the motions that turn more than others: three times the median covers the directions in between.
-double arm_of(const TypicalDifference& lever, double longest) {
+double arm_of(const TypicalDifference& lever, const CongruenceOptions& options) {
   if (lever.newest.empty()) return 0;
-  const Halves halves(lever.newest);
+  const Halves halves(lever.newest, options.still * moving_size(lever.newest, options));
   std::vector<double> arms;
   for (std::size_t i = 0; i < halves.large.size(); ++i)
     if (halves.large_sizes[i] > 0) arms.push_back(halves.large[i] / halves.large_sizes[i]);
   if (arms.empty()) return 0;
-  return std::min(longest, 3 * detail::order_statistic(arms, arms.size() / 2));
+  return std::min(options.longest_lever_arm, 3 * detail::order_statistic(arms, arms.size() / 2));
 }
 
 void remember(const Seen& seen, TypicalDifference& typical, const CongruenceOptions& options) {
@@ -150,7 +165,7 @@ bool estimate_is_due(std::uint64_t remembered, const CongruenceOptions& options)
 
 void estimate(CongruenceScale& scale, const CongruenceOptions& options) {
   for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical, options);
-  scale.arm = arm_of(scale.lever, options.longest_lever_arm);
+  scale.arm = arm_of(scale.lever, options);
 }
 
 double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
@@ -163,17 +178,34 @@ double unexplained_length(const Difference& d, const CongruenceScale& scale) {
   return std::max(0.0, d.length.difference - scale.arm * d.angle.size);
 }
 
+/// The first motions after a vehicle stood: what was seen says nothing of them.
+bool longer_than_all_seen(const Difference& d, double steps, const CongruenceScale& scale,
+                          const CongruenceOptions& options) {
+  return d.length.size > options.beyond * steps * std::max(scale.length.moving, options.length_floor);
+}
+/// Angles change by as much between a straight road and a turn, so they count where nothing went anywhere.
+bool turns_more_than_all_seen(const Difference& d, double steps, const CongruenceScale& scale,
+                              const CongruenceOptions& options) {
+  return scale.length.moving <= options.length_floor &&
+         d.angle.size > options.beyond * steps * std::max(scale.angle.moving, options.angle_floor);
+}
+
 }  // namespace
 
 bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options) {
   return scale.remembered >= options.first_estimate;
 }
 
-double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale,
-                    const CongruenceOptions& options) {
+double incongruence(const DualQuaternion& a, const DualQuaternion& b, double steps,
+                    const CongruenceScale& scale, const CongruenceOptions& options) {
   if (!knows_typical(scale, options)) return 0;
   const Difference d = difference(a, b, options);
   const double unexplained = unexplained_length(d, scale);
+  const bool longer = longer_than_all_seen(d, steps, scale, options);
+  if (longer || turns_more_than_all_seen(d, steps, scale, options)) {
+    if (d.angle.difference > options.gross_angle) return std::numeric_limits<double>::infinity();
+    return longer ? unexplained / (options.unknown_noise * d.length.size) : 0;
+  }
   return std::max({sigmas(d.angle, scale.angle, options.angle_floor, options),
                    d.turns ? sigmas(d.slide, scale.slide, options.length_floor, options) : 0,
                    sigmas({d.length.size, unexplained}, scale.length, options.length_floor, options)});
@@ -207,7 +239,7 @@ std::vector<bool> incongruent(std::span<const MotionPair> pairs, const Screening
       if (scale.remembered == last_estimate) estimate(scale, options);
     }
     for (const MotionPair& pair : pairs.first(count))
-      result.push_back(incongruence(pair.a, pair.b, scale, options) > screening.doubtful);
+      result.push_back(incongruence(pair.a, pair.b, 1, scale, options) > screening.doubtful);
     pairs = pairs.subspan(count);
   }
   return result;

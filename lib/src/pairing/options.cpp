@@ -57,6 +57,9 @@ void check(const CongruenceOptions& options) {
           "at least 1");
   require("congruence.doubtful_remembered", options.doubtful_remembered >= 1, "at least 1");
   require("congruence.most_growing", options.most_growing, {0, 1}, "");
+  require("congruence.still", options.still, {0, 1}, "");
+  require("congruence.beyond", options.beyond, {1, 1e6}, "");
+  require("congruence.unknown_noise", options.unknown_noise, {0, 1}, "");
   require("congruence.gross_angle", options.gross_angle, {1e-3, std::numbers::pi}, " rad");
   require("congruence.gross_lengths", options.gross_lengths, {1, 1e6}, "");
   require("longest_lever_arm", options.longest_lever_arm, {0, 1e4}, " m");

@@ -30,7 +30,8 @@ double steps(const Instant& from, const Instant& to, double period_us) {
 double difference(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
                   const CongruenceOptions& options) {
   const detail::MotionsOfBoth motions = detail::motions_between(from, to);
-  return incongruence(motions.a, motions.b, scale, options) / std::sqrt(steps(from, to, period_us));
+  const double count = steps(from, to, period_us);
+  return incongruence(motions.a, motions.b, count, scale, options) / std::sqrt(count);
 }
 
 bool grossly_different(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,

@@ -51,11 +51,11 @@ void fields(auto& archive, services::Is<ClockOptions> auto& value) {
 
 void fields(auto& archive, services::Is<CongruenceOptions> auto& value) {
   auto& [least_turn, angle_floor, length_floor, memory, first_estimate, estimate_every,
-         estimate_every_when_full, doubtful_remembered, most_growing, gross_angle, gross_lengths,
-         longest_lever_arm] = value;
+         estimate_every_when_full, doubtful_remembered, most_growing, still, beyond, unknown_noise,
+         gross_angle, gross_lengths, longest_lever_arm] = value;
   archive(least_turn, angle_floor, length_floor, memory, first_estimate, estimate_every,
-          estimate_every_when_full, doubtful_remembered, most_growing, gross_angle, gross_lengths,
-          longest_lever_arm);
+          estimate_every_when_full, doubtful_remembered, most_growing, still, beyond, unknown_noise,
+          gross_angle, gross_lengths, longest_lever_arm);
 }
 
 void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
@@ -125,8 +125,8 @@ void fields(auto& archive, services::Is<TypicalDifference::Seen> auto& value) {
 }
 
 void fields(auto& archive, services::Is<TypicalDifference> auto& value) {
-  auto& [newest, constant, growing, large] = value;
-  archive(newest, constant, growing, large);
+  auto& [newest, constant, growing, large, moving] = value;
+  archive(newest, constant, growing, large, moving);
 }
 
 void fields(auto& archive, services::Is<CongruenceScale> auto& value) {
@@ -295,7 +295,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 17;
+constexpr int state_layout = 18;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -55,6 +55,12 @@ struct CongruenceOptions {
   std::uint64_t doubtful_remembered = 8;
   /// Noise that grows with the motion is at most this part of it: with more no odometry is left to compare.
   double most_growing = 0.2;
+  /// Motions smaller than `still` of the larger ones are those of a vehicle that stands: its errors are
+  /// others. Of motions more than `beyond` times as large as those that were seen nothing is known but that
+  /// their lengths agree, with `unknown_noise` of them as noise: standing at the start says nothing of
+  /// driving. Study: drives that stand for 40 to 1000 s at their begin and on the way, exactly or with a
+  /// jitter of 1e-9 to 1e-3 m; up to all poses that followed were rejected before.
+  double still = 0.01, beyond = 10, unknown_noise = 0.05;
   /// No odometry differs by more from one pose to the next, however noisy it is just now: an angle [rad], and
   /// lengths as a multiple of the mean of the longer half of the motions. Study: jumps within noisy seconds.
   double gross_angle = 20 * std::numbers::pi / 180, gross_lengths = 10;

@@ -25,10 +25,6 @@ struct ChangeTestOptions {
   double borrowed_curvature = 1e-3;
   /// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.
   double raised_curvature = 0.01;
-  /// A block counts on its side of a change where it shows this part of what a mean block shows: a vehicle
-  /// that stands shows nothing, and the errors of its odometry are others. EuRoC's drone lands at the end; in
-  /// moving drives blocks of a second show 0.3 and more.
-  double least_information = 0.1;
   /// A pair that fits this many times worse than the median of its block is rejected: ten standard
   /// deviations, beyond the tails of odometry and below the jumps that matter.
   double most_residual = 100;
@@ -60,6 +56,10 @@ struct MovesOptions {
   /// Fewer blocks say too little about the noise between them. Eight more than the parameters of two
   /// extrinsics.
   std::size_t least_blocks = 20;
+  /// A pair in whose time the vehicle moves has at least this part of the drive's root mean square turn or
+  /// way. Others are ignored: a vehicle that waits for half of its time at lights looked moved in most
+  /// drives.
+  double least_motion = 0.1;
   std::size_t least_block_pairs = 8;  ///< pairs of one block, and at least three motions that share no time
   /// Of the variance of sums of blocks to that of independent ones, at most. Where it is more, the noise
   /// wanders for longer than a block, and what was found must show in blocks twice as long, until it is less,
@@ -91,10 +91,9 @@ enum class MoveKind {
 /// One change of the extrinsic during the drive.
 struct Move {
   MoveKind kind = MoveKind::bump;
-  double time = 0;       ///< [s] from the begin of the first motion pair; of a creep: its begin
-  double earliest = 0;   ///< the change happened between these two, with about three standard deviations
-  double latest = 0;     ///< [s]; of a creep: its end
-  std::size_t pair = 0;  ///< index of the first motion pair after it
+  double time = 0;      ///< [s] from the begin of the first motion pair; of a creep: its begin
+  double earliest = 0;  ///< the change happened between these two, with about three standard deviations
+  double latest = 0;    ///< [s]; of a creep: its end
   DualQuaternion before, after;    ///< T_a_b on both sides of it
   std::array<double, 6> change{};  ///< x y z roll pitch yaw in sensor a's frame, after minus before [m, rad]
   std::array<double, 6> stddev{};  ///< of the change [m, rad]; infinite where the motions do not show it

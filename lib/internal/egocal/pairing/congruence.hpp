@@ -23,6 +23,7 @@ struct TypicalDifference {
   double constant = 0;  ///< standard deviation at size 0, in the unit of the quantity
   double growing = 0;   ///< per unit of size
   double large = 0;     ///< mean size of the larger half
+  double moving = 0;    ///< a size that the larger ones exceed (CongruenceOptions::first_estimate of them)
 };
 
 /// What is typical of a pair of sensors. Noise may be the same for every motion or grow with it, and a drive
@@ -42,10 +43,10 @@ struct CongruenceScale {
 bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options);
 
 /// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
-/// length, for every extrinsic. How far a and b (over the same time) are from that, in standard deviations
-/// of the typical difference; 0 before the first estimate.
-double incongruence(const DualQuaternion& a, const DualQuaternion& b, const CongruenceScale& scale,
-                    const CongruenceOptions& options);
+/// length, for every extrinsic. How far a and b (over the same time, this number of steps) are from that, in
+/// standard deviations of the typical difference of one step; 0 before the first estimate.
+double incongruence(const DualQuaternion& a, const DualQuaternion& b, double steps,
+                    const CongruenceScale& scale, const CongruenceOptions& options);
 
 /// Whether a and b, over this number of steps, differ by more than noise ever does, however large it is just
 /// now: by the size of the motions.

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "moves/moving_pairs.hpp"
+
+#include <cmath>
+
+namespace egocal::detail {
+
+namespace {
+
+double turn_of(const DualQuaternion& motion) {
+  return 2 * std::atan2(motion.real.tail<3>().norm(), std::abs(motion.real[0]));
+}
+double way_of(const DualQuaternion& motion) {
+  return 2 * motion.dual.norm();
+}
+
+/// Root mean squares of one stream's motions.
+struct Typical {
+  double turn = 0, way = 0;
+};
+
+Typical typical(std::span<const MotionPair> pairs, DualQuaternion MotionPair::*side) {
+  double turns = 0, ways = 0;
+  for (const MotionPair& pair : pairs) {
+    const double turn = turn_of(pair.*side), way = way_of(pair.*side);
+    turns += turn * turn;
+    ways += way * way;
+  }
+  const auto count = static_cast<double>(pairs.size());
+  return {std::sqrt(turns / count), std::sqrt(ways / count)};
+}
+
+bool moves(const DualQuaternion& motion, const Typical& typical, double least) {
+  return turn_of(motion) >= least * typical.turn || way_of(motion) >= least * typical.way;
+}
+
+}  // namespace
+
+std::vector<MotionPair> moving_pairs(std::span<const MotionPair> pairs, double least_motion) {
+  const Typical a = typical(pairs, &MotionPair::a), b = typical(pairs, &MotionPair::b);
+  std::vector<MotionPair> moving;
+  for (const MotionPair& pair : pairs)
+    if (moves(pair.a, a, least_motion) && moves(pair.b, b, least_motion)) moving.push_back(pair);
+  return moving;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "egocal/geometry/pose.hpp"
+#include "egocal/pairing/trajectory.hpp"
+#include "random_motion.hpp"
+
+namespace egocal::testing {
+
+/// The trajectory of a vehicle that stands for so many periods after pose `at`; its odometry jitters by this
+/// much [m], and by a tenth of it [rad].
+inline Trajectory with_stand(const Trajectory& trajectory, std::size_t at, std::int64_t periods,
+                             std::int64_t period_us, double jitter, Random& random) {
+  const auto there = trajectory.begin() + static_cast<std::ptrdiff_t>(at) + 1;
+  Trajectory result(trajectory.begin(), there);
+  const StampedPose stands = result.back();
+  for (std::int64_t i = 1; i <= periods; ++i) {
+    const DualQuaternion moved =
+        jitter > 0 ? stands.pose * displacement(random.normal3(0.1 * jitter), random.normal3(jitter))
+                   : stands.pose;
+    result.push_back({stands.time_us + i * period_us, moved});
+  }
+  for (auto pose = there; pose != trajectory.end(); ++pose)
+    result.push_back({pose->time_us + periods * period_us, pose->pose});
+  return result;
+}
+
+}  // namespace egocal::testing
