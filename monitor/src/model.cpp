@@ -112,12 +112,32 @@ void Model::begin_session(PairState& pair, std::int64_t session) {
   pair.verdict.reset();
   pair.scale.reset();
   pair.solvers.clear();
+  pair.behind_in_a_row = 0;
   pair.counted = -1;
   pair.shown = {};
   pair.only_fast_since.reset();
   pair.certified = pair.fallback = false;
   pair.time_offset_known = false;
   pair.reported_left_out = 0;
+}
+
+/// Pairing continues from an older state (a power cut, an old state that was put back): what was received
+/// about problems that are no longer there says nothing of those to come. One problem may be late, three in a
+/// row are not.
+void Model::follow_back(PairState& pair, const problem_t& message, Now now) {
+  constexpr int confirmations = 3;
+  const calibration_t* const answer = pair.answer();
+  pair.behind_in_a_row = answer && message.seq < answer->seq ? pair.behind_in_a_row + 1 : 0;
+  if (pair.behind_in_a_row < confirmations) return;
+  pair.behind_in_a_row = 0;
+  note(Severity::warning, pair_name(pair.a, pair.b),
+       "the calibration continues from an older state: " + std::to_string(answer->seq - message.seq) +
+           " motions are gone",
+       now);
+  std::erase_if(pair.solvers, [&](const SolverTrack& track) { return track.answer.seq > message.seq; });
+  if (pair.verdict && pair.verdict->seq > message.seq) pair.verdict.reset();
+  if (pair.scale && pair.scale->seq > message.seq) pair.scale.reset();
+  count_answer(pair, now);
 }
 
 void Model::on_problem(const problem_t& message, Now now) {
@@ -137,6 +157,7 @@ void Model::on_problem(const problem_t& message, Now now) {
       ++pair->gap_count;
       note(Severity::warning, name, "gap of " + rounded(step, 1) + " s in the stream", now);
     }
+    follow_back(*pair, message, now);
   }
   if (pair->paused && message.seq > pair->problem.seq && message.session == pair->problem.session &&
       seconds(pair->paused_mono_us, now.mono_us) > options_.settle)
@@ -258,7 +279,7 @@ void Model::count_answer(PairState& pair, Now now) {
     if (best < 0 || outranks(rank_of(pair.solvers[i]), rank_of(pair.solvers[static_cast<std::size_t>(best)])))
       best = static_cast<int>(i);
   pair.counted = best;
-  if (best >= 0) pair.shown = shown_of(pair, *pair.answer());
+  pair.shown = best >= 0 ? shown_of(pair, *pair.answer()) : Shown{};
   watch_certificate(pair, now);
 }
 

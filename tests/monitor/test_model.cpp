@@ -303,6 +303,25 @@ TEST(ModelAnswer, TheOneThatCountsIsTheLibrarysChoice) {
   EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-fast") << "the newest problem first";
 }
 
+TEST(ModelAnswer, FollowsACalibrationThatContinuesFromAnOlderState) {
+  PairDrive drive;
+  drive.run(30);
+  drive.fresh();
+  const std::int64_t newest = drive.pair().answer()->seq;
+  const auto older = [](problem_t& message) {
+    message.seq -= 20;
+    message.utime -= 2'000'000;
+  };
+  drive.change_problem = older;
+  drive.run(2);  // two problems may be late
+  EXPECT_EQ(drive.pair().answer()->seq, newest);
+  drive.run(3);
+  ASSERT_NE(drive.pair().answer(), nullptr);
+  EXPECT_EQ(drive.pair().answer()->seq, drive.pair().problem.seq);
+  EXPECT_LT(drive.pair().answer()->seq, newest);
+  EXPECT_THAT(drive.fresh(), ::testing::Contains(::testing::HasSubstr("continues from an older state")));
+}
+
 TEST(ModelAnswer, WhatIsNoTransformIsNeverCertified) {
   const std::function<void(calibration_t&)> lies[] = {[](calibration_t& c) { c.pos[1] = not_a_number; },
                                                       [](calibration_t& c) { c.quat[0] = infinity; },

@@ -137,14 +137,16 @@ bool Rosbag2Reader::next(BagMessage& message) {
   }
 }
 
-/// Goes on behind the row that cannot be read, further with every failure: at most some sixty of them in a
-/// row.
+/// Goes on behind the row that cannot be read, further with every failure: at most some seventy of them in a
+/// row. A damaged file may name any number as a row.
 bool Rosbag2Reader::step_over_damage() {
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   ++losses_.regions;
   if (last_id_ == std::numeric_limits<std::int64_t>::min()) last_id_ = 0;
   if (last_id_ >= largest_id_ || stride_ > largest_id_) return false;
-  last_id_ += std::min(stride_, largest_id_ - last_id_);
-  stride_ *= 2;
+  const bool far = last_id_ < 0 && largest_id_ > most + last_id_;
+  last_id_ += std::min(stride_, far ? most : largest_id_ - last_id_);
+  stride_ = stride_ <= most / 2 ? 2 * stride_ : most;
   sqlite3_reset(messages_.get());
   sqlite3_bind_int64(messages_.get(), 1, last_id_);
   return true;

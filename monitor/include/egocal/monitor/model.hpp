@@ -102,6 +102,7 @@ struct PairState {
   std::optional<bus::CheckedScale> scale;  ///< where the rig says scale = "auto" of one of the sensors
   std::vector<SolverTrack> solvers;
   std::optional<calibration_t> previous;  ///< the answer that counted when the last session ended
+  int behind_in_a_row = 0;                ///< newest problems that are older than the answer that counts
   int counted = -1;  ///< the solver whose answer counts (egocal::outranks); -1: no answer yet
   Shown shown;
   /// Measured time [s since the session began] from which on only the fast solver ran; empty while the global
@@ -183,6 +184,7 @@ class Model {
 
  private:
   PairState* find_pair(const std::string& a, const std::string& b);
+  void follow_back(PairState& pair, const problem_t& message, Now now);
   void begin_session(PairState& pair, std::int64_t session);
   Role role_of(const calibration_t& message) const;
   void count_answer(PairState& pair, Now now);
