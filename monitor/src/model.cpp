@@ -125,7 +125,7 @@ void Model::begin_session(PairState& pair, std::int64_t session) {
 /// about problems that are no longer there says nothing of those to come. One problem may be late, three in a
 /// row are not.
 void Model::follow_back(PairState& pair, const problem_t& message, Now now) {
-  constexpr int confirmations = 3;
+  constexpr int confirmations = 3;  // as of tools::Answers: one or two may have been overtaken
   const calibration_t* const answer = pair.answer();
   pair.behind_in_a_row = answer && message.seq < answer->seq ? pair.behind_in_a_row + 1 : 0;
   if (pair.behind_in_a_row < confirmations) return;
