@@ -32,7 +32,7 @@ Typical typical(std::span<const MotionPair> pairs, DualQuaternion MotionPair::*s
 }
 
 bool moves(const DualQuaternion& motion, const Typical& typical, double least) {
-  return turn_of(motion) >= least * typical.turn || way_of(motion) >= least * typical.way;
+  return turn_of(motion) > least * typical.turn || way_of(motion) > least * typical.way;
 }
 
 }  // namespace
