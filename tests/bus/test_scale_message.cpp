@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../support/simulated_drive.hpp"
+#include "../support/scale_problem.hpp"
 #include "egocal/bus/scale.hpp"
 
 namespace egocal::bus {
@@ -15,21 +15,7 @@ namespace {
 constexpr std::int64_t begin_us = 1'600'000'000'000'000;
 
 ScaleProblem problem(double scale = 0.37) {
-  SimulationOptions options;
-  options.terrain = Terrain::free;
-  options.poses = 300;
-  options.relative_noise = 0.01;
-  options.faults.resize(2);
-  options.faults[1].scale = scale;
-  const testing::Streams streams = testing::simulated_drive(options);
-  ScaleDriveOptions of_b;
-  of_b.scale.side = Side::b;
-  ScaleDrive drive(of_b);
-  for (std::size_t i = 0; i < streams.a.size(); ++i) {
-    drive.push(Side::a, streams.a[i]);
-    drive.push(Side::b, streams.b[i]);
-  }
-  return *drive.scale_problem();
+  return testing::scale_problem_of_b(scale);
 }
 
 scale_problem_t question(const ScaleProblem& problem, std::int64_t seq = 5) {

@@ -11,8 +11,8 @@
 
 namespace egocal::testing {
 
-/// The trajectory of a vehicle that stands for so many periods after pose `at`; its odometry jitters by this
-/// much [m], and by a tenth of it [rad].
+/// The trajectory with a stop of `periods` periods after pose `at`. During the stop the positions jitter by
+/// `jitter` [m], the rotations by a tenth of that [rad].
 inline Trajectory with_stand(const Trajectory& trajectory, std::size_t at, std::int64_t periods,
                              std::int64_t period_us, double jitter, Random& random) {
   const auto there = trajectory.begin() + static_cast<std::ptrdiff_t>(at) + 1;

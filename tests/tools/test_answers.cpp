@@ -16,7 +16,7 @@
 #include "egocal/bus/log_file.hpp"
 #include "support/paths.hpp"
 #include "support/random_motion.hpp"
-#include "support/simulated_drive.hpp"
+#include "support/scale_problem.hpp"
 
 namespace egocal::tools {
 namespace {
@@ -141,21 +141,7 @@ TEST_F(AnswersTest, ForgedOnesCountForNothing) {
 
 /// The scale of the right sensor, to be found from a short drive.
 scale_problem_t scale_problem(std::int64_t session) {
-  SimulationOptions options;
-  options.terrain = Terrain::free;
-  options.poses = 300;
-  options.relative_noise = 0.01;
-  options.faults.resize(2);
-  options.faults[1].scale = 0.37;
-  const testing::Streams streams = testing::simulated_drive(options);
-  ScaleDriveOptions of_b;
-  of_b.scale.side = Side::b;
-  ScaleDrive drive(of_b);
-  for (std::size_t i = 0; i < streams.a.size(); ++i) {
-    drive.push(Side::a, streams.a[i]);
-    drive.push(Side::b, streams.b[i]);
-  }
-  scale_problem_t message = bus::to_message(*drive.scale_problem());
+  scale_problem_t message = bus::to_message(testing::scale_problem_of_b(0.37));
   message.utime = message.session = session;
   message.seq = 1;
   message.sensor_a = pair_name.first;

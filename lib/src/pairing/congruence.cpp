@@ -135,9 +135,10 @@ void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
 }
 
 /// From the motions that turn more than others: three times the median covers the directions in between.
-double arm_of(const TypicalDifference& lever, const CongruenceOptions& options) {
+/// moving: of the angles, which are the sizes here.
+double arm_of(const TypicalDifference& lever, double moving, const CongruenceOptions& options) {
   if (lever.newest.empty()) return 0;
-  const Halves halves(lever.newest, options.still * moving_size(lever.newest, options));
+  const Halves halves(lever.newest, options.still * moving);
   std::vector<double> arms;
   for (std::size_t i = 0; i < halves.large.size(); ++i)
     if (halves.large_sizes[i] > 0) arms.push_back(halves.large[i] / halves.large_sizes[i]);
@@ -169,7 +170,7 @@ bool estimate_is_due(std::uint64_t remembered, const CongruenceOptions& options)
 
 void estimate(CongruenceScale& scale, const CongruenceOptions& options) {
   for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical, options);
-  scale.arm = arm_of(scale.lever, options);
+  scale.arm = arm_of(scale.lever, scale.angle.moving, options);
 }
 
 double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
