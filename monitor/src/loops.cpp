@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/monitor/loops.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -19,7 +19,7 @@ struct Edge {
 using Edges = std::map<std::pair<std::string, std::string>, Edge>;
 
 double norm(const double* stddev) {
-  return std::hypot(stddev[0], stddev[1], stddev[2]);
+  return Eigen::Map<const Eigen::Vector3d>(stddev).norm();  // infinite where one is
 }
 
 Edges edges_of(const Model& model) {

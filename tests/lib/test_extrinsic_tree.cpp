@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_tree.hpp"
@@ -61,6 +65,18 @@ TEST(ExtrinsicTree, OfALoopTheLeastCertainPairIsNotUsed) {
       extrinsic_tree({poor, pair("lidar", "front", 0.01), pair("lidar", "rear", 0.02)}, "lidar");
   ASSERT_EQ(by_stddev.unused.size(), 1u);
   EXPECT_EQ(by_stddev.unused[0].parent, "front");
+  // a direction that nothing shows: its place is not known, whatever the other two are
+  NamedExtrinsic blind = pair("lidar", "front", 0.01);
+  (*blind.stddev)[2] = std::numeric_limits<double>::infinity();
+  for (const auto& order : {std::vector{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
+    const NamedExtrinsic pairs[] = {blind, poor, pair("lidar", "rear", 0.02)};
+    std::vector<NamedExtrinsic> given;
+    for (const int i : order) given.push_back(pairs[i]);
+    const ExtrinsicTree by_sight = extrinsic_tree(given, "lidar");
+    ASSERT_EQ(by_sight.unused.size(), 1u);
+    EXPECT_EQ(std::set({by_sight.unused[0].parent, by_sight.unused[0].child}),
+              std::set<std::string>({"lidar", "front"}));
+  }
   const ExtrinsicTree by_proof = extrinsic_tree({unproven, pair("lidar", "front", 0.01), poor});
   ASSERT_EQ(by_proof.unused.size(), 1u);
   EXPECT_FALSE(by_proof.unused[0].certified);

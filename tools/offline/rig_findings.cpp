@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -17,7 +17,7 @@ constexpr double degrees = 180 / std::numbers::pi;
 
 /// Length of a part of six numbers: translation from 0, rotation from 3.
 double length(const std::array<double, 6>& x, std::size_t from) {
-  return std::hypot(x[from], x[from + 1], x[from + 2]);
+  return Eigen::Map<const Eigen::Vector3d>(x.data() + from).norm();
 }
 
 /// "camera", or "camera or lidar" where it is one of a pair.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,7 +24,7 @@ void add_pose(Json& json, const Pose& T) {
 }
 
 double length(const std::array<double, 6>& x, std::size_t from) {
-  return std::hypot(x[from], x[from + 1], x[from + 2]);
+  return Eigen::Map<const Eigen::Vector3d>(x.data() + from).norm();
 }
 
 Json name_of(const RigReport& report, const std::optional<std::size_t>& sensor) {

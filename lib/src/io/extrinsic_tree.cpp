@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/extrinsic_tree.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -18,7 +18,8 @@ namespace {
 /// Standard deviation of the translation [m]; infinite where it is not known.
 double uncertainty(const NamedExtrinsic& pair) {
   if (!pair.stddev) return std::numeric_limits<double>::infinity();
-  return std::hypot((*pair.stddev)[0], (*pair.stddev)[1], (*pair.stddev)[2]);
+  // std::hypot of three is no number where one of them is infinite
+  return Eigen::Map<const Eigen::Vector3d>(pair.stddev->data()).norm();
 }
 
 bool more_certain(const NamedExtrinsic& one, const NamedExtrinsic& other) {
