@@ -165,7 +165,7 @@ bool lengths_fit(const scale_problem_t*, Bytes bytes) {
   walk.skip(3 * 8);
   walk.string();
   walk.string();
-  walk.skip(3 + 5 * 8);
+  walk.skip(3 + 6 * 8);
   walk.skip(scale_statistics_size * walk.count(scale_statistics_size));
   return walk.done();
 }

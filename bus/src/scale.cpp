@@ -93,6 +93,7 @@ scale_problem_t to_message(const ScaleProblem& problem) {
   message.weight_translation = problem.options.balance.translation;
   message.least = problem.options.least;
   message.most = problem.options.most;
+  message.doubt = problem.options.doubt;
   message.n_blocks = static_cast<std::int32_t>(problem.blocks.size());
   for (const ScaleStatistics& block : problem.blocks) {
     scale_statistics_t& out = message.blocks.emplace_back();
@@ -117,6 +118,7 @@ Checked<ScaleProblem> to_scale_problem(const scale_problem_t& message) {
     return {{}, "balance out of range"};
   if (!scale_in_range(message.least) || !scale_in_range(message.most) || !(message.least < message.most))
     return {{}, "range of scales"};
+  if (!(message.doubt >= 0 && message.doubt <= 1)) return {{}, "doubt out of range"};
   if (message.scale != 0 && !scale_in_range(message.scale)) return {{}, "scale out of range"};
   if (message.blocks.size() > most_blocks) return {{}, "too many blocks"};
   ScaleProblem problem;
@@ -127,6 +129,7 @@ Checked<ScaleProblem> to_scale_problem(const scale_problem_t& message) {
   problem.options.balance = {message.weight_rotation, message.weight_translation};
   problem.options.least = message.least;
   problem.options.most = message.most;
+  problem.options.doubt = message.doubt;
   for (const scale_statistics_t& in : message.blocks) {
     if (!plausible_count(in.count)) return {{}, "count out of range"};
     ScaleStatistics& block = problem.blocks.emplace_back();

@@ -59,6 +59,8 @@ TEST(ScaleMessage, WhatCannotBeIsRefused) {
   EXPECT_TRUE(refused([](scale_problem_t& m) { m.least = 0; }));
   EXPECT_TRUE(refused([](scale_problem_t& m) { m.most = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(refused([](scale_problem_t& m) { m.scale = -1; }));
+  EXPECT_TRUE(refused([](scale_problem_t& m) { m.doubt = -1e-9; }));
+  EXPECT_TRUE(refused([](scale_problem_t& m) { m.doubt = std::nan(""); }));
   EXPECT_TRUE(refused([](scale_problem_t& m) { m.weight_translation = 0; }));
   EXPECT_TRUE(refused([](scale_problem_t& m) { m.blocks[0].weight = 0; }));
   EXPECT_TRUE(refused([](scale_problem_t& m) { m.blocks[0].rotation[0] = std::nan(""); }));

@@ -3,7 +3,9 @@
 // The scale of a sensor one pose at a time: as good as offline, robust, and resumed to the bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "../support/simulated_drive.hpp"
@@ -112,6 +114,69 @@ TEST(ScaleDrive, TurningOnTheSpotShowsNoScale) {
   EXPECT_GT(scale_drive.motions(), 100u);
   EXPECT_FALSE(scale_drive.known());
   EXPECT_FALSE(scale_drive.problem());
+}
+
+/// Path in free motion that changes 40 times a second; poses of the two sensors at these rates.
+testing::Streams unsynchronised(std::uint64_t seed, double rate_a, double rate_b) {
+  SimulationOptions options = drive(seed, Terrain::free, 0.4, 4801);
+  options.rate = 40;
+  options.faults[0].rate = rate_a;
+  options.faults[1].rate = rate_b;
+  options.faults[1].phase = (0.1 + 0.1 * static_cast<double>(seed % 8)) / rate_b;
+  return testing::simulated_drive(options);
+}
+
+/// In the order of time, or in bursts of one stream after the other.
+ScaleDrive driven(const testing::Streams& streams, std::size_t burst) {
+  ScaleDrive scale_drive(of_b());
+  std::size_t i = 0, k = 0;
+  while (i < streams.a.size() || k < streams.b.size()) {
+    const bool from_a =
+        k == streams.b.size() || (i < streams.a.size() && streams.a[i].time_us <= streams.b[k].time_us);
+    for (std::size_t n = 0; n < burst; ++n) {
+      if (from_a && i < streams.a.size()) scale_drive.push(Side::a, streams.a[i++]);
+      if (!from_a && k < streams.b.size()) scale_drive.push(Side::b, streams.b[k++]);
+    }
+  }
+  return scale_drive;
+}
+
+// Each motion is taken at the stamps of one stream: without it, errors of 13 standard deviations.
+TEST(ScaleDrive, ItsStandardDeviationContainsWhatInterpolationTakesOff) {
+  const double rates[][2] = {{4, 4}, {10, 10}, {20, 20}, {10, 20}, {10, 30}, {40, 10}};
+  for (const auto& [rate_a, rate_b] : rates) {
+    double largest = 0, error = 0, stddev = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const ScaleDrive scale_drive = driven(unsynchronised(seed, rate_a, rate_b), 1);
+      ASSERT_TRUE(scale_drive.known());
+      const ScaleSolution& solution = scale_drive.solution();
+      error += 0.25 * std::abs(solution.scale / 0.4 - 1);
+      stddev += 0.25 * solution.stddev / 0.4;
+      largest = std::max(largest, std::abs(solution.scale - 0.4) / solution.stddev);
+    }
+    EXPECT_LT(largest, 2.5) << rate_a << " and " << rate_b << " Hz";
+    EXPECT_LT(stddev, 3 * error + 0.0006)
+        << "wider than it need be at " << rate_a << " and " << rate_b << " Hz";
+    std::printf("%g and %g Hz: off by %.3f %%, standard deviation %.3f %%, at most %.1f of them\n", rate_a,
+                rate_b, 100 * error, 100 * stddev, largest);
+  }
+}
+
+TEST(ScaleDrive, StreamsMeasuredTogetherLoseNothing) {
+  const testing::Streams streams = testing::simulated_drive(drive(1, Terrain::free, 0.37));
+  EXPECT_LT(driven(streams, 1).scale_problem()->options.doubt, 1e-5);
+  testing::Streams later = streams;  // a camera that starts a while after the lidar
+  later.b.erase(later.b.begin(), later.b.begin() + 100);
+  EXPECT_LT(driven(later, 1).scale_problem()->options.doubt, 1e-4);
+}
+
+TEST(ScaleDrive, HowTheStreamsInterleaveChangesNoBit) {
+  const testing::Streams streams = unsynchronised(2, 10, 30);
+  const ScaleDrive one = driven(streams, 1), bursts = driven(streams, 50);
+  EXPECT_GT(one.scale_problem()->options.doubt, 1e-4);
+  EXPECT_EQ(one.scale_problem()->options.doubt, bursts.scale_problem()->options.doubt);
+  EXPECT_EQ(one.solution().scale, bursts.solution().scale);
+  EXPECT_EQ(one.solution().stddev, bursts.solution().stddev);
 }
 
 TEST(ScaleDrive, AGapInTheStreamsEndsTheMotions) {

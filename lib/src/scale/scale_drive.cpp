@@ -25,6 +25,8 @@ PairingOptions of_single_steps(const ScaleDriveOptions& options) {
 ScaleDriveOptions completed(ScaleDriveOptions options) {
   options.scale.mode = options.pairing.mode;
   options.starts = std::max<std::size_t>(1, options.starts);
+  options.interpolation.motion = options.motion;
+  options.interpolation.starts = options.starts;
   options.least_block = std::max<std::size_t>(1, options.least_block);
   return options;
 }
@@ -43,7 +45,9 @@ MotionPair at_scale(MotionPair pair, double scale, Side side) {
 }  // namespace
 
 ScaleDrive::ScaleDrive(const ScaleDriveOptions& options)
-    : options_(completed(options)), pairing_(of_single_steps(options_)) {
+    : options_(completed(options)),
+      pairing_(of_single_steps(options_)),
+      interpolation_(options_.interpolation) {
   state_.next_solution = options_.first_solution;
   state_.balance = options_.pairing.balance;
 }
@@ -51,26 +55,38 @@ ScaleDrive::ScaleDrive(const ScaleDriveOptions& options)
 ScaleDrive::ScaleDrive(const ScaleDriveOptions& options, ScaleDriveState state)
     : options_(completed(options)),
       pairing_(of_single_steps(options_), std::exchange(state.pairing, PairingState())),
+      interpolation_(options_.interpolation, std::exchange(state.interpolation, InterpolationLossState())),
       state_(std::move(state)) {}
 
 ScaleDriveState ScaleDrive::state() const {
   ScaleDriveState state = state_;
   state.pairing = pairing_.state();
+  state.interpolation = interpolation_.state();
   return state;
 }
 
 std::vector<MotionPair> ScaleDrive::push(Side side, const StampedPose& pose) {
   std::vector<MotionPair> completed;
-  for (const MotionPair& step : pairing_.push(side, pose)) grow(step, completed);
-  for (const MotionPair& motion : completed) {
-    state_.recent.push_back(motion);
-    ++state_.motions;
-    if (state_.recent.size() > options_.most_recent) commit_old();
-    if (state_.motions >= state_.next_solution) solve();
+  if (!options_.pairing.track_time_offset) interpolation_.stamp(side, on_clock_of_a(side, pose.time_us));
+  for (const MotionPair& step : pairing_.push(side, pose)) {
+    interpolation_.step(step, pairing_.state().synchroniser.keys.value_or(Side::b));
+    const std::size_t before = completed.size();
+    grow(step, completed);
+    // one step after the other: what a solution holds must not depend on how many came at once
+    for (std::size_t i = before; i < completed.size(); ++i) {
+      state_.recent.push_back(completed[i]);
+      ++state_.motions;
+      if (state_.recent.size() > options_.most_recent) commit_old();
+      if (state_.motions >= state_.next_solution) solve();
+    }
   }
   if (known())
     for (MotionPair& motion : completed) motion = at_scale(motion, state_.solution.scale, this->side());
   return completed;
+}
+
+std::int64_t ScaleDrive::on_clock_of_a(Side side, std::int64_t time_us) const {
+  return side == Side::b ? time_us + std::llround(options_.pairing.time_offset * 1e6) : time_us;
 }
 
 /// Motions of the wanted length from single steps. A gap ends all that have begun.
@@ -156,6 +172,7 @@ void ScaleDrive::solve() {
   std::vector<MotionPair> pairs = kept();
   ScaleProblem problem;
   problem.options = options_.scale;
+  problem.options.doubt = interpolation_.part();
   for (int pass = 0; pass < options_.passes; ++pass) {
     problem.blocks = blocks_with(pairs);
     problem.options.balance = state_.balance ? *state_.balance : detail::even_balance(problem.blocks, side());

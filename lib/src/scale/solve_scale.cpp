@@ -312,7 +312,8 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   result.sensitivity = over_scale.sensitivity;
   const double spread = detail::spread_of_scale(blocks, form, joint, options.least_blocks);
   // evenly likely anywhere within the attenuation
-  result.stddev = answer.s * std::hypot(spread, result.attenuation / std::sqrt(3.0));
+  result.stddev =
+      answer.s * std::hypot(std::hypot(spread, result.attenuation / std::sqrt(3.0)), options.doubt);
   return result;
 }
 

@@ -268,9 +268,9 @@ void fields(auto& archive, services::Is<ScaleStatistics> auto& value) {
 
 void fields(auto& archive, services::Is<ScaleOptions> auto& value) {
   auto& [side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share, farthest,
-         given_away, weak_bound, least_blocks] = value;
+         given_away, weak_bound, least_blocks, doubt] = value;
   archive(side, least, most, noise, mode, balance, tolerance, most_solves, most_noise_share, farthest,
-          given_away, weak_bound, least_blocks);
+          given_away, weak_bound, least_blocks, doubt);
 }
 
 void fields(auto& archive, services::Is<ScaleProblem> auto& value) {
@@ -285,17 +285,27 @@ void fields(auto& archive, services::Is<ScaleSolution> auto& value) {
           stddev, sensitivity, attenuation, observability, observable, solves);
 }
 
+void fields(auto& archive, services::Is<InterpolationLossState::Open> auto& value) {
+  auto& [motion, miss, begin_us] = value;
+  archive(motion, miss, begin_us);
+}
+
+void fields(auto& archive, services::Is<InterpolationLossState> auto& value) {
+  auto& [stamps, previous, open, lost, energy, steps, together, passed] = value;
+  archive(stamps, previous, open, lost, energy, steps, together, passed);
+}
+
 void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
   auto& [pairing, open, recent, old, old_block, motions, left_out, next_solution, solved_motions,
-         solved_left_out, solved_us, step_us, limit, balance, problem, solution] = value;
+         solved_left_out, solved_us, step_us, limit, balance, interpolation, problem, solution] = value;
   archive(pairing, open, recent, old, old_block, motions, left_out, next_solution, solved_motions,
-          solved_left_out, solved_us, step_us, limit, balance, problem, solution);
+          solved_left_out, solved_us, step_us, limit, balance, interpolation, problem, solution);
 }
 
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 18;
+constexpr int state_layout = 19;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

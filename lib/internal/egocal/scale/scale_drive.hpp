@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egocal/pairing/motion_pairing.hpp"
+#include "egocal/scale/interpolation_loss.hpp"
 #include "egocal/scale/solve_scale.hpp"
 
 namespace egocal {
@@ -39,6 +40,9 @@ struct ScaleDriveOptions {
   /// More blocks of old motions than this are joined, two by two. With most_recent_blocks of the newest ones
   /// they are no more than a problem on the wire may hold (64).
   std::size_t most_old_blocks = 32, most_recent_blocks = 32;
+  /// What the lengths of the interpolated stream lose is part of the scale's standard deviation. Its `motion`
+  /// and `starts` are replaced by those above.
+  InterpolationLossOptions interpolation;
 };
 
 /// What a solver of the scale needs.
@@ -64,6 +68,7 @@ struct ScaleDriveState {
   std::int64_t step_us = 0;    ///< length of the newest single step [us]
   double limit = 0;            ///< residual beyond which a motion is an outlier; 0: unknown
   std::optional<Balance> balance;
+  InterpolationLossState interpolation;
   std::optional<ScaleProblem> problem;  ///< of the newest solution
   ScaleSolution solution;
 };
@@ -98,6 +103,7 @@ class ScaleDrive {
   ScaleDriveState state() const;
 
  private:
+  std::int64_t on_clock_of_a(Side side, std::int64_t time_us) const;
   void grow(const MotionPair& step, std::vector<MotionPair>& completed);
   void commit_old();
   void join_old_blocks();
@@ -108,7 +114,8 @@ class ScaleDrive {
 
   ScaleDriveOptions options_;
   MotionPairing pairing_;
-  ScaleDriveState state_;  // without the pairing's
+  InterpolationLoss interpolation_;
+  ScaleDriveState state_;  // without those of the two
 };
 
 }  // namespace egocal

@@ -43,6 +43,9 @@ struct ScaleOptions {
   double weak_bound = 1e-2;
   /// A standard deviation needs at least this many blocks, as ObservabilityOptions::least_blocks.
   std::size_t least_blocks = 6;
+  /// Part of the scale by which it may be wrong for reasons that the motions do not show, such as
+  /// interpolation; added to the standard deviation.
+  double doubt = 0;
 };
 
 /// Global minimum over scale and extrinsic by branch and bound over the scale (docs/scale.md has the proof).
