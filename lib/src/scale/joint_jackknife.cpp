@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "egocal/problem/cost.hpp"
@@ -20,16 +21,21 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Index of the tangents of planar mode among x y z roll pitch yaw.
 constexpr std::array<Eigen::Index, 3> planar = {0, 1, 5};
 
-/// J and its derivatives over u are v'(c0 t0 + c1 s t1 + c2 s^2 t2)v with t0 free of the scale, t1 linear and
-/// t2 quadratic in it; the rotation rows are in t0 and c_rotation.
-Matrix8d combined(const ScaleStatistics& part, double s, double rotation, double c0, double c1, double c2) {
-  Matrix8d Q;
-  Q.topLeftCorner<4, 4>() = c1 * s * part.cross + rotation * part.rotation;
-  Q.topLeftCorner<4, 4>().diagonal().array() += c0 * part.square_b + c2 * s * s * part.square_a;
-  Q.topRightCorner<4, 4>() = c0 * part.coupling_b + c1 * s * part.coupling_a;
-  Q.bottomLeftCorner<4, 4>() = Q.topRightCorner<4, 4>().transpose();
-  Q.bottomRightCorner<4, 4>() = c0 * part.rotation;
-  return Q;
+/// T'ZT of a symmetric Z.
+template <int n>
+Eigen::Matrix<double, n, n> restricted(const Matrix8d& Z, const Eigen::Matrix<double, 8, n>& tangents) {
+  const Eigen::Matrix<double, 8, n> columns = Z.lazyProduct(tangents);
+  return tangents.transpose().lazyProduct(columns);
+}
+
+/// Newton step of u without a part; empty where what is left has no minimum.
+template <int n>
+std::optional<double> step_without(const JointDerivatives& all, const JointDerivatives& part) {
+  const Eigen::Matrix<double, n, n> hessian = all.hessian - part.hessian;
+  const Eigen::LDLT<Eigen::Matrix<double, n, n>> factor(hessian);
+  if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
+  const Eigen::Matrix<double, n, 1> step = factor.solve(all.gradient - part.gradient);
+  return -step[n - 1];
 }
 
 }  // namespace
@@ -65,25 +71,33 @@ JointForm::JointForm(const ScaleStatistics& all, const ScalePoint& point) : poin
 
 JointDerivatives JointForm::of(const ScaleStatistics& part) const {
   const double s = point_.scale, k = point_.weight_slope;
-  const double rotation = point_.balance.rotation / point_.weight;
   const double moved = point_.balance.translation / point_.weight;
-  const Matrix8d Q = combined(part, s, rotation, moved, moved, moved);
-  const Matrix8d dQ = combined(part, s, 0, moved * k, moved * (k + 1), moved * (k + 2));
-  const Matrix8d ddQ =
-      combined(part, s, 0, moved * k * k, moved * (k + 1) * (k + 1), moved * (k + 2) * (k + 2));
-  const Vector8d v = point_.q.vec();
-  const Vector8d slope = dQ * v;
+  const Eigen::Vector4d r = point_.q.real, d = point_.q.dual;
+  const Matrix8d Q = part.weight / point_.weight * cost_matrix(at_scale(part, s), point_.balance);
   const Matrix8d Z = lagrangian_matrix(Q, {norm_ * part.weight, orthogonal_ * part.weight});
+  // J / moved is v'(t0 + s t1 + s^2 t2)v, and e^(ku) J has the derivatives k, k + 1, k + 2 times these over
+  // u: first t0 v, t1 v and t2 v
+  Vector8d free, linear, square;
+  free << part.square_b * r + part.coupling_b * d, part.coupling_b.transpose() * r + part.rotation * d;
+  linear << s * (part.cross * r + part.coupling_a * d), s * (part.coupling_a.transpose() * r);
+  square << s * s * part.square_a * r, Eigen::Vector4d::Zero();
+  const Vector8d v = point_.q.vec();
+  const Vector8d slope = moved * (k * free + (k + 1) * linear + (k + 2) * square);
+  const double curvature =
+      moved * (k * k * v.dot(free) + (k + 1) * (k + 1) * v.dot(linear) + (k + 2) * (k + 2) * v.dot(square));
   const Eigen::Index n = tangents_.cols();
   JointDerivatives result;
   result.gradient.resize(n + 1);
   result.gradient.head(n) = tangents_.transpose() * (Q * v);
   result.gradient[n] = 0.5 * v.dot(slope);
   result.hessian.resize(n + 1, n + 1);
-  result.hessian.topLeftCorner(n, n) = tangents_.transpose() * Z * tangents_;
+  if (n == 6)
+    result.hessian.topLeftCorner<6, 6>() = restricted<6>(Z, tangents_);
+  else
+    result.hessian.topLeftCorner<3, 3>() = restricted<3>(Z, tangents_);
   result.hessian.col(n).head(n) = tangents_.transpose() * slope;
   result.hessian.row(n).head(n) = result.hessian.col(n).head(n).transpose();
-  result.hessian(n, n) = 0.5 * v.dot(ddQ * v);
+  result.hessian(n, n) = 0.5 * curvature;
   return result;
 }
 
@@ -97,12 +111,11 @@ double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm&
   for (const ScaleStatistics& block : blocks) {
     if (block.count == 0 || block.count == pairs) return infinity;
     const JointDerivatives left_out = form.of(block);
-    const JointDerivatives::Hessian rest = all.hessian - left_out.hessian;
-    const Eigen::LDLT<JointDerivatives::Hessian> factor(rest);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return infinity;
-    const JointDerivatives::Gradient step = -factor.solve(all.gradient - left_out.gradient);
+    const std::optional<double> step =
+        all.gradient.size() == 7 ? step_without<7>(all, left_out) : step_without<4>(all, left_out);
+    if (!step) return infinity;
     const double h = static_cast<double>(pairs) / static_cast<double>(block.count);
-    pseudo.push_back(-(h - 1) * step[step.size() - 1]);
+    pseudo.push_back(-(h - 1) * *step);
     weight.push_back(h);
     mean += pseudo.back() / h;
   }

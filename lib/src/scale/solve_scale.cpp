@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "certificate/verify.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/solvers/global.hpp"
 #include "scale/joint_jackknife.hpp"
+#include "solvers/proven_dual.hpp"
 
 namespace egocal {
 
@@ -67,11 +70,17 @@ class ScaleCost {
   }
 
   Matrix8d matrix(double s) const { return cost_matrix(at_scale(statistics_, s), balance(s)); }
-  Solution minimise(const Matrix8d& Q) const {
-    return options_.mode == Mode::planar ? solve_planar(Q) : solve_dual(Q);
+  DualQuaternion minimise(const Matrix8d& Q) const {
+    return options_.mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
   }
-  Certificate certify(const Matrix8d& Q, const DualQuaternion& q) const {
-    return options_.mode == Mode::planar ? verify_planar(Q, q) : verify(Q, q);
+  /// The bound that the dual has proven on its way is not proven again.
+  std::pair<DualQuaternion, Certificate> certified_minimum(const Matrix8d& Q) const {
+    if (options_.mode == Mode::planar) {
+      const DualQuaternion q = solve_planar(Q).q;
+      return {q, verify_planar(Q, q)};
+    }
+    const detail::ProvenSolution least = detail::solve_dual_with_proof(Q);
+    return {least.solution.q, detail::verify(Q, least.solution.q, {}, least.proven)};
   }
   /// The translation part of the cost, weighted.
   double translation_cost(double s, const DualQuaternion& q) const {
@@ -100,6 +109,7 @@ struct Node {
   double bound = 0;    ///< of f(s)
   double concave = 0;  ///< bound - e(x), of g
   DualQuaternion q;
+  Certificate certificate;  ///< of q at this scale
 };
 
 /// Where D is singular (perfect rotations) and the scale is far off, the dual has hardly a feasible point. D
@@ -111,8 +121,7 @@ double lifted_bound(const ScaleCost& f, const ScaleOptions& options, double s, d
   const double lift = options.given_away * cost / (0.25 * options.farthest * options.farthest * length2);
   if (!std::isfinite(lift)) return -infinity;
   Q.diagonal().tail<4>().array() += lift;
-  const DualQuaternion q = f.minimise(Q).q;
-  const Certificate certificate = f.certify(Q, q);
+  const Certificate certificate = f.certified_minimum(Q).second;
   return certificate.lower_bound - certificate.rounding - options.given_away * cost;
 }
 
@@ -120,11 +129,9 @@ Node evaluate(const ScaleCost& f, const ScaleOptions& options, double s) {
   Node node;
   node.s = s;
   node.x = f.variable(s);
-  const Matrix8d Q = f.matrix(s);
-  node.q = f.minimise(Q).q;
-  const Certificate certificate = f.certify(Q, node.q);
-  node.cost = certificate.cost;
-  node.bound = certificate.lower_bound - certificate.rounding;
+  std::tie(node.q, node.certificate) = f.certified_minimum(f.matrix(s));
+  node.cost = node.certificate.cost;
+  node.bound = node.certificate.lower_bound - node.certificate.rounding;
   if (node.cost - node.bound > options.weak_bound * node.cost + options.tolerance * f.energy(s))
     node.bound = std::max(node.bound, lifted_bound(f, options, s, node.cost));
   node.bound = std::min(node.bound, node.cost);
@@ -233,7 +240,7 @@ double polished(const ScaleCost& f, const ScaleStatistics& all, const ScaleOptio
     const double next = std::clamp(log_s - slope / curvature, low, high);
     if (std::abs(next - log_s) < 1e-9) return next;  // the error of a step is about its square
     const double s = std::exp(next);
-    const DualQuaternion q_there = f.minimise(f.matrix(s)).q;
+    const DualQuaternion q_there = f.minimise(f.matrix(s));
     const double there = f.slope(s, q_there);
     if (!(std::abs(there) < std::abs(slope))) return log_s;
     log_s = next;
@@ -273,7 +280,7 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
     const Node node = evaluate(f, options, std::exp(log_s));
     if (node.cost <= answer.cost + f.rounding(answer.s)) answer = node;
   }
-  const Certificate inner = f.certify(f.matrix(answer.s), answer.q);
+  const Certificate& inner = answer.certificate;
   result.scale = answer.s;
   result.q = answer.q;
   result.cost = answer.cost;
