@@ -21,16 +21,6 @@ constexpr std::size_t max_whole_payload = 65499;
 constexpr std::size_t max_fragment_payload = 65487;  // bytes, format
 constexpr std::size_t max_fragments = 65535;         // format
 
-std::uint32_t number32(Bytes bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-  return value;
-}
-
-std::uint32_t number16(Bytes bytes, std::size_t at) {
-  return std::to_integer<std::uint32_t>(bytes[at]) << 8 | std::to_integer<std::uint32_t>(bytes[at + 1]);
-}
-
 /// The channel name at the start, without its final zero; empty where there is none.
 std::string_view channel_at(Bytes bytes) {
   const std::size_t most = std::min(bytes.size(), max_channel_length + 1);
@@ -109,7 +99,7 @@ bool for_each_datagram(std::string_view channel, Bytes bytes, std::uint32_t numb
 std::optional<Reassembly::Message> Reassembly::take(Bytes datagram, std::uint64_t sender,
                                                     const Wanted& wanted) {
   if (datagram.size() < whole_header) return refuse();
-  switch (number32(datagram, 0)) {
+  switch (big_endian<std::uint32_t>(datagram)) {
     case whole_magic:
       return take_whole(datagram.subspan(whole_header), wanted);
     case fragment_magic:
@@ -134,9 +124,11 @@ std::optional<Reassembly::Message> Reassembly::take_whole(Bytes rest, const Want
 std::optional<Reassembly::Message> Reassembly::take_fragment(Bytes datagram, std::uint64_t sender,
                                                              const Wanted& wanted) {
   if (datagram.size() < fragment_header) return refuse();
-  const std::uint32_t number = number32(datagram, 4);
-  const std::size_t size = number32(datagram, 8), offset = number32(datagram, 12);
-  const std::size_t fragment = number16(datagram, 16), fragments = number16(datagram, 18);
+  const std::uint32_t number = big_endian<std::uint32_t>(datagram, 4);
+  const std::size_t size = big_endian<std::uint32_t>(datagram, 8),
+                    offset = big_endian<std::uint32_t>(datagram, 12);
+  const std::size_t fragment = big_endian<std::uint16_t>(datagram, 16),
+                    fragments = big_endian<std::uint16_t>(datagram, 18);
   Bytes data = datagram.subspan(fragment_header);
   std::string_view channel;
   if (fragment == 0) {

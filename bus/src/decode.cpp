@@ -25,9 +25,7 @@ class Walk {
     const std::size_t at = position_;
     skip(4);
     if (failed_) return 0;
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes_[at + i]);
-    return static_cast<std::int32_t>(value);
+    return static_cast<std::int32_t>(big_endian<std::uint32_t>(bytes_, at));
   }
 
   void string() {

@@ -23,10 +23,7 @@ void apply_scale(double scale, Checked<StampedPose>& received) {
 }  // namespace
 
 std::int64_t utime_in(Bytes message) {
-  if (message.size() < 16) return 0;
-  std::uint64_t value = 0;
-  for (std::size_t i = 8; i < 16; ++i) value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
-  return static_cast<std::int64_t>(value);
+  return message.size() < 16 ? 0 : static_cast<std::int64_t>(big_endian<std::uint64_t>(message, 8));
 }
 
 ReceivedOdometry decode_odometry(const Sensor& sensor, Bytes bytes) {

@@ -19,10 +19,7 @@ constexpr std::int64_t largest_jump_us = 1'000'000;
 /// Problems, answers and verdicts begin alike: eight bytes each, big endian; 0 where the message ends before.
 enum Field : std::size_t { utime_at = 8, session_at = 16, seq_at = 24 };
 inline std::int64_t field(bus::Bytes message, std::size_t at) {
-  if (message.size() < at + 8) return 0;
-  std::uint64_t value = 0;
-  for (std::size_t i = at; i < at + 8; ++i) value = value << 8 | std::to_integer<std::uint64_t>(message[i]);
-  return static_cast<std::int64_t>(value);
+  return message.size() < at + 8 ? 0 : static_cast<std::int64_t>(bus::big_endian<std::uint64_t>(message, at));
 }
 
 inline bool has(const Plan& plan, std::initializer_list<IncidentKind> kinds) {

@@ -38,10 +38,6 @@ Vector3d position(const DualQuaternion& pose) {
   return 2 * quaternion_product(pose.dual, quaternion_conjugate(pose.real)).tail<3>();
 }
 
-double angle(const QuaternionVector& q) {
-  return 2 * std::atan2(q.tail<3>().norm(), std::abs(q[0]));
-}
-
 std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
                            std::size_t most, const DiagnosisOptions& options) {
   std::vector<Step> steps;
@@ -61,7 +57,7 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
     const QuaternionVector r1 = conjugated ? quaternion_conjugate(w1.real) : w1.real;
     QuaternionVector w = quaternion_product(quaternion_conjugate(r0), r1);
     if (w[0] < 0) w = -w;
-    if (std::max(angle(s.real), angle(w)) > options.motions.most_rotation) continue;
+    if (std::max(rotation_angle(s), rotation_angle(w)) > options.motions.most_rotation) continue;
     steps.push_back({s.real, w, matrix(s.real), matrix(r0), position(s), position(w1) - position(w0), 1});
   }
   return steps;

@@ -143,7 +143,7 @@ std::vector<double> turning_of(const Trajectory& trajectory) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const QuaternionVector turn =
         quaternion_product(quaternion_conjugate(trajectory[i - 1].pose.real), trajectory[i].pose.real);
-    angles.push_back(2 * std::atan2(turn.tail<3>().norm(), std::abs(turn[0])));
+    angles.push_back(rotation_angle(turn));
   }
   return angles;
 }

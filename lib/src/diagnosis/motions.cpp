@@ -79,15 +79,12 @@ Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
   const auto position = [](const DualQuaternion& q) -> Eigen::Vector3d {
     return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
   };
-  const auto angle = [](const DualQuaternion& q) {
-    return 2 * std::atan2(q.real.tail<3>().norm(), std::abs(q.real[0]));
-  };
   motion.R_a = Eigen::Quaterniond(motion.a.real[0], motion.a.real[1], motion.a.real[2], motion.a.real[3])
                    .toRotationMatrix();
   motion.t_a = position(motion.a);
   motion.t_b = position(motion.b);
-  motion.angle_a = angle(motion.a);
-  motion.angle_b = angle(motion.b);
+  motion.angle_a = rotation_angle(motion.a);
+  motion.angle_b = rotation_angle(motion.b);
   return motion;
 }
 

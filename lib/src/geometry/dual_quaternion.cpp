@@ -116,6 +116,18 @@ Pose to_pose(const DualQuaternion& q) {
   return {Eigen::Quaterniond(unit.real[0], unit.real[1], unit.real[2], unit.real[3]), t.tail<3>()};
 }
 
+double rotation_angle(const QuaternionVector& q) {
+  return 2 * std::atan2(q.tail<3>().norm(), std::abs(q[0]));
+}
+
+double rotation_angle(const DualQuaternion& q) {
+  return rotation_angle(q.real);
+}
+
+double translation_length(const DualQuaternion& q) {
+  return 2 * q.dual.norm();
+}
+
 Screw screw_of(const DualQuaternion& q) {
   const DualQuaternion unit = canonical_sign(q);
   const double sine = unit.real.tail<3>().norm();

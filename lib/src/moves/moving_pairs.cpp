@@ -8,13 +8,6 @@ namespace egocal::detail {
 
 namespace {
 
-double turn_of(const DualQuaternion& motion) {
-  return 2 * std::atan2(motion.real.tail<3>().norm(), std::abs(motion.real[0]));
-}
-double way_of(const DualQuaternion& motion) {
-  return 2 * motion.dual.norm();
-}
-
 /// Root mean squares of one stream's motions.
 struct Typical {
   double turn = 0, way = 0;
@@ -23,7 +16,7 @@ struct Typical {
 Typical typical(std::span<const MotionPair> pairs, DualQuaternion MotionPair::*side) {
   double turns = 0, ways = 0;
   for (const MotionPair& pair : pairs) {
-    const double turn = turn_of(pair.*side), way = way_of(pair.*side);
+    const double turn = rotation_angle(pair.*side), way = translation_length(pair.*side);
     turns += turn * turn;
     ways += way * way;
   }
@@ -32,7 +25,7 @@ Typical typical(std::span<const MotionPair> pairs, DualQuaternion MotionPair::*s
 }
 
 bool moves(const DualQuaternion& motion, const Typical& typical, double least) {
-  return turn_of(motion) > least * typical.turn || way_of(motion) > least * typical.way;
+  return rotation_angle(motion) > least * typical.turn || translation_length(motion) > least * typical.way;
 }
 
 }  // namespace

@@ -22,14 +22,10 @@ struct Difference {
   bool turns;
 };
 
-double translation_of(const DualQuaternion& motion) {
-  return 2 * motion.dual.norm();
-}
-
 Difference difference(const DualQuaternion& a, const DualQuaternion& b, const CongruenceOptions& options) {
   const Screw screw_a = screw_of(a), screw_b = screw_of(b);
   const double angle = std::min(screw_a.angle, screw_b.angle);
-  const double length_a = translation_of(a), length_b = translation_of(b),
+  const double length_a = translation_length(a), length_b = translation_length(b),
                length = std::min(length_a, length_b);
   return {{angle, std::abs(screw_a.angle - screw_b.angle)},
           {length, std::abs(screw_a.slide - screw_b.slide)},

@@ -232,8 +232,7 @@ AgreeingSamples taken_in(const SampleSet& set, const Trimmed& trimmed, const Sam
 }
 
 double turn(const DualQuaternion& from, const DualQuaternion& to) {
-  const QuaternionVector q = quaternion_product(quaternion_conjugate(from.real), to.real);
-  return 2 * std::atan2(q.tail<3>().norm(), std::abs(q[0]));
+  return rotation_angle(quaternion_product(quaternion_conjugate(from.real), to.real));
 }
 
 /// Standard deviation of a rotation [rad] as the motions show it without any answer: their angles in a and in

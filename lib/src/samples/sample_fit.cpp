@@ -254,8 +254,7 @@ double SampleSet::sign(std::size_t i, std::size_t j) const {
 
 SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const SampleFit& fit) {
   const DualQuaternion y = set.seen(i).with(fit.X);
-  const QuaternionVector difference = quaternion_product(quaternion_conjugate(fit.Y.real), y.real);
-  const double angle = 2 * std::atan2(difference.tail<3>().norm(), std::abs(difference[0]));
+  const double angle = rotation_angle(quaternion_product(quaternion_conjugate(fit.Y.real), y.real));
   return {angle * angle, (position(y) - position(fit.Y)).squaredNorm()};
 }
 

@@ -36,11 +36,8 @@ bool lengths_fit(const scale_t*, Bytes bytes);
 /// Fingerprint and lengths are those of the type.
 template <class Message>
 bool is_a(Bytes bytes) {
-  if (!lengths_fit(static_cast<const Message*>(nullptr), bytes)) return false;
-  std::uint64_t fingerprint = 0;
-  for (std::size_t i = 0; i < 8; ++i)
-    fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(bytes[i]);
-  return fingerprint == static_cast<std::uint64_t>(Message::getHash());
+  return lengths_fit(static_cast<const Message*>(nullptr), bytes) &&
+         big_endian<std::uint64_t>(bytes) == static_cast<std::uint64_t>(Message::getHash());
 }
 
 /// Decodes a message that must fill the bytes exactly. False: wrong fingerprint (another type or version),

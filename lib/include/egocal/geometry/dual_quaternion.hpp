@@ -48,6 +48,12 @@ DualQuaternion canonical_sign(const DualQuaternion& q);
 DualQuaternion to_dual_quaternion(const Pose& T);  ///< (6), (7); canonical sign
 Pose to_pose(const DualQuaternion& q);             ///< of the normalised q
 
+/// Angle of the rotation that a unit quaternion of either sign is, in [0, pi] [rad].
+double rotation_angle(const QuaternionVector& q);
+double rotation_angle(const DualQuaternion& q);
+/// Length of the translation of a unit dual quaternion [m].
+double translation_length(const DualQuaternion& q);
+
 /// The screw of a motion: it turns by angle about an axis and slides by pitch along it. Every pair of motions
 /// of two rigidly mounted sensors has the same angle and slide (screw congruence), whatever the extrinsic.
 struct Screw {
