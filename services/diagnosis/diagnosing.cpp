@@ -126,6 +126,7 @@ void Diagnosing::judge(Pair& pair) {
   options.goal = pair.config.goal;
   options.platform = pair.config.platform;
   options.mount.false_alarms = options_.false_alarms;
+  options.mount.shown_before = options_.shown_before;
   PairingOptions pairing = bus::drive_options(rig_, pair.config);
   pairing.time_offset = message.time_offset;
   const auto poses_of = [&](Side side) {

@@ -27,8 +27,11 @@ struct DiagnosingOptions {
   double idle = 0.6;
   /// Fewer poses of a stream say nothing about a drive that began before this process did.
   std::size_t least_poses = 30;
-  /// Chance that one diagnosis calls a mount moved that did not (MountCheckOptions): a session has thousands.
-  double false_alarms = 1e-4;
+  /// Chance that one diagnosis calls a mount moved that did not, and how long before its end [s] the drive
+  /// must have shown it already (MountCheckOptions): an hour has 2,000 diagnoses. Study: docs/moves.md,
+  /// "Live".
+  double false_alarms = 1e-5;
+  double shown_before = 2;
   /// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
   int queue_capacity = 1024;
   DriveSampleOptions sample;

@@ -85,11 +85,13 @@ testing::Streams drive(const Sort& sort, double minutes, double noise, Random& r
 }
 
 /// The looks at one drive. Poses, their thinning, the problem and the judgement are those of the processes.
-Outcome outcome_of(const Sort& sort, double minutes, double noise, double every, Random random) {
+Outcome outcome_of(const Sort& sort, double minutes, double noise, double every, double chance, bool show,
+                   Random random) {
   const testing::Streams streams = drive(sort, minutes, noise, random);
   const services::DiagnosingOptions live;
   DiagnosisOptions options;
-  options.mount.false_alarms = live.false_alarms;
+  options.mount.false_alarms = chance;
+  options.mount.shown_before = live.shown_before;
   MotionPairing pairing(streams.options);
   services::DriveSample sample(live.sample);
   Outcome outcome;
@@ -115,9 +117,11 @@ Outcome outcome_of(const Sort& sort, double minutes, double noise, double every,
     answered.seconds = time;
     const Diagnosis diagnosis =
         diagnose(sample.poses(Side::a), sample.poses(Side::b), pairing.options(), answered, options);
-    const bool moved =
-        std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
-                    [](const Finding& finding) { return finding.code == "mount_moved" && finding.certain; });
+    const auto found =
+        std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                     [](const Finding& finding) { return finding.code == "mount_moved" && finding.certain; });
+    const bool moved = found != diagnosis.findings.end();
+    if (moved && show) std::printf("  %s at %.0f s: %s\n", sort.name, time, found->message.c_str());
     ++outcome.looks;
     if (sort.bump && time >= 30 * minutes) {
       if (moved && outcome.shown < 0) outcome.shown = time - 30 * minutes;
@@ -221,22 +225,26 @@ int main(int argc, char** argv) {
                    "hours of driving, judged again and again as egocal-diagnosis does it: false alarms, "
                    "verdicts, and how soon a moved mount is shown; exit code 1 where there is a false alarm");
   int drives = 4;
+  double chance = services::DiagnosingOptions().false_alarms;
   double minutes = 60, noise = 0.01, every = 2;
   std::uint64_t seed = 1;
   std::vector<std::string> only;
   std::string path;
+  bool show = false;
   app.add_option("--drives", drives, "of each sort").show_default();
   app.add_option("--minutes", minutes, "of each drive, without its stops").show_default();
   app.add_option("--noise", noise, "of each motion, as a part of it").show_default();
   app.add_option("--every", every, "seconds between two looks; a look takes 70 ms of 4 % of a core")
       .show_default();
+  app.add_option("--chance", chance, "of a false alarm in a look").show_default();
   app.add_option("--only", only, "sorts of drives: white heavy wandering outliers flat stops bump");
   app.add_option("--seed", seed, "of the drives").show_default();
   app.add_option("--record", path, "file of one line a drive, which is continued");
+  app.add_flag("--show", show, "each look that calls the mount moved");
   if (const auto code = app.parse(argc, argv)) return *code;
   char settings[120];
-  std::snprintf(settings, sizeof settings, "live_study seed %llu minutes %g noise %g every %g",
-                static_cast<unsigned long long>(seed), minutes, noise, every);
+  std::snprintf(settings, sizeof settings, "live_study seed %llu minutes %g noise %g every %g chance %g",
+                static_cast<unsigned long long>(seed), minutes, noise, every, chance);
   Record record(path, settings);
   int alarms = 0;
   for (std::size_t s = 0; s < std::size(sorts); ++s) {
@@ -248,7 +256,7 @@ int main(int argc, char** argv) {
         outcomes.push_back(*known);
         continue;
       }
-      outcomes.push_back(outcome_of(sort, minutes, noise, every, random_of(seed, s, k)));
+      outcomes.push_back(outcome_of(sort, minutes, noise, every, chance, show, random_of(seed, s, k)));
       record.add(sort.name, k, outcomes.back());
     }
     alarms += report(sort, outcomes, minutes);

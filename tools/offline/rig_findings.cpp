@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -15,9 +14,11 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// Length of a part of six numbers: translation from 0, rotation from 3.
-double length(const std::array<double, 6>& x, std::size_t from) {
-  return Eigen::Map<const Eigen::Vector3d>(x.data() + from).norm();
+std::string size_of(const Move& move) {
+  const auto [turn, shift] = shown_change(move);
+  if (turn == 0) return fmt::format("{:.1f} cm", 100 * shift);
+  const std::string turned = fmt::format("{:.2f} deg", degrees * turn);
+  return shift == 0 ? turned : fmt::format("{}, {:.1f} cm", turned, 100 * shift);
 }
 
 /// "camera", or "camera or lidar" where it is one of a pair.
@@ -34,8 +35,7 @@ RigFinding moved(const RigReport& report, const RigMove& move, double begin) {
   finding.time = begin + move.time;
   finding.move = move;
   const std::string name = who(report, move.sensor, move.pair);
-  const std::string size = fmt::format("{:.2f} deg, {:.1f} cm", degrees * length(move.move.change, 3),
-                                       100 * length(move.move.change, 0));
+  const std::string size = size_of(move.move);
   if (move.kind == MoveKind::creep) {
     finding.message = fmt::format("{} moves slowly from {:.1f} to {:.1f} s: {} in all.", name,
                                   begin + move.earliest, begin + move.latest, size);

@@ -57,34 +57,67 @@ std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const 
   return strides;
 }
 
-double length(const Move& move, std::size_t first) {
-  double sum = 0;
-  for (std::size_t i = first; i < first + 3; ++i)
-    if (std::isfinite(move.stddev[i])) sum += move.change[i] * move.change[i];
-  return std::sqrt(sum);
+std::string size_of(const Move& move) {
+  const auto [turn, shift] = shown_change(move);
+  std::string text;
+  if (turn > 0) text = format("%.2f deg", turn * 180 / std::numbers::pi);
+  if (shift > 0) text += format("%s%.1f cm", turn > 0 ? " and " : "", 100 * shift);
+  return text;
 }
 
 /// begin: of the motions, on the clock of the finding [s].
 void word(const Move& move, double begin, double long_interval, Finding& finding) {
-  const double turned = length(move, 3) * 180 / std::numbers::pi, shifted = 100 * length(move, 0);
+  const std::string size = size_of(move);
   const double from = begin + move.earliest, to = begin + move.latest;
   const Pose before = to_pose(move.before);
   const std::string answer = format("%.4f %.4f %.4f m, w x y z %.5f %.5f %.5f %.5f", before.translation.x(),
                                     before.translation.y(), before.translation.z(), before.rotation.w(),
                                     before.rotation.x(), before.rotation.y(), before.rotation.z());
   if (move.kind == MoveKind::creep) {
-    finding.message = format("The mounting creeps: %.2f deg and %.1f cm from %.1f to %.1f s after the start",
-                             turned, shifted, from, to);
-    if (to > from) finding.message += format(", %.2g deg an hour", turned * 3600 / (to - from));
+    finding.message =
+        format("The mounting creeps: %s from %.1f to %.1f s after the start", size.c_str(), from, to);
+    const Eigen::Vector3d turned(move.change[3], move.change[4], move.change[5]);
+    if (to > from && turned.allFinite())
+      finding.message +=
+          format(", %.2g deg an hour", turned.norm() * 180 / std::numbers::pi * 3600 / (to - from));
     finding.message += ". At its begin the answer is " + answer + ".";
     finding.remedy = "Fasten the mounting; calibrate a shorter part of the drive.";
     return;
   }
-  finding.message = format("The mounting changed by %.2f deg and %.1f cm about %.1f s after the start",
-                           turned, shifted, *finding.time);
+  finding.message =
+      format("The mounting changed by %s about %.1f s after the start", size.c_str(), *finding.time);
   if (to - from > long_interval) finding.message += format(" (between %.1f and %.1f s)", from, to);
   finding.message += ". Before it the answer is " + answer + ".";
   finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
+}
+
+MovesResult moves_of(const std::vector<std::vector<MotionPair>>& strides, const Answered& answered,
+                     const DiagnosisOptions& options) {
+  MovesOptions moves;
+  moves.false_alarms = options.mount.false_alarms;
+  return find_moves_of_strides(strides, answered.problem, moves);
+}
+
+/// The moves that the motions show without those of the last seconds, too. Times of moves are counted from
+/// the first motion of the stride that answers.
+void keep_those_shown_before(const std::vector<std::vector<MotionPair>>& strides, const Answered& answered,
+                             const DiagnosisOptions& options, MovesResult& result) {
+  const MountCheckOptions& mount = options.mount;
+  std::vector<std::vector<MotionPair>> before = strides;
+  for (std::vector<MotionPair>& pairs : before) {
+    const std::int64_t end = pairs.back().end_us - std::llround(1e6 * mount.shown_before);
+    std::erase_if(pairs, [end](const MotionPair& pair) { return pair.end_us > end; });
+    if (pairs.empty()) pairs.push_back(strides.front().front());
+  }
+  const MovesResult earlier = moves_of(before, answered, options);
+  const double later = 1e-6 * static_cast<double>(strides[result.stride].front().begin_us -
+                                                  before[earlier.stride].front().begin_us);
+  std::erase_if(result.moves, [&](const Move& move) {
+    return std::none_of(earlier.moves.begin(), earlier.moves.end(), [&](const Move& other) {
+      return later + move.earliest <= std::max(other.latest, other.time + mount.same_time) &&
+             later + move.latest >= std::min(other.earliest, other.time - mount.same_time);
+    });
+  });
 }
 
 }  // namespace
@@ -92,11 +125,10 @@ void word(const Move& move, double begin, double long_interval, Finding& finding
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
                                  const DiagnosisOptions& options) {
   const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options);
-  MovesOptions moves;
-  moves.false_alarms = options.mount.false_alarms;
-  const MovesResult result = find_moves_of_strides(strides, answered.problem, moves);
+  MovesResult result = moves_of(strides, answered, options);
   std::vector<Finding> findings;
   if (result.moves.empty()) return findings;
+  if (options.mount.shown_before > 0) keep_those_shown_before(strides, answered, options, result);
   const double begin = 1e-6 * static_cast<double>(strides[result.stride].front().begin_us);
   for (const Move& move : result.moves) {
     Finding finding;

@@ -283,7 +283,23 @@ bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_
   return !chance || *chance <= options.confirmation;
 }
 
+/// Of three components: of those that are significant, or of all.
+double length_of(const Move& move, std::size_t first, double least_sigmas) {
+  double sum = 0;
+  for (std::size_t i = first; i < first + 3; ++i)
+    if (std::abs(move.change[i]) > least_sigmas * move.stddev[i]) sum += move.change[i] * move.change[i];
+  return std::sqrt(sum);
+}
+
 }  // namespace
+
+ShownChange shown_change(const Move& move) {
+  constexpr double sigmas = 2;  // as a move is reported by (Finder::large_enough)
+  ShownChange shown{length_of(move, 3, sigmas), length_of(move, 0, sigmas)};
+  if (shown.turn == 0 && shown.shift == 0)
+    shown.turn = length_of(move, 3, 0);  // about an axis across the frame's
+  return shown;
+}
 
 MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& options) {
   const std::vector<MotionPair> moving = detail::moving_pairs(pairs, options.least_motion);

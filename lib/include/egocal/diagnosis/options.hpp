@@ -81,6 +81,12 @@ struct MountCheckOptions {
   /// real chance is about a fifth (docs/moves.md). Looks that are repeated want less.
   double false_alarms = 5e-4;
   std::size_t most_motions = 20000;  ///< of long drives: overlapping motions say little that is new
+  /// A move must have shown already this long before the end of the drive [s]; 0: need not. For looks that
+  /// are repeated: the newest seconds are new each time, and heavy tails in them soon look like a move, once.
+  double shown_before = 0;
+  /// Both looks show the same move where its times differ by less [s], or lie in the other's interval: as
+  /// close as bumps are located (docs/moves.md, "Measured").
+  double same_time = 5;
   /// The interval of the time of a move is stated where it is longer [s]. Changes the message only.
   double long_interval = 10;
 };

@@ -100,6 +100,14 @@ struct Move {
   double false_alarm = 1;          ///< chance of such evidence in a drive without a change
 };
 
+/// Lengths of what the motions show of a change: of the components that exceed two of their standard
+/// deviations. Shortly after a change these are few, and the others are of any size.
+struct ShownChange {
+  double turn = 0;   ///< [rad]
+  double shift = 0;  ///< [m]
+};
+ShownChange shown_change(const Move& move);
+
 /// The drive in stretches of one extrinsic each.
 struct MovesResult {
   bool tested = false;      ///< false: too few motion pairs, nothing is known
