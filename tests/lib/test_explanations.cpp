@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
@@ -257,6 +258,56 @@ TEST(Explanations, AMovedMountIsFoundAtItsTime) {
   ASSERT_NE(moved, nullptr) << calibration.reason;
   EXPECT_NEAR(*moved->time, 30, 4);
   EXPECT_GE(calibration.verdict, Verdict::doubtful);
+}
+
+// What a look at a drive shows that is judged again every two seconds.
+TEST(Explanations, AMoveMustHaveShownBefore) {
+  SimulationOptions simulation;
+  simulation.poses = 1201;
+  simulation.relative_noise = 0.01;
+  simulation.faults.resize(2);
+  simulation.faults[1].mount_changes = {{110, 110, {rotation_exp({0, 0.02, 0}), {0.06, 0, 0}}}};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    simulation.seed = seed;
+    const testing::Streams streams = testing::simulated_drive(simulation);
+    const auto named = [&](double shown_before) {
+      CalibrationOptions options;
+      options.diagnosis.mount.shown_before = shown_before;
+      const Calibration calibration = calibrate(streams.a, streams.b, options);
+      const Finding* moved = find(calibration, "mount_moved");
+      if (moved) {
+        EXPECT_NEAR(*moved->time, 110, 4);
+      }
+      return moved != nullptr;
+    };
+    EXPECT_TRUE(named(0));
+    EXPECT_TRUE(named(2));
+    EXPECT_FALSE(named(9.5)) << "half a second after it nothing shows it";
+  }
+}
+
+TEST(Explanations, TheSizeOfAMoveIsWhatTheMotionsShowOfIt) {
+  SimulationOptions simulation;
+  simulation.poses = 1281;
+  simulation.relative_noise = 0.01;
+  simulation.faults.resize(2);
+  simulation.faults[1].mount_changes = {{120, 120, {rotation_exp({0, 0.015, 0}), {0, 0, 0.03}}}};
+  int stated = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    simulation.seed = seed;
+    const testing::Streams streams = testing::simulated_drive(simulation);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    const Finding* moved = find(calibration, "mount_moved");
+    if (!moved) continue;
+    ++stated;
+    double turn = 0, shift = 0;
+    const int numbers =
+        std::sscanf(moved->message.c_str(), "The mounting changed by %lf deg and %lf cm", &turn, &shift);
+    ASSERT_GE(numbers, 1) << moved->message;
+    EXPECT_NEAR(turn, 0.86, 0.4) << moved->message;
+    EXPECT_LT(shift, 60) << "a road hardly shows the height in eight seconds: " << moved->message;
+  }
+  EXPECT_GE(stated, 6);
 }
 
 TEST(Explanations, AGroundPlaneAboveTheSensorIsRefused) {
