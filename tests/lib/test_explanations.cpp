@@ -288,7 +288,7 @@ TEST(Explanations, AMoveMustHaveShownBefore) {
 
 TEST(Explanations, TheSizeOfAMoveIsWhatTheMotionsShowOfIt) {
   SimulationOptions simulation;
-  simulation.poses = 1281;
+  simulation.poses = 1261;
   simulation.relative_noise = 0.01;
   simulation.faults.resize(2);
   simulation.faults[1].mount_changes = {{120, 120, {rotation_exp({0, 0.015, 0}), {0, 0, 0.03}}}};
@@ -305,7 +305,7 @@ TEST(Explanations, TheSizeOfAMoveIsWhatTheMotionsShowOfIt) {
         std::sscanf(moved->message.c_str(), "The mounting changed by %lf deg and %lf cm", &turn, &shift);
     ASSERT_GE(numbers, 1) << moved->message;
     EXPECT_NEAR(turn, 0.86, 0.4) << moved->message;
-    EXPECT_LT(shift, 60) << "a road hardly shows the height in eight seconds: " << moved->message;
+    EXPECT_LT(shift, 60) << "a road hardly shows the height in six seconds: " << moved->message;
   }
   EXPECT_GE(stated, 6);
 }

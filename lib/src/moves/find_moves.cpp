@@ -294,7 +294,7 @@ double length_of(const Move& move, std::size_t first, double least_sigmas) {
 }  // namespace
 
 ShownChange shown_change(const Move& move) {
-  constexpr double sigmas = 2;  // as a move is reported by (Finder::large_enough)
+  constexpr double sigmas = 3;  // of six components two of theirs are exceeded by chance now and then
   ShownChange shown{length_of(move, 3, sigmas), length_of(move, 0, sigmas)};
   if (shown.turn == 0 && shown.shift == 0)
     shown.turn = length_of(move, 3, 0);  // about an axis across the frame's

@@ -100,7 +100,7 @@ struct Move {
   double false_alarm = 1;          ///< chance of such evidence in a drive without a change
 };
 
-/// Lengths of what the motions show of a change: of the components that exceed two of their standard
+/// Lengths of what the motions show of a change: of the components that exceed three of their standard
 /// deviations. Shortly after a change these are few, and the others are of any size.
 struct ShownChange {
   double turn = 0;   ///< [rad]
