@@ -105,13 +105,15 @@ void keep_those_shown_before(const std::vector<std::vector<MotionPair>>& strides
   const MountCheckOptions& mount = options.mount;
   std::vector<std::vector<MotionPair>> before = strides;
   for (std::vector<MotionPair>& pairs : before) {
-    const std::int64_t end = pairs.back().end_us - std::llround(1e6 * mount.shown_before);
+    const std::int64_t end = pairs.empty() ? 0 : pairs.back().end_us - std::llround(1e6 * mount.shown_before);
     std::erase_if(pairs, [end](const MotionPair& pair) { return pair.end_us > end; });
-    if (pairs.empty()) pairs.push_back(strides.front().front());
   }
   const MovesResult earlier = moves_of(before, answered, options);
-  const double later = 1e-6 * static_cast<double>(strides[result.stride].front().begin_us -
-                                                  before[earlier.stride].front().begin_us);
+  const auto begin_us = [](const std::vector<MotionPair>& pairs) {
+    return pairs.empty() ? 0 : pairs.front().begin_us;
+  };
+  const double later =
+      1e-6 * static_cast<double>(begin_us(strides[result.stride]) - begin_us(before[earlier.stride]));
   std::erase_if(result.moves, [&](const Move& move) {
     return std::none_of(earlier.moves.begin(), earlier.moves.end(), [&](const Move& other) {
       return later + move.earliest <= std::max(other.latest, other.time + mount.same_time) &&

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "egocal/limits.hpp"
 #include "scale/kept_motions.hpp"
 
 namespace egocal {
@@ -67,7 +68,8 @@ ScaleDriveState ScaleDrive::state() const {
 
 std::vector<MotionPair> ScaleDrive::push(Side side, const StampedPose& pose) {
   std::vector<MotionPair> completed;
-  if (!options_.pairing.track_time_offset) interpolation_.stamp(side, on_clock_of_a(side, pose.time_us));
+  if (!options_.pairing.track_time_offset && plausible_relative_time(pose.time_us))
+    interpolation_.stamp(side, on_clock_of_a(side, pose.time_us));
   for (const MotionPair& step : pairing_.push(side, pose)) {
     interpolation_.step(step, pairing_.state().synchroniser.keys.value_or(Side::b));
     const std::size_t before = completed.size();
