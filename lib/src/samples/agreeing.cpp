@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -176,29 +178,50 @@ double underestimated(const SampleSet& set, const SampleFit& fit) {
   return std::max(1.0, *middle / median_of_six);
 }
 
-/// Does noise explain the sample by its residual alone? A fit with it is no worse than this one.
-bool plainly_agrees(const SampleSet& set, const SampleFit& fit, std::size_t one,
-                    const AgreeingOptions& tuning) {
-  constexpr double dof = 6;  // mathematics: of a pose
-  if (!(fit.dof > 0) || !(fit.cost > 0)) return false;
-  return f_exceeded(in_variances(set, one, fit) / dof / (fit.cost / fit.dof), dof, fit.dof) >
-         tuning.unremarkable;
-}
+/// Does noise explain a sample by its residual alone? A fit with it is no worse than this one.
+class PlainTest {
+ public:
+  PlainTest(const SampleSet& set, const SampleFit& fit, const AgreeingOptions& tuning)
+      : set_(set), fit_(fit), unremarkable_(tuning.unremarkable) {}
+
+  bool agrees(std::size_t one) {
+    constexpr double dof = 6;  // mathematics: of a pose
+    if (!(fit_.dof > 0) || !(fit_.cost > 0)) return false;
+    const double f = in_variances(set_, one, fit_) / dof / (fit_.cost / fit_.dof);
+    // the probability falls with f: most samples are on a side that is known already
+    if (f <= agreed_) return true;
+    if (f >= disagreed_) return false;
+    const bool agrees = f_exceeded(f, dof, fit_.dof) > unremarkable_;
+    (agrees ? agreed_ : disagreed_) = f;
+    return agrees;
+  }
+
+ private:
+  const SampleSet& set_;
+  const SampleFit& fit_;
+  double unremarkable_;
+  double agreed_ = 0, disagreed_ = std::numeric_limits<double>::infinity();
+};
 
 Indices others(const SampleSet& set, const Indices& chosen) {
   Indices result;
+  auto next = chosen.begin();
   for (std::size_t i = 0; i < set.size(); ++i)
-    if (!std::binary_search(chosen.begin(), chosen.end(), i)) result.push_back(i);
+    if (next != chosen.end() && *next == i)
+      ++next;
+    else
+      result.push_back(i);
   return result;
 }
 
-/// Samples to add next: those that noise explains, else the nearest one; empty where that is wrong.
+/// Samples to add next, in order: those that noise explains, else the nearest one; empty where that is wrong.
 Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options,
                      const AgreeingOptions& tuning) {
   const Indices candidates = others(set, agreeing.chosen);
   Indices plain;
+  PlainTest test(set, agreeing.fit, tuning);
   for (const std::size_t i : candidates)
-    if (plainly_agrees(set, agreeing.fit, i, tuning)) plain.push_back(i);
+    if (test.agrees(i)) plain.push_back(i);
   if (!plain.empty()) return plain;
   std::optional<std::pair<Added, std::size_t>> nearest;
   for (const std::size_t i : candidates) {
@@ -221,7 +244,10 @@ AgreeingSamples taken_in(const SampleSet& set, const Trimmed& trimmed, const Sam
   while (result.chosen.size() < set.size()) {
     const Indices next = next_samples(set, result, options, tuning);
     if (next.empty()) break;
-    for (const std::size_t i : next) result.chosen = with(result.chosen, i);
+    Indices more;
+    std::merge(result.chosen.begin(), result.chosen.end(), next.begin(), next.end(),
+               std::back_inserter(more));
+    result.chosen = std::move(more);
     settings.start = result.fit;
     result.fit = fit_samples(set, result.chosen, settings);
   }

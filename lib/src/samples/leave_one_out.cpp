@@ -49,8 +49,12 @@ std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_
   const Matrix86d basis = frame_a_basis(fit.X);
   const Eigen::Matrix<double, 4, 6> basis_real = basis.topRows<4>(), basis_dual = basis.bottomRows<4>();
 
-  std::vector<Matrix86d> jacobians;
-  std::vector<Vector8d> residuals;
+  struct Part {
+    Matrix6d curvature;
+    Vector6d gradient;
+  };
+  std::vector<Part> parts;
+  parts.reserve(chosen.size());
   Matrix6d H = Matrix6d::Zero();
   for (const std::size_t i : chosen) {
     const SeenTarget& seen = set.seen(i);
@@ -62,18 +66,17 @@ std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_
     J.bottomRows<4>() = rotation * real.lazyProduct(basis_real);
     Vector8d r;
     r << position * (dual * fit.X.real + real * fit.X.dual), rotation * (real * fit.X.real);
-    H += J.transpose().lazyProduct(J);
-    jacobians.push_back(J);
-    residuals.push_back(r);
+    parts.push_back({J.transpose().lazyProduct(J), J.transpose() * r});
+    H += parts.back().curvature;
   }
   constexpr double ridge = 1e-12;  // rounding: a direction that nothing shows is not reported
   H.diagonal() *= 1 + ridge;
+  const double share = n / (n - 1);
   std::vector<Vector6d> differences;
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const double part = n / (n - 1);
-    const Matrix86d& J = jacobians[k];
-    const Matrix6d rest = H - part * J.transpose().lazyProduct(J);
-    differences.push_back(rest.llt().solve(part * (J.transpose() * residuals[k])));
+  differences.reserve(parts.size());
+  for (const Part& part : parts) {
+    const Matrix6d rest = H - share * part.curvature;
+    differences.push_back(rest.llt().solve(share * part.gradient));
   }
   return differences;
 }
