@@ -3,6 +3,7 @@
 #include "simulation/sensor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace egocal {
@@ -34,6 +35,36 @@ Pose mounting_at(const SimulationOptions& options, std::size_t sensor, double ti
   return mounting;
 }
 
+/// Between the second and the third of four values at equal distances: a cubic, whose slope at both is that
+/// between their neighbours, so that the path has no corner at a pose.
+Eigen::Vector3d between(const std::array<Eigen::Vector3d, 4>& values, double part) {
+  const Eigen::Vector3d chord = values[2] - values[1];
+  const Eigen::Vector3d begin = 0.5 * (values[2] - values[0]), end = 0.5 * (values[3] - values[1]);
+  const double rest = 1 - part;
+  return values[1] + part * chord + part * rest * (rest * (begin - chord) - part * (end - chord));
+}
+
+/// Between poses `next` - 1 and `next`; beyond the ends the path is straight.
+Pose pose_between(const Path& path, std::size_t next, double part) {
+  const auto pose = [&](std::size_t i) -> const Pose& { return path.poses[i]; };
+  const Pose& from = pose(next - 1);
+  const auto turn_to = [&](const Pose& to) { return rotation_log(from.rotation.conjugate() * to.rotation); };
+  const bool first = next == 1, last = next + 1 == path.poses.size();
+  const Eigen::Vector3d shift = pose(next).translation - from.translation, turn = turn_to(pose(next));
+  std::array<Eigen::Vector3d, 4> positions{-shift, Eigen::Vector3d::Zero(), shift, 2 * shift},
+      turns{-turn, Eigen::Vector3d::Zero(), turn, 2 * turn};
+  if (!first) {
+    positions[0] = pose(next - 2).translation - from.translation;
+    turns[0] = turn_to(pose(next - 2));
+  }
+  if (!last) {
+    positions[3] = pose(next + 1).translation - from.translation;
+    turns[3] = turn_to(pose(next + 1));
+  }
+  return {(from.rotation * rotation_exp(between(turns, part))).normalized(),
+          from.translation + between(positions, part)};
+}
+
 /// The same path at other times.
 Path resampled(const Path& path, double rate, double phase) {
   Path result;
@@ -45,8 +76,7 @@ Path resampled(const Path& path, double rate, double phase) {
     const double part = (time - path.times[next - 1]) / (path.times[next] - path.times[next - 1]);
     result.stamps.push_back(std::llround(1e6 * time));
     result.times.push_back(time);
-    result.poses.push_back(to_pose(
-        interpolate(to_dual_quaternion(path.poses[next - 1]), to_dual_quaternion(path.poses[next]), part)));
+    result.poses.push_back(pose_between(path, next, part));
   }
 }
 

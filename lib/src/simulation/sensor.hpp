@@ -9,7 +9,7 @@
 
 namespace egocal::detail {
 
-/// Poses of the vehicle; between them it moves along screws.
+/// Poses of the vehicle; between them it moves along a path without corners.
 struct Path {
   std::vector<std::int64_t> stamps;  ///< [us] from the start of the drive
   std::vector<double> times;         ///< the same [s]
