@@ -3,6 +3,8 @@
 // Each stage of the pairing by itself, and what all of them together decide.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "../support/corruption.hpp"
@@ -76,6 +78,120 @@ TEST(Synchroniser, ANewClockBeginsANewChainAcrossWhichNothingIsInterpolated) {
   }
   EXPECT_EQ(instants.size() + rejected(state.rejections, Rejection::no_partner), 40u);
   EXPECT_GE(instants.size(), 36u);
+}
+
+/// Two sensors on a body in free motion whose path is smooth, at one rate and half a period apart.
+Streams apart(double rate, std::uint64_t seed) {
+  SimulationOptions options;
+  options.terrain = Terrain::free;
+  options.rate = 100;
+  options.poses = 6001;
+  options.seed = seed;
+  options.faults.resize(2);
+  for (SensorFaults& faults : options.faults) faults.rate = rate;
+  options.faults[1].phase = 0.5 / rate;
+  return testing::simulated_drive(options);
+}
+
+std::vector<Instant> synchronised(const Streams& data, const PairingOptions& options, bool b_first = false) {
+  Synchroniser synchroniser(options);
+  std::vector<Instant> instants;
+  const auto push = [&](Side side, const Trajectory& poses) {
+    for (const StampedPose& pose : poses)
+      for (const Instant& instant : synchroniser.push(side, pose)) instants.push_back(instant);
+  };
+  push(b_first ? Side::b : Side::a, b_first ? data.b : data.a);
+  push(b_first ? Side::a : Side::b, b_first ? data.a : data.b);
+  for (const Instant& instant : synchroniser.finish()) instants.push_back(instant);
+  return instants;
+}
+
+/// How far the instants' motions are from a rigid mounting: root mean square over all [m].
+double slack(const std::vector<Instant>& instants, const DualQuaternion& T) {
+  double squares = 0;
+  for (std::size_t i = 1; i < instants.size(); ++i) {
+    const DualQuaternion a = motion_between(instants[i - 1].a, instants[i].a),
+                         b = motion_between(instants[i - 1].b, instants[i].b);
+    const double miss = translation_length(normalized(conjugate(a) * T * b * conjugate(T)));
+    squares += miss * miss / static_cast<double>(instants.size() - 1);
+  }
+  return std::sqrt(squares);
+}
+
+PairingOptions not_cut() {
+  PairingOptions options;
+  options.synchroniser.cut_alike = false;
+  return options;
+}
+
+TEST(Synchroniser, BothStreamsLoseAlikeByInterpolation) {
+  for (const double rate : {5.0, 10.0, 20.0}) {
+    const Streams data = apart(rate, 3);
+    const std::vector<Instant> cut = synchronised(data, {}), plain = synchronised(data, not_cut());
+    EXPECT_EQ(cut.size(), plain.size());
+    std::printf("%g Hz: %.2f mm off a rigid mounting, not cut alike %.2f mm\n", rate,
+                1e3 * slack(cut, data.T), 1e3 * slack(plain, data.T));
+    EXPECT_LT(slack(cut, data.T), 0.5 * slack(plain, data.T));
+  }
+}
+
+TEST(Synchroniser, PosesOfTheSameStampStayAsTheyAre) {
+  const Streams data = simulated(300);
+  const std::vector<Instant> instants = synchronised(data, {});
+  ASSERT_EQ(instants.size(), data.b.size());
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    EXPECT_EQ(instants[i].a.vec(), data.a[i].pose.vec());
+    EXPECT_EQ(instants[i].b.vec(), data.b[i].pose.vec());
+  }
+}
+
+TEST(Synchroniser, WhichStreamComesFirstChangesNoBitOfWhatIsCut) {
+  const Streams data = apart(10, 4);
+  const std::vector<Instant> a_first = synchronised(data, {}), b_first = synchronised(data, {}, true);
+  ASSERT_EQ(a_first.size(), b_first.size());
+  for (std::size_t i = 0; i < a_first.size(); ++i) {
+    EXPECT_EQ(a_first[i].a.vec(), b_first[i].a.vec());
+    EXPECT_EQ(a_first[i].b.vec(), b_first[i].b.vec());
+  }
+}
+
+// Keys are those of b, whose periods are as long.
+TEST(Synchroniser, AWrongPoseAndAJumpStayWhereTheyAre) {
+  const Streams right = apart(10, 5);
+  Streams wrong = right;
+  const DualQuaternion jump = displacement({0.2, -0.3, 0.4}, {1.5, -1, 2});
+  wrong.b[100].pose = normalized(wrong.b[100].pose * jump);
+  for (std::size_t i = 200; i < wrong.b.size(); ++i) wrong.b[i].pose = normalized(jump * wrong.b[i].pose);
+  const std::vector<Instant> before = synchronised(right, {}), after = synchronised(wrong, {});
+  ASSERT_EQ(before.size(), after.size());
+  const auto at = [&](const std::vector<Instant>& instants, std::size_t key) {
+    for (const Instant& instant : instants)
+      if (instant.time_us == right.b[key].time_us) return instant.b;
+    return DualQuaternion{};
+  };
+  for (std::size_t key = 90; key < 250; ++key) {
+    const DualQuaternion expected = key >= 200 ? normalized(jump * at(before, key)) : at(before, key);
+    if (key == 100) {
+      EXPECT_EQ(at(after, key).vec(), wrong.b[key].pose.vec());
+      continue;
+    }
+    // a pose beside a wrong one does not know how its path bends: it stays as it is, or is cut as before
+    const DualQuaternion off = conjugate(at(after, key)) * expected;
+    const bool beside = key == 99 || key == 101 || key == 199 || key == 200;
+    EXPECT_LT(translation_length(normalized(off)), beside ? 0.05 : 1e-9) << key;
+  }
+}
+
+TEST(Synchroniser, AKeyWaitsForTheNextOneUnlessItIsTheLast) {
+  Synchroniser synchroniser{PairingOptions{}};
+  for (int i = 0; i < 20; ++i) {
+    synchroniser.push(Side::a, {i * 100'000, displacement({}, {0.1 * i, 0, 0})});
+    synchroniser.push(Side::b, {i * 100'000 + 40'000, displacement({}, {0.1 * i + 0.04, 0, 0})});
+  }
+  EXPECT_EQ(synchroniser.state().synchronised, 19u);
+  synchroniser.push(Side::a, {2'000'000, displacement({}, {2, 0, 0})});
+  EXPECT_EQ(synchroniser.state().synchronised, 19u);
+  EXPECT_EQ(synchroniser.finish().size(), 1u);
 }
 
 TEST(Screening, RejectsGlitchesAndBeginsAChainWhereTrackingJumped) {

@@ -28,6 +28,9 @@ void check(const SynchroniserOptions& options) {
   require("poses_to_decide", options.poses_to_decide >= 2, "at least 2");
   require("most_waiting", options.most_waiting >= options.poses_to_decide, "at least poses_to_decide");
   require("slower_by", options.slower_by, {0, 1e9}, "");
+  require("most_cut", options.most_cut, {0, 10}, "");
+  require("most_bent", options.most_bent, {0, 10}, "");
+  require("typical_steps", options.typical_steps >= 1 && options.typical_steps <= 1000, "1 to 1000");
 }
 
 void check(const ClockOptions& options) {

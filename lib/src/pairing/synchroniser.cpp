@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "pairing/cut_alike.hpp"
+
 namespace egocal {
 
 namespace {
@@ -56,13 +58,13 @@ std::vector<Instant> Synchroniser::push(Side side, const StampedPose& pose) {
   if (!state_.keys && state_.waiting[0].size() >= options_.poses_to_decide &&
       state_.waiting[1].size() >= options_.poses_to_decide)
     decide_keys();
-  return state_.keys ? synchronise() : std::vector<Instant>{};
+  return state_.keys ? synchronise(false) : std::vector<Instant>{};
 }
 
 std::vector<Instant> Synchroniser::finish() {
   if (!state_.keys && !state_.waiting[0].empty() && !state_.waiting[1].empty()) decide_keys();
   if (!state_.keys) return {};
-  std::vector<Instant> instants = synchronise();
+  std::vector<Instant> instants = synchronise(true);
   auto& keys = state_.waiting[index(*state_.keys)];
   state_.rejections.add(Rejection::no_partner, keys.size());
   keys.clear();
@@ -72,6 +74,8 @@ std::vector<Instant> Synchroniser::finish() {
 std::vector<Instant> Synchroniser::begin_chain() {
   std::vector<Instant> instants = finish();
   ++state_.chain;
+  state_.previous_key.reset();
+  state_.key_steps.clear();
   for (auto& waiting : state_.waiting) waiting.clear();
   return instants;
 }
@@ -85,35 +89,44 @@ void Synchroniser::decide_keys() {
   state_.period_us = std::max<std::int64_t>(1, std::max(period_a, period_b));
 }
 
-std::vector<Instant> Synchroniser::synchronise() {
+std::vector<Instant> Synchroniser::synchronise(bool ending) {
   std::vector<Instant> instants;
   auto& keys = state_.waiting[index(*state_.keys)];
   auto& others = state_.waiting[1 - index(*state_.keys)];
+  const auto pass_key = [&] {
+    state_.last_key_us = keys.front().time_us;
+    state_.previous_key = keys.front();
+    keys.pop_front();
+  };
   while (!keys.empty() && !others.empty()) {
-    const StampedPose& key = keys.front();
+    const StampedPose key = keys.front();
     if (key.time_us < others.front().time_us) {
-      state_.last_key_us = key.time_us;
       state_.rejections.add(Rejection::no_partner);
-      keys.pop_front();
+      pass_key();
       continue;
     }
     while (others.size() > 1 && others[1].time_us <= key.time_us) others.pop_front();
     const bool exact = others.front().time_us == key.time_us;
     if (!exact && others.size() < 2) break;
-    state_.last_key_us = key.time_us;
     if (!exact && others[1].time_us - others[0].time_us > max_gap_us_) {
       state_.rejections.add(Rejection::gap);
-      keys.pop_front();
+      pass_key();
       continue;
     }
-    DualQuaternion other = others[0].pose;
-    if (!exact)
-      other = interpolate(others[0].pose, others[1].pose,
-                          static_cast<double>(key.time_us - others[0].time_us) /
-                              static_cast<double>(others[1].time_us - others[0].time_us));
-    Instant instant{key.time_us, key.pose, other, state_.chain, ++state_.synchronised};
+    Instant instant{key.time_us, key.pose, others[0].pose, state_.chain, 0};
+    if (!exact) {
+      if (options_.cut_alike && keys.size() < 2 && !ending) break;
+      instant.b = interpolate(others[0].pose, others[1].pose,
+                              static_cast<double>(key.time_us - others[0].time_us) /
+                                  static_cast<double>(others[1].time_us - others[0].time_us));
+      if (options_.cut_alike && state_.previous_key && keys.size() > 1)
+        instant.a = detail::cut_alike({*state_.previous_key, key, keys[1]},
+                                      {others[0].time_us, others[1].time_us, max_gap_us_}, state_.key_steps,
+                                      options_);
+    }
+    instant.number = ++state_.synchronised;
     if (*state_.keys == Side::b) std::swap(instant.a, instant.b);
-    keys.pop_front();
+    pass_key();
     instants.push_back(instant);
   }
   return instants;

@@ -82,7 +82,8 @@ double InterpolationLoss::part() const {
   const auto steps = static_cast<double>(state_.steps);
   const double periods = state_.passed > state_.steps ? steps / static_cast<double>(state_.passed) : 1;
   const double interpolated = 1 - static_cast<double>(state_.together) / steps;
-  return options_.share * periods * interpolated * std::clamp(state_.lost / state_.energy, 0.0, 1.0);
+  const double share = options_.cut_alike ? options_.share : options_.share_not_cut;
+  return share * periods * interpolated * std::clamp(state_.lost / state_.energy, 0.0, 1.0);
 }
 
 }  // namespace egocal

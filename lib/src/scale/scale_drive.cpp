@@ -28,6 +28,7 @@ ScaleDriveOptions completed(ScaleDriveOptions options) {
   options.starts = std::max<std::size_t>(1, options.starts);
   options.interpolation.motion = options.motion;
   options.interpolation.starts = options.starts;
+  options.interpolation.cut_alike = options.pairing.synchroniser.cut_alike;
   options.least_block = std::max<std::size_t>(1, options.least_block);
   return options;
 }

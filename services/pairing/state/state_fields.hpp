@@ -38,8 +38,8 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
 }
 
 void fields(auto& archive, services::Is<SynchroniserOptions> auto& value) {
-  auto& [poses_to_decide, most_waiting, slower_by] = value;
-  archive(poses_to_decide, most_waiting, slower_by);
+  auto& [poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps] = value;
+  archive(poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps);
 }
 
 void fields(auto& archive, services::Is<ClockOptions> auto& value) {
@@ -164,9 +164,16 @@ void fields(auto& archive, services::Is<Instant> auto& value) {
   archive(time_us, a, b, chain, number);
 }
 
+void fields(auto& archive, services::Is<KeyStep> auto& value) {
+  auto& [length, angle] = value;
+  archive(length, angle);
+}
+
 void fields(auto& archive, services::Is<SynchroniserState> auto& value) {
-  auto& [newest_us, waiting, keys, period_us, last_key_us, synchronised, chain, rejections] = value;
-  archive(newest_us, waiting, keys, period_us, last_key_us, synchronised, chain, rejections);
+  auto& [newest_us, waiting, keys, period_us, last_key_us, previous_key, key_steps, synchronised, chain,
+         rejections] = value;
+  archive(newest_us, waiting, keys, period_us, last_key_us, previous_key, key_steps, synchronised, chain,
+          rejections);
 }
 
 void fields(auto& archive, services::Is<ScreeningState> auto& value) {
@@ -305,7 +312,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 19;
+constexpr int state_layout = 20;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

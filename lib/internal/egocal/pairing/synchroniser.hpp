@@ -15,6 +15,12 @@
 
 namespace egocal {
 
+/// From one key to the next: what is typical shows which poses are off their path.
+struct KeyStep {
+  double length = 0;  ///< [m]
+  double angle = 0;   ///< [rad]
+};
+
 /// All that a Synchroniser remembers. Bounded; continuing from a copy gives the same bits.
 struct SynchroniserState {
   std::array<std::optional<std::int64_t>, 2> newest_us;  ///< of each stream
@@ -22,13 +28,16 @@ struct SynchroniserState {
   std::optional<Side> keys;    ///< the slower stream, at whose stamps poses are paired; empty until known
   std::int64_t period_us = 0;  ///< typical, of the slower stream; 0 until known
   std::optional<std::int64_t> last_key_us;  ///< newest stamp that was paired or given up
+  std::optional<StampedPose> previous_key;  ///< the pose with it, within a chain
+  std::deque<KeyStep> key_steps;            ///< the last ones up to keys that no other pose has the stamp of
   std::uint64_t synchronised = 0;           ///< instants
   std::uint64_t chain = 0;                  ///< of the instants: clocks so far
   Rejections rejections;                    ///< out of order, no partner, gap
 };
 
 /// Two streams of poses in, instants out: the faster stream is interpolated along a screw at the stamps of
-/// the slower one. The result depends on the poses of each stream alone, not on how the two interleave.
+/// the slower one, whose poses cut corners as interpolation does (cut_alike()), once the next one is there.
+/// The result depends on the poses of each stream alone, not on how the two interleave.
 class Synchroniser {
  public:
   /// Uses max_gap and the options of its own stage.
@@ -49,7 +58,8 @@ class Synchroniser {
 
  private:
   void decide_keys();
-  std::vector<Instant> synchronise();
+  /// ending: no next key will come.
+  std::vector<Instant> synchronise(bool ending);
 
   SynchroniserOptions options_;
   std::int64_t max_gap_us_ = 0;

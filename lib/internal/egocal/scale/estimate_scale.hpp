@@ -16,11 +16,6 @@ struct DriveScaleOptions {
   /// A motion that fits this many times worse than the median one is omitted; the rest is solved again. Five
   /// standard deviations.
   double most_residual = 25;
-  /// Interpolates each stream at the stamps of the other one in turn, so that what interpolation takes off
-  /// the lengths cancels. The change that the second half of the motions makes is added to the standard
-  /// deviation, times interpolation_doubt. Study: docs/scale.md, "Interpolation".
-  bool both_stamps = true;
-  double interpolation_doubt = 1;
   int rounds = 4;  ///< a limit: the pairing of the scaled streams is repeated until the scale stays
 };
 

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What interpolation takes off the path of one stream is taken off the path of the other one as well.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "egocal/pairing/options.hpp"
+#include "egocal/pairing/synchroniser.hpp"
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal::detail {
+
+struct Neighbours {
+  const StampedPose& before;
+  const StampedPose& pose;
+  const StampedPose& after;
+};
+
+/// Stamps of the two poses that are interpolated, and the longest time to a neighbour [us].
+struct Interpolated {
+  std::int64_t from_us = 0, to_us = 0, max_gap_us = 0;
+};
+
+/// The middle pose, which is paired with an interpolated one. With h the time between the two poses that are
+/// interpolated, x the time since the first, and p'' how the path bends, the interpolated pose is x (h - x) /
+/// 2 p'' off its path. The middle pose is h_before h_after / 2 p'' off the path between its neighbours: it
+/// moves towards that path by the quotient of the two. Both sensors are on one body, so their paths bend
+/// alike. Returns the pose as it is where a neighbour is too far away or the options do not allow it. Adds to
+/// `steps`.
+DualQuaternion cut_alike(const Neighbours& neighbours, const Interpolated& interpolated,
+                         std::deque<KeyStep>& steps, const SynchroniserOptions& options);
+
+}  // namespace egocal::detail

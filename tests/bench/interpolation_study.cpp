@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Streams that are not measured at the same times: how far an extrinsic is off because one of them is
+// interpolated, with both streams cut alike (lib/src/pairing/cut_alike.hpp) and without. A table of
+// docs/method.md.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "egocal/calibrate.hpp"
+#include "egocal/cli/cli.hpp"
+#include "egocal/io/whole_file.hpp"
+#include "markdown_tables.hpp"
+#include "support/simulated_drive.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace {
+
+using namespace egocal;
+
+struct Case {
+  const char* name;
+  Terrain terrain;
+  double rate_a, rate_b;  ///< [Hz]
+};
+
+constexpr Case cases[] = {
+    {"free, 4 Hz and 4 Hz", Terrain::free, 4, 4},     {"free, 10 Hz and 4 Hz", Terrain::free, 10, 4},
+    {"free, 10 Hz and 7 Hz", Terrain::free, 10, 7},   {"free, 10 Hz and 10 Hz", Terrain::free, 10, 10},
+    {"free, 20 Hz and 20 Hz", Terrain::free, 20, 20}, {"road, 10 Hz and 10 Hz", Terrain::rough, 10, 10}};
+
+testing::Streams drive(const Case& of, std::uint64_t seed) {
+  SimulationOptions options;
+  options.terrain = of.terrain;
+  options.seed = seed;
+  options.rate = 50;  // of the path
+  options.poses = 6'001;
+  options.relative_noise = 0.01;
+  options.faults.resize(2);
+  options.faults[0].rate = of.rate_a;
+  options.faults[1].rate = of.rate_b;
+  options.faults[1].phase = (0.1 + 0.1 * static_cast<double>(seed % 8)) / of.rate_b;
+  return testing::simulated_drive(options);
+}
+
+/// Squares [m^2] over directions and drives.
+struct Measured {
+  double errors = 0, variances = 0;
+  int within = 0, of = 0;
+
+  void add(const testing::Streams& streams, bool cut_alike) {
+    CalibrationOptions options;
+    options.pairing.synchroniser.cut_alike = cut_alike;
+    const Calibration found = calibrate(streams.a, streams.b, options);
+    const auto error = detail::frame_a_difference(streams.T, to_dual_quaternion(found.T_a_b));
+    for (int i = 0; i < 3; ++i) {
+      const double stddev = found.observability.stddev[static_cast<std::size_t>(i)];
+      if (!std::isfinite(stddev)) continue;
+      errors += error[i] * error[i];
+      variances += stddev * stddev;
+      within += std::abs(error[i]) <= 1.96 * stddev ? 1 : 0;
+      ++of;
+    }
+  }
+
+  std::string centimetres(double squares) const {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f cm", 100 * std::sqrt(3 * squares / std::max(1, of)));
+    return text;
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string write, check, only;
+  int drives = 12;
+  egocal::cli::Program app("interpolation_study",
+                           "Streams that are not measured at the same times: a table of docs/method.md");
+  app.add_option("--drives", drives, "of each row").check(egocal::cli::Check::range(1, 1000)).show_default();
+  app.add_option("--only", only, "rows whose name contains this");
+  app.add_option("--write", write, "a page: put the table in its place");
+  app.add_option("--check", check, "a page: exit 1 where its table differs");
+  if (const auto code = app.parse(argc, argv)) return *code;
+
+  bench::Table table{"interpolation",
+                     {{"drive, rates", "error, not cut alike", "standard deviation", "within", "error",
+                       "standard deviation", "within"}}};
+  for (const Case& of : cases) {
+    if (std::string(of.name).find(only) == std::string::npos) continue;
+    Measured plain, cut;
+    for (int seed = 1; seed <= drives; ++seed) {
+      const testing::Streams streams = drive(of, static_cast<std::uint64_t>(seed));
+      plain.add(streams, false);
+      cut.add(streams, true);
+    }
+    table.rows.push_back({of.name, plain.centimetres(plain.errors), plain.centimetres(plain.variances),
+                          bench::part(plain.within, plain.of), cut.centimetres(cut.errors),
+                          cut.centimetres(cut.variances), bench::part(cut.within, cut.of)});
+  }
+  std::printf("%s\n", bench::markdown(table).c_str());
+  if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
+  if (check.empty()) return 0;
+  const std::vector<std::string> differences =
+      bench::differences(bench::with_rows_of(bench::read_page(check), table), table, 0.03);
+  for (const std::string& difference : differences) std::printf("%s\n", difference.c_str());
+  return differences.empty() ? 0 : 1;
+}
