@@ -25,6 +25,7 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   const std::size_t each =
       std::clamp<std::size_t>(instants.time.size() / options.mount.most_motions, 1, steps);
   const double longest = options.motions.most_stretched * static_cast<double>(steps) * instants.period;
+  pairs.reserve(instants.time.size() / each + 1);
   for (std::size_t i = 0; i + steps < instants.time.size(); i += each) {
     const std::size_t k = i + steps;
     if (instants.time[k] - instants.time[i] > longest) continue;
@@ -52,7 +53,8 @@ std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const 
   const std::size_t steps =
       std::min(longest, std::max(mount.least_stride, static_cast<std::size_t>(std::max(1, answered.stride))));
   const std::size_t shortest = std::clamp<std::size_t>(instants.time.size() / mount.most_motions, 1, steps);
-  std::vector<std::vector<MotionPair>> strides = {pairs_of(instants, answered, options, shortest)};
+  std::vector<std::vector<MotionPair>> strides;
+  strides.push_back(pairs_of(instants, answered, options, shortest));
   if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, steps));
   return strides;
 }

@@ -302,7 +302,8 @@ ShownChange shown_change(const Move& move) {
 }
 
 MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& options) {
-  const std::vector<MotionPair> moving = detail::moving_pairs(pairs, options.least_motion);
+  std::vector<MotionPair> kept;
+  const Pairs moving = detail::moving_pairs(pairs, options.least_motion, kept);
   if (moving.size() < 2) return {};
   return Finder(moving, pairs.front().begin_us, problem, options).run();
 }
@@ -341,8 +342,8 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
 
 std::optional<double> chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,
                                      const MovesOptions& options) {
-  const std::vector<MotionPair> moving = detail::moving_pairs(pairs, options.least_motion);
-  pairs = moving;
+  std::vector<MotionPair> kept;
+  pairs = detail::moving_pairs(pairs, options.least_motion, kept);
   if (pairs.size() < 2) return std::nullopt;
   const std::size_t least = std::max(options.least_block_pairs, 3 * detail::overlap_of(pairs));
   const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));

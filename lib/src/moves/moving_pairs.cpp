@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moves/moving_pairs.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace egocal::detail {
 
@@ -30,12 +32,18 @@ bool moves(const DualQuaternion& motion, const Typical& typical, double least) {
 
 }  // namespace
 
-std::vector<MotionPair> moving_pairs(std::span<const MotionPair> pairs, double least_motion) {
+std::span<const MotionPair> moving_pairs(std::span<const MotionPair> pairs, double least_motion,
+                                         std::vector<MotionPair>& kept) {
   const Typical a = typical(pairs, &MotionPair::a), b = typical(pairs, &MotionPair::b);
-  std::vector<MotionPair> moving;
-  for (const MotionPair& pair : pairs)
-    if (moves(pair.a, a, least_motion) && moves(pair.b, b, least_motion)) moving.push_back(pair);
-  return moving;
+  const auto moving = [&](const MotionPair& pair) {
+    return moves(pair.a, a, least_motion) && moves(pair.b, b, least_motion);
+  };
+  const auto count = std::count_if(pairs.begin(), pairs.end(), moving);
+  if (static_cast<std::size_t>(count) == pairs.size()) return pairs;
+  kept.clear();
+  kept.reserve(static_cast<std::size_t>(count));
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(kept), moving);
+  return kept;
 }
 
 }  // namespace egocal::detail
