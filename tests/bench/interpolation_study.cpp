@@ -25,12 +25,16 @@ struct Case {
   const char* name;
   Terrain terrain;
   double rate_a, rate_b;  ///< [Hz]
+  double dropped = 0;     ///< part of the poses of both that are missing
 };
 
-constexpr Case cases[] = {
-    {"free, 4 Hz and 4 Hz", Terrain::free, 4, 4},     {"free, 10 Hz and 4 Hz", Terrain::free, 10, 4},
-    {"free, 10 Hz and 7 Hz", Terrain::free, 10, 7},   {"free, 10 Hz and 10 Hz", Terrain::free, 10, 10},
-    {"free, 20 Hz and 20 Hz", Terrain::free, 20, 20}, {"road, 10 Hz and 10 Hz", Terrain::rough, 10, 10}};
+constexpr Case cases[] = {{"free, 4 Hz and 4 Hz", Terrain::free, 4, 4},
+                          {"free, 10 Hz and 4 Hz", Terrain::free, 10, 4},
+                          {"free, 10 Hz and 7 Hz", Terrain::free, 10, 7},
+                          {"free, 10 Hz and 10 Hz", Terrain::free, 10, 10},
+                          {"free, 10 Hz and 10 Hz, 30 % lost", Terrain::free, 10, 10, 0.3},
+                          {"free, 20 Hz and 20 Hz", Terrain::free, 20, 20},
+                          {"road, 10 Hz and 10 Hz", Terrain::rough, 10, 10}};
 
 testing::Streams drive(const Case& of, std::uint64_t seed) {
   SimulationOptions options;
@@ -42,6 +46,7 @@ testing::Streams drive(const Case& of, std::uint64_t seed) {
   options.faults.resize(2);
   options.faults[0].rate = of.rate_a;
   options.faults[1].rate = of.rate_b;
+  for (SensorFaults& faults : options.faults) faults.dropped = of.dropped;
   options.faults[1].phase = (0.1 + 0.1 * static_cast<double>(seed % 8)) / of.rate_b;
   return testing::simulated_drive(options);
 }

@@ -80,12 +80,12 @@ struct SynchroniserOptions {
   /// rate jitter by a few percent and must not swap roles from drive to drive.
   double slower_by = 10.0 / 9.0;
   /// Interpolation cuts the corners of the path of the interpolated stream. The pose that it is paired with
-  /// cuts them alike: it moves towards the path between its neighbours, by at most most_cut of the way, and
-  /// not where it is off that path by more than most_bent of the typical step of its stream, the median of
-  /// the last `typical_steps`: an outlier or a jump. In free motion the error of the position falls from 5.9
-  /// to 1.8 cm at 4 Hz and from 1.7 to 1.1 cm at 10 Hz. Study: docs/method.md, "Interpolation".
+  /// cuts them alike: it moves towards the path between its neighbours. It does not where that were more than
+  /// most_cut of the way (beyond 1 it moves to the other side: poses of the interpolated stream are missing),
+  /// or where it is off that path by more than most_bent of the typical step of its stream, the median of the
+  /// last `typical_steps`: an outlier or a jump. Study: docs/method.md, "Interpolation".
   bool cut_alike = true;
-  double most_cut = 1, most_bent = 1;
+  double most_cut = 4, most_bent = 1;
   std::size_t typical_steps = 9;  ///< two outliers are four steps
 };
 
