@@ -304,8 +304,10 @@ PairingOptions pairing_options(const CalibrationOptions& options) {
 
 }  // namespace
 
-Calibrator::Calibrator(CalibrationOptions options)
-    : impl_(new Impl{options, MotionPairing(pairing_options(options))}) {}
+Calibrator::Calibrator(CalibrationOptions options) {
+  MotionPairing pairing(pairing_options(options));
+  impl_.reset(new Impl{std::move(options), std::move(pairing)});
+}
 Calibrator::~Calibrator() = default;
 Calibrator::Calibrator(Calibrator&&) noexcept = default;
 Calibrator& Calibrator::operator=(Calibrator&&) noexcept = default;

@@ -61,11 +61,26 @@ Trajectory from_matrices(const Array& times, const Array& matrices, const char* 
     Eigen::Matrix4d matrix;
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column) matrix(row, column) = at(i, row, column);
-    const std::string label = std::string(name) + " row " + std::to_string(i);
-    trajectory.push_back(
-        {to_microseconds(times.at(i), name, i), to_dual_quaternion(to_pose(matrix, label.c_str()))});
+    trajectory.push_back({to_microseconds(times.at(i), name, i),
+                          to_dual_quaternion(to_pose(matrix, name, static_cast<std::size_t>(i)))});
   }
   return in_order(std::move(trajectory));
+}
+
+constexpr const char* not_rigid = "not a rigid displacement (rotation, translation, last row 0 0 0 1)";
+
+bool rigid(const Eigen::Matrix4d& matrix) {
+  constexpr double tolerance = 1e-3;  // what three printed decimals of a rotation matrix leave
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  return matrix.allFinite() &&
+         (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
+         R.determinant() > 0 &&
+         (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < tolerance;
+}
+
+Pose pose_of_rigid(const Eigen::Matrix4d& matrix) {
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  return {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()};
 }
 
 }  // namespace
@@ -78,14 +93,13 @@ Eigen::Matrix4d to_matrix(const Pose& T) {
 }
 
 Pose to_pose(const Eigen::Matrix4d& matrix, const char* name) {
-  constexpr double tolerance = 1e-3;  // what three printed decimals of a rotation matrix leave
-  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  const bool rigid = matrix.allFinite() &&
-                     (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
-                     R.determinant() > 0 &&
-                     (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < tolerance;
-  if (!rigid) refuse(name, "not a rigid displacement (rotation, translation, last row 0 0 0 1)");
-  return {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()};
+  if (!rigid(matrix)) refuse(name, not_rigid);
+  return pose_of_rigid(matrix);
+}
+
+Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number) {
+  if (!rigid(matrix)) refuse((std::string(name) + " " + std::to_string(number)).c_str(), not_rigid);
+  return pose_of_rigid(matrix);
 }
 
 Trajectory to_trajectory(const py::handle& object, const char* name) {

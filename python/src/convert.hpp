@@ -25,6 +25,8 @@ Eigen::Matrix4d to_matrix(const Pose& T);
 /// Throws ValueError where the matrix is not a rigid displacement: not finite, last row not 0 0 0 1, or a
 /// rotation that is off by more than 1e-3. name: the argument, for the message.
 Pose to_pose(const Eigen::Matrix4d& matrix, const char* name);
+/// The same for one of many: the message has its number.
+Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number);
 
 /// A trajectory in any of the forms that solve() accepts: a file name (with :topic for a bag), an (N, 8)
 /// array of t x y z qx qy qz qw [s, m], or a pair (times (N,) [s], matrices (N, 4, 4)). Unsorted rows are

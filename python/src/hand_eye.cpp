@@ -47,21 +47,21 @@ class Rows {
 
 /// A rotation as a matrix (3, 3) or as a rotation vector of three numbers [rad]; a translation of three.
 Pose pose_of(const Rows& rotations, const Rows& translations, std::size_t i, const char* list) {
-  const std::string name = std::string(list) + " " + std::to_string(i);
   const std::size_t width = rotations.width(i);
   if ((width != 9 && width != 3) || translations.width(i) != 3)
-    throw py::value_error(name +
+    throw py::value_error(std::string(list) + " " + std::to_string(i) +
                           ": expected a 3 x 3 rotation or a rotation vector, and 3 numbers of translation");
   const Eigen::Map<const Eigen::Vector3d> vector(translations[i]);
   if (width == 3) {
     const Eigen::Vector3d axis = Eigen::Map<const Eigen::Vector3d>(rotations[i]);
-    if (!axis.allFinite() || !vector.allFinite()) throw py::value_error(name + ": not finite");
+    if (!axis.allFinite() || !vector.allFinite())
+      throw py::value_error(std::string(list) + " " + std::to_string(i) + ": not finite");
     return {rotation_exp(axis), vector};
   }
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotations[i]);
   matrix.topRightCorner<3, 1>() = vector;
-  return to_pose(matrix, name.c_str());
+  return to_pose(matrix, list, i);
 }
 
 std::vector<Pose> poses_of(const py::sequence& rotations, const py::sequence& translations,

@@ -86,6 +86,7 @@ Matrix3d orientation(std::vector<Step>& steps, const RobustFitOptions& options) 
     }
     q = symmetric_eigen<4>(sum).vectors.col(0);
     std::vector<double> squares;
+    squares.reserve(steps.size());
     for (const Step& step : steps)
       squares.push_back((quaternion_product(step.s, q) - quaternion_product(q, step.w)).squaredNorm());
     reweight(steps, squares, options.inlier);
@@ -116,6 +117,7 @@ Matrix3d linear_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFit
     A.diagonal().array() += 1e-6 * A.trace() / 12 + 1e-300;
     x = A.ldlt().solve(g);
     std::vector<double> squares;
+    squares.reserve(steps.size());
     for (const Step& step : steps) squares.push_back((rows_of(step, R) * x + step.t_s).squaredNorm());
     reweight(steps, squares, options.inlier);
   }
@@ -127,9 +129,9 @@ Matrix3d linear_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFit
 std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
   if (!W.allFinite()) return {};
   const Eigen::JacobiSVD<Matrix3d> svd(W, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3d sizes = svd.singularValues();
+  const Vector3d& sizes = svd.singularValues();
   if (!(sizes[1] > 0.3 * sizes[0])) return {};
-  const Matrix3d U = svd.matrixU(), V = svd.matrixV();
+  const Matrix3d &U = svd.matrixU(), &V = svd.matrixV();
   const Matrix3d one = U * V.transpose();
   if (sizes[2] > 0.3 * sizes[0]) return {one};
   return {one, U * Vector3d(1, 1, -1).asDiagonal() * V.transpose()};

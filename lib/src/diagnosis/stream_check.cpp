@@ -195,6 +195,7 @@ std::vector<Window> windows_of(const Motions& motions, std::size_t count) {
 std::optional<double> limit_of_agreement(const std::vector<Window>& windows,
                                          const StreamCheckOptions& options) {
   std::vector<double> misfits;
+  misfits.reserve(windows.size());
   for (const Window& window : windows) misfits.push_back(std::max(window.misfit(), options.same));
   std::sort(misfits.begin(), misfits.end());
   std::optional<double> limit;

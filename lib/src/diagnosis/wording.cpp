@@ -14,8 +14,7 @@ namespace egocal::detail {
 namespace {
 
 std::string fits(const Finding& finding) {
-  const std::string smaller =
-      format("the squared residuals are %.3g times smaller then", finding.improvement);
+  std::string smaller = format("the squared residuals are %.3g times smaller then", finding.improvement);
   if (finding.certain) return smaller;
   constexpr double alike = 2;  // wording alone: residuals within this factor fit both readings
   return finding.improvement > alike ? smaller + ", and another reading fits as well"

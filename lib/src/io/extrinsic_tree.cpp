@@ -87,6 +87,7 @@ ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std
   ExtrinsicTree tree;
   tree.root = root.empty() ? pairs.front().parent : root;
   std::vector<const NamedExtrinsic*> ranked;
+  ranked.reserve(pairs.size());
   for (const NamedExtrinsic& pair : pairs) ranked.push_back(&pair);
   std::stable_sort(ranked.begin(), ranked.end(), [](const NamedExtrinsic* one, const NamedExtrinsic* other) {
     return more_certain(*one, *other);

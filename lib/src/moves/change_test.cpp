@@ -40,6 +40,7 @@ struct Division {
 /// Where the lengths of residuals end: those of blocks that are longer count as if they were this long.
 double longest_length(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
   std::vector<double> lengths;
+  lengths.reserve(residuals.size());
   for (const Parameters& z : residuals) lengths.push_back(z.norm());
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());

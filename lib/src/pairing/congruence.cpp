@@ -107,6 +107,7 @@ struct Halves {
 double moving_size(const std::deque<Seen>& newest, const CongruenceOptions& options) {
   if (newest.empty()) return 0;
   std::vector<double> sizes;
+  sizes.reserve(newest.size());
   for (const Seen& one : newest) sizes.push_back(one.size);
   const std::size_t larger = std::min(options.first_estimate, (sizes.size() + 1) / 2);
   return detail::order_statistic(sizes, sizes.size() - larger);

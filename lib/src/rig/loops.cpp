@@ -115,6 +115,7 @@ std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
         if (whole.has(a, b) && whole.has(b, c) && whole.has(c, a)) loops.push_back({{a, b, c}});
   for (Loop& loop : loops) {
     std::vector<Vector6d> misfits;
+    misfits.reserve(without.size());
     for (const Extrinsics& part : without) misfits.push_back(part.misfit(loop.sensors));
     judge(loop, whole.misfit(loop.sensors), misfits, attenuations(loop, whole, pairs, timed), options,
           loops.size());

@@ -37,6 +37,7 @@ std::vector<std::size_t> order_of(const std::vector<PoseSample>& samples) {
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<std::array<double, 16>> numbers;
+  numbers.reserve(samples.size());
   for (const PoseSample& sample : samples) numbers.push_back(numbers_of(sample));
   std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     return numbers[i] == numbers[j] ? i < j : numbers[i] < numbers[j];
@@ -151,6 +152,7 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   const std::vector<PoseSample> as_read = detail::reread(given, options.read_a, options.read_b);
   const std::vector<std::size_t> order = order_of(as_read);
   std::vector<PoseSample> samples;
+  samples.reserve(order.size());
   for (const std::size_t i : order) samples.push_back(as_read[i]);
   const SampleSet set(samples);
   AgreeingSamples agreeing = find_agreeing(set, options);

@@ -88,7 +88,7 @@ bool ScaleCourse::changes() const {
 
 ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const PairingOptions& given,
                               const ScaleSolution& solution, Side side, const ScaleCourseOptions& options) {
-  const ScaleCourse unchanged = constant(solution.scale);
+  ScaleCourse unchanged = constant(solution.scale);
   ScaleCourse course = unchanged;
   PairingOptions pairing = given;
   if (!solution.observable) return unchanged;

@@ -95,6 +95,7 @@ void PartSearch::fit_line() {
   auto [level, slope] = line_through(shown);
   // parts that found another peak
   std::vector<double> distances;
+  distances.reserve(shown.size());
   for (const PartOffset& point : shown)
     distances.push_back(std::abs(point.offset - level - slope * point.time));
   std::vector<double> sorted = distances;
