@@ -58,13 +58,13 @@ std::vector<Instant> Synchroniser::push(Side side, const StampedPose& pose) {
   if (!state_.keys && state_.waiting[0].size() >= options_.poses_to_decide &&
       state_.waiting[1].size() >= options_.poses_to_decide)
     decide_keys();
-  return state_.keys ? synchronise(false) : std::vector<Instant>{};
+  return state_.keys ? synchronise() : std::vector<Instant>{};
 }
 
 std::vector<Instant> Synchroniser::finish() {
   if (!state_.keys && !state_.waiting[0].empty() && !state_.waiting[1].empty()) decide_keys();
   if (!state_.keys) return {};
-  std::vector<Instant> instants = synchronise(true);
+  std::vector<Instant> instants = synchronise();
   auto& keys = state_.waiting[index(*state_.keys)];
   state_.rejections.add(Rejection::no_partner, keys.size());
   keys.clear();
@@ -89,7 +89,7 @@ void Synchroniser::decide_keys() {
   state_.period_us = std::max<std::int64_t>(1, std::max(period_a, period_b));
 }
 
-std::vector<Instant> Synchroniser::synchronise(bool ending) {
+std::vector<Instant> Synchroniser::synchronise() {
   std::vector<Instant> instants;
   auto& keys = state_.waiting[index(*state_.keys)];
   auto& others = state_.waiting[1 - index(*state_.keys)];
@@ -115,11 +115,11 @@ std::vector<Instant> Synchroniser::synchronise(bool ending) {
     }
     Instant instant{key.time_us, key.pose, others[0].pose, state_.chain, 0};
     if (!exact) {
-      if (options_.cut_alike && keys.size() < 2 && !ending) break;
+      if (options_.cut_alike && keys.size() < 2) break;
       instant.b = interpolate(others[0].pose, others[1].pose,
                               static_cast<double>(key.time_us - others[0].time_us) /
                                   static_cast<double>(others[1].time_us - others[0].time_us));
-      if (options_.cut_alike && state_.previous_key && keys.size() > 1)
+      if (options_.cut_alike && state_.previous_key)
         instant.a = detail::cut_alike({*state_.previous_key, key, keys[1]},
                                       {others[0].time_us, others[1].time_us, max_gap_us_}, state_.key_steps,
                                       options_);

@@ -46,7 +46,9 @@ class Synchroniser {
 
   /// Takes the next pose of one stream: unit, on the common clock. Returns the instants that it completed.
   std::vector<Instant> push(Side side, const StampedPose& pose);
-  /// No more poses will come: synchronises what a drive too short to show its slower stream has held back.
+  /// No more poses will come: synchronises what a drive too short to show its slower stream has held back. A
+  /// last key that waits for the next one stays without a partner, so that this drive and one that is still
+  /// running have the same instants.
   std::vector<Instant> finish();
 
   /// The next poses are on another clock: what waits is synchronised or rejected, and a new chain begins.
@@ -58,8 +60,7 @@ class Synchroniser {
 
  private:
   void decide_keys();
-  /// ending: no next key will come.
-  std::vector<Instant> synchronise(bool ending);
+  std::vector<Instant> synchronise();
 
   SynchroniserOptions options_;
   std::int64_t max_gap_us_ = 0;
