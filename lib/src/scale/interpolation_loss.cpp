@@ -3,6 +3,7 @@
 #include "egocal/scale/interpolation_loss.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "egocal/geometry/pose.hpp"
 
@@ -19,6 +20,12 @@ std::size_t index(Side side) {
 }
 
 }  // namespace
+
+InterpolationLoss::InterpolationLoss(const InterpolationLossOptions& options)
+    : InterpolationLoss(options, InterpolationLossState()) {}
+
+InterpolationLoss::InterpolationLoss(const InterpolationLossOptions& options, InterpolationLossState state)
+    : options_(options), state_(std::move(state)) {}
 
 void InterpolationLoss::stamp(Side side, std::int64_t time_us) {
   std::deque<std::int64_t>& stamps = state_.stamps[index(side)];

@@ -52,8 +52,8 @@ struct InterpolationLossState {
 /// that is known. Depends on the poses of each stream alone, not on how the two interleave.
 class InterpolationLoss {
  public:
-  explicit InterpolationLoss(const InterpolationLossOptions& options, InterpolationLossState state = {})
-      : options_(options), state_(std::move(state)) {}
+  explicit InterpolationLoss(const InterpolationLossOptions& options);
+  InterpolationLoss(const InterpolationLossOptions& options, InterpolationLossState state);
 
   /// The stamp of a pose [us], on the clock of a. Not called where that clock is not known: then all instants
   /// count as interpolated, over the period of the slower stream.
