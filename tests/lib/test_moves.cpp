@@ -191,7 +191,7 @@ TEST(Moves, AVehicleThatStopsOftenHasNotMovedItsMount) {
         if (moved) options.faults[1].mount_changes = {bump(60.05, 2, 3)};
         auto trajectories = simulate(options);
         testing::Random random(5);
-        for (const std::size_t at : {1000, 800, 600, 400, 200})
+        for (const std::size_t at : {1000u, 800u, 600u, 400u, 200u})
           for (Trajectory& one : trajectories)
             one = testing::with_stand(one, at, 400, 100'000, jitter, random);
         const MovesResult result = moves_of(trajectories[0], trajectories[1]);
