@@ -18,8 +18,6 @@ namespace egocal::simulation {
 
 namespace {
 
-/// What a process may wait before it is started again.
-constexpr std::int64_t longest_pause_us = 5'100'000;
 /// Answers are that recent while data come.
 constexpr std::int64_t recent_us = 1'000'000;
 /// Messages of a sensor that pairing knows again.
