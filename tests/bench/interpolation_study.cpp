@@ -12,7 +12,6 @@
 
 #include "egocal/calibrate.hpp"
 #include "egocal/cli/cli.hpp"
-#include "egocal/io/whole_file.hpp"
 #include "markdown_tables.hpp"
 #include "support/simulated_drive.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -106,11 +105,5 @@ int main(int argc, char** argv) {
                           bench::part(plain.within, plain.of), cut.centimetres(cut.errors),
                           cut.centimetres(cut.variances), bench::part(cut.within, cut.of)});
   }
-  std::printf("%s\n", bench::markdown(table).c_str());
-  if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
-  if (check.empty()) return 0;
-  const std::vector<std::string> differences =
-      bench::differences(bench::with_rows_of(bench::read_page(check), table), table, 0.03);
-  for (const std::string& difference : differences) std::printf("%s\n", difference.c_str());
-  return differences.empty() ? 0 : 1;
+  return bench::publish(table, write, check);
 }

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+
+#include "egocal/io/whole_file.hpp"
 
 namespace egocal::bench {
 
@@ -132,6 +135,15 @@ std::string with_rows_of(const std::string& page, const Table& table) {
     if (heading || made) kept += line + "\n";
   }
   return page.substr(0, place.begin) + kept + page.substr(place.end);
+}
+
+int publish(const Table& table, const std::string& write, const std::string& check) {
+  std::printf("%s\n", markdown(table).c_str());
+  if (!write.empty()) write_whole_file(write, with_table(read_page(write), table));
+  if (check.empty()) return 0;
+  const std::vector<std::string> found = differences(with_rows_of(read_page(check), table), table, 0.03);
+  for (const std::string& difference : found) std::printf("%s\n", difference.c_str());
+  return found.empty() ? 0 : 1;
 }
 
 }  // namespace egocal::bench

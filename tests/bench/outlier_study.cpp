@@ -13,7 +13,6 @@
 
 #include "egocal/cli/cli.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "egocal/io/whole_file.hpp"
 #include "egocal/online/answer.hpp"
 #include "markdown_tables.hpp"
 #include "support/corruption.hpp"
@@ -132,11 +131,5 @@ int main(int argc, char** argv) {
     }
     table.rows.push_back(row(drive, seeds));
   }
-  std::printf("%s\n", bench::markdown(table).c_str());
-  if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
-  if (check.empty()) return 0;
-  const std::vector<std::string> differences =
-      bench::differences(bench::with_rows_of(bench::read_page(check), table), table, 0.03);
-  for (const std::string& difference : differences) std::printf("%s\n", difference.c_str());
-  return differences.empty() ? 0 : 1;
+  return bench::publish(table, write, check);
 }

@@ -260,13 +260,19 @@ TEST(Explanations, AMovedMountIsFoundAtItsTime) {
   EXPECT_GE(calibration.verdict, Verdict::doubtful);
 }
 
-// What a look at a drive shows that is judged again every two seconds.
-TEST(Explanations, AMoveMustHaveShownBefore) {
+/// A drive with 1 % noise in which the mount of b moves at a time [s].
+SimulationOptions moved_at(double time, const Pose& change, int poses) {
   SimulationOptions simulation;
-  simulation.poses = 1201;
+  simulation.poses = poses;
   simulation.relative_noise = 0.01;
   simulation.faults.resize(2);
-  simulation.faults[1].mount_changes = {{110, 110, {rotation_exp({0, 0.02, 0}), {0.06, 0, 0}}}};
+  simulation.faults[1].mount_changes = {{time, time, change}};
+  return simulation;
+}
+
+// What a look at a drive shows that is judged again every two seconds.
+TEST(Explanations, AMoveMustHaveShownBefore) {
+  SimulationOptions simulation = moved_at(110, {rotation_exp({0, 0.02, 0}), {0.06, 0, 0}}, 1201);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     simulation.seed = seed;
     const testing::Streams streams = testing::simulated_drive(simulation);
@@ -287,11 +293,7 @@ TEST(Explanations, AMoveMustHaveShownBefore) {
 }
 
 TEST(Explanations, TheSizeOfAMoveIsWhatTheMotionsShowOfIt) {
-  SimulationOptions simulation;
-  simulation.poses = 1261;
-  simulation.relative_noise = 0.01;
-  simulation.faults.resize(2);
-  simulation.faults[1].mount_changes = {{120, 120, {rotation_exp({0, 0.015, 0}), {0, 0, 0.03}}}};
+  SimulationOptions simulation = moved_at(120, {rotation_exp({0, 0.015, 0}), {0, 0, 0.03}}, 1261);
   int stated = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     simulation.seed = seed;

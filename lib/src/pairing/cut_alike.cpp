@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/cut_alike.hpp"
 
-#include <algorithm>
 #include <vector>
+
+#include "statistics/order_statistic.hpp"
 
 namespace egocal::detail {
 
@@ -16,10 +17,7 @@ KeyStep typical(const std::deque<KeyStep>& steps) {
     lengths.push_back(step.length);
     angles.push_back(step.angle);
   }
-  const auto middle = static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(lengths.begin(), lengths.begin() + middle, lengths.end());
-  std::nth_element(angles.begin(), angles.begin() + middle, angles.end());
-  return {lengths[steps.size() / 2], angles[steps.size() / 2]};
+  return {order_statistic(lengths, steps.size() / 2), order_statistic(angles, steps.size() / 2)};
 }
 
 }  // namespace

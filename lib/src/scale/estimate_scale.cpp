@@ -11,31 +11,16 @@
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/scale/interpolation_loss.hpp"
 #include "scale/kept_motions.hpp"
+#include "scale/unjudged_motions.hpp"
 
 namespace egocal {
 
 namespace {
 
-/// Motions of a fixed stride, none rejected: nothing is congruent at a wrong scale.
-std::vector<MotionPair> first_pairs(const Trajectory& a, const Trajectory& b, PairingOptions pairing,
-                                    double first_motion) {
-  const Trajectory& slower = a.size() < b.size() ? a : b;
-  if (slower.size() < 2) return {};
-  const double span = 1e-6 * static_cast<double>(slower.back().time_us - slower.front().time_us);
-  const double period = span / static_cast<double>(slower.size() - 1);
-  pairing.stride = static_cast<int>(std::clamp(std::round(first_motion / std::max(period, 1e-6)), 1.0, 64.0));
-  pairing.balance = Balance{};
-  pairing.robust = false;
-  return pair_motions(pairing, a, b).pairs;
-}
-
 /// What interpolation leaves in the lengths of one stream, as a part of them: it adds to the standard
 /// deviation.
-double interpolation_doubt(const Trajectory& a, const Trajectory& b, PairingOptions pairing) {
-  pairing.stride = 1;
-  pairing.balance = Balance{};
-  pairing.robust = false;
-  const PairingResult steps = pair_motions(pairing, a, b);
+double interpolation_doubt(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing) {
+  const PairingResult steps = pair_motions(detail::unjudged(pairing, 1), a, b);
   InterpolationLossOptions options;
   options.cut_alike = pairing.synchroniser.cut_alike;
   options.most_stamps = std::max(a.size(), b.size());
@@ -80,7 +65,7 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
   // the height of the scaled sensor's plane is not to be scaled
   (side == Side::a ? pairing.plane_a : pairing.plane_b).distance = 0;
 
-  const std::vector<MotionPair> first = first_pairs(a, b, pairing, options.first_motion);
+  const std::vector<MotionPair> first = detail::unjudged_motions(a, b, pairing, options.first_motion);
   if (first.empty()) throw Error("scale: no motion pairs");
   options.scale.balance = detail::even_balance(scale_blocks(first), side);
   options.scale.doubt = interpolation_doubt(a, b, pairing);

@@ -5,35 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/scale/estimate_scale.hpp"
+#include "scale/kept_motions.hpp"
 #include "scale/scale_segments.hpp"
+#include "scale/unjudged_motions.hpp"
 
 namespace egocal {
 
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Motions as they come, none rejected: at a wrong scale none is congruent.
-std::vector<MotionPair> motions_of(const Trajectory& a, const Trajectory& b, const PairingOptions& given,
-                                   double motion) {
-  const Trajectory& slower = a.size() < b.size() ? a : b;
-  if (slower.size() < 2) return {};
-  const double span = 1e-6 * static_cast<double>(slower.back().time_us - slower.front().time_us);
-  const double period = span / static_cast<double>(slower.size() - 1);
-  PairingOptions pairing = given;
-  pairing.track_time_offset = false;
-  pairing.stride = static_cast<int>(std::clamp(std::round(motion / std::max(period, 1e-6)), 1.0, 64.0));
-  pairing.balance = Balance{};
-  pairing.robust = false;
-  return pair_motions(pairing, a, b).pairs;
-}
 
 double residual(const detail::ScaleSample& sample, double scale) {
   return std::max(0.0, sample.square * scale * scale - 2 * sample.product * scale + sample.rest);
@@ -94,7 +73,7 @@ ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const Pa
   if (!solution.observable) return unchanged;
   // the height of the scaled sensor's plane is not to be scaled
   (side == Side::a ? pairing.plane_a : pairing.plane_b).distance = 0;
-  const std::vector<MotionPair> pairs = motions_of(a, b, pairing, options.motion);
+  const std::vector<MotionPair> pairs = detail::unjudged_motions(a, b, pairing, options.motion);
   if (pairs.size() < options.least_blocks * options.least_block) return unchanged;
   DriveScaleOptions scale;
   scale.scale.side = side;
@@ -108,7 +87,7 @@ ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const Pa
       samples.push_back(detail::scale_sample(pair, q, side));
       residuals.push_back(residual(samples.back(), course.at(middle_of(pair))));
     }
-    const double limit = options.most_residual * median(residuals);
+    const double limit = options.most_residual * detail::median(residuals);
     std::size_t i = 0;
     // at first a whole part of the drive may fit badly
     if (round > 0) std::erase_if(samples, [&](const detail::ScaleSample&) { return residuals[i++] > limit; });

@@ -8,16 +8,14 @@
 
 #include "egocal/limits.hpp"
 #include "scale/kept_motions.hpp"
+#include "scale/unjudged_motions.hpp"
 
 namespace egocal {
 
 namespace {
 
 PairingOptions of_single_steps(const ScaleDriveOptions& options) {
-  PairingOptions pairing = options.pairing;
-  pairing.stride = 1;
-  pairing.balance = Balance{};
-  pairing.robust = false;
+  PairingOptions pairing = detail::unjudged(options.pairing, 1);
   // the height of the scaled sensor's plane is in metres already
   (options.scale.side == Side::a ? pairing.plane_a : pairing.plane_b).distance = 0;
   return pairing;
