@@ -368,6 +368,20 @@ const Sensor& sensor(const Rig& rig, const std::string& name) {
   throw error_at(rig.file, 0, "", "no sensor has the name \"" + name + "\"");
 }
 
+namespace {
+
+/// The pairs of a rig estimate their clocks and choose their weights one after the other.
+double phase_of(const Rig& rig, const PairConfig& pair) {
+  double before = 0;
+  for (const PairConfig& other : rig.pairs) {
+    if (other.a == pair.a && other.b == pair.b) return before / static_cast<double>(rig.pairs.size());
+    before += 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
 PairingOptions drive_options(const Rig& rig, const PairConfig& pair) {
   PairingOptions options;
   options.mode = pair.mode;
@@ -382,6 +396,7 @@ PairingOptions drive_options(const Rig& rig, const PairConfig& pair) {
   options.robust = pair.robust;
   options.max_gap = rig.max_gap;
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
+  options.clock.phase = options.accumulator.choice_phase = phase_of(rig, pair);
   return options;
 }
 

@@ -13,13 +13,6 @@ namespace egocal::services {
 namespace {
 constexpr std::size_t max_early_poses = 4096;  // a limit on memory: 40 s at 100 Hz
 
-/// The pairs of a rig estimate their clocks one after the other.
-PairingOptions options_of(const bus::Rig& rig, std::size_t index) {
-  PairingOptions options = bus::drive_options(rig, rig.pairs[index]);
-  options.clock.phase = static_cast<double>(index) / static_cast<double>(rig.pairs.size());
-  return options;
-}
-
 ScaleDriveOptions scale_options(const PairingOptions& pairing, Side side) {
   ScaleDriveOptions options;
   options.pairing = pairing;
@@ -32,7 +25,7 @@ ScaleDriveOptions scale_options(const PairingOptions& pairing, Side side) {
 PairSession::PairSession(const bus::Rig& rig, std::size_t index)
     : index_(index),
       config_(rig.pairs[index]),
-      options_(options_of(rig, index)),
+      options_(bus::drive_options(rig, config_)),
       unscaled_(bus::unscaled_side(rig, config_)),
       drive_(options_) {
   begin_drive();

@@ -78,6 +78,16 @@ TEST(Rig, DefaultsAreAutomatic) {
   EXPECT_EQ(rig.pairs[0].mode, Mode::spatial);
 }
 
+TEST(Rig, ItsPairsDoWhatTakesLongAtDifferentTimes) {
+  const std::string radar = "[[sensor]]\nname = \"radar\"\nchannel = \"R\"\n";
+  const Rig rig = parse_rig(sensors + radar + pair + "[[pair]]\na = \"lidar\"\nb = \"radar\"\n", "my.toml");
+  const PairingOptions first = drive_options(rig, rig.pairs[0]), second = drive_options(rig, rig.pairs[1]);
+  EXPECT_EQ(first.accumulator.choice_phase, 0);
+  EXPECT_EQ(first.clock.phase, 0);
+  EXPECT_EQ(second.accumulator.choice_phase, 0.5);
+  EXPECT_EQ(second.clock.phase, 0.5);
+}
+
 TEST(Rig, ScaleAndWhatFollowsAMove) {
   const Rig rig = parse_rig(
       "[[sensor]]\nname = \"lidar\"\nchannel = \"L\"\n[[sensor]]\nname = \"camera\"\nchannel = "

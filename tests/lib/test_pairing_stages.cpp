@@ -315,6 +315,40 @@ TEST(Accumulator, SpreadsLooksForOutliersOverPosesAndChoosesAtOnce) {
   EXPECT_GT(choices, 15u);
 }
 
+TEST(Accumulator, PairsOfOneRigChooseAtDifferentTimes) {
+  constexpr std::size_t pairs = 8;
+  const std::vector<Instant> instants = instants_of(simulated(1000));
+  const auto choices_at_once = [&instants](bool staggered) {
+    std::vector<Accumulator> all;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      PairingOptions options;
+      if (staggered) options.accumulator.choice_phase = static_cast<double>(k) / pairs;
+      all.emplace_back(options).begin(period_us);
+    }
+    std::vector<std::uint64_t> next(pairs);
+    std::size_t most = 0, sum = 0;
+    for (const Instant& instant : instants) {
+      std::size_t here = 0;
+      for (std::size_t k = 0; k < pairs; ++k) {
+        all[k].add(instant);
+        const std::uint64_t now = all[k].state().sums->next_choice;
+        here += now != next[k] ? 1 : 0;
+        next[k] = now;
+      }
+      // the first choices are made within eight poses
+      if (instant.number > 200) most = std::max(most, here);
+      sum += here;
+    }
+    return std::pair{most, sum};
+  };
+  const auto [at_once, count] = choices_at_once(false);
+  const auto [staggered, count_staggered] = choices_at_once(true);
+  EXPECT_EQ(at_once, pairs);
+  EXPECT_LE(staggered, 2u);
+  EXPECT_NEAR(static_cast<double>(count_staggered), static_cast<double>(count),
+              0.1 * static_cast<double>(count));
+}
+
 TEST(PairingOptions, OutOfTheirRangeAreRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = HUGE_VAL;
   const auto refused = [](const PairingOptions& options, const std::string& name) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "egocal/robust/consensus.hpp"
+#include "pairing/choice_schedule.hpp"
 #include "pairing/motions_between.hpp"
 #include "problem/motion_square.hpp"
 
@@ -229,10 +230,20 @@ StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) 
   return changes;
 }
 
+/// After which part more than this number of instants the next choice follows.
+std::uint64_t StrideSums::choice_part(std::uint64_t index) const {
+  return index < tuning_.short_drive ? tuning_.short_choice_part : tuning_.choice_part;
+}
+
+std::uint64_t StrideSums::choice_delay() const {
+  return detail::choice_delay(state_.next_choice, choice_part(state_.next_choice),
+                              options_.accumulator.choice_phase);
+}
+
 void StrideSums::choose(const std::optional<SingleStride>& rival) {
-  const std::uint64_t part =
-      state_.next_index < tuning_.short_drive ? tuning_.short_choice_part : tuning_.choice_part;
-  state_.next_choice = state_.next_index + std::max<std::uint64_t>(1, state_.next_index / part);
+  // chosen earlier, or called for at any time: from then on
+  const std::uint64_t without_delay = state_.next_index - std::min(state_.next_index, choice_delay());
+  state_.next_choice = without_delay + std::max<std::uint64_t>(1, without_delay / choice_part(without_delay));
   StrideBlocks all = judge_open();
   leave_out_blocks(all);
   if (std::optional<WeightChoice> choice =

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "pairing/choice_schedule.hpp"
 #include "pairing/motions_between.hpp"
 
 namespace egocal {
@@ -89,7 +90,8 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   if (options_.robust && !(options_.stride && options_.balance)) {
     // A look for outliers costs as much as a hundred poses: those that the choice needs are spread over the
     // poses before it, one stride each.
-    const auto newest_look = state_.next_choice > 0 ? state_.next_choice - 1 : 0;
+    const std::uint64_t choice = state_.next_choice + choice_delay();
+    const auto newest_look = choice > 0 ? choice - 1 : 0;
     for (std::size_t i = 0; i < state_.strides.size(); ++i) {
       const std::uint64_t due = newest_look - std::min<std::uint64_t>(newest_look, i);
       if (before < due && due <= instant.number)
@@ -97,9 +99,10 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     }
   }
   bool chosen_anew = false;
-  if (instant.number >= state_.next_choice) {
+  if (instant.number >= state_.next_choice + choice_delay()) {
     choose();
-    state_.next_choice = instant.number + instant.number / tuning_.choice_part;
+    const std::uint64_t without_delay = instant.number - choice_delay();
+    state_.next_choice = without_delay + without_delay / tuning_.choice_part;
     chosen_anew = true;
   }
   if (sums_) {
@@ -132,6 +135,10 @@ std::optional<MotionPair> Accumulator::motion(const Instant& from, const Instant
     pair.b = planar_motion(pair.b, G_b_);
   }
   return pair;
+}
+
+std::uint64_t Accumulator::choice_delay() const {
+  return detail::choice_delay(state_.next_choice, tuning_.choice_part, options_.accumulator.choice_phase);
 }
 
 void Accumulator::choose() {

@@ -85,6 +85,7 @@ void check(const AccumulatorOptions& options) {
     require("balances", weight, limits::translation_weight, " 1/m^2");
     require("balances", weight > 0, "weights above 0");
   }
+  require("choice_phase", options.choice_phase, {0, 1}, "");
 }
 
 }  // namespace

@@ -64,8 +64,8 @@ void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
 }
 
 void fields(auto& archive, services::Is<AccumulatorOptions> auto& value) {
-  auto& [longest_motion, stretch, most_rotation, balances, first_choice] = value;
-  archive(longest_motion, stretch, most_rotation, balances, first_choice);
+  auto& [longest_motion, stretch, most_rotation, balances, first_choice, choice_phase] = value;
+  archive(longest_motion, stretch, most_rotation, balances, first_choice, choice_phase);
 }
 
 void fields(auto& archive, services::Is<PairingOptions> auto& value) {
@@ -312,7 +312,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 20;
+constexpr int state_layout = 21;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

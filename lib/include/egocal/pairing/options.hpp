@@ -122,6 +122,9 @@ struct AccumulatorOptions {
   /// Number of synchronised instants at which stride and balance are chosen first. Each further choice comes
   /// after a quarter more: the cost of choosing stays a constant part of the work.
   std::uint64_t first_choice = 64;
+  /// In [0, 1): several pairs of one rig choose at different times. Each choice comes later by this share of
+  /// the instants to the next one.
+  double choice_phase = 0;
 };
 
 /// How motions are made from two streams of poses, and what the solvers are to minimise.

@@ -82,6 +82,7 @@ class Accumulator {
   const AccumulatorState::PerStride* chosen() const;
   std::optional<MotionPair> motion(const Instant& from, const Instant& to, int stride,
                                    Rejections& rejections);
+  std::uint64_t choice_delay() const;
   void choose();
 
   PairingOptions options_;
