@@ -170,6 +170,20 @@ void estimate(CongruenceScale& scale, const CongruenceOptions& options) {
   scale.arm = arm_of(scale.lever, scale.angle.moving, options);
 }
 
+/// One of the four, in turn: once the memory is full they change slowly, and no pose takes the time of all.
+void estimate_next(CongruenceScale& scale, const CongruenceOptions& options) {
+  switch (scale.remembered / options.estimate_every_when_full % 4) {
+    case 0:
+      return estimate(scale.angle, options);
+    case 1:
+      return estimate(scale.slide, options);
+    case 2:
+      return estimate(scale.length, options);
+    default:
+      scale.arm = arm_of(scale.lever, scale.angle.moving, options);
+  }
+}
+
 double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
               const CongruenceOptions& options) {
   if (typical.newest.size() < options.first_estimate) return 0;
@@ -224,7 +238,11 @@ void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool do
                        CongruenceScale& scale, const CongruenceOptions& options) {
   if (doubtful && ++scale.doubtful % options.doubtful_remembered != 0) return;
   remember(a, b, scale, options);
-  if (estimate_is_due(scale.remembered, options)) estimate(scale, options);
+  if (!estimate_is_due(scale.remembered, options)) return;
+  if (scale.remembered > options.memory)
+    estimate_next(scale, options);
+  else
+    estimate(scale, options);
 }
 
 std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& screening) {
