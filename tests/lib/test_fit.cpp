@@ -3,6 +3,7 @@
 // How well an answer explains the motions, in units that a person judges.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../support/mistakes.hpp"
@@ -33,6 +34,46 @@ TEST(Fit, IsZeroAtTheTruthOfPerfectMotions) {
   EXPECT_LT(fit.translation_95, 1e-6);
   EXPECT_LT(fit.translation_relative_median, 1e-6);
   EXPECT_NEAR(fit.turning_ratio, 1, 1e-9);
+}
+
+/// Free motion without noise, with the stamps of the sensors 0.37 periods apart.
+testing::Streams unlike_stamps(double rate) {
+  SimulationOptions options;
+  options.terrain = Terrain::free;
+  options.poses = static_cast<int>(60 * rate);
+  options.rate = rate;
+  options.faults.resize(2);
+  options.faults[1].phase = 0.37 / rate;
+  return testing::simulated_drive(options);
+}
+
+TEST(Fit, OfStreamsThatAreNotMeasuredAtTheSameTimesIsNotThatOfTheInterpolation) {
+  for (const auto& [rate, most] : {std::pair{4.0, 0.002}, std::pair{10.0, 1e-4}}) {
+    const testing::Streams streams = unlike_stamps(rate);
+    const Fit fit = detail::fit_at(motions_of(streams, static_cast<int>(rate)), to_pose(streams.T), 0.5);
+    EXPECT_LT(fit.translation_relative_median, most) << rate << " Hz";
+  }
+}
+
+TEST(Fit, ASpikeIsNotSpreadOverItsNeighbours) {
+  testing::Streams streams = unlike_stamps(10);
+  const std::size_t at = 300;
+  const DualQuaternion before = streams.b[at].pose;
+  streams.b[at].pose = normalized(before * testing::displacement({0, 0, 0.1}, {1, 0, 0}));
+  const detail::Instants instants = detail::synchronised(streams.a, streams.b, {}, 0.5);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const auto nearest =
+        std::min_element(streams.b.begin(), streams.b.end(), [&](const auto& x, const auto& y) {
+          const auto off = [&](const StampedPose& pose) {
+            return std::abs(1e-6 * static_cast<double>(pose.time_us - streams.a.front().time_us) -
+                            instants.time(i));
+          };
+          return off(x) < off(y);
+        });
+    wrong += translation_length(motion_between(nearest->pose, instants.b(i))) > 0.05 ? 1 : 0;
+  }
+  EXPECT_LE(wrong, 2u);
 }
 
 TEST(Fit, MeasuresAWrongRotationInRadiansAndMetres) {

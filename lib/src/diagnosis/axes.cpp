@@ -41,12 +41,12 @@ Vector3d position(const DualQuaternion& pose) {
 std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
                            std::size_t most, const DiagnosisOptions& options) {
   std::vector<Step> steps;
-  const std::size_t n = instants.time.size(), span = static_cast<std::size_t>(stride);
+  const std::size_t n = instants.size(), span = static_cast<std::size_t>(stride);
   if (n <= span) return steps;
   const std::size_t each = std::max<std::size_t>(1, (n - span) / most);
   for (std::size_t i = 0; i + span < n; i += each) {
     const std::size_t k = i + span;
-    if (instants.time[k] - instants.time[i] > options.motions.most_stretched * stride * instants.period)
+    if (instants.time(k) - instants.time(i) > options.motions.most_stretched * stride * instants.period)
       continue;
     const bool in_b = wrong == Side::b;
     const DualQuaternion s = canonical_sign(in_b ? conjugate(instants.a(i)) * instants.a(k)

@@ -14,7 +14,7 @@ namespace egocal::detail {
 namespace {
 
 /// Turning rate of one stream in each cell of a grid [rad/s]; negative where unknown.
-Series turning_rates(const Trajectory& trajectory, std::span<const double> turning, std::int64_t origin_us,
+Series turning_rates(const Trajectory& trajectory, std::span<const float> turning, std::int64_t origin_us,
                      double shift, double step, std::size_t count) {
   Series turned(count, 0.0);
   std::vector<double> covered(count, 0.0);
@@ -137,13 +137,13 @@ void refine(const Streams& streams, double ClockModel::*number, double width, in
 
 }  // namespace
 
-std::vector<double> turning_of(const Trajectory& trajectory) {
-  std::vector<double> angles;
+std::vector<float> turning_of(const Trajectory& trajectory) {
+  std::vector<float> angles;
   angles.reserve(trajectory.size());
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const QuaternionVector turn =
         quaternion_product(quaternion_conjugate(trajectory[i - 1].pose.real), trajectory[i].pose.real);
-    angles.push_back(rotation_angle(turn));
+    angles.push_back(static_cast<float>(rotation_angle(turn)));
   }
   return angles;
 }
@@ -152,7 +152,7 @@ Explained explained_by(const Streams& streams, const ClockModel& clock) {
   const Instants instants =
       synchronised(streams.a, streams.b, clock, streams.max_gap, streams.each, streams.options.motions);
   Explained result;
-  if (instants.time.size() < 2 || !(instants.period > 0)) return result;
+  if (instants.size() < 2 || !(instants.period > 0)) return result;
   const int stride = std::max(1, static_cast<int>(std::lround(streams.motion_length / instants.period)));
   result.motions = motions_of(instants, streams.read_a, streams.read_b, stride, streams.options.motions.most,
                               streams.options.motions);

@@ -25,13 +25,13 @@ struct Streams {
   double motion_length = 1;  ///< of the motions that are compared [s]
   DiagnosisOptions options;
   /// From each pose to the next, see turning_of() [rad].
-  std::span<const double> turning_a, turning_b;
+  std::span<const float> turning_a, turning_b;
   std::size_t each = 1;  ///< every such pose of the slower stream is looked at
   ClockGridOptions grid{};
 };
 
 /// The angle from each pose to the next [rad].
-std::vector<double> turning_of(const Trajectory& trajectory);
+std::vector<float> turning_of(const Trajectory& trajectory);
 
 /// The motions under a clock, of about the given length, and their best extrinsic.
 Explained explained_by(const Streams& streams, const ClockModel& clock);

@@ -80,7 +80,7 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
   const Motions& motions = evidence.given.explained.motions;
   double turned = 0;
   for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
-  turned *= static_cast<double>(evidence.instants.time.size()) /
+  turned *= static_cast<double>(evidence.instants.size()) /
             static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
   if (turned < options.least_turning) {
     findings.push_back(too_little_motion(motions.all.size(), options));
@@ -133,8 +133,8 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const Evidence evidence = gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap, options);
   const Motions& motions = evidence.given.explained.motions;
   Answered answered = given;
-  if (!evidence.instants.time.empty())
-    answered.seconds = evidence.instants.time.back() - evidence.instants.time.front();
+  if (!evidence.instants.empty())
+    answered.seconds = evidence.instants.time(evidence.instants.size() - 1) - evidence.instants.time(0);
   answered.platform = forward(heading(motions), options.heading) ? Platform::car : Platform::handheld;
   if (motions.all.size() < options.motions.least) {
     Diagnosis result = diagnose(answered, options);

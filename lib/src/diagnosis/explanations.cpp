@@ -199,7 +199,7 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   streams.motion_length = evidence.stride * evidence.instants.period;
   // a long drive has more instants than a clock needs: a few in each motion
   streams.each =
-      std::clamp<std::size_t>(evidence.instants.time.size() / options.clock.instants, 1,
+      std::clamp<std::size_t>(evidence.instants.size() / options.clock.instants, 1,
                               std::max<std::size_t>(1, static_cast<std::size_t>(evidence.stride) / 8));
   std::vector<Explanation> result;
   const auto take = [&](const char* code, const std::optional<ClockFit>& fit, const Explained& against) {
@@ -273,7 +273,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
   evidence.streams.turning_a = evidence.turning_a;
   evidence.streams.turning_b = evidence.turning_b;
   evidence.given.clock = clock;
-  const auto n = static_cast<int>(evidence.instants.time.size());
+  const auto n = static_cast<int>(evidence.instants.size());
   double least = INFINITY;
   std::vector<Candidate> readings = common_mistakes();
   readings.insert(readings.begin(), Candidate{"", {}, {}});

@@ -22,7 +22,7 @@ struct Explanation {
 
 /// The drive as the explanations see it.
 struct Evidence {
-  std::vector<double> turning_a, turning_b;
+  std::vector<float> turning_a, turning_b;
   Streams streams;   ///< as given, with the clock offset applied in `clock`
   ClockModel clock;  ///< in force
   Instants instants;

@@ -6,39 +6,19 @@
 #include <cmath>
 #include <optional>
 
+#include "pairing/cut_alike.hpp"
+
 namespace egocal::detail {
 
 namespace {
 
-double seconds(std::int64_t us) {
-  return 1e-6 * static_cast<double>(us);
-}
-
-/// The times of a stream under a clock [s], worked out when they are asked for: a drive of a million poses
-/// is looked at dozens of times.
-class Times {
- public:
-  Times(const Trajectory& trajectory, std::int64_t origin_us, const ClockModel& clock)
-      : trajectory_(trajectory), origin_us_(origin_us), clock_(clock) {}
-  std::size_t size() const { return trajectory_.size(); }
-  double operator[](std::size_t i) const {
-    const double t = seconds(trajectory_[i].time_us - origin_us_);
-    return t + clock_.offset + clock_.rate * (t - clock_.middle);
-  }
-
- private:
-  const Trajectory& trajectory_;
-  std::int64_t origin_us_;
-  ClockModel clock_;
-};
-
 /// Median of at most most_periods distances, evenly spread.
-template <typename Values>
-double median_period(const Values& times, std::size_t most_periods) {
-  if (times.size() < 2) return 0;
+template <typename Time>
+double median_period(std::size_t count, const Time& time, std::size_t most_periods) {
+  if (count < 2) return 0;
   std::vector<double> periods;
-  const std::size_t each = std::max<std::size_t>(1, times.size() / most_periods);
-  for (std::size_t i = 1; i < times.size(); i += each) periods.push_back(times[i] - times[i - 1]);
+  const std::size_t each = std::max<std::size_t>(1, count / most_periods);
+  for (std::size_t i = 1; i < count; i += each) periods.push_back(time(i) - time(i - 1));
   std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
                    periods.end());
   return periods[periods.size() / 2];
@@ -103,6 +83,16 @@ void measure_sizes(Motions& motions) {
 
 }  // namespace
 
+DualQuaternion Instants::key(std::size_t i) const {
+  const Place& place = places_[i];
+  const std::size_t k = place.key;
+  const StampedPose& pose = (*keys_)[k];
+  if (place.part == 0 || k == 0 || k + 1 == keys_->size()) return pose.pose;
+  const StampedPose &from = (*others_)[place.before], &to = (*others_)[place.before + 1];
+  return cut_alike({(*keys_)[k - 1], pose, (*keys_)[k + 1]},
+                   {place.part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, {});
+}
+
 DualQuaternion Instants::between(std::size_t i) const {
   const Place& place = places_[i];
   const DualQuaternion& before = (*others_)[place.before].pose;
@@ -115,23 +105,24 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
   if (a.empty() || b.empty()) return instants;
   const std::int64_t origin_us = a.front().time_us;
   const Times times_a(a, origin_us, {}), times_b(b, origin_us, clock);
-  const bool b_slower =
-      10 * median_period(times_b, options.most_periods) >= 9 * median_period(times_a, options.most_periods);
+  const auto period_of = [&options](const Times& times) {
+    return median_period(
+        times.size(), [&times](std::size_t i) { return times[i]; }, options.most_periods);
+  };
+  const bool b_slower = 10 * period_of(times_b) >= 9 * period_of(times_a);
   instants.b_slower_ = b_slower;
   instants.keys_ = b_slower ? &b : &a;
   instants.others_ = b_slower ? &a : &b;
-  const Times& key_times = b_slower ? times_b : times_a;
+  instants.max_gap_us_ = std::llround(1e6 * max_gap);
+  const Times& key_times = instants.key_times_.emplace(b_slower ? times_b : times_a);
   Lookup other(b_slower ? times_a : times_b, max_gap);
-  instants.time.reserve(key_times.size() / each + 1);
   instants.places_.reserve(key_times.size() / each + 1);
-  for (std::size_t i = 0; i < key_times.size(); i += each) {
-    const double time = key_times[i];
-    const std::optional<Lookup::Found> found = other.at(time);
-    if (!found) continue;
-    instants.time.push_back(time);
-    instants.places_.push_back({i, found->before, found->part});
-  }
-  instants.period = median_period(instants.time, options.most_periods);
+  for (std::size_t i = 0; i < key_times.size(); i += each)
+    if (const std::optional<Lookup::Found> found = other.at(key_times[i]))
+      instants.places_.push_back(
+          {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(found->before), found->part});
+  instants.period = median_period(
+      instants.size(), [&instants](std::size_t i) { return instants.time(i); }, options.most_periods);
   return instants;
 }
 
@@ -140,17 +131,17 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   Motions motions;
   motions.stride = stride;
   const auto steps = static_cast<std::size_t>(stride);
-  const std::size_t n = instants.time.size();
+  const std::size_t n = instants.size();
   if (n <= steps) return motions;
   const std::size_t each = std::max<std::size_t>(1, (n - steps) / most);
   motions.all.reserve((n - steps) / each + 1);
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
-    if (instants.time[k] - instants.time[i] > options.most_stretched * stride * instants.period) continue;
+    if (instants.time(k) - instants.time(i) > options.most_stretched * stride * instants.period) continue;
     Motion motion = motion_from(conjugate(reread(instants.a(i), read_a)) * reread(instants.a(k), read_a),
                                 conjugate(reread(instants.b(i), read_b)) * reread(instants.b(k), read_b));
     if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
-    motion.time = 0.5 * (instants.time[i] + instants.time[k]);
+    motion.time = 0.5 * (instants.time(i) + instants.time(k));
     motions.all.push_back(std::move(motion));
   }
   const std::size_t independent = n / (2 * steps) >= 16 ? n / (2 * steps) : n / steps;

@@ -4,6 +4,8 @@
 // makes right poses look wrong.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,14 +24,36 @@ struct ClockModel {
   double middle = 0;  ///< [s], on b's clock
 };
 
+/// The times of a stream under a clock [s] since an origin, worked out when they are asked for: a drive of a
+/// million poses is looked at dozens of times. The trajectory must still be there.
+class Times {
+ public:
+  Times(const Trajectory& trajectory, std::int64_t origin_us, const ClockModel& clock)
+      : trajectory_(&trajectory), origin_us_(origin_us), clock_(clock) {}
+  std::size_t size() const { return trajectory_->size(); }
+  double operator[](std::size_t i) const {
+    const double t = 1e-6 * static_cast<double>((*trajectory_)[i].time_us - origin_us_);
+    return t + clock_.offset + clock_.rate * (t - clock_.middle);
+  }
+
+ private:
+  const Trajectory* trajectory_;
+  std::int64_t origin_us_;
+  ClockModel clock_;
+};
+
 /// Both poses at the stamps of the slower stream; the other one is interpolated when it is asked for, as the
 /// comparison of two clocks looks at a few hundred motions of a drive of any length.
 class Instants {
  public:
-  std::vector<double> time;  ///< [s], since the first stamp of a
-  double period = 0;         ///< median distance [s]
+  double period = 0;  ///< median distance [s]
 
-  /// Poses at instant i; the trajectories of synchronised() must still be there.
+  bool empty() const { return places_.empty(); }
+  std::size_t size() const { return places_.size(); }
+  /// [s], since the first stamp of a.
+  double time(std::size_t i) const { return (*key_times_)[places_[i].key]; }
+  /// Poses at instant i, cut alike (pairing/cut_alike.hpp); the trajectories of synchronised() must still be
+  /// there.
   DualQuaternion a(std::size_t i) const { return b_slower_ ? between(i) : key(i); }
   DualQuaternion b(std::size_t i) const { return b_slower_ ? key(i) : between(i); }
 
@@ -38,15 +62,17 @@ class Instants {
                                const MotionSampleOptions&);
 
   struct Place {
-    std::size_t key = 0;     ///< pose of the slower stream
-    std::size_t before = 0;  ///< pose of the other one, at or before the instant
-    double part = 0;         ///< of the way to the next one
+    std::uint32_t key = 0;     ///< pose of the slower stream
+    std::uint32_t before = 0;  ///< pose of the other one, at or before the instant
+    double part = 0;           ///< of the way to the next one
   };
-  DualQuaternion key(std::size_t i) const { return (*keys_)[places_[i].key].pose; }
+  DualQuaternion key(std::size_t i) const;
   DualQuaternion between(std::size_t i) const;
 
   const Trajectory* keys_ = nullptr;
   const Trajectory* others_ = nullptr;
+  std::optional<Times> key_times_;
+  std::int64_t max_gap_us_ = 0;
   bool b_slower_ = false;
   std::vector<Place> places_;
 };

@@ -22,16 +22,15 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   const DualQuaternion G_b = planar ? plane_frame(answered.problem.plane_b) : DualQuaternion{};
   std::vector<MotionPair> pairs;
   // overlapping motions of a long drive say little that is new
-  const std::size_t each =
-      std::clamp<std::size_t>(instants.time.size() / options.mount.most_motions, 1, steps);
+  const std::size_t each = std::clamp<std::size_t>(instants.size() / options.mount.most_motions, 1, steps);
   const double longest = options.motions.most_stretched * static_cast<double>(steps) * instants.period;
-  pairs.reserve(instants.time.size() / each + 1);
-  for (std::size_t i = 0; i + steps < instants.time.size(); i += each) {
+  pairs.reserve(instants.size() / each + 1);
+  for (std::size_t i = 0; i + steps < instants.size(); i += each) {
     const std::size_t k = i + steps;
-    if (instants.time[k] - instants.time[i] > longest) continue;
+    if (instants.time(k) - instants.time(i) > longest) continue;
     MotionPair pair{canonical_sign(normalized(conjugate(instants.a(i)) * instants.a(k))),
                     canonical_sign(normalized(conjugate(instants.b(i)) * instants.b(k))),
-                    std::llround(1e6 * instants.time[i]), std::llround(1e6 * instants.time[k]), 1};
+                    std::llround(1e6 * instants.time(i)), std::llround(1e6 * instants.time(k)), 1};
     if (planar) {
       pair.a = planar_motion(pair.a, G_a);
       pair.b = planar_motion(pair.b, G_b);
@@ -49,10 +48,10 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
 std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const Answered& answered,
                                                 const DiagnosisOptions& options) {
   const MountCheckOptions& mount = options.mount;
-  const std::size_t longest = std::max<std::size_t>(1, instants.time.size() / (3 * mount.blocks));
+  const std::size_t longest = std::max<std::size_t>(1, instants.size() / (3 * mount.blocks));
   const std::size_t steps =
       std::min(longest, std::max(mount.least_stride, static_cast<std::size_t>(std::max(1, answered.stride))));
-  const std::size_t shortest = std::clamp<std::size_t>(instants.time.size() / mount.most_motions, 1, steps);
+  const std::size_t shortest = std::clamp<std::size_t>(instants.size() / mount.most_motions, 1, steps);
   std::vector<std::vector<MotionPair>> strides;
   strides.push_back(pairs_of(instants, answered, options, shortest));
   if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, steps));

@@ -29,7 +29,7 @@ double size_of(const DualQuaternion& motion) {
 
 Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
   Steps steps;
-  const std::size_t n = instants.time.size();
+  const std::size_t n = instants.size();
   const std::size_t each = std::max<std::size_t>(1, n / options.most);
   for (std::size_t i = 0; i + 1 < n; i += each) {
     const DualQuaternion a0 = instants.a(i), b0 = instants.b(i), a1 = instants.a(i + 1),

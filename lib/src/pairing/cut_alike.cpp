@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/cut_alike.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "statistics/order_statistic.hpp"
@@ -20,32 +22,65 @@ KeyStep typical(const std::deque<KeyStep>& steps) {
   return {order_statistic(lengths, steps.size() / 2), order_statistic(angles, steps.size() / 2)};
 }
 
+/// A pose between its neighbours.
+struct Corner {
+  DualQuaternion from, to;             ///< motions to the pose, and from it
+  double before_us = 0, after_us = 0;  ///< their times
+};
+
+KeyStep step_of(const DualQuaternion& motion) {
+  return {translation_length(motion), rotation_angle(motion)};
+}
+
+/// Empty where a neighbour is too far away.
+std::optional<Corner> corner_at(const Neighbours& neighbours, std::int64_t max_gap_us) {
+  const StampedPose& pose = neighbours.pose;
+  const std::int64_t before_us = pose.time_us - neighbours.before.time_us,
+                     after_us = neighbours.after.time_us - pose.time_us;
+  if (before_us <= 0 || before_us > max_gap_us || after_us <= 0 || after_us > max_gap_us) return std::nullopt;
+  return Corner{conjugate(neighbours.before.pose) * pose.pose, conjugate(pose.pose) * neighbours.after.pose,
+                static_cast<double>(before_us), static_cast<double>(after_us)};
+}
+
+/// sides: the product of the times to both poses that are interpolated [us^2]. typical: of the stream.
+DualQuaternion cut(const DualQuaternion& pose, const Corner& corner, double sides, const KeyStep& typical,
+                   const SynchroniserOptions& options) {
+  const double part = sides / (corner.before_us * corner.after_us);
+  if (!(part <= options.most_cut)) return pose;
+  const DualQuaternion bend = canonical_sign(
+      conjugate(corner.from) * interpolate(DualQuaternion{}, corner.from * corner.to,
+                                           corner.before_us / (corner.before_us + corner.after_us)));
+  const KeyStep off = step_of(bend);
+  const bool smooth =
+      off.length <= options.most_bent * typical.length && off.angle <= options.most_bent * typical.angle;
+  if (!smooth || (off.length == 0 && off.angle == 0)) return pose;
+  return normalized(pose * interpolate(DualQuaternion{}, bend, part));
+}
+
 }  // namespace
 
 DualQuaternion cut_alike(const Neighbours& neighbours, const Interpolated& interpolated,
                          std::deque<KeyStep>& steps, const SynchroniserOptions& options) {
   const StampedPose& pose = neighbours.pose;
-  const std::int64_t before_us = pose.time_us - neighbours.before.time_us,
-                     after_us = neighbours.after.time_us - pose.time_us;
-  if (before_us <= 0 || before_us > interpolated.max_gap_us || after_us <= 0 ||
-      after_us > interpolated.max_gap_us)
-    return pose.pose;
-  const DualQuaternion from = conjugate(neighbours.before.pose) * pose.pose,
-                       to = conjugate(pose.pose) * neighbours.after.pose;
-  steps.push_back({translation_length(from), rotation_angle(from)});
+  const std::optional<Corner> corner = corner_at(neighbours, interpolated.max_gap_us);
+  if (!corner) return pose.pose;
+  steps.push_back(step_of(corner->from));
   if (steps.size() > options.typical_steps) steps.pop_front();
+  const double sides = static_cast<double>(pose.time_us - interpolated.from_us) *
+                       static_cast<double>(interpolated.to_us - pose.time_us);
+  return cut(pose.pose, *corner, sides, typical(steps), options);
+}
 
-  const auto h_before = static_cast<double>(before_us), h_after = static_cast<double>(after_us);
-  const double cut = static_cast<double>(pose.time_us - interpolated.from_us) *
-                     static_cast<double>(interpolated.to_us - pose.time_us) / (h_before * h_after);
-  if (!(cut <= options.most_cut)) return pose.pose;
-  const DualQuaternion bend = canonical_sign(
-      conjugate(from) * interpolate(DualQuaternion{}, from * to, h_before / (h_before + h_after)));
-  const double length = translation_length(bend), angle = rotation_angle(bend);
-  const KeyStep step = typical(steps);
-  const bool smooth = length <= options.most_bent * step.length && angle <= options.most_bent * step.angle;
-  if (!smooth || (length == 0 && angle == 0)) return pose.pose;
-  return normalized(pose.pose * interpolate(DualQuaternion{}, bend, cut));
+DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
+                         const SynchroniserOptions& options) {
+  const DualQuaternion& pose = neighbours.pose.pose;
+  const std::optional<Corner> corner = corner_at(neighbours, interpolated.max_gap_us);
+  if (!corner) return pose;
+  const KeyStep from = step_of(corner->from), to = step_of(corner->to);
+  const double sides =
+      interpolated.part * (1 - interpolated.part) * interpolated.gap_us * interpolated.gap_us;
+  return cut(pose, *corner, sides, {std::min(from.length, to.length), std::min(from.angle, to.angle)},
+             options);
 }
 
 }  // namespace egocal::detail

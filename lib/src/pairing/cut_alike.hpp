@@ -32,4 +32,16 @@ struct Interpolated {
 DualQuaternion cut_alike(const Neighbours& neighbours, const Interpolated& interpolated,
                          std::deque<KeyStep>& steps, const SynchroniserOptions& options);
 
+/// Where between two poses the other stream is interpolated, by a clock that may not be that of the stamps.
+struct InterpolatedPart {
+  double part = 0;              ///< of the way to the second one
+  double gap_us = 0;            ///< time between the two
+  std::int64_t max_gap_us = 0;  ///< longest time to a neighbour
+};
+
+/// The same for any pose of a recorded stream: the shorter one of the steps to and from it is what is
+/// typical.
+DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
+                         const SynchroniserOptions& options);
+
 }  // namespace egocal::detail
