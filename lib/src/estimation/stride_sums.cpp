@@ -97,17 +97,26 @@ void StrideSums::add_motions(StrideBlocks& blocks, std::size_t position) const {
               });
 }
 
+/// The motions that end at instants since all_until_.
+void StrideSums::add_new_motions() {
+  for (; all_until_ < state_.next_index; ++all_until_)
+    add_motions(all_, static_cast<std::size_t>(all_until_ - state_.instants.front().index));
+}
+
 /// Of all motions, those of the open instants as well.
-StrideBlocks StrideSums::sums() const {
-  StrideBlocks sums = state_.committed;
-  for (std::size_t i = 0; i < state_.instants.size(); ++i)
-    if (state_.instants[i].index >= state_.first_open) add_motions(sums, i);
-  std::vector<std::uint8_t> outlier(sums.blocks(), 0);
-  const std::uint64_t length = sums.state().block_length;
+StrideBlocks& StrideSums::sums() {
+  if (all_stale_ || all_until_ < state_.first_open) {
+    all_ = state_.committed;
+    all_until_ = state_.first_open;
+    all_stale_ = false;
+  }
+  add_new_motions();
+  std::vector<std::uint8_t> outlier(all_.blocks(), 0);
+  const std::uint64_t length = all_.state().block_length;
   for (std::size_t i = 0; i < state_.outlier.size(); ++i)
     if (state_.outlier[i] != 0) outlier.at(static_cast<std::size_t>(i * state_.outlier_length / length)) = 1;
-  sums.leave_out(std::move(outlier));
-  return sums;
+  all_.leave_out(std::move(outlier));
+  return all_;
 }
 
 /// Adds the motions that end at the instant at this position, by the choice in force.
@@ -132,6 +141,7 @@ void StrideSums::weigh_pending(WeightedBlocks& weighted) const {
 void StrideSums::settle() {
   weigh_pending(state_.weighted);
   first_pending_ = state_.next_index;
+  if (!all_stale_ && all_until_ >= state_.first_open) add_new_motions();
 }
 
 void StrideSums::fill(Problem& problem) const {
@@ -225,6 +235,7 @@ StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) 
   }
   // all motions are weighed anew after a change, except for one that is too small for that
   if (changes.any && !changes.jumps && !changes.variances) settle();
+  all_stale_ = all_stale_ || changes.any || changes.jumps;
   for (std::size_t i = first; i < state_.instants.size(); ++i)
     append(state_.instants[i], &state_.instants[i - 1], verdicts[i - first]);
   return changes;
@@ -244,7 +255,7 @@ void StrideSums::choose(const std::optional<SingleStride>& rival) {
   // chosen earlier, or called for at any time: from then on
   const std::uint64_t without_delay = state_.next_index - std::min(state_.next_index, choice_delay());
   state_.next_choice = without_delay + std::max<std::uint64_t>(1, without_delay / choice_part(without_delay));
-  StrideBlocks all = judge_open();
+  StrideBlocks& all = judge_open();
   leave_out_blocks(all);
   if (std::optional<WeightChoice> choice =
           choose_weights(all, empty_problem(), state_.choice, rival, tuning_.weighting))
@@ -254,8 +265,8 @@ void StrideSums::choose(const std::optional<SingleStride>& rival) {
 
 /// Verdicts on the open instants and the weights depend on each other. Mostly there is no jump, and none by
 /// the weights without any: that is the end of it. Returns the sums.
-StrideBlocks StrideSums::judge_open() {
-  StrideBlocks all = sums();
+StrideBlocks& StrideSums::judge_open() {
+  StrideBlocks& all = sums();
   std::optional<WeightChoice> suggested = residual_weights(all, options_.mode, tuning_.weighting.residuals);
   const bool before = std::any_of(state_.instants.begin(), state_.instants.end(), [&](const auto& judged) {
     return judged.index >= state_.first_open && judged.jump != Jump::none;
@@ -264,7 +275,7 @@ StrideBlocks StrideSums::judge_open() {
   if (suggested && !before) changes = rejudge(suggested->q);
   if (changes.jumps) rejudge(std::nullopt);
   for (int round = 0; round < tuning_.most_rounds && (changes.jumps || changes.variances); ++round) {
-    all = sums();
+    sums();
     suggested = residual_weights(all, options_.mode, tuning_.weighting.residuals);
     if (!suggested) break;
     changes = rejudge(suggested->q);

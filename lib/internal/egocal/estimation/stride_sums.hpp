@@ -115,7 +115,8 @@ class StrideSums {
   void add_motions(StrideBlocks& blocks, std::size_t position) const;
   void weigh(WeightedBlocks& weighted, std::size_t position) const;
   void weigh_pending(WeightedBlocks& weighted) const;
-  StrideBlocks sums() const;
+  void add_new_motions();
+  StrideBlocks& sums();
   void weigh_all(const StrideBlocks& sums);
   void commit_oldest();
   void commit_pending(std::size_t position);
@@ -124,7 +125,7 @@ class StrideSums {
     bool any = false;  ///< to the last bit
   };
   Changes rejudge(const std::optional<DualQuaternion>& q);
-  StrideBlocks judge_open();
+  StrideBlocks& judge_open();
   void leave_out_blocks(StrideBlocks& all);
 
   PairingOptions options_;
@@ -134,6 +135,12 @@ class StrideSums {
   StrideSumsState state_;
   /// Index of the first instant whose motions are not in state_.weighted yet; all later ones are not either.
   std::uint64_t first_pending_ = 0;
+  /// Of all motions that end before the instant with index all_until_, those of the open instants as well;
+  /// stale where these were judged anew since. Not part of the state: made again, the sums have the same
+  /// bits.
+  StrideBlocks all_;
+  std::uint64_t all_until_ = 0;
+  bool all_stale_ = true;
 };
 
 }  // namespace egocal
