@@ -138,6 +138,7 @@ std::vector<const StudyDrive*> chosen(const std::vector<StudyDrive>& drives, std
 struct Study {
   std::vector<StudyDrive> simulated, real;
   std::string only;
+  double rate_b = 0;    ///< see simulated_study_drive()
   std::size_t few = 0;  ///< simulated drives of each mistake, and one real one; 0: all
   bool verbose = false;
 };
@@ -171,7 +172,7 @@ Table clean(const Study& study, std::size_t first, std::size_t series, int poses
   const Mistake none = testing::mistakes().front();
   const auto take = [&](const StudyDrive& drive) { run(drive, none, rows[drive.kind], study.verbose); };
   for (const StudyDrive& drive : study.simulated) take(drive);
-  for (std::size_t i = first; i < first + series; ++i) take(bench::drive_of_series(i, poses));
+  for (std::size_t i = first; i < first + series; ++i) take(bench::drive_of_series(i, poses, study.rate_b));
   for (const StudyDrive& drive : study.real) take(drive);
   for (const auto& [kind, row] : rows) {
     table.rows.push_back({kind, count(row.runs)});
@@ -192,6 +193,7 @@ int main(int argc, char** argv) {
   std::string write, check;
   program.add_option("--seeds", seeds, "of the simulated drives; 0: none");
   program.add_option("--poses", poses, "of the simulated drives");
+  program.add_option("--rate-b", study.rate_b, "own rate of b [Hz], stamps of its own; 0: a's stamps");
   program.add_option("--mistake", study.only, "this one alone");
   program.add_option("--few", few, "simulated drives and one real one for each mistake; 0: all");
   program.add_option("--series", series, "clean simulated drives besides");
@@ -203,7 +205,7 @@ int main(int argc, char** argv) {
   program.add_flag("--clean", only_clean, "without mistakes");
   program.add_flag("--verbose", study.verbose, "every run");
   program.callback([&] {
-    study.simulated = bench::simulated_study_drives(seeds, poses);
+    study.simulated = bench::simulated_study_drives(seeds, poses, study.rate_b);
     if (!no_real) study.real = bench::real_study_drives(few_real);
     study.few = static_cast<std::size_t>(std::max(0, few));
     Totals totals;

@@ -49,7 +49,8 @@ void add_tampere(std::vector<StudyDrive>& drives) {
 
 }  // namespace
 
-StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int poses, std::uint64_t seed) {
+StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int poses, std::uint64_t seed,
+                                 double rate_b) {
   SimulationOptions options;
   options.terrain = terrain;
   options.relative_noise = level;
@@ -57,9 +58,11 @@ StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int
   options.heavy_tails = noise == Noise::heavy_tailed;
   options.poses = poses;
   options.seed = seed;
-  if (noise == Noise::outliers) {
-    options.faults.resize(2);
-    options.faults[1].outliers = 0.05;
+  options.faults.resize(2);
+  if (noise == Noise::outliers) options.faults[1].outliers = 0.05;
+  if (rate_b > 0) {
+    options.faults[1].rate = rate_b;
+    options.faults[1].phase = 0.37 / rate_b;
   }
   const std::string kind =
       std::string(terrain_names[static_cast<int>(terrain)]) + ", " + noise_names[static_cast<int>(noise)];
@@ -69,24 +72,24 @@ StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int
   return {name, kind, testing::simulated_drive(options)};
 }
 
-std::vector<StudyDrive> simulated_study_drives(int seeds, int poses) {
+std::vector<StudyDrive> simulated_study_drives(int seeds, int poses, double rate_b) {
   std::vector<StudyDrive> drives;
   for (int seed = 1; seed <= seeds; ++seed)
     for (const Terrain terrain : terrains)
       for (const double level : {0.001, 0.01, 0.1})
         for (const Noise noise : noises)
           drives.push_back(
-              simulated_study_drive(terrain, level, noise, poses, static_cast<std::uint64_t>(seed)));
+              simulated_study_drive(terrain, level, noise, poses, static_cast<std::uint64_t>(seed), rate_b));
   return drives;
 }
 
-StudyDrive drive_of_series(std::size_t i, int poses) {
+StudyDrive drive_of_series(std::size_t i, int poses, double rate_b) {
   constexpr std::size_t kinds = std::size(terrains) * std::size(noises);
   // the golden ratio spreads the levels evenly over any stretch of the series
   constexpr double golden = 0.6180339887498949;
   const double part = std::fmod(golden * static_cast<double>(i / kinds), 1.0);
   return simulated_study_drive(terrains[i % std::size(terrains)], std::pow(10.0, -3 + 2 * part),
-                               noises[i / std::size(terrains) % std::size(noises)], poses, 1000 + i);
+                               noises[i / std::size(terrains) % std::size(noises)], poses, 1000 + i, rate_b);
 }
 
 std::vector<StudyDrive> real_study_drives(bool few) {

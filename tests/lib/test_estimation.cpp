@@ -13,6 +13,7 @@
 #include "egocal/estimation/stride_sums.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
+#include "problem/motion_square.hpp"
 
 namespace egocal {
 namespace {
@@ -144,7 +145,7 @@ TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
       if (steps > i) continue;
       const DualQuaternion motion = motion_between(poses[i - steps], poses[i]);
       const DualQuaternion other = motion * normal_displacement(random, 0.01, 0.1);
-      blocks.add(k, i - steps, motion, other, false);
+      blocks.add(k, i - steps, detail::MotionSquare(motion, other), false, 1);
       StrideCell one;
       one.motions.add(motion, other);
       add_weighted(expected, one, weights.rotation[k], weights.translation[k]);

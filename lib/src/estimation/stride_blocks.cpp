@@ -58,11 +58,6 @@ void StrideBlocks::add_instant(std::uint64_t index) {
   ++state_.instants[block];
 }
 
-void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a,
-                       const DualQuaternion& b, bool rotation_only, double weight) {
-  add(stride, first_index, detail::MotionSquare(a, b), rotation_only, weight);
-}
-
 void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const detail::MotionSquare& motion,
                        bool rotation_only, double weight) {
   StrideSum& sum = state_.strides[stride];

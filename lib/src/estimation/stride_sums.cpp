@@ -71,11 +71,13 @@ double StrideSums::certainty(const JudgedInstant& from, const JudgedInstant& to)
   return extra > tuning_.least_extra_variance ? 1 / (1 + extra) : 1;
 }
 
-/// Calls take(stride's number, first instant, motions, whether they span a jump of a translation)
-/// for the motions that end at the instant at this position.
-template <typename Take>
-void StrideSums::each_motion(std::size_t position, const Take& take) const {
+/// Adds the motions that end at the instant with this index to each that is given; weighted by the choice in
+/// force.
+void StrideSums::add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBlocks* weighted) const {
+  const auto position = static_cast<std::size_t>(index - state_.instants.front().index);
   const JudgedInstant& to = state_.instants[position];
+  if (sums) sums->add_instant(index);
+  if (weighted) weighted->add_instant(index);
   if (to.doubtful) return;
   for (std::size_t i = 0; i < tuning_.strides.size(); ++i) {
     const auto steps = static_cast<std::size_t>(tuning_.strides[i]);
@@ -84,23 +86,16 @@ void StrideSums::each_motion(std::size_t position, const Take& take) const {
     if (from.doubtful || from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain)
       continue;
     const Step motion = step(from, to);
-    if (motion.usable) take(i, from, motion, from.translation_chain != to.translation_chain);
+    if (!motion.usable) continue;
+    const bool rotation_only = from.translation_chain != to.translation_chain;
+    const detail::MotionSquare square(motion.a, motion.b);
+    const double weight = certainty(from, to);
+    if (sums) sums->add(i, from.index, square, rotation_only, weight);
+    if (!weighted) continue;
+    const StrideWeights& weights = state_.choice->weights;
+    weighted->add(from.index, index, square, {weights.rotation[i], weights.translation[i], weight},
+                  rotation_only);
   }
-}
-
-void StrideSums::add_motions(StrideBlocks& blocks, std::size_t position) const {
-  const JudgedInstant& to = state_.instants[position];
-  blocks.add_instant(to.index);
-  each_motion(position,
-              [&](std::size_t stride, const JudgedInstant& from, const Step& motion, bool rotation_only) {
-                blocks.add(stride, from.index, motion.a, motion.b, rotation_only, certainty(from, to));
-              });
-}
-
-/// The motions that end at instants since all_until_.
-void StrideSums::add_new_motions() {
-  for (; all_until_ < state_.next_index; ++all_until_)
-    add_motions(all_, static_cast<std::size_t>(all_until_ - state_.instants.front().index));
 }
 
 /// Of all motions, those of the open instants as well.
@@ -110,7 +105,7 @@ StrideBlocks& StrideSums::sums() {
     all_until_ = state_.first_open;
     all_stale_ = false;
   }
-  add_new_motions();
+  for (; all_until_ < state_.next_index; ++all_until_) add_motions(all_until_, &all_, nullptr);
   std::vector<std::uint8_t> outlier(all_.blocks(), 0);
   const std::uint64_t length = all_.state().block_length;
   for (std::size_t i = 0; i < state_.outlier.size(); ++i)
@@ -119,29 +114,19 @@ StrideBlocks& StrideSums::sums() {
   return all_;
 }
 
-/// Adds the motions that end at the instant at this position, by the choice in force.
-void StrideSums::weigh(WeightedBlocks& weighted, std::size_t position) const {
-  const JudgedInstant& to = state_.instants[position];
-  const StrideWeights& weights = state_.choice->weights;
-  weighted.add_instant(to.index);
-  each_motion(position, [&](std::size_t stride, const JudgedInstant& from, const Step& motion,
-                            bool rotation_only) {
-    weighted.add(from.index, to.index, detail::MotionSquare(motion.a, motion.b),
-                 {weights.rotation[stride], weights.translation[stride], certainty(from, to)}, rotation_only);
-  });
-}
-
 void StrideSums::weigh_pending(WeightedBlocks& weighted) const {
-  if (state_.instants.empty()) return;
-  const std::uint64_t first_kept = state_.instants.front().index;
   for (std::uint64_t index = first_pending_; index < state_.next_index; ++index)
-    weigh(weighted, static_cast<std::size_t>(index - first_kept));
+    add_motions(index, nullptr, &weighted);
 }
 
 void StrideSums::settle() {
-  weigh_pending(state_.weighted);
+  const bool has_all = !all_stale_ && all_until_ >= state_.first_open;
+  for (std::uint64_t index = has_all ? std::min(all_until_, first_pending_) : first_pending_;
+       index < state_.next_index; ++index)
+    add_motions(index, has_all && index >= all_until_ ? &all_ : nullptr,
+                index >= first_pending_ ? &state_.weighted : nullptr);
+  if (has_all) all_until_ = state_.next_index;
   first_pending_ = state_.next_index;
-  if (!all_stale_ && all_until_ >= state_.first_open) add_new_motions();
 }
 
 void StrideSums::fill(Problem& problem) const {
@@ -182,33 +167,14 @@ void StrideSums::add(const Instant& instant, bool doubtful) {
   if (state_.next_index - state_.first_open > tuning_.most_open) commit_oldest();
 }
 
-/// add_motions() to what is committed, and weigh().
-void StrideSums::commit_pending(std::size_t position) {
-  const JudgedInstant& to = state_.instants[position];
-  const StrideWeights& weights = state_.choice->weights;
-  state_.committed.add_instant(to.index);
-  state_.weighted.add_instant(to.index);
-  each_motion(
-      position, [&](std::size_t stride, const JudgedInstant& from, const Step& motion, bool rotation_only) {
-        const detail::MotionSquare square(motion.a, motion.b);
-        const double weight = certainty(from, to);
-        state_.committed.add(stride, from.index, square, rotation_only, weight);
-        state_.weighted.add(from.index, to.index, square,
-                            {weights.rotation[stride], weights.translation[stride], weight}, rotation_only);
-      });
-}
-
 /// The oldest of the open instants keeps its verdict for good.
 void StrideSums::commit_oldest() {
+  const bool pending = state_.first_open == first_pending_ && first_pending_ < state_.next_index;
+  add_motions(state_.first_open, &state_.committed, pending ? &state_.weighted : nullptr);
+  if (pending) ++first_pending_;
   const std::uint64_t first_kept = state_.instants.front().index;
-  const auto position = static_cast<std::size_t>(state_.first_open - first_kept);
-  if (state_.first_open == first_pending_ && first_pending_ < state_.next_index) {
-    commit_pending(position);
-    ++first_pending_;
-  } else {
-    add_motions(state_.committed, position);
-  }
-  if (state_.instants[position].jump != Jump::none) ++state_.jumps;
+  if (state_.instants[static_cast<std::size_t>(state_.first_open - first_kept)].jump != Jump::none)
+    ++state_.jumps;
   ++state_.first_open;
   const auto longest = static_cast<std::uint64_t>(tuning_.strides.back());
   if (first_kept + longest < state_.first_open) state_.instants.pop_front();

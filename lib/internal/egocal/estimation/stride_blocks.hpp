@@ -56,8 +56,6 @@ class StrideBlocks {
   /// Opens the block that the instant with this index (counted from 0, ascending) belongs to.
   void add_instant(std::uint64_t index);
   /// Adds a motion of strides()[stride] that begins at an instant and ends at the newest one, by this weight.
-  void add(std::size_t stride, std::uint64_t first_index, const DualQuaternion& a, const DualQuaternion& b,
-           bool rotation_only, double weight = 1);
   void add(std::size_t stride, std::uint64_t first_index, const detail::MotionSquare& motion,
            bool rotation_only, double weight);
   /// One verdict a block.

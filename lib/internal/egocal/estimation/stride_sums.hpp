@@ -110,16 +110,11 @@ class StrideSums {
   void append(JudgedInstant& judged, const JudgedInstant* before, const StepVerdict& verdict) const;
   Step step(const JudgedInstant& from, const JudgedInstant& to) const;
   double certainty(const JudgedInstant& from, const JudgedInstant& to) const;
-  template <typename Take>
-  void each_motion(std::size_t position, const Take& take) const;
-  void add_motions(StrideBlocks& blocks, std::size_t position) const;
-  void weigh(WeightedBlocks& weighted, std::size_t position) const;
+  void add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBlocks* weighted) const;
   void weigh_pending(WeightedBlocks& weighted) const;
-  void add_new_motions();
   StrideBlocks& sums();
   void weigh_all(const StrideBlocks& sums);
   void commit_oldest();
-  void commit_pending(std::size_t position);
   struct Changes {
     bool jumps = false, variances = false;
     bool any = false;  ///< to the last bit
