@@ -11,6 +11,7 @@
 #include "moves/change_test.hpp"
 #include "moves/linear_blocks.hpp"
 #include "moves/moving_pairs.hpp"
+#include "statistics/order_statistic.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -83,7 +84,8 @@ class Finder {
     search(0, pairs_.size());
     result.chance = std::min(1.0, chance_);
     settle();
-    for (const Found& found : found_) result.moves.push_back(described(found));
+    for (const Found& found : found_)
+      if (std::optional<Move> move = described(found)) result.moves.push_back(*std::move(move));
     return result;
   }
 
@@ -219,7 +221,22 @@ class Finder {
     return place;
   }
 
-  Move described(const Found& found) const {
+  /// By how much the motions of one side fit the other side's answer worse than their own: root mean squares,
+  /// without the tails.
+  double contradiction(Pairs side, const DualQuaternion& own, const DualQuaternion& other) const {
+    std::vector<double> fits;
+    for (const MotionPair& pair : side) fits.push_back(detail::pair_residual(pair, own, problem_.balance));
+    const double most = options_.place_residual * detail::order_statistic(fits, fits.size() / 2);
+    double fit = 0, misfit = 0;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      fit += std::min(fits[i], most);
+      misfit += std::min(detail::pair_residual(side[i], other, problem_.balance), most);
+    }
+    return fit > 0 ? std::sqrt(misfit / fit) : infinity;
+  }
+
+  /// Empty where a large turn is not credible.
+  std::optional<Move> described(const Found& found) const {
     Move move;
     move.false_alarm = found.test.false_alarm;
     if (found.creep) {
@@ -243,6 +260,11 @@ class Finder {
       }
       move.before = extrinsic(before);
       move.after = extrinsic(after);
+      if (to_pose(before).rotation.angularDistance(to_pose(after).rotation) > options_.large_turn &&
+          std::min(contradiction(pairs_.subspan(found.from, at.at - found.from), before, after),
+                   contradiction(pairs_.subspan(at.at, found.to - at.at), after, before)) <
+              options_.large_turn_contradicts)
+        return std::nullopt;
       const auto middle = [&](std::size_t i) {
         return 0.5 * (seconds(pairs_[i].begin_us) + seconds(pairs_[i].end_us));
       };

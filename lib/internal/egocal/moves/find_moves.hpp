@@ -80,6 +80,11 @@ struct MovesOptions {
   /// The change is looked for where the cost of both answers together is within this of its least, in units
   /// of the noise of one parameter: three standard deviations.
   double time_interval = 9;
+  /// A turn by more than this [rad] must show motion by motion: those of either side fit the other side's
+  /// answer worse than their own by this factor, in the root mean square without the tails. The test of
+  /// blocks is linear, and noise that wanders turns the answer of the last seconds by any angle. Study:
+  /// docs/moves.md, "Limits".
+  double large_turn = 20 * std::numbers::pi / 180, large_turn_contradicts = 2.5;
   ChangeTestOptions test;
 };
 
