@@ -270,6 +270,26 @@ SimulationOptions moved_at(double time, const Pose& change, int poses) {
   return simulation;
 }
 
+// A tenth of every motion is noise, and remembered for ten of them.
+TEST(Explanations, StrongNoiseThatWandersInAShortDriveIsNoMove) {
+  SimulationOptions simulation;
+  simulation.terrain = Terrain::flat;
+  simulation.relative_noise = 0.1;
+  simulation.random_walk = true;
+  simulation.poses = 301;
+  const auto expect_no_finding = [&](std::uint64_t seed) {
+    simulation.seed = seed;
+    const testing::Streams streams = testing::simulated_drive(simulation);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << seed << ": " << calibration.reason;
+  };
+  for (const std::uint64_t seed : {5, 6, 111, 123}) expect_no_finding(seed);
+  simulation.faults.resize(2);
+  simulation.faults[1].rate = 7;
+  simulation.faults[1].phase = 0.37 / 7;
+  for (const std::uint64_t seed : {1, 4}) expect_no_finding(seed);
+}
+
 // What a look at a drive shows that is judged again every two seconds.
 TEST(Explanations, AMoveMustHaveShownBefore) {
   SimulationOptions simulation = moved_at(110, {rotation_exp({0, 0.02, 0}), {0.06, 0, 0}}, 1201);

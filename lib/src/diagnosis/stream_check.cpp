@@ -247,6 +247,13 @@ std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOpt
   const auto end = std::find_if_not(first, windows.end(), disagrees);
   if (std::find_if(end, windows.end(), disagrees) != windows.end()) return {};
   if (end - first < 2 || static_cast<std::ptrdiff_t>(windows.size()) - (end - first) < 2) return {};
+  // noise of one size is a large part of the angle where little is turned
+  std::vector<double> other;
+  for (auto window = first; window != end; ++window) other.push_back(window->difference);
+  double agreeing = 0;
+  for (const Window& window : windows)
+    if (!disagrees(window)) agreeing = std::max(agreeing, window.difference);
+  if (!(median(std::move(other)) > options.step * agreeing)) return {};
   const auto last = end - 1;
   Finding finding;
   finding.code = "unrelated";
