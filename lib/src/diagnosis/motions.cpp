@@ -83,20 +83,25 @@ void measure_sizes(Motions& motions) {
 
 }  // namespace
 
-DualQuaternion Instants::key(std::size_t i) const {
+DualQuaternion Instants::key(std::size_t i, const PoseReading& reading) const {
   const Place& place = places_[i];
   const std::size_t k = place.key;
-  const StampedPose& pose = (*keys_)[k];
+  const auto read = [&](const StampedPose& given) {
+    return StampedPose{given.time_us, reread(given.pose, reading)};
+  };
+  const StampedPose pose = read((*keys_)[k]);
   if (place.part == 0 || k == 0 || k + 1 == keys_->size()) return pose.pose;
+  const StampedPose before = read((*keys_)[k - 1]), after = read((*keys_)[k + 1]);
   const StampedPose &from = (*others_)[place.before], &to = (*others_)[place.before + 1];
-  return cut_alike({(*keys_)[k - 1], pose, (*keys_)[k + 1]},
+  return cut_alike({before, pose, after},
                    {place.part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, {});
 }
 
-DualQuaternion Instants::between(std::size_t i) const {
+DualQuaternion Instants::between(std::size_t i, const PoseReading& reading) const {
   const Place& place = places_[i];
-  const DualQuaternion& before = (*others_)[place.before].pose;
-  return place.part > 0 ? interpolate(before, (*others_)[place.before + 1].pose, place.part) : before;
+  const DualQuaternion before = reread((*others_)[place.before].pose, reading);
+  return place.part > 0 ? interpolate(before, reread((*others_)[place.before + 1].pose, reading), place.part)
+                        : before;
 }
 
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
@@ -138,8 +143,8 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > options.most_stretched * stride * instants.period) continue;
-    Motion motion = motion_from(conjugate(reread(instants.a(i), read_a)) * reread(instants.a(k), read_a),
-                                conjugate(reread(instants.b(i), read_b)) * reread(instants.b(k), read_b));
+    Motion motion = motion_from(conjugate(instants.a(i, read_a)) * instants.a(k, read_a),
+                                conjugate(instants.b(i, read_b)) * instants.b(k, read_b));
     if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
     motion.time = 0.5 * (instants.time(i) + instants.time(k));
     motions.all.push_back(std::move(motion));

@@ -52,10 +52,14 @@ class Instants {
   std::size_t size() const { return places_.size(); }
   /// [s], since the first stamp of a.
   double time(std::size_t i) const { return (*key_times_)[places_[i].key]; }
-  /// Poses at instant i, cut alike (pairing/cut_alike.hpp); the trajectories of synchronised() must still be
-  /// there.
-  DualQuaternion a(std::size_t i) const { return b_slower_ ? between(i) : key(i); }
-  DualQuaternion b(std::size_t i) const { return b_slower_ ? key(i) : between(i); }
+  /// Poses at instant i under a reading of the stream, interpolated and cut alike (pairing/cut_alike.hpp) as
+  /// read; the trajectories of synchronised() must still be there.
+  DualQuaternion a(std::size_t i, const PoseReading& reading = {}) const {
+    return b_slower_ ? between(i, reading) : key(i, reading);
+  }
+  DualQuaternion b(std::size_t i, const PoseReading& reading = {}) const {
+    return b_slower_ ? key(i, reading) : between(i, reading);
+  }
 
  private:
   friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
@@ -66,8 +70,8 @@ class Instants {
     std::uint32_t before = 0;  ///< pose of the other one, at or before the instant
     double part = 0;           ///< of the way to the next one
   };
-  DualQuaternion key(std::size_t i) const;
-  DualQuaternion between(std::size_t i) const;
+  DualQuaternion key(std::size_t i, const PoseReading& reading) const;
+  DualQuaternion between(std::size_t i, const PoseReading& reading) const;
 
   const Trajectory* keys_ = nullptr;
   const Trajectory* others_ = nullptr;

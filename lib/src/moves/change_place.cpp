@@ -43,7 +43,7 @@ ChangePlace locate_change(std::span<const MotionPair> pairs, const Problem& prob
     sum += std::min(first[i], most) - std::min(second[i], most);
     total.push_back(sum);
   }
-  const std::size_t margin = std::min(options.least_block_pairs, total.size() / 2 - 1);
+  const std::size_t margin = std::min(options.block_pairs, total.size() / 2 - 1);
   const auto least = std::min_element(total.begin() + static_cast<std::ptrdiff_t>(margin),
                                       total.end() - static_cast<std::ptrdiff_t>(margin));
   const double limit = *least + options.time_interval * noise_of(fits, most, problem.mode) * correlation *

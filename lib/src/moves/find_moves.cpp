@@ -99,8 +99,17 @@ class Finder {
   };
 
   std::size_t blocks_in(std::size_t from, std::size_t to) const {
-    const std::size_t least = std::max(options_.least_block_pairs, 3 * overlap_);
-    return std::min(options_.most_blocks, (to - from) / std::max<std::size_t>(1, least));
+    const auto of = [&](std::size_t pairs) {
+      return (to - from) / std::max<std::size_t>({1, pairs, 3 * overlap_});
+    };
+    const std::size_t count = of(options_.block_pairs);
+    if (count >= options_.least_blocks) return std::min(options_.most_blocks, count);
+    return std::min(options_.least_blocks, of(options_.least_block_pairs));
+  }
+
+  /// With blocks of this number of pairs.
+  double false_alarms(std::size_t block_pairs) const {
+    return options_.false_alarms * (block_pairs < options_.block_pairs ? options_.of_short_blocks : 1);
   }
 
   /// The best change within the stretch, if it is significant and large enough to report.
@@ -115,13 +124,14 @@ class Finder {
     found.test = detail::test_change(found.stretch.blocks, least_side(count, options_), options_.test);
     if (found.test.split == 0) return std::nullopt;
     chance_ = std::min({chance_, found.test.false_alarm, 2 * found.test.even_false_alarm});
-    found.creep = found.test.even && found.test.even_false_alarm <= 0.5 * options_.false_alarms;
+    const double alarms = false_alarms((to - from) / count);
+    found.creep = found.test.even && found.test.even_false_alarm <= 0.5 * alarms;
     if (found.creep) {
       found.test.false_alarm = 2 * found.test.even_false_alarm;
       found.test.change = found.test.end - found.test.begin;
       found.test.covariance = found.test.even_covariance;
     }
-    if (!(found.test.false_alarm <= options_.false_alarms) || !large_enough(found)) return std::nullopt;
+    if (!(found.test.false_alarm <= alarms) || !large_enough(found)) return std::nullopt;
     found.at = from + found.stretch.begin[found.test.split];
     return found;
   }
@@ -367,7 +377,7 @@ std::optional<double> chance_of_move(Pairs pairs, const Problem& problem, MoveKi
   std::vector<MotionPair> kept;
   pairs = detail::moving_pairs(pairs, options.least_motion, kept);
   if (pairs.size() < 2) return std::nullopt;
-  const std::size_t least = std::max(options.least_block_pairs, 3 * detail::overlap_of(pairs));
+  const std::size_t least = std::max(options.block_pairs, 3 * detail::overlap_of(pairs));
   const std::size_t count = std::min(options.most_blocks, pairs.size() / std::max<std::size_t>(1, least));
   const std::size_t side = least_side(count, options);
   if (count < options.least_blocks || count < 2 * side + 1) return std::nullopt;

@@ -60,7 +60,12 @@ struct MovesOptions {
   /// way. Others are ignored: a vehicle that waits for half of its time at lights looked moved in most
   /// drives.
   double least_motion = 0.1;
-  std::size_t least_block_pairs = 8;  ///< pairs of one block, and at least three motions that share no time
+  /// Pairs of one block, and at least three motions that share no time. As few as `least_block_pairs` in a
+  /// drive that is too short for the least number of blocks otherwise; noise that wanders makes such blocks
+  /// alike, so the chance of a false alarm must be smaller by `of_short_blocks`. Study: docs/moves.md,
+  /// "Limits".
+  std::size_t block_pairs = 8, least_block_pairs = 4;
+  double of_short_blocks = 1e-4;
   /// Of the variance of sums of blocks to that of independent ones, at most. Where it is more, the noise
   /// wanders for longer than a block, and what was found must show in blocks twice as long, until it is less,
   /// with the chance of a false alarm at this one place.
