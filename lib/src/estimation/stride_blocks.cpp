@@ -3,6 +3,8 @@
 #include "egocal/estimation/stride_blocks.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "problem/motion_square.hpp"
 
@@ -70,27 +72,33 @@ void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const deta
   ++sum_of_cell.count;
 }
 
+/// In place, as the blocks of hours would leave holes in the heap.
 void StrideBlocks::merge() {
   const std::uint64_t length = 2 * state_.block_length;
   const std::size_t count = (state_.instants.size() + 1) / 2;
-  State merged{length, std::vector<std::uint64_t>(count, 0), std::vector<std::uint8_t>(count, 0), {}};
   for (std::size_t block = 0; block < state_.instants.size(); ++block) {
-    merged.instants[block / 2] += state_.instants[block];
-    if (state_.outlier[block] != 0) merged.outlier[block / 2] = 1;
+    const std::uint64_t instants = std::exchange(state_.instants[block], 0);
+    const std::uint8_t outlier = std::exchange(state_.outlier[block], std::uint8_t{0});
+    state_.instants[block / 2] += instants;
+    if (outlier != 0) state_.outlier[block / 2] = 1;
   }
-  for (const StrideSum& sum : state_.strides) {
-    StrideSum& to = merged.strides.emplace_back(
-        StrideSum{sum.stride, std::vector<StrideCell>(count), std::vector<StrideCell>(count)});
+  state_.instants.resize(count);
+  state_.outlier.resize(count);
+  for (StrideSum& sum : state_.strides) {
     const std::size_t near = offset(sum.stride, state_.block_length), near_to = offset(sum.stride, length);
-    for (std::size_t first = 0; first < sum.near.size(); ++first)
-      for (const bool is_far : {false, true}) {
-        const StrideCell& cell = is_far ? sum.far[first] : sum.near[first];
-        if (empty(cell)) continue;
-        const std::size_t last = first + near + (is_far ? 1 : 0);
-        egocal::add((last / 2 - first / 2 == near_to ? to.near : to.far)[first / 2], cell);
+    for (std::size_t first = 0; first < sum.near.size(); ++first) {
+      const std::array<StrideCell, 2> cells{std::exchange(sum.near[first], {}),
+                                            std::exchange(sum.far[first], {})};
+      for (std::size_t is_far = 0; is_far < 2; ++is_far) {
+        if (empty(cells[is_far])) continue;
+        const std::size_t last = first + near + is_far;
+        egocal::add((last / 2 - first / 2 == near_to ? sum.near : sum.far)[first / 2], cells[is_far]);
       }
+    }
+    sum.near.resize(count);
+    sum.far.resize(count);
   }
-  state_ = std::move(merged);
+  state_.block_length = length;
 }
 
 template <typename Visit>
