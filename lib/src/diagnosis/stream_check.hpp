@@ -21,7 +21,7 @@ struct StreamCheckOptions {
   /// Angles of a window agree where they differ by less than this part, and may disagree from there on: noise
   /// of a tenth of every motion stays below 0.2 in the study, unlike drives are above 0.3.
   double agree = 0.25, disagree = 0.15;
-  double step = 4;             ///< least ratio of windows that disagree to those that agree
+  double step = 4;             ///< least ratio, of these parts and of the angles, to windows that agree
   double least_turning = 0.3;  ///< of the typical motion; a window that turns less says nothing
   double flat = 1e-6;          ///< of the longest extent: a coordinate that changes by less never changes
   double least_tilt = 0.0175;  ///< of a stream with a flat coordinate: a degree [rad]; level ground is within

@@ -47,8 +47,8 @@ struct CongruenceOptions {
   /// Motions before the first estimate: a quartile of each half of them has six values on either side. Study:
   /// wrong poses among the first two dozen are found when these are screened again.
   std::size_t first_estimate = 24;
-  /// Motions between estimates while the memory fills, and once it is full: one sixteenth of it is new then.
-  /// Measured: the same answers as with 16 throughout, 940 -> 370 ms of pairing for 100,000 poses.
+  /// Motions between estimates while the memory fills; once it is full, between those of one of the four in
+  /// turn: a quarter of it is new then. Study: docs/benchmarks.md, "The command `egocal solve`".
   std::uint64_t estimate_every = 16, estimate_every_when_full = 64;
   /// One of this number of motions of doubtful poses is remembered: they may be wrong, or the beginning of
   /// noisier seconds, which the estimate must follow after a while.
