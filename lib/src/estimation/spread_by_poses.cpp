@@ -18,7 +18,7 @@ DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
 Seen seen_directions(const Problem& problem) {
   const Matrix8d Q = cost_matrix(problem);
   const Answer answer = solve_and_verify(problem, Q, Method::dual);
-  return assess_observability(problem, Q, answer.T_a_b, ErrorCorrelation::independent).observable;
+  return observable_directions(problem, Q, answer.T_a_b, ErrorCorrelation::independent);
 }
 
 SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen) {

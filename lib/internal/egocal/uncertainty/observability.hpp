@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include "egocal/online/answer.hpp"
 
 namespace egocal {
@@ -54,6 +56,11 @@ struct ObservabilityOptions {
 Observability assess_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
                                    ErrorCorrelation errors = ErrorCorrelation::correlated,
                                    const ObservabilityOptions& options = {});
+
+/// The observable ones alone, without the jack-knife.
+std::array<bool, 6> observable_directions(const Problem& problem, const Matrix8d& Q,
+                                          const DualQuaternion& T_a_b, ErrorCorrelation errors,
+                                          const ObservabilityOptions& options = {});
 
 /// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of the
 /// directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is
