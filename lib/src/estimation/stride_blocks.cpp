@@ -21,6 +21,27 @@ bool empty(const StrideCell& cell) {
   return cell.motions.count + cell.rotations.count == 0;
 }
 
+void add_weighted_motions(Statistics& sum, const Statistics& motions, double rotation, double translation) {
+  if (motions.count == 0) return;
+  sum.dual_rows += translation * motions.dual_rows;
+  sum.dual_rows.topLeftCorner<4, 4>() += rotation * motions.dual_rows.bottomRightCorner<4, 4>();
+  sum.weight += translation * motions.weight;
+}
+
+void add_weighted_rotations(Statistics& sum, const Statistics& rotations, double rotation,
+                            double translation) {
+  if (rotations.count == 0) return;
+  sum.dual_rows.topLeftCorner<4, 4>() += rotation * rotations.dual_rows.bottomRightCorner<4, 4>();
+  sum.weight += translation * rotations.weight;
+}
+
+/// To one of the sums by block, which are made when there is something to add.
+void add(std::vector<Statistics>& sums, std::size_t blocks, std::size_t block, const Statistics& more) {
+  if (more.count == 0) return;
+  if (sums.empty()) sums.resize(blocks);
+  sums[block] += more;
+}
+
 /// Blocks between the ends of a motion of `stride` steps, at least.
 std::size_t offset(int stride, std::uint64_t block_length) {
   return static_cast<std::size_t>(static_cast<std::uint64_t>(stride) / block_length);
@@ -29,15 +50,8 @@ std::size_t offset(int stride, std::uint64_t block_length) {
 }  // namespace
 
 void add_weighted(Statistics& sum, const StrideCell& cell, double rotation, double translation) {
-  if (cell.motions.count > 0) {
-    sum.dual_rows += translation * cell.motions.dual_rows;
-    sum.dual_rows.topLeftCorner<4, 4>() += rotation * cell.motions.dual_rows.bottomRightCorner<4, 4>();
-    sum.weight += translation * cell.motions.weight;
-  }
-  if (cell.rotations.count > 0) {
-    sum.dual_rows.topLeftCorner<4, 4>() += rotation * cell.rotations.dual_rows.bottomRightCorner<4, 4>();
-    sum.weight += translation * cell.rotations.weight;
-  }
+  add_weighted_motions(sum, cell.motions, rotation, translation);
+  add_weighted_rotations(sum, cell.rotations, rotation, translation);
 }
 
 StrideBlocks::StrideBlocks(const std::vector<int>& strides) {
@@ -142,12 +156,15 @@ TouchingSums::TouchingSums(const StrideBlocks& blocks)
       left_out_(blocks.state().outlier) {
   for (std::size_t i = 0; i < strides_.size(); ++i) {
     PerStride& sums = strides_[i];
-    sums.blocks.resize(blocks.blocks());
+    const auto add_to_block = [&](std::size_t block, const StrideCell& cell) {
+      add(sums.motions, blocks.blocks(), block, cell.motions);
+      add(sums.rotations, blocks.blocks(), block, cell.rotations);
+    };
     blocks.each_cell(i, [&](const StrideCell& cell, std::size_t first, std::size_t last) {
       egocal::add(sums.total, cell);
-      egocal::add(sums.blocks[first], cell);
+      add_to_block(first, cell);
       if (first == last) return;
-      egocal::add(sums.blocks[last], cell);
+      add_to_block(last, cell);
       egocal::add(sums.shared, cell);
     });
   }
@@ -158,9 +175,12 @@ WeightedBlocks TouchingSums::weighted(const StrideWeights& weights) const {
   for (std::size_t i = 0; i < strides_.size(); ++i) {
     const double rotation = weights.rotation[i], translation = weights.translation[i];
     if (!(rotation > 0) && !(translation > 0)) continue;
-    for (std::size_t block = 0; block < sums.blocks.size(); ++block)
-      add_weighted(sums.blocks[block], strides_[i].blocks[block], rotation, translation);
-    add_weighted(sums.shared, strides_[i].shared, rotation, translation);
+    const PerStride& stride = strides_[i];
+    for (std::size_t block = 0; block < stride.motions.size(); ++block)
+      add_weighted_motions(sums.blocks[block], stride.motions[block], rotation, translation);
+    for (std::size_t block = 0; block < stride.rotations.size(); ++block)
+      add_weighted_rotations(sums.blocks[block], stride.rotations[block], rotation, translation);
+    add_weighted(sums.shared, stride.shared, rotation, translation);
   }
   for (std::size_t block = 0; block < sums.blocks.size(); ++block)
     sums.blocks[block].count = instants_[block];

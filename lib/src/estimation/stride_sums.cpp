@@ -98,14 +98,23 @@ void StrideSums::add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBl
   }
 }
 
-/// Of all motions, those of the open instants as well.
-StrideBlocks& StrideSums::sums() {
-  if (all_stale_ || all_until_ < state_.first_open) {
+/// Whether what `all_` holds is as judged now; motions that end later may be missing.
+bool StrideSums::all_is_valid() const {
+  return !all_stale_ && all_until_ >= state_.first_open;
+}
+
+void StrideSums::complete_all() {
+  if (!all_is_valid()) {
     all_ = state_.committed;
     all_until_ = state_.first_open;
     all_stale_ = false;
   }
   for (; all_until_ < state_.next_index; ++all_until_) add_motions(all_until_, &all_, nullptr);
+}
+
+/// Of all motions, those of the open instants as well.
+StrideBlocks& StrideSums::sums() {
+  complete_all();
   std::vector<std::uint8_t> outlier(all_.blocks(), 0);
   const std::uint64_t length = all_.state().block_length;
   for (std::size_t i = 0; i < state_.outlier.size(); ++i)
@@ -120,7 +129,7 @@ void StrideSums::weigh_pending(WeightedBlocks& weighted) const {
 }
 
 void StrideSums::settle() {
-  const bool has_all = !all_stale_ && all_until_ >= state_.first_open;
+  const bool has_all = all_is_valid();
   for (std::uint64_t index = has_all ? std::min(all_until_, first_pending_) : first_pending_;
        index < state_.next_index; ++index)
     add_motions(index, has_all && index >= all_until_ ? &all_ : nullptr,
@@ -142,8 +151,8 @@ StrideSumsState StrideSums::state() const {
   return state;
 }
 
-void StrideSums::weigh_all(const StrideBlocks& sums) {
-  state_.weighted = in_force() ? TouchingSums(sums).weighted(state_.choice->weights) : WeightedBlocks();
+void StrideSums::weigh_all(const TouchingSums& sums) {
+  state_.weighted = in_force() ? sums.weighted(state_.choice->weights) : WeightedBlocks();
   first_pending_ = state_.next_index;
 }
 
@@ -152,17 +161,18 @@ void StrideSums::add(const Instant& instant, bool doubtful) {
   JudgedInstant judged{instant, state_.next_index++, Jump::none, 0, 0, doubtful, 0, 0};
   append(judged, before, {});
   state_.instants.push_back(judged);
+  if (!state_.choice) complete_all();  // else the first choice would add up all motions at once
   if (!in_force())
     first_pending_ = state_.next_index;
   else if (!state_.weighted.has_room(judged.index))
-    weigh_all(sums());
+    weigh_all(TouchingSums(sums()));
   if (in_force() && state_.next_index >= state_.next_look) {
     state_.next_look = state_.next_index + std::clamp(state_.next_index / tuning_.look_part,
                                                       tuning_.least_look, tuning_.most_look);
     const Changes changes = rejudge(state_.choice->q);
     // what looks like a jump may be the first motion that shows a new direction
     if (changes.jumps) rejudge(std::nullopt);
-    if (changes.jumps || changes.variances) weigh_all(sums());
+    if (changes.jumps || changes.variances) weigh_all(TouchingSums(sums()));
   }
   if (state_.next_index - state_.first_open > tuning_.most_open) commit_oldest();
 }
@@ -218,15 +228,17 @@ std::uint64_t StrideSums::choice_delay() const {
 }
 
 void StrideSums::choose(const std::optional<SingleStride>& rival) {
-  // chosen earlier, or called for at any time: from then on
+  // chosen before it was due: from then on
   const std::uint64_t without_delay = state_.next_index - std::min(state_.next_index, choice_delay());
-  state_.next_choice = without_delay + std::max<std::uint64_t>(1, without_delay / choice_part(without_delay));
+  const std::uint64_t due = std::min(without_delay, state_.next_choice);
+  state_.next_choice = due + std::max<std::uint64_t>(1, due / choice_part(due));
   StrideBlocks& all = judge_open();
   leave_out_blocks(all);
+  const TouchingSums touching(all);
   if (std::optional<WeightChoice> choice =
-          choose_weights(all, empty_problem(), state_.choice, rival, tuning_.weighting))
+          choose_weights(all, touching, empty_problem(), state_.choice, rival, tuning_.weighting))
     state_.choice = std::move(choice);
-  weigh_all(all);
+  weigh_all(touching);
 }
 
 /// Verdicts on the open instants and the weights depend on each other. Mostly there is no jump, and none by

@@ -286,11 +286,10 @@ std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mo
   return residual_weights(Ladder(blocks, blocks, options), mode);
 }
 
-std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Problem& problem,
-                                           const std::optional<WeightChoice>& current,
+std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const TouchingSums& sums,
+                                           const Problem& problem, const std::optional<WeightChoice>& current,
                                            const std::optional<SingleStride>& rival,
                                            const WeightingOptions& options) {
-  const TouchingSums sums(blocks);
   const Ladder ladder(blocks, sums, options.residuals);
   std::optional<WeightChoice> best = residual_weights(ladder, problem.mode);
   if (!best) return std::nullopt;

@@ -96,7 +96,7 @@ class TouchingSums {
 
  private:
   struct PerStride {
-    std::vector<StrideCell> blocks;
+    std::vector<Statistics> motions, rotations;  ///< by block; as in StrideCell. Empty: there are none
     StrideCell shared, total;
   };
   std::vector<PerStride> strides_;

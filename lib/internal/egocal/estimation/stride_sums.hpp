@@ -112,8 +112,10 @@ class StrideSums {
   double certainty(const JudgedInstant& from, const JudgedInstant& to) const;
   void add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBlocks* weighted) const;
   void weigh_pending(WeightedBlocks& weighted) const;
+  bool all_is_valid() const;
+  void complete_all();
   StrideBlocks& sums();
-  void weigh_all(const StrideBlocks& sums);
+  void weigh_all(const TouchingSums& sums);
   void commit_oldest();
   struct Changes {
     bool jumps = false, variances = false;

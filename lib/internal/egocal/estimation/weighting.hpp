@@ -95,11 +95,12 @@ struct SingleStride {
 /// ratio of the two noises alone (0: neighbours only; 1: all alike). lambda is fitted to the variance of the
 /// residuals by stride, for rotation and translation each; their balance is the inverse of the variances.
 /// Where omitting blocks of poses shows that another lambda = exp(-1 / memory) has a clearly smaller
-/// spread (noise is of another kind: it drifts, or grows with the length), that one is taken. problem: mode,
-/// planes, prior. current: the choice in force. rival: the best single stride; one that is not among the
-/// strides of the blocks, or contradicts the sum, is not beaten. Empty where no motion turns or moves.
-std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Problem& problem,
-                                           const std::optional<WeightChoice>& current,
+/// spread (noise is of another kind: it drifts, or grows with the length), that one is taken. sums: of the
+/// blocks. problem: mode, planes, prior. current: the choice in force. rival: the best single stride; one
+/// that is not among the strides of the blocks, or contradicts the sum, is not beaten. Empty where no motion
+/// turns or moves.
+std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const TouchingSums& sums,
+                                           const Problem& problem, const std::optional<WeightChoice>& current,
                                            const std::optional<SingleStride>& rival = {},
                                            const WeightingOptions& options = {});
 
