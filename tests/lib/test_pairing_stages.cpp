@@ -289,11 +289,12 @@ TEST(Accumulator, ContinuesFromItsStateBitForBit) {
   EXPECT_EQ(whole.choice().stride, parts.choice().stride);
 }
 
-TEST(Accumulator, SpreadsLooksForOutliersOverPosesAndChoosesAtOnce) {
+TEST(Accumulator, SpreadsLooksForOutliersAndChoicesOverPoses) {
   Accumulator accumulator{PairingOptions{}};
   accumulator.begin(period_us);
   AccumulatorState before = accumulator.state();
-  std::size_t looks = 0, choices = 0;
+  std::size_t looks = 0, choices = 0, waited = 0;
+  std::uint64_t due = before.sums->next_choice;
   for (const Instant& instant : instants_of(simulated(700))) {
     accumulator.add(instant);
     const AccumulatorState now = accumulator.state();
@@ -306,13 +307,22 @@ TEST(Accumulator, SpreadsLooksForOutliersOverPosesAndChoosesAtOnce) {
     const bool chose = now.next_choice != before.next_choice;
     ASSERT_TRUE(now.sums);
     const bool chose_sums = now.sums->next_choice != before.sums->next_choice;
-    // a drive may end here: weights of an older choice would be worse (docs/benchmarks.md)
-    EXPECT_FALSE(now.sums->next_index >= now.sums->next_choice) << "pose " << instant.number;
+    // a drive may end here: weights of an older choice would be worse (docs/benchmarks.md); but two choices
+    // in one step take too long
+    EXPECT_FALSE(chose && chose_sums) << "pose " << instant.number;
+    const bool waits = now.sums->next_index >= now.sums->next_choice;
+    EXPECT_FALSE(waits && !chose) << "pose " << instant.number;
+    waited += waits ? 1 : 0;
+    // the wait does not move the choices that follow
+    if (chose_sums) EXPECT_LE(now.sums->next_choice, due + std::max<std::uint64_t>(1, due / 4));
+    due = now.sums->next_choice;
     choices += (chose ? 1 : 0) + (chose_sums ? 1 : 0);
     before = now;
   }
   EXPECT_GT(looks, 40u);
   EXPECT_GT(choices, 15u);
+  EXPECT_GE(waited, 1u);
+  EXPECT_LE(waited, 3u);
 }
 
 TEST(Accumulator, PairsOfOneRigChooseAtDifferentTimes) {

@@ -107,7 +107,8 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   }
   if (sums_) {
     sums_->add(instant, doubtful);
-    if (sums_->choice_is_due()) {
+    // in one step both choices would take 0.7 ms (docs/benchmarks.md)
+    if (sums_->choice_is_due() && !chosen_anew) {
       sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
       chosen_anew = true;
     }
