@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "statistics/median.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -14,12 +16,6 @@ namespace {
 /// Values that are sorted first, to know about where the wanted one is; of fewer than `few` in all it is not
 /// worth it. It is looked for this many places of the sample to either side.
 constexpr std::size_t sample_size = 32, few = 128, margin = 5;
-
-double by_partition(std::vector<double>& values, std::size_t place) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 }  // namespace
 
@@ -35,10 +31,10 @@ double order_statistic(std::span<const double> values, std::size_t place, const 
   }
   if (place >= below && place - below < within) {
     kept.resize(within);
-    return by_partition(kept, place - below);
+    return order_statistic_in_place(kept, place - below);
   }
   std::copy(values.begin(), values.end(), kept.begin());
-  return by_partition(kept, place);
+  return order_statistic_in_place(kept, place);
 }
 
 double order_statistic(std::span<const double> values, std::size_t place) {
