@@ -11,6 +11,7 @@
 
 #include "diagnosis/robust_fit.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -65,10 +66,7 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
 
 /// Weights that outliers lose, from squares in the order of the steps.
 void reweight(std::vector<Step>& steps, const std::vector<double>& squares, double inlier) {
-  std::vector<double> sorted = squares;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double typical = std::max(*middle, 1e-300);
+  const double typical = std::max(median(squares), 1e-300);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const double w = 1 / (1 + squares[i] / (inlier * typical));
     steps[i].weight = w * w;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/robust_fit.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -15,8 +16,7 @@ double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0;
   const auto place =
       std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(place), values.end());
-  return values[place];
+  return order_statistic_in_place(values, place);
 }
 
 /// Of b's size to a's, the median over what was travelled, so that a single jump does not matter.

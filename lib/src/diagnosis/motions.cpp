@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pairing/cut_alike.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -19,9 +20,7 @@ double median_period(std::size_t count, const Time& time, std::size_t most_perio
   std::vector<double> periods;
   const std::size_t each = std::max<std::size_t>(1, count / most_periods);
   for (std::size_t i = 1; i < count; i += each) periods.push_back(time(i) - time(i - 1));
-  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
-                   periods.end());
-  return periods[periods.size() / 2];
+  return median(std::move(periods));
 }
 
 /// Where given times lie among those of a stream, looked up in order.

@@ -9,6 +9,7 @@
 
 #include "diagnosis/wording.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
@@ -166,12 +167,6 @@ struct Window {
 
   double misfit() const { return difference / turned; }
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<Window> windows_of(const Motions& motions, std::size_t count) {
   std::vector<Window> windows;

@@ -5,18 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "statistics/median.hpp"
+
 namespace egocal {
 
 namespace {
 
 constexpr std::size_t kept_steps = 4096;  // a limit on memory: the median of these is known to 2 %
-
-double median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
-}
 
 }  // namespace
 
@@ -50,7 +45,7 @@ void StreamSummariser::add(const StampedPose& pose) {
 
 StreamSummary StreamSummariser::summary() const {
   StreamSummary summary = summary_;
-  const double step = median(steps_);
+  const auto step = static_cast<double>(detail::median(steps_));
   summary.rate = step > 0 ? 1 / step : 0;
   for (const float seconds : suspect_steps_)
     if (static_cast<double>(seconds) > options_.gap_factor * step) {

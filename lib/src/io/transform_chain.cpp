@@ -6,6 +6,8 @@
 #include <deque>
 #include <map>
 
+#include "statistics/median.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -19,9 +21,7 @@ std::int64_t largest_gap(const Trajectory& poses) {
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < poses.size(); ++i) steps.push_back(poses[i].time_us - poses[i - 1].time_us);
   if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::max<std::int64_t>(1'000'000, 2 * *middle);
+  return std::max<std::int64_t>(1'000'000, 2 * median(std::move(steps)));
 }
 
 std::optional<DualQuaternion> pose_at(const Trajectory& poses, std::int64_t time_us, std::int64_t gap_us) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "moves/linear_blocks.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -30,10 +31,7 @@ ChangePlace locate_change(std::span<const MotionPair> pairs, const Problem& prob
     second.push_back(pair_residual(pair, after, problem.balance));
     fits.push_back(std::min(first.back(), second.back()));
   }
-  std::vector<double> sorted = fits;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double most = options.place_residual * *middle;  // larger residuals do not decide
+  const double most = options.place_residual * median(fits);  // larger residuals do not decide
 
   // cost of every division: `second` of all, then `first` of the pairs before it instead
   double sum = 0;

@@ -9,6 +9,7 @@
 
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -42,9 +43,7 @@ double longest_length(const std::vector<Parameters>& residuals, const ChangeTest
   std::vector<double> lengths;
   lengths.reserve(residuals.size());
   for (const Parameters& z : residuals) lengths.push_back(z.norm());
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return options.longest_residual * *middle;
+  return options.longest_residual * median(std::move(lengths));
 }
 
 Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& options) {

@@ -8,17 +8,12 @@
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 DualQuaternion minimiser(const std::vector<Statistics>& blocks, const Problem& problem) {
   const Matrix8d Q = cost_matrix(sum_blocks(blocks), problem.balance);

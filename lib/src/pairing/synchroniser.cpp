@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pairing/cut_alike.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 
@@ -21,10 +22,7 @@ std::int64_t median_period(const std::deque<StampedPose>& poses, std::size_t cou
   std::vector<std::int64_t> periods;
   for (std::size_t i = 1; i < std::min(poses.size(), count); ++i)
     periods.push_back(poses[i].time_us - poses[i - 1].time_us);
-  if (periods.empty()) return 0;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
+  return detail::median(std::move(periods));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "egocal/solvers/global.hpp"
 #include "moves/linear_blocks.hpp"
 #include "rig/loops.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 
@@ -37,10 +38,8 @@ std::vector<bool> unfit(const RigPair& pair, double most_residual) {
   std::vector<double> residuals;
   for (const MotionPair& motion : pair.pairs)
     residuals.push_back(detail::pair_residual(motion, q, pair.problem.balance));
-  std::vector<double> sorted = residuals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  for (std::size_t i = 0; i < residuals.size(); ++i) result[i] = residuals[i] > most_residual * *middle;
+  const double limit = most_residual * detail::median(residuals);
+  for (std::size_t i = 0; i < residuals.size(); ++i) result[i] = residuals[i] > limit;
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "egocal/pairing/congruence.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 
@@ -64,10 +65,7 @@ std::vector<int> gaps_before(const std::vector<Instant>& instants, double max_ga
   for (std::size_t i = 1; i < instants.size(); ++i)
     periods.push_back(instants[i].time_us - instants[i - 1].time_us);
   if (periods.empty()) return std::vector<int>(instants.size(), 0);
-  std::vector<std::int64_t> sorted = periods;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = std::max(1e6 * max_gap, 1.5 * static_cast<double>(*middle));
+  const double limit = std::max(1e6 * max_gap, 1.5 * static_cast<double>(detail::median(periods)));
   std::vector<int> gaps = {0};
   for (const std::int64_t period : periods)
     gaps.push_back(gaps.back() + (static_cast<double>(period) > limit ? 1 : 0));

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "statistics/distributions.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -173,9 +174,8 @@ double underestimated(const SampleSet& set, const SampleFit& fit) {
   for (std::size_t i = 0; i < set.size(); ++i) {
     squares.push_back(in_variances(set, i, fit));
   }
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>((squares.size() - 1) / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::max(1.0, *middle / median_of_six);
+  const double middle = order_statistic_in_place(squares, (squares.size() - 1) / 2);
+  return std::max(1.0, middle / median_of_six);
 }
 
 /// Does noise explain a sample by its residual alone? A fit with it is no worse than this one.
@@ -273,9 +273,8 @@ double congruent_noise(const SampleSet& set, double least) {
       const PoseSample &from = set.sample(i), &to = set.sample((i + step) % n);
       differences.push_back(std::abs(turn(from.a, to.a) - turn(from.b, to.b)));
     }
-  const auto fifth = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 5);
-  std::nth_element(differences.begin(), fifth, differences.end());
-  return std::max(least, *fifth / (normal_fifth * std::sqrt(2.0)));
+  const double fifth = order_statistic_in_place(differences, differences.size() / 5);
+  return std::max(least, fifth / (normal_fifth * std::sqrt(2.0)));
 }
 
 /// Is it sure that a search from triples of samples would find nothing better?

@@ -17,6 +17,7 @@
 #include "samples/agreeing.hpp"
 #include "samples/leave_one_out.hpp"
 #include "samples/readings.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 
@@ -77,12 +78,6 @@ Problem problem_of(const SampleFit& fit, const SampleOptions& options) {
   return problem;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Residuals of all samples, and the spread of the target over those that count.
 void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
                     const std::vector<std::size_t>& order, SampleCalibration& result) {
@@ -98,7 +93,7 @@ void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
   }
   result.spread_rms = std::sqrt(result.spread_rms);
   result.spread_largest = *std::max_element(distances.begin(), distances.end());
-  result.spread_median = median(std::move(distances));
+  result.spread_median = detail::median(std::move(distances));
 }
 
 Finding wrong_samples(const std::vector<SampleResidual>& residuals) {

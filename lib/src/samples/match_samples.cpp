@@ -8,6 +8,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 
@@ -17,10 +18,7 @@ std::int64_t typical_period_us(const Trajectory& trajectory) {
   std::vector<std::int64_t> periods;
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     periods.push_back(trajectory[i].time_us - trajectory[i - 1].time_us);
-  if (periods.empty()) return 0;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
+  return detail::median(std::move(periods));
 }
 
 /// Row of the nearest stamp.
@@ -66,9 +64,7 @@ double median_turn(const Trajectory& trajectory, std::size_t apart) {
   for (std::size_t i = apart; i < trajectory.size(); ++i)
     turns.push_back(
         2 * std::acos(std::min(1.0, std::abs(trajectory[i - apart].pose.real.dot(trajectory[i].pose.real)))));
-  const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
-  std::nth_element(turns.begin(), middle, turns.end());
-  return *middle;
+  return detail::median(std::move(turns));
 }
 
 bool turns_like_samples(const Trajectory& trajectory, const MatchingOptions& options) {

@@ -12,6 +12,7 @@
 #include "egocal/scale/interpolation_loss.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "statistics/median.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -22,13 +24,6 @@ DualQuaternion difference(const MotionPair& pair, const ScaleSolution& solution,
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<MotionPair> of_plausible_length(std::span<const MotionPair> pairs) {
   std::vector<double> lengths;

@@ -10,9 +10,6 @@
 
 namespace egocal::detail {
 
-/// 0 where there are none.
-double median(std::vector<double> values);
-
 /// Pairs of which the lengths of both motions have a ratio within a factor of two of the median one. Lever
 /// arms change it by less while the vehicle drives on; a jump of one stream by more.
 std::vector<MotionPair> of_plausible_length(std::span<const MotionPair> pairs);

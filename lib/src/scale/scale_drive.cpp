@@ -9,6 +9,7 @@
 #include "egocal/limits.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 

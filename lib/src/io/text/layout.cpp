@@ -9,6 +9,7 @@
 
 #include "egocal/error.hpp"
 #include "io/text/rotation_rows.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -293,15 +294,14 @@ const UnitName& unit_by_size(std::vector<double> times) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) return units[0];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  const double step = median(std::move(steps));
   // times that begin near zero: no sensor that is worth calibrating sends a pose every ten seconds and less
   // often; the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the likely one
-  if (!(*middle >= 10)) return units[0];
+  if (!(step >= 10)) return units[0];
   const UnitName* best = &units[0];
   for (const UnitName& unit : units)
-    if (std::abs(std::log(*middle * unit.in_seconds / 0.06)) <
-        std::abs(std::log(*middle * best->in_seconds / 0.06)))
+    if (std::abs(std::log(step * unit.in_seconds / 0.06)) <
+        std::abs(std::log(step * best->in_seconds / 0.06)))
       best = &unit;
   return *best;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pairing/offset/line_fit.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -98,10 +99,7 @@ void PartSearch::fit_line() {
   distances.reserve(shown.size());
   for (const PartOffset& point : shown)
     distances.push_back(std::abs(point.offset - level - slope * point.time));
-  std::vector<double> sorted = distances;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                   sorted.end());
-  const double limit = 1 + 3 * sorted[sorted.size() / 2];
+  const double limit = 1 + 3 * median(distances);
   std::vector<PartOffset> near;
   for (std::size_t i = 0; i < shown.size(); ++i)
     if (distances[i] <= limit) near.push_back(shown[i]);

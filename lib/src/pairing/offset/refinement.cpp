@@ -12,6 +12,7 @@
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "pairing/offset/turning.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -56,9 +57,7 @@ void mark_outliers(const std::vector<double>& sizes, const std::vector<double>& 
     const std::size_t begin = c * order.size() / classes, end = (c + 1) * order.size() / classes;
     std::vector<double> values;
     for (std::size_t i = begin; i < end; ++i) values.push_back(differences[order[i]]);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    const double limit = outlier * (*middle + floor);
+    const double limit = outlier * (median(std::move(values)) + floor);
     for (std::size_t i = begin; i < end; ++i)
       if (differences[order[i]] > limit) inlier[order[i]] = 0;
   }

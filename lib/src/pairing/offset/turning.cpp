@@ -9,6 +9,7 @@
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/limits.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -36,12 +37,6 @@ std::optional<Eigen::Quaterniond> rotation_at(const Trajectory& trajectory, std:
   return rotation_of(before).slerp(part, rotation_of(after));
 }
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::int64_t median_period_us(const Trajectory& trajectory) {
@@ -49,9 +44,7 @@ std::int64_t median_period_us(const Trajectory& trajectory) {
   periods.reserve(trajectory.size());
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     periods.push_back(trajectory[i].time_us - trajectory[i - 1].time_us);
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return std::max<std::int64_t>(1, *middle);
+  return std::max<std::int64_t>(1, median(std::move(periods)));
 }
 
 Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us) {
@@ -110,7 +103,8 @@ Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Deto
     lengths.push_back(one.length);
   }
   if (angles.size() < 3) return trajectory;
-  const double angle = options.outlier * median(angles), length = options.outlier * median(lengths);
+  const double angle = options.outlier * median(std::move(angles)),
+               length = options.outlier * median(std::move(lengths));
   // below 1 how far a pose is off by angle or length, whichever is further
   const auto excess = [&](const Detour& one) {
     const double by_angle =
@@ -149,9 +143,8 @@ void limit_largest(Series& angles) {
     if (angle >= 0) known.push_back(angle);
   if (known.empty()) return;
   // the largest 3 % are turns of a drive that is mostly straight, too: they keep some of their size
-  const auto place = known.begin() + static_cast<std::ptrdiff_t>(known.size() * 97 / 100);
-  std::nth_element(known.begin(), place, known.end());
-  const double limit = *place > 0 ? 2 * *place : *std::max_element(known.begin(), known.end());
+  const double most = order_statistic_in_place(known, known.size() * 97 / 100);
+  const double limit = most > 0 ? 2 * most : *std::max_element(known.begin(), known.end());
   for (double& angle : angles) angle = std::min(angle, limit);
 }
 
