@@ -314,7 +314,9 @@ TEST(Accumulator, SpreadsLooksForOutliersAndChoicesOverPoses) {
     EXPECT_FALSE(waits && !chose) << "pose " << instant.number;
     waited += waits ? 1 : 0;
     // the wait does not move the choices that follow
-    if (chose_sums) EXPECT_LE(now.sums->next_choice, due + std::max<std::uint64_t>(1, due / 4));
+    if (chose_sums) {
+      EXPECT_LE(now.sums->next_choice, due + std::max<std::uint64_t>(1, due / 4));
+    }
     due = now.sums->next_choice;
     choices += (chose ? 1 : 0) + (chose_sums ? 1 : 0);
     before = now;
