@@ -57,6 +57,25 @@ TEST(MotionPairing, StandingRejectsNothingOfTheDriveThatFollows) {
       }
 }
 
+/// What is typical then comes from motions that are all zero, whichever of the estimates is due when the last
+/// one of the drive is forgotten.
+TEST(MotionPairing, ParkingForLongerThanWhatIsRemembered) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (const double jitter : {0.0, 1e-6, 1e-4})
+      for (const std::size_t at : {300u, 364u, 428u, 492u, 800u}) {
+        Simulated data = simulated(terrain, 0.01);
+        const MotionPairing plain = pair_motions({}, data.a, data.b).drive;
+        testing::Random random(5);
+        data.a = testing::with_stand(data.a, at, 1800, 100'000, jitter, random);
+        data.b = testing::with_stand(data.b, at, 1800, 100'000, jitter, random);
+        const MotionPairing drive = pair_motions({}, data.a, data.b).drive;
+        const std::string what = std::to_string(at) + " jitter " + std::to_string(1e9 * jitter) + "e-9";
+        EXPECT_EQ(drive.counts().rejected[static_cast<std::size_t>(Rejection::screw_congruence)], 0u) << what;
+        EXPECT_LT(error_of(data, drive).rotation, 3 * error_of(data, plain).rotation + 5e-4) << what;
+        EXPECT_LT(error_of(data, drive).translation, 3 * error_of(data, plain).translation + 0.02) << what;
+      }
+}
+
 TEST(MotionPairing, AfterStandingWrongPosesAreRejectedAsBefore) {
   Simulated data = simulated(Terrain::rough, 0.01);
   testing::Random random(4);

@@ -64,7 +64,7 @@ struct Halves {
   std::vector<double> large_sizes;
 
   /// Of motions that are as large as `least`, where enough are smaller to reach the lower quartile of the
-  /// smaller half: an eighth of all.
+  /// smaller half: an eighth of all. least: at most moving_size() of these motions, so that some are left.
   Halves(const std::deque<Seen>& newest, double least) {
     std::size_t standing = 0;
     for (const Seen& one : newest) standing += one.size < least ? 1 : 0;
@@ -132,10 +132,9 @@ void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
 }
 
 /// From the motions that turn more than others: three times the median covers the directions in between.
-/// moving: of the angles, which are the sizes here.
-double arm_of(const TypicalDifference& lever, double moving, const CongruenceOptions& options) {
+double arm_of(const TypicalDifference& lever, const CongruenceOptions& options) {
   if (lever.newest.empty()) return 0;
-  const Halves halves(lever.newest, options.still * moving);
+  const Halves halves(lever.newest, options.still * moving_size(lever.newest, options));
   std::vector<double> arms;
   for (std::size_t i = 0; i < halves.large.size(); ++i)
     if (halves.large_sizes[i] > 0) arms.push_back(halves.large[i] / halves.large_sizes[i]);
@@ -167,21 +166,27 @@ bool estimate_is_due(std::uint64_t remembered, const CongruenceOptions& options)
 
 void estimate(CongruenceScale& scale, const CongruenceOptions& options) {
   for (TypicalDifference* typical : {&scale.angle, &scale.slide, &scale.length}) estimate(*typical, options);
-  scale.arm = arm_of(scale.lever, scale.angle.moving, options);
+  scale.arm = arm_of(scale.lever, options);
+}
+
+/// Whether a vehicle that moved as much at one time would stand at the other.
+bool stood_or_stands(double before, double now, const CongruenceOptions& options) {
+  return std::min(before, now) < options.still * std::max(before, now);
 }
 
 /// One of the four, in turn: once the memory is full they change slowly, and no pose takes the time of all.
+/// All of them where the vehicle parked for as long as is remembered, or drives again: what is typical of one
+/// and not of the others would reject the drive.
 void estimate_next(CongruenceScale& scale, const CongruenceOptions& options) {
-  switch (scale.remembered / options.estimate_every_when_full % 4) {
-    case 0:
-      return estimate(scale.angle, options);
-    case 1:
-      return estimate(scale.slide, options);
-    case 2:
-      return estimate(scale.length, options);
-    default:
-      scale.arm = arm_of(scale.lever, scale.angle.moving, options);
+  TypicalDifference* const in_turn[] = {&scale.angle, &scale.slide, &scale.length};
+  const std::uint64_t turn = scale.remembered / options.estimate_every_when_full % 4;
+  if (turn == 3) {
+    scale.arm = arm_of(scale.lever, options);
+    return;
   }
+  const double before = in_turn[turn]->moving;
+  estimate(*in_turn[turn], options);
+  if (stood_or_stands(before, in_turn[turn]->moving, options)) estimate(scale, options);
 }
 
 double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
