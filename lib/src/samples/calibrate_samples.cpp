@@ -182,7 +182,9 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   result.noise_translation = std::sqrt(agreeing.fit.noise.translation);
   measure_spread(set, agreeing, order, result);
   judge_samples(samples, set, agreeing, options, calibration);
-  if (calibration.counts.outliers > 0) calibration.findings.push_back(wrong_samples(result.residuals));
+  const bool misread = calibration.verdict == Verdict::contradictory && !calibration.findings.empty();
+  if (calibration.counts.outliers > 0 && !misread)
+    calibration.findings.push_back(wrong_samples(result.residuals));
   return result;
 }
 

@@ -3,10 +3,12 @@
 #include "samples/readings.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "diagnosis/reading.hpp"
 #include "diagnosis/wording.hpp"
@@ -95,15 +97,43 @@ PoseReading full(const Reading& reading) {
 }
 
 /// What the user has to type, given that --eye-to-hand and --invert-a do the same to a.
-void word(Finding& finding, const Alternative& other) {
+Finding worded(Finding finding, const Alternative& other) {
   finding = worded_reading(std::move(finding), full(other.a), full(other.b));
-  if (finding.code != "inverted_a") return;
+  const bool of_a = finding.code == "inverted_a";
+  if (!of_a && finding.code != "inverted_b") return finding;
   finding.message = format(
-      "With the poses of a inverted the squared residuals are %.3g times smaller: they are "
-      "base-to-hand, or the camera stands beside the arm and sees the hand.",
-      finding.improvement);
+      "With the poses of %s inverted the squared residuals are %.3g times smaller: they are %s.%s",
+      of_a ? "a" : "b", finding.improvement,
+      of_a ? "base-to-hand, or the camera stands beside the arm and sees the hand"
+           : "those of the target in the camera, as detectors report them",
+      finding.certain ? ""
+                      : (of_a ? " Those of b inverted fit as well." : " Those of a inverted fit as well."));
   finding.remedy =
-      "--eye-to-hand for a camera beside the arm, --eye-in-hand for one on the hand, or --invert-a.";
+      of_a ? "--eye-to-hand for a camera beside the arm, --eye-in-hand for one on the hand, or --invert-a."
+           : "--invert-b.";
+  return finding;
+}
+
+/// The reading that fits best. Whether a or b is inverted the motions cannot tell: X and Y change places, and
+/// only noise is left to decide. Then both, the better one first.
+std::vector<Finding> best_of(const std::vector<std::pair<Finding, Alternative>>& fitting,
+                             const SampleReadingOptions& search) {
+  const auto better = [](const auto& x, const auto& y) { return x.first.improvement < y.first.improvement; };
+  const auto best = std::max_element(fitting.begin(), fitting.end(), better);
+  if (best == fitting.end()) return {};
+  const std::string& code = best->first.code;
+  const std::string opposite = code == "inverted_a" ? "inverted_b" : code == "inverted_b" ? "inverted_a" : "";
+  const auto other = std::find_if(fitting.begin(), fitting.end(),
+                                  [&](const auto& one) { return one.first.code == opposite; });
+  if (other == fitting.end() || other->first.improvement * search.least_improvement < best->first.improvement)
+    return {worded(best->first, best->second)};
+  std::vector<Finding> both;
+  for (const auto& one : {*best, *other}) {
+    Finding finding = one.first;
+    finding.certain = false;
+    both.push_back(worded(std::move(finding), one.second));
+  }
+  return both;
 }
 
 /// The factor of b's lengths that fits best, by least squares at the rotation that the rotations give.
@@ -170,7 +200,7 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
                                          const SampleOptions& options, const SampleReadingOptions& search) {
   std::vector<Finding> findings;
   if (given.chosen.size() < search.least_samples) return findings;
-  std::optional<Finding> best;
+  std::vector<std::pair<Finding, Alternative>> fitting;
   const std::vector<PoseSample> few = some(samples, given.chosen, search);
   for (const Alternative& other : alternatives()) {
     if (hopeless(reread(few, other.a, other.b), given.fit, search)) continue;
@@ -181,13 +211,11 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
     finding.code = other.code;
     finding.certain = true;
     finding.improvement = improvement(given.fit, fit.fit);
-    if (finding.improvement < search.least_improvement || (best && finding.improvement <= best->improvement))
-      continue;
+    if (finding.improvement < search.least_improvement) continue;
     finding.T_a_b = to_pose(fit.fit.X);
-    word(finding, other);
-    best = std::move(finding);
+    fitting.emplace_back(std::move(finding), other);
   }
-  if (best) return {*best};
+  if (!fitting.empty()) return best_of(fitting, search);
   const std::optional<FoundScale> scale = find_scale(samples, given, search);
   if (scale && scale->by_chance < search.scale_by_chance && scale->improvement > search.least_improvement) {
     Finding finding;
