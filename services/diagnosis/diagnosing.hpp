@@ -30,7 +30,7 @@ struct DiagnosingOptions {
   /// Chance that one diagnosis calls a mount moved that did not, and how long before its end [s] the drive
   /// must have shown it already (MountCheckOptions): an hour has 2,000 diagnoses. Study: docs/moves.md,
   /// "Live".
-  double false_alarms = 1e-4;
+  double false_alarms = 4e-4;
   double shown_before = 2;
   /// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
   int queue_capacity = 1024;

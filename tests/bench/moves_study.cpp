@@ -38,6 +38,7 @@ struct Sort {
   double creep = 0;                  ///< [deg/h]
   bool jumps = false;                ///< the odometry's own
   Terrain terrain = Terrain::rough;  ///< or free, alternately, except for flat
+  bool of_motion = false;            ///< noise is a part of each motion, and the speed varies
 };
 
 std::vector<Sort> sorts() {
@@ -50,6 +51,11 @@ std::vector<Sort> sorts() {
   for (const auto& [name, seconds] :
        {std::pair{"still-30s", 30.0}, std::pair{"still-60s", 60.0}, std::pair{"still-120s", 120.0}})
     all.push_back({name, seconds});
+  // at the end, as the seed of a sort is that of its number
+  const auto of_motion = [](Sort sort) {
+    sort.of_motion = true;
+    return sort;
+  };
   for (const auto& [name, after] : {std::pair{"bump-5s", 5.0}, std::pair{"bump-10s", 10.0},
                                     std::pair{"bump-15s", 15.0}, std::pair{"bump-20s", 20.0}}) {
     all.push_back({name, 120 + after});
@@ -65,6 +71,9 @@ std::vector<Sort> sorts() {
   all.back().bumps = {100, 200, 300};
   all.push_back({"creep", 1200});
   all.back().creep = 2;
+  all.push_back(of_motion({"still-of-motion", 200}));
+  all.push_back(of_motion({.name = "still-of-motion-heavy", .seconds = 200, .heavy_tails = true}));
+  all.push_back(of_motion({.name = "bump-of-motion", .seconds = 240, .bumps = {120}}));
   return all;
 }
 
@@ -82,7 +91,8 @@ SimulationOptions drive(const Sort& sort, Random& random) {
                                                   : Terrain::free;
   options.poses = static_cast<int>(rate * sort.seconds) + 1;
   options.rate = rate;
-  options.relative_noise = 0.01;
+  (sort.of_motion ? options.noise_of_motion : options.relative_noise) = 0.01;
+  if (sort.of_motion) options.speed_variation = 1;
   options.heavy_tails = sort.heavy_tails;
   options.random_walk = sort.wandering;
   options.seed = random.bits();

@@ -118,6 +118,18 @@ TEST(Moves, AStillMountRaisesNoAlarmWhateverTheNoise) {
       }
 }
 
+TEST(Moves, NoiseThatGrowsWithEachMotionIsNone) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    for (const Terrain terrain : {Terrain::rough, Terrain::flat}) {
+      SimulationOptions options = drive(terrain, 700 + seed, seed % 2 == 0 ? 60 : 200);
+      options.speed = 5;
+      options.speed_variation = 1;
+      options.relative_noise = 0;
+      options.noise_of_motion = 0.01;
+      EXPECT_TRUE(moves_of(options).moves.empty()) << seed;
+    }
+}
+
 TEST(Moves, AJumpOfOneOdometryIsNotAMovedMount) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SimulationOptions options = drive(Terrain::rough, 300 + seed);
@@ -140,8 +152,9 @@ TEST(Moves, SeveralBumpsAreDistinguished) {
 }
 
 TEST(Moves, NoiseThatWandersForLongerThanABlockIsNone) {
-  SimulationOptions options = drive(Terrain::rough, 9134, 100);  // one of 600 that were tried
+  SimulationOptions options = drive(Terrain::rough, 9343, 60);  // one of 1,500 that were tried
   options.random_walk = true;
+  options.relative_noise = 0.03;
   const auto trajectories = simulate(options);
   MovesOptions short_blocks;
   short_blocks.most_correlation = INFINITY;
@@ -165,21 +178,21 @@ TEST(Moves, FifteenSecondsShowABump) {
 }
 
 TEST(Moves, AChangeShowsWhereverItLiesWithinABlock) {
-  SimulationOptions options = drive(Terrain::free, 650, 135);
-  options.faults[1].mount_changes = {bump(120, 7)};
-  const auto trajectories = simulate(options);
-  PairingOptions pairing;
-  pairing.stride = 16;  // 27 blocks of 4.9 s, three of them after the change
-  const std::vector<MotionPair> pairs = pair_motions(pairing, trajectories[0], trajectories[1]).pairs;
-  const std::int64_t begin_us = pairs.front().begin_us;
-  for (double time = 118; time <= 122; time += 0.25) {
+  for (double time = 118; time <= 121; time += 0.5) {
+    SimulationOptions options = drive(Terrain::free, 645, 135);
+    options.faults[1].mount_changes = {bump(time, 7)};
+    const auto trajectories = simulate(options);
+    PairingOptions pairing;
+    pairing.stride = 16;  // 27 blocks of 4.9 s, three of them after the change
+    const std::vector<MotionPair> pairs = pair_motions(pairing, trajectories[0], trajectories[1]).pairs;
+    const std::int64_t begin_us = pairs.front().begin_us;
     const auto time_us = begin_us + static_cast<std::int64_t>(1e6 * time);
     const std::optional<double> chance = chance_of_move(pairs, Problem{}, MoveKind::bump, time_us);
     ASSERT_TRUE(chance);
-    EXPECT_LT(*chance, 1e-3) << time << ": with the block before the change it is 2e-3";
+    EXPECT_LT(*chance, 1e-6) << time << ": with the block after the change alone it is 1e-2";
+    EXPECT_FALSE(chance_of_move(std::span(pairs).first(100), Problem{}, MoveKind::bump, begin_us))
+        << "too few blocks";
   }
-  EXPECT_FALSE(chance_of_move(std::span(pairs).first(100), Problem{}, MoveKind::bump, begin_us))
-      << "too few blocks";
 }
 
 /// A quarter of the drive at lights, where the odometry has other errors than on the way.

@@ -192,9 +192,15 @@ void add_simulate(cli::App program) {
       .show_default();
   command.add_option("--rate", simulation.rate, "poses a second [Hz]").show_default();
   command.add_option("--speed", simulation.speed, "[m/s]").show_default();
+  command
+      .add_option("--speed-variation", simulation.speed_variation,
+                  "of the speed on the ground, as a part of it")
+      .show_default();
   command.add_option("--roughness", simulation.roughness, "amplitude of the road's surface [m]")
       .show_default();
   command.add_option("--noise", simulation.relative_noise, "of each motion, as a part of the mean one")
+      .show_default();
+  command.add_option("--noise-of-motion", simulation.noise_of_motion, "and as a part of each motion itself")
       .show_default();
   command.add_option("--noise-rotation", simulation.noise_rotation, "added to it [rad]").show_default();
   command.add_option("--noise-translation", simulation.noise_translation, "added to it [m]").show_default();

@@ -73,14 +73,23 @@ Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& optio
   return d;
 }
 
-/// Covariance of the whitened residuals; two extrinsics were fitted. Its eigenvalues below their mean are
-/// raised to it: the noise has about the shape of the curvature, so what is smaller is so by chance, and
-/// chance must not be taken for a precise direction.
-ParameterMatrix residual_covariance(const Division& d) {
-  ParameterMatrix sum = ParameterMatrix::Zero(d.x1.size(), d.x1.size());
-  for (const Parameters& z : d.residuals) sum += z * z.transpose();
-  sum /= static_cast<double>(d.residuals.size()) - 2;
-  const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(sum);
+/// Covariance of the whitened residuals; two extrinsics were fitted. They are whitened together, by the sum
+/// of all blocks' noise: that of one block is uncertain, and its inverse would be too large in the mean. The
+/// eigenvalues below their mean are raised to it: the noise has about the shape assumed, so what is smaller
+/// is so by chance, and chance must not be taken for a precise direction.
+ParameterMatrix residual_covariance(Blocks blocks, const std::vector<Parameters>& residuals) {
+  ParameterMatrix found = zero_matrix(blocks), assumed = found;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Parameters e = blocks[i].root * residuals[i];
+    found += e * e.transpose();
+    assumed += blocks[i].root * blocks[i].root;
+  }
+  const SymmetricEigen<Eigen::Dynamic> noise = symmetric_eigen<Eigen::Dynamic>(assumed);
+  const Parameters inverse = noise.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const ParameterMatrix whiten = noise.vectors * inverse.asDiagonal() * noise.vectors.transpose();
+  const auto n = static_cast<double>(blocks.size());
+  const SymmetricEigen<Eigen::Dynamic> eigen =
+      symmetric_eigen<Eigen::Dynamic>(n / (n - 2) * whiten * found * whiten);
   const Eigen::VectorXd raised = eigen.values.cwiseMax(eigen.values.mean());
   return eigen.vectors * raised.asDiagonal() * eigen.vectors.transpose();
 }
@@ -102,7 +111,7 @@ Evidence evidence(Blocks blocks, std::size_t split, const Division& d) {
   const Eigen::LDLT<ParameterMatrix> whole(d.H);
   const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
   const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
-  const ParameterMatrix C = residual_covariance(d);
+  const ParameterMatrix C = residual_covariance(blocks, d.residuals);
   ParameterMatrix C1 = zero_matrix(blocks), C2 = C1;
   Parameters g1 = zero_vector(blocks), g2 = g1;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -123,18 +132,18 @@ Evidence evidence(Blocks blocks, std::size_t split, const Division& d) {
 /// wanders shows here. Of noise that forgets, the correlation of blocks k apart is r1 phi^(k-1), so the
 /// variance of long sums is 1 + 2 r1 / (1 - phi) times that of independent blocks. Both correlations count
 /// less their standard deviation.
-double correlation_of(const Division& d, const ChangeTestOptions& options) {
-  const std::size_t count = d.residuals.size();
+double correlation_of(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
+  const std::size_t count = residuals.size();
   const auto n = static_cast<double>(count);
   double square = 0, first = 0, second = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    square += d.residuals[i].squaredNorm();
-    if (i >= 1) first += d.residuals[i].dot(d.residuals[i - 1]);
-    if (i >= 2) second += d.residuals[i].dot(d.residuals[i - 2]);
+    square += residuals[i].squaredNorm();
+    if (i >= 1) first += residuals[i].dot(residuals[i - 1]);
+    if (i >= 2) second += residuals[i].dot(residuals[i - 2]);
   }
   if (!(square > 0)) return 1;
   // the residuals of either side sum to about zero, which takes 2 / n off
-  const double lost = 2 / n, scatter = 1 / std::sqrt(n * static_cast<double>(d.x1.size()));
+  const double lost = 2 / n, scatter = 1 / std::sqrt(n * static_cast<double>(residuals.front().size()));
   const double r1 = first / square + lost - scatter, r2 = second / square + lost - scatter;
   if (!(r1 > 0)) return 1;
   const double phi = std::clamp(r2 / r1, 0.0, options.longest_memory);
@@ -219,17 +228,14 @@ void test_even_change(Blocks blocks, const EvenChange& fit, const ChangeTestOpti
                       ChangeTest& test) {
   test.begin = fit.x0 - fit.v;
   test.end = fit.x0 + fit.v;
-  Division even;
-  even.residuals = fit.residuals;
-  even.x1 = fit.x0;
-  const ParameterMatrix C = residual_covariance(even);
+  const ParameterMatrix C = residual_covariance(blocks, fit.residuals);
   ParameterMatrix V = zero_matrix(blocks);
   for (const LinearBlock& block : blocks) {
     const ParameterMatrix weight =
         block.time * ParameterMatrix::Identity(C.rows(), C.cols()) - fit.mean.transpose();
     V += weight * (block.root * C * block.root) * weight.transpose();
   }
-  const double correlation = correlation_of(even, options);
+  const double correlation = correlation_of(fit.residuals, options);
   const Eigen::LDLT<ParameterMatrix> factor(V);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return;
   const double t2 = fit.S.dot(factor.solve(fit.S)) / correlation;
@@ -280,7 +286,7 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
 
   const Division d = divide(blocks, test.split, options);
   const Evidence found = evidence(blocks, test.split, d);
-  test.correlation = correlation_of(d, options);
+  test.correlation = correlation_of(d.residuals, options);
   const double places = static_cast<double>(count + 1 - 2 * least_side);
   test.false_alarm =
       std::min(1.0, places * chance_of(found.t2 / test.correlation, d.x1.size(), count, options));
@@ -303,7 +309,7 @@ ChangeAt test_change_at(Blocks blocks, std::size_t split, std::size_t least_side
   for (const std::size_t either : {split, split - std::min<std::size_t>(split, 1)}) {
     const std::size_t at = std::clamp(either, least_side, blocks.size() - least_side);
     const Division d = divide(blocks, at, options);
-    const double correlation = correlation_of(d, options);
+    const double correlation = correlation_of(d.residuals, options);
     const double t2 = evidence(blocks, at, d).t2 / correlation;
     const double chance = std::min(1.0, 2 * chance_of(t2, d.x1.size(), blocks.size(), options));
     if (either == split || chance < best.chance) best = {chance, correlation};

@@ -21,7 +21,8 @@ DualQuaternion minimiser(const std::vector<Statistics>& blocks, const Problem& p
 }
 
 /// The directions in which an extrinsic can move, columns.
-Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6> directions(const DualQuaternion& q, Mode mode) {
+using Directions = Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6>;
+Directions directions(const DualQuaternion& q, Mode mode) {
   const Matrix86d all = frame_a_basis(q);
   if (mode == Mode::spatial) return all;
   Eigen::Matrix<double, 8, 3> in_plane;
@@ -73,9 +74,13 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
                    const ChangeTestOptions& options) {
   Gated result;
   result.blocks.resize(count);
+  result.kept.resize(count);
   const auto begin = [&](std::size_t block) { return block * pairs.size() / count; };
   for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t i = begin(k); i < begin(k + 1); ++i) result.blocks[k].add(pairs[i]);
+    for (std::size_t i = begin(k); i < begin(k + 1); ++i) {
+      result.blocks[k].add(pairs[i]);
+      result.kept[k].push_back(i);
+    }
   result.q = minimiser(result.blocks, problem);
   bool changed = false;
   for (std::size_t k = 0; k < count; ++k) {
@@ -87,8 +92,12 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
     if (*std::max_element(residuals.begin(), residuals.end()) <= limit) continue;
     changed = true;
     result.blocks[k] = {};
-    for (std::size_t i = begin(k); i < begin(k + 1); ++i)
-      if (residuals[i - begin(k)] <= limit) result.blocks[k].add(pairs[i]);
+    result.kept[k].clear();
+    for (std::size_t i = begin(k); i < begin(k + 1); ++i) {
+      if (residuals[i - begin(k)] > limit) continue;
+      result.blocks[k].add(pairs[i]);
+      result.kept[k].push_back(i);
+    }
   }
   if (changed) result.q = minimiser(result.blocks, problem);
   return result;
@@ -109,6 +118,78 @@ double time_of(std::span<const MotionPair> pairs, std::size_t from, std::size_t 
   return from < to && span > 0 ? 2 * sum / (static_cast<double>(to - from) * span) - 1 : 0;
 }
 
+/// The common optimum of a block and its neighbours, with curvature borrowed from the whole.
+Parameters local_optimum(const std::vector<LinearBlock>& blocks, std::size_t k,
+                         const ParameterMatrix& borrowed) {
+  Parameters g = blocks[k].g;
+  ParameterMatrix H = borrowed + blocks[k].H;
+  for (const std::size_t i : {k - 1, k + 1}) {
+    if (i >= blocks.size()) continue;  // of 0 - 1, too
+    g += blocks[i].g;
+    H += blocks[i].H;
+  }
+  return -H.ldlt().solve(g);
+}
+
+/// Sum e e' of the gradients of each block's motions, at the optimum of the block and its neighbours, which a
+/// change elsewhere does not touch.
+std::vector<ParameterMatrix> noise_of_motions(const Gated& gated, std::span<const MotionPair> pairs,
+                                              const Problem& problem, const Multipliers& lambda,
+                                              const Directions& T, const ParameterMatrix& H_mean,
+                                              const Linearised& stretch, const ChangeTestOptions& options) {
+  const Matrix8d constraints = lagrangian_matrix(Matrix8d::Zero(), lambda);
+  std::vector<ParameterMatrix> result;
+  for (std::size_t k = 0; k < stretch.blocks.size(); ++k) {
+    const Parameters x = local_optimum(stretch.blocks, k, options.borrowed_curvature * H_mean);
+    const Vector8d shift = T * x, at = stretch.q.vec() + shift;
+    const Parameters of_constraints = T.transpose() * (constraints * shift);
+    ParameterMatrix sum = ParameterMatrix::Zero(H_mean.rows(), H_mean.cols());
+    for (const std::size_t i : gated.kept[k]) {
+      Statistics one;
+      one.add(pairs[i]);
+      const Matrix8d Q = in_units_of(stretch.length, cost_matrix(one, problem.balance));
+      const Parameters e = one.weight * (T.transpose() * (Q * at) + of_constraints);
+      sum += e * e.transpose();
+    }
+    result.push_back(sum);
+  }
+  return result;
+}
+
+/// The covariance of the noise in each block's gradient, up to a factor that all have in common: that of its
+/// own motions, of which a block has few, and the shape of its curvature with the same size. The curvature
+/// alone is wrong by as much as the noise of motions grows with their size.
+std::vector<ParameterMatrix> noise_of_blocks(std::vector<ParameterMatrix> noise,
+                                             const ParameterMatrix& H_mean, const Linearised& stretch,
+                                             const ChangeTestOptions& options) {
+  ParameterMatrix mean = ParameterMatrix::Zero(H_mean.rows(), H_mean.cols());
+  for (const ParameterMatrix& own : noise) mean += own / static_cast<double>(noise.size());
+  // in units of the curvature, in which the test compares costs
+  const double unit = mean.diagonal().cwiseQuotient(H_mean.diagonal()).mean();
+  const Eigen::LDLT<ParameterMatrix> whole(mean);
+  const bool known = unit > 0 && std::isfinite(unit) && whole.info() == Eigen::Success && whole.isPositive();
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    const ParameterMatrix shape = stretch.blocks[k].H + options.raised_curvature * H_mean;
+    const double size = whole.solve(noise[k]).trace() / whole.solve(shape).trace();
+    if (known && std::isfinite(size))
+      noise[k] = (options.own_noise * noise[k] + (1 - options.own_noise) * size * shape +
+                  options.raised_noise * mean) /
+                 unit;
+    else
+      noise[k] = shape;
+  }
+  return noise;
+}
+
+/// Sets the square roots of the noise's covariance.
+void set_roots(const ParameterMatrix& noise, LinearBlock& block) {
+  const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(noise);
+  const double floor = std::max(1e-12 * noise.trace(), 1e-300);
+  const Parameters roots = eigen.values.cwiseMax(floor).cwiseSqrt();
+  block.root = eigen.vectors * roots.asDiagonal() * eigen.vectors.transpose();
+  block.inverse_root = eigen.vectors * roots.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
+}
+
 }  // namespace
 
 Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t count,
@@ -122,7 +203,7 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
   result.q = in_units_of(result.length, gated.q);
   const Matrix8d Q = in_units_of(result.length, Q_metres);
   const Multipliers lambda = least_squares_multipliers(Q, result.q);
-  const auto T = directions(result.q, problem.mode);
+  const Directions T = directions(result.q, problem.mode);
   const Vector8d v = result.q.vec();
   const ParameterMatrix H_mean = T.transpose() * lagrangian_matrix(Q, lambda) * T;
   const double whole = static_cast<double>(gated.blocks.size());
@@ -133,17 +214,14 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
     LinearBlock block;
     block.g = share * (T.transpose() * (Q_block * v));
     block.H = share * (T.transpose() * lagrangian_matrix(Q_block, lambda) * T);
-    const ParameterMatrix shape = block.H + options.raised_curvature * H_mean;
-    const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(shape);
-    const double floor = std::max(1e-12 * H_mean.trace(), 1e-300);
-    const Parameters roots = eigen.values.cwiseMax(floor).cwiseSqrt();
-    block.root = eigen.vectors * roots.asDiagonal() * eigen.vectors.transpose();
-    block.inverse_root = eigen.vectors * roots.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
     const std::size_t from = k * pairs.size() / count;
     block.time = time_of(pairs, from, (k + 1) * pairs.size() / count);
     result.blocks.push_back(std::move(block));
     result.begin.push_back(from);
   }
+  const std::vector<ParameterMatrix> noise = noise_of_blocks(
+      noise_of_motions(gated, pairs, problem, lambda, T, H_mean, result, options), H_mean, result, options);
+  for (std::size_t k = 0; k < noise.size(); ++k) set_roots(noise[k], result.blocks[k]);
   return result;
 }
 

@@ -20,7 +20,7 @@ using ParameterMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
 struct LinearBlock {
   Parameters g;
   ParameterMatrix H;
-  ParameterMatrix root, inverse_root;  ///< of H raised a little: noise in g has about this shape
+  ParameterMatrix root, inverse_root;  ///< of the covariance of the noise in g, but for a factor
   double time = 0;                     ///< of its middle, from -1 at the begin of the stretch to 1 at its end
 };
 
@@ -46,7 +46,8 @@ std::size_t overlap_of(std::span<const MotionPair> pairs);
 /// Statistics of the pairs, without those that fit far worse than their neighbours do.
 struct Gated {
   std::vector<Statistics> blocks;
-  DualQuaternion q;  ///< minimiser (planar mode: T_p)
+  std::vector<std::vector<std::size_t>> kept;  ///< indices of each block's pairs
+  DualQuaternion q;                            ///< minimiser (planar mode: T_p)
 };
 Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks,
                    const ChangeTestOptions& options);

@@ -102,19 +102,20 @@ Trajectory detail::drive_sensor(const SimulationOptions& options, const Path& dr
   std::vector<DualQuaternion> mountings, motions;
   for (const double time : path.times)
     mountings.push_back(to_dual_quaternion(mounting_at(options, sensor, time)));
+  std::vector<double> turns, ways;
   double rotation = 0, translation = 0;
   for (std::size_t i = 1; i < path.poses.size(); ++i) {
     const DualQuaternion motion = to_dual_quaternion(inverse(path.poses[i - 1]) * path.poses[i]);
     motions.push_back(canonical_sign(normalized(conjugate(mountings[i - 1]) * motion * mountings[i])));
     const Pose seen = to_pose(motions.back());
-    rotation += rotation_log(seen.rotation).norm();
-    translation += seen.translation.norm();
+    turns.push_back(rotation_log(seen.rotation).norm());
+    ways.push_back(seen.translation.norm());
+    rotation += turns.back();
+    translation += ways.back();
   }
   const double count = static_cast<double>(std::max<std::size_t>(1, motions.size()));
-  const double sigma_r =
-      faults.noise_factor * (options.noise_rotation + options.relative_noise * rotation / count);
-  const double sigma_t =
-      faults.noise_factor * (options.noise_translation + options.relative_noise * translation / count);
+  const double of_all_r = options.noise_rotation + options.relative_noise * rotation / count;
+  const double of_all_t = options.noise_translation + options.relative_noise * translation / count;
 
   constexpr double correlation = 0.9;  // of wandering noise from pose to pose: ten poses
   Trajectory trajectory;
@@ -126,6 +127,8 @@ Trajectory detail::drive_sensor(const SimulationOptions& options, const Path& dr
                    [](const OdometryJump& i, const OdometryJump& k) { return i.time < k.time; });
   for (std::size_t i = 0; i < path.poses.size(); ++i) {
     if (i > 0) {
+      const double sigma_r = faults.noise_factor * (of_all_r + options.noise_of_motion * turns[i - 1]);
+      const double sigma_t = faults.noise_factor * (of_all_t + options.noise_of_motion * ways[i - 1]);
       const double keep = options.random_walk && i > 1 ? correlation : 0;
       const double tail_r = options.heavy_tails ? tail_factor(chance) : 1;
       const double tail_t = options.heavy_tails ? tail_factor(chance) : 1;

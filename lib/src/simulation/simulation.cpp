@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/simulation/simulation.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -48,13 +49,16 @@ std::vector<Pose> ground_path(const SimulationOptions& options, const std::vecto
                               detail::Random& random) {
   const Mixture curvature(random, 60, 300);  // over the length of the path [m]
   const Mixture along_x(random, 12, 40), along_y(random, 12, 40);
+  detail::Random of_speed(options.seed ^ 0xd6e8feb86659fd93ULL);
+  const Mixture pace(of_speed, 10, 60);  // over the time [s]
   const double amplitude = options.terrain == Terrain::rough ? options.roughness : 0;
   constexpr double sharpest_turn = 0.04;  // [1/m]
   constexpr int substeps = 20;            // of the integration, between two poses
   std::vector<Pose> poses;
   double x = 0, y = 0, heading = 0, length = 0, time = 0;
   for (const double t : times) {
-    const double ds = options.speed * (t - time) / substeps;
+    const double speed = options.speed * std::max(0.0, 1 + options.speed_variation * pace.at(t));
+    const double ds = speed * (t - time) / substeps;
     for (int i = 0; i < substeps; ++i) {
       const double turn = sharpest_turn * curvature.at(length + 0.5 * ds) * ds;
       x += ds * std::cos(heading + 0.5 * turn);
@@ -110,9 +114,13 @@ void check(const SimulationOptions& options) {
   expect(options.poses >= 2, "expected at least 2 poses");
   expect(options.rate > 0 && options.rate <= 1e5, "expected a rate between 0 and 100000 Hz");
   expect(std::isfinite(options.speed), "expected a finite speed");
+  expect(options.speed_variation >= 0 && std::isfinite(options.speed_variation),
+         "expected a variation of the speed of at least 0");
   expect(options.roughness >= 0 && std::isfinite(options.roughness), "expected a roughness of at least 0");
-  expect(options.relative_noise >= 0 && options.noise_rotation >= 0 && options.noise_translation >= 0 &&
-             std::isfinite(options.relative_noise + options.noise_rotation + options.noise_translation),
+  expect(options.relative_noise >= 0 && options.noise_of_motion >= 0 && options.noise_rotation >= 0 &&
+             options.noise_translation >= 0 &&
+             std::isfinite(options.relative_noise + options.noise_of_motion + options.noise_rotation +
+                           options.noise_translation),
          "expected noise of at least 0");
   expect(!options.T_vehicle_sensor.empty(), "expected at least one sensor");
   expect(options.faults.size() <= options.T_vehicle_sensor.size(), "expected no more faults than sensors");

@@ -79,7 +79,7 @@ struct MountCheckOptions {
   /// Stated chance that a mount that did not move is called moved, in one look at one drive. In 325 h of
   /// simulated driving, 6,750 drives, the strongest evidence was below 1e-2 in 13 and below 1e-3 in 1, so the
   /// real chance is about a fifth (docs/moves.md). Looks that are repeated want less.
-  double false_alarms = 5e-4;
+  double false_alarms = 2e-3;
   std::size_t most_motions = 20000;  ///< of long drives: overlapping motions say little that is new
   /// A move must have shown already this long before the end of the drive [s]; 0: need not. For looks that
   /// are repeated: the newest seconds are new each time, and heavy tails in them soon look like a move, once.

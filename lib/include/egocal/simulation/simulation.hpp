@@ -50,12 +50,15 @@ struct SensorFaults {
 struct SimulationOptions {
   Terrain terrain = Terrain::rough;
   int poses = 1001;
-  double rate = 10;         ///< poses a second [Hz]
-  double speed = 8;         ///< along the path [m/s]
+  double rate = 10;  ///< poses a second [Hz]
+  double speed = 8;  ///< along the path [m/s]
+  /// On the ground: the speed varies by about this part of it within 10 to 60 s, and never falls below zero.
+  double speed_variation = 0;
   double roughness = 0.05;  ///< amplitude of the surface [m]
   std::vector<Pose> T_vehicle_sensor = {Pose{}, Pose{}};
   double relative_noise =
       0;  ///< of each motion, per axis, as a part of the mean rotation and translation (V-A)
+  double noise_of_motion = 0;    ///< and as a part of each motion itself
   double noise_rotation = 0;     ///< added to it [rad]
   double noise_translation = 0;  ///< [m]
   bool random_walk = false;  ///< the noise of consecutive motions is correlated (0.9 from one to the next)

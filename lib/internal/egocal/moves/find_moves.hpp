@@ -23,6 +23,10 @@ struct ChangeTestOptions {
   /// not defined, and with a millionth a stretch of straight driving was taken for a turn by 135 deg. The
   /// shortest side has thirty times as much where it shows anything.
   double borrowed_curvature = 1e-3;
+  /// The noise in a block's gradient is that of its own motions, to this part, and otherwise has the shape of
+  /// its curvature: of few motions the shape is uncertain, which hides changes. And it has this part of the
+  /// mean noise of all, as motions can agree by chance. Study: docs/moves.md, "The test".
+  double own_noise = 0.3, raised_noise = 0.03;
   /// Noise is assumed in directions that a block does not show, too: this part of the mean curvature.
   double raised_curvature = 0.01;
   /// A pair that fits this many times worse than the median of its block is rejected: ten standard
@@ -43,7 +47,7 @@ struct ChangeTestOptions {
 struct MovesOptions {
   /// Stated chance of a false alarm in one drive; the real one is about a fifth of it (MountCheckOptions,
   /// docs/moves.md).
-  double false_alarms = 5e-4;
+  double false_alarms = 2e-3;
   /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
   /// systematic errors nearly as large that depend on where and how the vehicle drives (0.11 deg between two
   /// lidar odometries on KITTI 07, docs/moves.md).
