@@ -36,6 +36,9 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
                            : "Make sure that the odometry sends poses of the sensor in its start frame.";
   if (code.starts_with("quaternion_order_"))
     return "The odometry of " + one() + " has to fill quat in the order w x y z.";
+  if (code == "scale_change")
+    return "In the rig file: scale = \"auto\" for " + pair.b + ", or for " + pair.a +
+           " if that one is not in metres.";
   if (code == "mount_moved")
     return pair.on_move == bus::OnMove::restart
                ? "The calibration starts again by itself."

@@ -40,6 +40,20 @@ Trajectory stepped(const Trajectory& trajectory, double time, double factor) {
   return scaled(trajectory, course);
 }
 
+// Blocks of equal time where the vehicle stands showed no scale, and nothing was looked for any more.
+TEST(ScaleCourse, AStepIsFoundWhereTheVehicleStandsInBetween) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SimulationOptions options = drive(seed, Terrain::rough, 901);
+    options.speed = 5;
+    options.speed_variation = 2;
+    const auto trajectories = simulate(options);
+    const Trajectory slow = stepped(trajectories[0], 45, 1.3);
+    const ScaleCourse course = course_of(slow, trajectories[1]);
+    ASSERT_EQ(course.segments.size(), 2u) << seed;
+    EXPECT_NEAR(course.segments[1].begin_scale / course.segments[0].begin_scale, 1.3, 0.01) << seed;
+  }
+}
+
 PairingOptions not_cut_alike() {
   PairingOptions options;
   options.synchroniser.cut_alike = false;

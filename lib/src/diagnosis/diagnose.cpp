@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "diagnosis/explanations.hpp"
 #include "diagnosis/fit.hpp"
@@ -12,6 +14,7 @@
 #include "diagnosis/judge.hpp"
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
+#include "diagnosis/not_a_move.hpp"
 #include "diagnosis/planes.hpp"
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/wording.hpp"
@@ -74,9 +77,15 @@ Finding unexplained(const UnexplainedPart& part) {
   return finding;
 }
 
+bool has(const std::vector<Finding>& findings, std::string_view code) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [code](const Finding& one) { return one.code == code; });
+}
+
 /// What is left where no reading, scale or clock explains the motions.
-void look_further(const Evidence& evidence, const Answered& answered, const Misfit& misfit,
-                  const DiagnosisOptions& options, std::vector<Finding>& findings) {
+void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
+                  const Misfit& misfit, const Fit& fit, const DiagnosisOptions& options,
+                  std::vector<Finding>& findings) {
   const Motions& motions = evidence.given.explained.motions;
   double turned = 0;
   for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
@@ -95,7 +104,8 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
     findings.push_back(std::move(finding));
     return;
   }
-  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
+  std::vector<Finding> moves = moves_or_else(moved_mount(evidence.instants, answered, options), pairing,
+                                             evidence, answered, has(findings, "inverted_both"), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
   if (!moves.empty()) {
     std::erase_if(findings, [](const Finding& one) {
@@ -104,13 +114,18 @@ void look_further(const Evidence& evidence, const Answered& answered, const Misf
     findings.insert(findings.begin(), moves.begin(), moves.end());
     return;
   }
+  if (fit.translation_relative_median > options.scale_change_misfit)
+    if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options)) {
+      findings.insert(findings.begin(), *std::move(scale));
+      return;
+    }
   if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T))
     findings.push_back(unexplained(*part));
 }
 
 /// A mount that moved by much looks like other axes, another clock or another recording: it is named instead
 /// of them where it explains more.
-bool replace_by_large_move(const Evidence& evidence, const Answered& answered,
+bool replace_by_large_move(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                            const DiagnosisOptions& options, std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return false;
   for (const Finding& finding : findings)
@@ -120,9 +135,11 @@ bool replace_by_large_move(const Evidence& evidence, const Answered& answered,
   if (!move) return false;
   for (const Finding& finding : findings)
     if (finding.code != "inverted_both" && finding.improvement > move->improvement) return false;
+  const bool inverted_both = has(findings, "inverted_both");
   // its time is more exact where it is small enough for the linear test
   findings = moved_mount(evidence.instants, answered, options);
   if (findings.size() != 1) findings = {*std::move(move)};
+  findings = moves_or_else(std::move(findings), pairing, evidence, answered, inverted_both, options);
   return true;
 }
 
@@ -160,10 +177,10 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const Misfit misfit{detail::misfit(motions, at_answer),
                       detail::misfit(motions, evidence.given.explained.fit),
                       median_misfit(motions, at_answer)};
-  const bool explained = replace_by_large_move(evidence, answered, options, result.findings) ||
+  const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
                          std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain || one.code == "samples"; });
-  if (!explained) look_further(evidence, answered, misfit, options, result.findings);
+  if (!explained) look_further(pairing, evidence, answered, misfit, result.fit, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
     for (Finding& finding : in_one_frame(answered)) result.findings.push_back(std::move(finding));

@@ -90,7 +90,8 @@ bool stream_fault(const Finding& finding) {
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.
 bool misread(const Finding& finding) {
   return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
-         finding.code != "clock_drift" && finding.code != "mount_moved" && !stream_fault(finding);
+         finding.code != "clock_drift" && finding.code != "mount_moved" && finding.code != "scale_change" &&
+         !stream_fault(finding);
 }
 
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
@@ -125,8 +126,8 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     else if (misread(finding) || refutes(finding, far, options) ||
              (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
       verdict = Verdict::contradictory;
-    else if ((finding.certain && (far > 0.5 || finding.code == "mount_moved")) ||
-             (casts_doubt(finding) && far > 1))
+    else if (finding.code == "mount_moved" || finding.code == "scale_change" ||
+             (finding.certain && far > 0.5) || (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }

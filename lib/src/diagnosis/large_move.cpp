@@ -84,11 +84,13 @@ Finding worded(const Division& found, double time, const Comparison& comparison)
   finding.time = time;
   finding.improvement = std::exp(comparison.gain);
   finding.T_a_b = to_pose(found.after.T);
+  const double turned = change.tail<3>().norm() * 180 / std::numbers::pi;
+  const std::string size = turned < 1 ? format("shifted by %.0f cm", 100 * change.head<3>().norm())
+                                      : format("turned by %.0f deg", turned);
   finding.message = format(
-      "From about %.1f s after the start on, another mounting explains the motions: it is turned by %.0f "
-      "deg. "
-      "A sensor was turned, or its poses are in other axes from then on.",
-      time, change.tail<3>().norm() * 180 / std::numbers::pi);
+      "From about %.1f s after the start on, another mounting explains the motions: it is %s. A sensor was "
+      "moved, or its poses are in other axes from then on.",
+      time, size.c_str());
   finding.remedy = format("Calibrate the drive before and after %.1f s separately.", time);
   return finding;
 }

@@ -3,6 +3,7 @@
 #include "diagnosis/mount.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,8 @@ namespace {
 
 /// Motion pairs of one stride, none across a gap; in planar mode as seen from the planes.
 std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answered,
-                                 const DiagnosisOptions& options, std::size_t steps) {
+                                 const DiagnosisOptions& options, const PoseReading& reading,
+                                 std::size_t steps) {
   const bool planar = answered.problem.mode == Mode::planar;
   const DualQuaternion G_a = planar ? plane_frame(answered.problem.plane_a) : DualQuaternion{};
   const DualQuaternion G_b = planar ? plane_frame(answered.problem.plane_b) : DualQuaternion{};
@@ -28,8 +30,8 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   for (std::size_t i = 0; i + steps < instants.size(); i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > longest) continue;
-    MotionPair pair{canonical_sign(normalized(conjugate(instants.a(i)) * instants.a(k))),
-                    canonical_sign(normalized(conjugate(instants.b(i)) * instants.b(k))),
+    MotionPair pair{canonical_sign(normalized(conjugate(instants.a(i, reading)) * instants.a(k, reading))),
+                    canonical_sign(normalized(conjugate(instants.b(i, reading)) * instants.b(k, reading))),
                     std::llround(1e6 * instants.time(i)), std::llround(1e6 * instants.time(k)), 1};
     if (planar) {
       pair.a = planar_motion(pair.a, G_a);
@@ -46,19 +48,22 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
 /// The shortest motions that a long drive is looked at with, and longer ones that must confirm what they
 /// show.
 std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const Answered& answered,
-                                                const DiagnosisOptions& options) {
+                                                const DiagnosisOptions& options, const PoseReading& reading) {
   const MountCheckOptions& mount = options.mount;
   const std::size_t longest = std::max<std::size_t>(1, instants.size() / (3 * mount.blocks));
   const std::size_t steps =
       std::min(longest, std::max(mount.least_stride, static_cast<std::size_t>(std::max(1, answered.stride))));
   const std::size_t shortest = std::clamp<std::size_t>(instants.size() / mount.most_motions, 1, steps);
   std::vector<std::vector<MotionPair>> strides;
-  strides.push_back(pairs_of(instants, answered, options, shortest));
-  if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, steps));
+  strides.push_back(pairs_of(instants, answered, options, reading, shortest));
+  if (steps > shortest) strides.push_back(pairs_of(instants, answered, options, reading, steps));
   return strides;
 }
 
-std::string size_of(const Move& move) {
+/// observable: of the answer; the size of a change in another direction is noise.
+std::string size_of(Move move, const std::array<bool, 6>& observable) {
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!observable[i]) move.stddev[i] = INFINITY;
   const auto [turn, shift] = shown_change(move);
   std::string text;
   if (turn > 0) text = format("%.2f deg", turn * 180 / std::numbers::pi);
@@ -67,8 +72,8 @@ std::string size_of(const Move& move) {
 }
 
 /// begin: of the motions, on the clock of the finding [s].
-void word(const Move& move, double begin, double long_interval, Finding& finding) {
-  const std::string size = size_of(move);
+void word(const Move& move, const Answered& answered, double begin, double long_interval, Finding& finding) {
+  const std::string size = size_of(move, answered.observability.observable);
   const double from = begin + move.earliest, to = begin + move.latest;
   const Pose before = to_pose(move.before);
   const std::string answer = format("%.4f %.4f %.4f m, w x y z %.5f %.5f %.5f %.5f", before.translation.x(),
@@ -126,8 +131,8 @@ void keep_those_shown_before(const std::vector<std::vector<MotionPair>>& strides
 }  // namespace
 
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
-                                 const DiagnosisOptions& options) {
-  const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options);
+                                 const DiagnosisOptions& options, const PoseReading& reading) {
+  const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options, reading);
   MovesResult result = moves_of(strides, answered, options);
   std::vector<Finding> findings;
   if (result.moves.empty()) return findings;
@@ -139,7 +144,7 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
     finding.certain = true;
     finding.time = begin + move.time;
     finding.T_a_b = to_pose(move.after);
-    word(move, begin, options.mount.long_interval, finding);
+    word(move, answered, begin, options.mount.long_interval, finding);
     findings.push_back(std::move(finding));
   }
   return findings;

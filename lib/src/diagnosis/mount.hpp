@@ -10,7 +10,8 @@
 namespace egocal::detail {
 
 /// Findings mount_moved, one for each change of the mounting (moves/find_moves.hpp), in the order of time.
+/// reading: of both streams.
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
-                                 const DiagnosisOptions& options);
+                                 const DiagnosisOptions& options, const PoseReading& reading = {});
 
 }  // namespace egocal::detail

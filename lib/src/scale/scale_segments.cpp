@@ -18,6 +18,7 @@ using Samples = std::span<const ScaleSample>;
 /// common to all.
 struct Block {
   double log_scale = 0, weight = 0;
+  double time = 0;        ///< where the motions are that show it [us], since the first one
   std::size_t begin = 0;  ///< index of its first sample
 };
 
@@ -30,16 +31,25 @@ double estimate(Samples samples) {
   return square > 0 && product > 0 ? product / square : 0;
 }
 
-/// Empty where a block shows no scale.
+/// At most `count`, which all show the scale about equally well, however long a vehicle stands or turns in
+/// place meanwhile. Empty where one of them shows no scale.
 std::vector<Block> blocks_of(Samples samples, std::size_t count) {
+  double whole = 0;
+  for (const ScaleSample& sample : samples) whole += sample.square;
   std::vector<Block> blocks;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t begin = k * samples.size() / count, end = (k + 1) * samples.size() / count;
+  double seen = 0;
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    const double enough =
+        whole * static_cast<double>(blocks.size() + 1) / static_cast<double>(count) * (1 - 1e-12);
+    double square = 0, times = 0;
+    for (; end < samples.size() && (end == begin || seen < enough); ++end) {
+      seen += samples[end].square;
+      square += samples[end].square;
+      times += samples[end].square * static_cast<double>(samples[end].begin_us - samples[0].begin_us);
+    }
     const double scale = estimate(samples.subspan(begin, end - begin));
     if (!(scale > 0)) return {};
-    double square = 0;
-    for (std::size_t i = begin; i < end; ++i) square += samples[i].square;
-    blocks.push_back({std::log(scale), square * scale * scale, begin});
+    blocks.push_back({std::log(scale), square * scale * scale, times / square, begin});
   }
   return blocks;
 }
@@ -70,14 +80,14 @@ Fit steps(std::span<const Block> blocks, const std::vector<std::size_t>& splits)
 Fit line(std::span<const Block> blocks) {
   double w = 0, t = 0, y = 0, tt = 0, ty = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const double x = static_cast<double>(i), weight = blocks[i].weight;
+    const double x = blocks[i].time, weight = blocks[i].weight;
     w += weight, t += weight * x, y += weight * blocks[i].log_scale;
     tt += weight * x * x, ty += weight * x * blocks[i].log_scale;
   }
   const double slope = (w * ty - t * y) / (w * tt - t * t), offset = (y - slope * t) / w;
   Fit fit;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    fit.values.push_back(offset + slope * static_cast<double>(i));
+    fit.values.push_back(offset + slope * blocks[i].time);
     fit.cost += blocks[i].weight * std::pow(blocks[i].log_scale - fit.values.back(), 2);
   }
   return fit;
@@ -131,15 +141,16 @@ class Search {
     const std::vector<Block> blocks = count >= options_.least_blocks
                                           ? blocks_of(samples_.subspan(from, to - from), count)
                                           : std::vector<Block>{};
-    if (blocks.empty() || found_.size() + 1 >= options_.most_segments) return add(from, to, 0);
+    if (blocks.size() < options_.least_blocks || found_.size() + 1 >= options_.most_segments)
+      return add(from, to, 0);
     const Fit one = steps(blocks, {});
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity(), least_two = least;
-    for (std::size_t i = 1; i < count; ++i) {
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
       const double cost = steps(blocks, {i}).cost;
       if (cost < least) least = cost, best = i;
     }
-    for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t i = 1; i < blocks.size(); ++i)
       if (i != best)
         least_two = std::min(least_two, steps(blocks, {std::min(i, best), std::max(i, best)}).cost);
     const Fit step = steps(blocks, {best}), slope = line(blocks);
@@ -149,19 +160,18 @@ class Search {
       return add(from, to, drift);
     const double change = step.values[best] - step.values[best - 1];
     if (!large(change) ||
-        !(chance_of(blocks, one, step, static_cast<double>(count)) <= 0.5 * options_.false_alarms))
+        !(chance_of(blocks, one, step, static_cast<double>(blocks.size())) <= 0.5 * options_.false_alarms))
       return add(from, to, 0);
-    const std::size_t at = place(from, to, from + blocks[best].begin, std::exp(step.values[best - 1]),
-                                 std::exp(step.values[best]));
+    const std::size_t begin = best > 2 ? from + blocks[best - 2].begin : from;
+    const std::size_t end = best + 2 < blocks.size() ? from + blocks[best + 2].begin : to;
+    const std::size_t at = place(begin, end, std::exp(step.values[best - 1]), std::exp(step.values[best]));
     if (at <= from || at >= to) return add(from, to, 0);
     search(from, at);
     search(at, to);
   }
 
   /// The first motion that fits the scale after the change better than the one before, in sum.
-  std::size_t place(std::size_t from, std::size_t to, std::size_t near, double before, double after) const {
-    const std::size_t span = (to - from) / blocks_in(from, to) * 2;
-    const std::size_t begin = std::max(from, near - std::min(near, span)), end = std::min(to, near + span);
+  std::size_t place(std::size_t begin, std::size_t end, double before, double after) const {
     double sum = 0, least = 0;
     std::size_t best = begin;
     for (std::size_t i = begin; i < end; ++i) {

@@ -46,13 +46,13 @@ struct Fit {
 struct Finding {
   std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
                      ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
-                     ///< too_little_motion
+                     ///< scale_change, too_little_motion
   bool certain = false;         ///< it fits clearly better; otherwise both remain possible
   std::string message;          ///< what was found, one sentence
   std::string remedy;           ///< option or action that cures it
   double improvement = 1;       ///< squared residuals as given / under this explanation
   std::optional<Pose> T_a_b;    ///< the answer under this explanation, where it has one
-  std::optional<double> time;   ///< mount_moved: since the first pose of a [s]
+  std::optional<double> time;   ///< mount_moved, scale_change: since the first pose of a [s]
   std::optional<double> value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
                                 ///< clock_drift: rate of b's clock against a's [s/s]
 };

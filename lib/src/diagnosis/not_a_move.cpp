@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/not_a_move.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "diagnosis/mount.hpp"
+#include "diagnosis/wording.hpp"
+#include "egocal/error.hpp"
+#include "egocal/scale/estimate_scale.hpp"
+#include "egocal/scale/scale_course.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// One scale for the whole drive, as a first guess; empty where no motion shows it.
+std::optional<ScaleSolution> scale_of_b(const Trajectory& a, const Trajectory& b,
+                                        const PairingOptions& pairing) {
+  DriveScaleOptions options;
+  options.scale.side = Side::b;
+  try {
+    return estimate_scale(a, b, pairing, options);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// Times are counted from origin_us.
+std::string in_words(const ScaleCourse& course, std::int64_t origin_us) {
+  constexpr std::size_t most = 4;  // a message is one line
+  const auto seconds = [&](std::int64_t time_us) { return 1e-6 * static_cast<double>(time_us - origin_us); };
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, course.segments.size()); ++i) {
+    const ScaleSegment& segment = course.segments[i];
+    text += format("%s%.4g", i > 0 ? ", " : "", segment.begin_scale);
+    if (segment.end_scale != segment.begin_scale) text += format(" to %.4g", segment.end_scale);
+    text += format(" from %.1f to %.1f s", seconds(segment.begin_us), seconds(segment.end_us));
+  }
+  if (course.segments.size() > most) text += format(" and %zu more", course.segments.size() - most);
+  return text;
+}
+
+/// The motions as given, each part between the moves with an extrinsic of its own.
+Explained in_parts(const Explained& given, const std::vector<Finding>& moves,
+                   const DiagnosisOptions& options) {
+  Explained result{given.motions, {}};
+  std::size_t from = 0;
+  for (std::size_t k = 0; k <= moves.size(); ++k) {
+    std::size_t to = given.motions.all.size();
+    if (k < moves.size() && moves[k].time)
+      while (to > from && given.motions.all[to - 1].time > *moves[k].time) --to;
+    if (to == from) continue;
+    Motions part = given.motions;
+    part.all.assign(given.motions.all.begin() + static_cast<std::ptrdiff_t>(from),
+                    given.motions.all.begin() + static_cast<std::ptrdiff_t>(to));
+    const RobustFit fit = robust_fit(part, options.fit);
+    result.fit.squares.insert(result.fit.squares.end(), fit.squares.begin(), fit.squares.end());
+    result.fit.typical = std::max(result.fit.typical, fit.typical);
+    from = to;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
+                                      const Answered& answered, const DiagnosisOptions& options) {
+  const Trajectory& a = evidence.streams.a;
+  const Trajectory& b = evidence.streams.b;
+  const std::optional<ScaleSolution> whole = scale_of_b(a, b, pairing);
+  if (!whole) return std::nullopt;
+  const ScaleCourse course = find_scale_course(a, b, pairing, *whole, Side::b);
+  if (!course.changes()) return std::nullopt;
+  const Trajectory followed = scaled(b, course);
+  const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
+  if (!moved_mount(instants, answered, options).empty()) return std::nullopt;
+  Explained explained;
+  explained.motions = motions_of(instants, {}, {}, evidence.stride, options.motions.most, options.motions);
+  if (explained.motions.all.empty()) return std::nullopt;
+  explained.fit = robust_fit(explained.motions, options.fit);
+  const double gain = compare(evidence.given.explained, explained).gain;
+  if (!(gain > options.least_gain)) return std::nullopt;
+  const std::int64_t origin_us = a.front().time_us;
+  Finding finding;
+  finding.code = "scale_change";
+  finding.certain = true;
+  finding.improvement = std::exp(gain);
+  finding.time = 1e-6 * static_cast<double>(course.segments.front().end_us - origin_us);
+  if (course.segments.size() == 1)
+    finding.time = 1e-6 * static_cast<double>(course.segments.front().begin_us - origin_us);
+  finding.T_a_b = to_pose(explained.fit.T);
+  finding.message = "The lengths of b must be multiplied by a factor that changes along the drive: " +
+                    in_words(course, origin_us) + ". With these the mounting does not move.";
+  finding.remedy = "--scale-b auto finds the factors; --scale-a auto where b is in metres.";
+  return finding;
+}
+
+namespace {
+
+/// No mount moves where both streams are world-to-sensor, and one extrinsic fits about as well as one a part.
+bool explained_by_inverting_both(const Evidence& evidence, const std::vector<Finding>& moves,
+                                 const Answered& answered, const DiagnosisOptions& options) {
+  PoseReading inverted;
+  inverted.invert = true;
+  const Motions motions = motions_of(evidence.instants, inverted, inverted, evidence.stride,
+                                     options.motions.most, options.motions);
+  if (motions.all.empty() || !moved_mount(evidence.instants, answered, options, inverted).empty())
+    return false;
+  const Explained both{motions, robust_fit(motions, options.fit)};
+  const Explained parts = in_parts(evidence.given.explained, moves, options);
+  return compare(parts, both).gain > -options.gain;
+}
+
+}  // namespace
+
+std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
+                                   const Evidence& evidence, const Answered& answered, bool inverted_both,
+                                   const DiagnosisOptions& options) {
+  if (moves.empty()) return moves;
+  if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options))
+    return {*std::move(scale)};
+  if (inverted_both && explained_by_inverting_both(evidence, moves, answered, options))
+    for (Finding& move : moves) move.certain = false;
+  return moves;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What looks like a mount that moved and is something else.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "diagnosis/explanations.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+/// Finding scale_change: the scale of b changes along the drive, and at the scales found no mount moves.
+/// Empty where the scale is one, or where the motions do not fit better.
+std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
+                                      const Answered& answered, const DiagnosisOptions& options);
+
+/// Findings mount_moved as they are; or scale_change instead; or uncertain, where both streams may be
+/// world-to-sensor
+/// (`inverted_both`): no mount moves then, and one extrinsic explains the motions about as well as one for
+/// each part between the moves.
+std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
+                                   const Evidence& evidence, const Answered& answered, bool inverted_both,
+                                   const DiagnosisOptions& options);
+
+}  // namespace egocal::detail
