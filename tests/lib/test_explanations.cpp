@@ -251,6 +251,19 @@ TEST(Explanations, APartOfAnotherDriveIsFoundAtItsTime) {
   EXPECT_NEAR(*finding->time, 30, 8);
 }
 
+TEST(Explanations, AClockThatIsOffByMoreThanAQuarterOfTheDriveIsNamed) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (const double seconds : {25.0, -25.0}) {
+      testing::Streams streams = drive(terrain, 3);
+      for (StampedPose& stamped : streams.b) stamped.time_us -= std::llround(1e6 * seconds);
+      const Calibration calibration = calibrate(streams.a, streams.b);
+      const Finding* clock = find(calibration, "clock_offset");
+      ASSERT_NE(clock, nullptr) << calibration.reason;
+      EXPECT_TRUE(clock->certain);
+      EXPECT_NEAR(*clock->value, seconds, 0.01);
+    }
+}
+
 TEST(Explanations, AMovedMountIsFoundAtItsTime) {
   testing::Streams streams = drive(Terrain::free);
   streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0.06, 0}), {0, 0.1, 0}});

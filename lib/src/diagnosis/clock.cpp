@@ -77,8 +77,8 @@ std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel&
   if (count < 2 * streams.grid.least_cells) return std::nullopt;
   const Series x = turning_rates(streams.a, streams.turning_a, origin_us, 0, step, count);
   const Series y = turning_rates(streams.b, streams.turning_b, origin_us, start.offset, step, count);
-  const auto most_lag =
-      static_cast<std::ptrdiff_t>(std::min(options.widest / step, 0.25 * static_cast<double>(count)));
+  const auto most_lag = static_cast<std::ptrdiff_t>(
+      std::min(options.widest / step, options.widest_part * static_cast<double>(count)));
   const std::optional<double> lag = best_lag(x, y, most_lag, 0, count, streams.grid.least_cells);
   if (!lag) return std::nullopt;
   ClockModel clock{start.offset + *lag * step, 0, 0.5 * span};

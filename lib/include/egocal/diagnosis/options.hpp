@@ -38,8 +38,9 @@ struct ClockSearchOptions {
   std::size_t grid = 1200;  ///< points of the turning rates that are correlated, at most
   /// Instants that each trial of a clock looks at, about: ten for each motion that is compared.
   std::size_t instants = 7000;
-  double widest = 60;       ///< offsets up to this are looked for, and up to a quarter of the drive [s]
-  std::size_t pieces = 6;   ///< of the drive, whose own offsets show the rate
+  double widest = 60;        ///< offsets up to this are looked for [s],
+  double widest_part = 0.5;  ///< and up to this part of the drive: the streams must share the other half
+  std::size_t pieces = 6;    ///< of the drive, whose own offsets show the rate
   double most_rate = 0.02;  ///< a clock that is wrong by more is not believed [s/s]; crystals are within 1e-4
 };
 
