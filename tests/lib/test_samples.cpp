@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 
 #include "../support/arm_samples.hpp"
 #include "../support/paths.hpp"
@@ -14,6 +15,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "samples/agreeing.hpp"
 #include "samples/sample_fit.hpp"
 
 namespace egocal {
@@ -120,6 +122,35 @@ TEST(Samples, ManyWithoutWrongOnesNeedNoSearchAndManyWithWrongOnesStillHaveIt) {
     EXPECT_LT(error_of(drawn, found).rotation, 0.3 * degree);
     EXPECT_LT(error_of(drawn, found).translation, 4e-3);
   }
+}
+
+TEST(Samples, AmongManyTheSameOnesAgreeAsOneByOne) {
+  for (const std::size_t wrong : {0u, 40u, 150u}) {
+    const SimulatedSamples drawn = arm(400, 0.3, 2, 24, wrong);
+    const detail::SampleSet set(drawn.samples);
+    detail::AgreeingOptions one_by_one;
+    one_by_one.most_one_by_one = 400;
+    const detail::AgreeingSamples slow = find_agreeing(set, {}, one_by_one), fast = find_agreeing(set, {});
+    EXPECT_EQ(fast.chosen, slow.chosen);
+    EXPECT_EQ(fast.chosen.size(), 400 - wrong);
+    EXPECT_LT((fast.fit.X.vec() - slow.fit.X.vec()).norm(), 1e-9);
+  }
+}
+
+/// Seconds of processor time, the least of three: other work on the machine only adds to it.
+double seconds_for(const SimulatedSamples& drawn) {
+  double least = 1e9;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const std::clock_t begin = std::clock();
+    calibrate_samples(drawn.samples);
+    least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  return least;
+}
+
+TEST(Samples, FourTimesAsManyTakeFourTimesAsLong) {
+  const double few = seconds_for(arm(500, 0.3, 2, 25, 100)), many = seconds_for(arm(2000, 0.3, 2, 25, 400));
+  EXPECT_LT(many, 10 * few) << few << " s, " << many << " s; their cube is 64 times as long";
 }
 
 TEST(Samples, TheOrderOfTheRowsChangesNoBit) {

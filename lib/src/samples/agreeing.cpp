@@ -214,9 +214,48 @@ Indices others(const SampleSet& set, const Indices& chosen) {
   return result;
 }
 
+/// How far off a sample must be to be wrong, in variances of the noise, whatever its probability.
+double heaviest_tail(const SampleSet& set, const SampleFit& fit, const SampleOptions& options) {
+  return options.heaviest_tail * options.heaviest_tail * underestimated(set, fit);
+}
+
+/// The same among many: one more hardly moves the fit, so its residual is what it adds to the cost, and the
+/// nearest of those that are not wrong are taken in together. Otherwise each round would try every sample by
+/// a fit of all, and take in one.
+Indices next_of_many(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options,
+                     const AgreeingOptions& tuning) {
+  constexpr double dof = 6;  // mathematics: of a pose
+  const SampleFit& fit = agreeing.fit;
+  if (!(fit.dof > 0)) return {};
+  const double variance = std::max(fit.cost / fit.dof, tuning.least_variance);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (const std::size_t i : others(set, agreeing.chosen))
+    order.emplace_back(in_variances(set, i, fit) / variance, i);
+  std::sort(order.begin(), order.end());
+  const auto probability = [&](double squares) { return f_exceeded(squares / dof, dof, fit.dof); };
+  // the probability falls along the order
+  const auto first_with_less = [&](double least) {
+    return std::partition_point(order.begin(), order.end(),
+                                [&](const auto& one) { return probability(one.first) > least; });
+  };
+  const double tail = heaviest_tail(set, fit, options);
+  const auto beyond_tail =
+      std::partition_point(order.begin(), order.end(), [&](const auto& one) { return one.first <= tail; });
+  const auto unremarkable = first_with_less(tuning.unremarkable);
+  const auto wrong = std::max(first_with_less(options.wrong_probability), beyond_tail);
+  const auto batch =
+      static_cast<std::ptrdiff_t>(std::ceil(tuning.at_once * static_cast<double>(agreeing.chosen.size())));
+  const auto end = std::max(unremarkable, order.begin() + std::min(batch, wrong - order.begin()));
+  Indices next;
+  for (auto one = order.begin(); one != end; ++one) next.push_back(one->second);
+  std::sort(next.begin(), next.end());
+  return next;
+}
+
 /// Samples to add next, in order: those that noise explains, else the nearest one; empty where that is wrong.
 Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, const SampleOptions& options,
                      const AgreeingOptions& tuning) {
+  if (set.size() > tuning.most_one_by_one) return next_of_many(set, agreeing, options, tuning);
   const Indices candidates = others(set, agreeing.chosen);
   Indices plain;
   PlainTest test(set, agreeing.fit, tuning);
@@ -229,7 +268,7 @@ Indices next_samples(const SampleSet& set, const AgreeingSamples& agreeing, cons
     if (added.probability > tuning.unremarkable) plain.push_back(i);
     if (!nearest || added.squares < nearest->first.squares) nearest = {added, i};
   }
-  const double tail = options.heaviest_tail * options.heaviest_tail * underestimated(set, agreeing.fit);
+  const double tail = heaviest_tail(set, agreeing.fit, options);
   if (nearest->first.probability < options.wrong_probability && nearest->first.squares > tail) return {};
   if (plain.empty()) plain.push_back(nearest->second);
   return plain;

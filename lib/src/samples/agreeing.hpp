@@ -27,6 +27,11 @@ struct AgreeingOptions {
   int rounds_on_the_way = 3;
   /// A sample that noise explains this often is accepted without a second test.
   double unremarkable = 0.01;
+  /// Up to this many samples the nearest one is found by fits with each, and taken in alone. Beyond, where a
+  /// sample has about a hundredth of the fit, its residual decides, and this part of those that agree is
+  /// taken in at once: the time grows with the samples, not with their cube.
+  std::size_t most_one_by_one = 300;
+  double at_once = 0.02;
   /// From this many samples on the noise of the rotations is known without an answer, to a third.
   std::size_t least_for_congruence = 12;
   /// Samples that agree need no search from triples where they are at least most_samples of all, their
