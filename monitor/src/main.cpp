@@ -23,7 +23,8 @@ int main(int argc, char** argv) {
   cli::Option once = app.add_flag("--once", options.once, "print what is known and end");
   app.add_flag("--follow", options.follow, "print lines, once a second, and events as they come")
       .excludes(once);
-  app.add_flag("--json", options.json, "print one JSON object a line (with --once or --follow)");
+  cli::Option json =
+      app.add_flag("--json", options.json, "print one JSON object a line (with --once or --follow)");
   app.add_option("--timeout", options.timeout_s,
                  "--once: wait at most this long for an answer of every pair [s]")
       .check(egocal::cli::Check::range(0.0, 1e6))
@@ -32,7 +33,9 @@ int main(int argc, char** argv) {
       .check(egocal::cli::Check::range(0.0, 1e9));
   app.add_option("--screen", options.screen, "screen to begin with: overview, detail or events")
       .check(egocal::cli::Check::one_of({"overview", "detail", "events"}));
-  app.add_option("--size", options.size, "with --once: print the screen as text, e.g. 100x30");
+  app.add_option("--size", options.size, "with --once: print the screen as text, e.g. 100x30")
+      .needs(once)
+      .excludes(json);
   app.add_flag("--ascii", options.ascii, "ASCII only, also where the terminal could do more");
   app.add_flag("--mono", options.monochrome, "no colours");
   if (const auto code = app.parse(argc, argv)) return *code;

@@ -245,6 +245,22 @@ TEST_F(Commands, WrongUsageIsRefusedWithTwo) {
   }
 }
 
+// The one that lost was dropped silently
+TEST_F(Commands, OutputsThatContradictEachOtherAreRefused) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  const std::string solve = "solve " + path("d/lidar.tum") + " " + path("d/camera.tum") + " --json --format ";
+  expect_refusal(egocal(solve + "yaml"), 2, "--format: takes the place of --json");
+  expect_refusal(egocal(solve + "yaml --rig " + path("none.toml")), 2, "--format: takes the place of --json");
+  const Outcome both = egocal(solve + "yaml --out " + path("mount.yaml"));
+  EXPECT_TRUE(json::parse(both.out)["certified"]);
+  EXPECT_THAT(read(path("mount.yaml")), HasSubstr("translation"));
+  expect_refusal(egocal("up none.toml --monitor --follow"), 2, " excludes --");
+  expect_refusal(egocal("compare --json --csv"), 2, " excludes --");
+  expect_refusal(egocal("compare --csv --latex"), 2, " excludes --");
+  expect_refusal(program("egocal-monitor", "--once --json --size 100x30"), 2, " excludes --");
+  expect_refusal(program("egocal-monitor", "--once --follow"), 2, " excludes --");
+}
+
 TEST_F(Commands, BadLogsAndRigsAreRefused) {
   ASSERT_EQ(egocal("simulate --out " + path("d.log") + " --rig-out " + path("d.toml") + " --poses 200").code,
             0);

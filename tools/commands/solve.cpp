@@ -61,6 +61,8 @@ std::string json_text(const Options& options, const SolveRequest& request, const
 }
 
 void run(const Options& options, const std::string& command_line) {
+  if (options.json && !options.format.empty() && options.out.empty())
+    throw cli::UsageError("--format: takes the place of --json on standard output; give its file by --out");
   if (is_rig(options.rig))
     return solve_rig_command(options.request, options.rig,
                              {options.json, options.format, options.out, command_line});

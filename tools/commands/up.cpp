@@ -181,8 +181,10 @@ void add_up(cli::App program) {
   command.add_option("--global", options->global, "global solver")
       .check(cli::Check::one_of({"dual", "sdp"}))
       .show_default();
-  command.add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
-  command.add_flag("--follow", options->follow, "with the monitor's lines on standard output");
+  const cli::Option monitor =
+      command.add_flag("--monitor", options->monitor, "with the monitor on this terminal; all end with it");
+  command.add_flag("--follow", options->follow, "with the monitor's lines on standard output")
+      .excludes(monitor);
   command.add_option(
       "--output-dir", options->output_dir,
       "each process's output in a file there; -: here; default: ~/.local/state/egocal/NAME OF RIG");
