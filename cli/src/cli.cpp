@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <utility>
 
 #include "completion.hpp"
@@ -145,6 +147,13 @@ Check Check::not_negative() {
   return check;
 }
 
+Check Check::above_zero(double most) {
+  Check check;
+  check.kind_ = Kind::above_zero;
+  check.most_ = most;
+  return check;
+}
+
 Check Check::existing_file() {
   Check check;
   check.kind_ = Kind::existing_file;
@@ -157,21 +166,42 @@ Option& Option::required() {
 }
 
 Option& Option::check(const Check& check) {
+  // NaN is in no range, and infinity is no amount
+  const auto number = [](const std::string& text) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    return good ? value : std::numeric_limits<double>::quiet_NaN();
+  };
   switch (check.kind_) {
     case Check::Kind::one_of:
       option_->check(CLI::IsMember(check.values_));
       break;
     case Check::Kind::range:
       option_->check(CLI::Range(check.least_, check.most_));
+      option_->check(CLI::Validator(
+          [number](std::string& text) {
+            return std::isnan(number(text)) ? "expected a number, got '" + text + "'" : std::string();
+          },
+          ""));
       break;
     case Check::Kind::not_negative:
       option_->check(CLI::Validator(
-          [](std::string& text) {
-            double value = 0;
-            const bool good = CLI::detail::lexical_cast(text, value) && value >= 0;
+          [number](std::string& text) {
+            const bool good = number(text) >= 0;
             return good ? std::string() : "expected a number from 0 up, got '" + text + "'";
           },
           "NUMBER >= 0"));
+      break;
+    case Check::Kind::above_zero:
+      option_->check(CLI::Validator(
+          [number, most = check.most_](std::string& text) {
+            const double value = number(text);
+            if (value > 0 && value <= most) return std::string();
+            char limit[32];
+            std::snprintf(limit, sizeof limit, "%.0f", most);
+            return std::string("expected a number above 0, at most ") + limit + ", got '" + text + "'";
+          },
+          "NUMBER > 0"));
       break;
     case Check::Kind::existing_file:
       option_->check(CLI::ExistingFile);
@@ -269,6 +299,10 @@ std::string App::command_line() const {
 
 bool App::given() const {
   return app_->parsed();
+}
+
+bool App::given(const std::string& option) const {
+  return app_->count(option) > 0;
 }
 
 void App::footer(const std::string& text) {

@@ -261,6 +261,53 @@ TEST_F(Commands, OutputsThatContradictEachOtherAreRefused) {
   expect_refusal(program("egocal-monitor", "--once --follow"), 2, " excludes --");
 }
 
+TEST_F(Commands, ValuesOutOfRangeAreRefusedWhetherTheyAreUsedOrNot) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  const std::string drive = " " + path("d/lidar.tum") + " " + path("d/camera.tum") + " ";
+  for (const char* rate : {"0", "-3", "nan", "inf", "1e7", "x"}) {
+    for (const std::string& command : {"solve" + drive, "check" + drive, "report --out r.html" + drive,
+                                       "align" + drive, "info " + path("d/lidar.tum") + " "})
+      expect_refusal(egocal(command + "--rate " + rate), 2,
+                     "--rate: expected a number above 0, at most 1000000, got");
+  }
+  for (const char* arguments :
+       {"compare --noise nan", "compare a b --time-offset nan", "compare --poses 0",
+        "experiment noise --levels nan", "experiment noise --levels 0.1,-1",
+        "experiment noise --roughness -1", "experiment online --frames 0",
+        "experiment online --t-no-fail nan", "export --rig r --timeout inf", "listen --seconds inf",
+        "listen --seconds nan", "up rig.toml --log l --speed nan", "solve a b --max-gap 0"})
+    expect_refusal(egocal(arguments), 2, "egocal: ");
+}
+
+TEST_F(Commands, OptionsWithoutAnEffectAreRefusedOrNamed) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  const std::string drive = " " + path("d/lidar.tum") + " " + path("d/camera.tum") + " ";
+  const Outcome rate = egocal("solve" + drive + "--rate 5");
+  EXPECT_EQ(rate.code, 0);
+  EXPECT_THAT(rate.err, HasSubstr("lidar.tum: --rate is not used: the poses have times"));
+  EXPECT_THAT(egocal("info " + path("d/lidar.tum") + " --rate 5").out, HasSubstr("--rate is not used"));
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d.mcap")).code, 0);
+  const std::string bag = " " + path("d.mcap") + ":/lidar " + path("d.mcap") + ":/camera ";
+  const Outcome of_bag = egocal("solve" + bag + "--times none --columns t,x --rate 5");
+  for (const char* option : {"--times is not", "--columns is not", "--rate is not"})
+    EXPECT_THAT(of_bag.err, HasSubstr(option));
+  EXPECT_EQ(egocal("solve" + bag).err, "");
+  for (const char* arguments :
+       {"solve --pairs p --rate 5", "solve --pairs p --stride 2", "solve --pairs p --time-offset 1",
+        "solve --pairs p --max-gap 2", "solve --log l A B --columns t,x", "check --log l A B --rate 5",
+        "solve a b c --samples", "solve a b --samples --max-gap 2", "solve a b --frame-a x",
+        "solve a b c --frame-b x --json", "solve --log l A B C --rate 5"})
+    expect_refusal(egocal(arguments), 2, "go");
+  for (const char* arguments :
+       {"compare a b --poses 10", "compare a b --noise 0.1", "compare a b --terrain flat",
+        "compare a b --seed 2", "compare --times-a t", "compare --stride 2", "compare --time-offset 1",
+        "export --log l --timeout 1", "export --log l --lcm-url u", "up rig.toml --speed 2",
+        "simulate --out never --terrain flat --roughness 1",
+        "simulate --out never --terrain free --speed-variation 0.1", "simulate --out never --type pose"})
+    expect_refusal(egocal(arguments), 2, "egocal: ");
+  EXPECT_FALSE(fs::exists("never"));
+}
+
 TEST_F(Commands, BadLogsAndRigsAreRefused) {
   ASSERT_EQ(egocal("simulate --out " + path("d.log") + " --rig-out " + path("d.toml") + " --poses 200").code,
             0);

@@ -30,6 +30,7 @@ std::string tenths_text(const Fit& fit) {
 }
 
 void run(const Options& options, const std::string& command_line) {
+  if (!options.source.log.empty()) refuse_reading_options(options.reading, "--log");
   SolveRequest request;
   request.source = options.source;
   request.source.reading_a = options.reading.of_a();

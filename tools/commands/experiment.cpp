@@ -52,7 +52,8 @@ void add_noise(cli::App experiment) {
       "noise", "Fig. 4: error over the number of motion pairs for several noise levels");
   command.add_option("--levels", options->noise.levels, "noise relative to the mean motion")
       .comma_separated()
-      .show_default();
+      .show_default()
+      .check(cli::Check::range(0.0, 10.0));
   command.add_option("--pairs", options->noise.most_pairs, "most motion pairs")
       .show_default()
       .check(cli::Check::range(2, 1000000));
@@ -68,7 +69,8 @@ void add_noise(cli::App experiment) {
   command
       .add_option("--roughness", options->noise.roughness,
                   "amplitude of the surface [m]; 1.8: 0.1 rad from pose to pose, as in V-A")
-      .show_default();
+      .show_default()
+      .check(cli::Check::range(0.0, 1e3));
   command.add_flag("--mixed", options->noise.mixed,
                    "a number of pairs is a sample of the whole drive, not its beginning");
   command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
@@ -92,11 +94,14 @@ void add_online(cli::App experiment) {
   cli::App command = experiment.add_subcommand(
       "online", "Fig. 6: Algorithm 1 frame by frame; planar where both ground planes are given");
   add_source_options(command, options->source);
-  command.add_option("--frames", options->frames, "motion pairs").show_default();
+  command.add_option("--frames", options->frames, "motion pairs")
+      .show_default()
+      .check(cli::Check::range(1, 10'000'000));
   command
       .add_option("--t-no-fail", options->t_no_fail,
                   "time that the fast solution must have been verified for [s]")
-      .show_default();
+      .show_default()
+      .check(cli::Check::not_negative());
   command.add_option("--fast", options->fast, "sqp or slsqp")
       .show_default()
       .check(cli::Check::one_of({"sqp", "slsqp"}));

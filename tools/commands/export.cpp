@@ -177,8 +177,9 @@ void run(const Options& options) {
 void add_export(cli::App program) {
   const auto options = std::make_shared<Options>();
   cli::App command = program.add_subcommand("export", "export the current answer (YAML, ROS, URDF, ...)");
-  command.add_option("--rig", options->rig, "rig file: takes the answer from the running processes");
-  command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
+  const cli::Option rig =
+      command.add_option("--rig", options->rig, "rig file: takes the answer from the running processes");
+  command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's").needs(rig);
   command.add_option("--log", options->log, "LCM log of a session: takes the answer that counted at its end");
   const cli::Option pair = command.add_option("--pair", options->pair, "A,B where there are several");
   command
@@ -191,7 +192,8 @@ void add_export(cli::App program) {
   command.add_option("--out", options->out, "file, written whole or not at all; standard output without it");
   command.add_option("--timeout", options->timeout, "waits for a certified answer for at most this time [s]")
       .check(cli::Check::not_negative())
-      .show_default();
+      .show_default()
+      .needs(rig);
   command.callback([options] { run(*options); });
 }
 

@@ -69,6 +69,7 @@ Contents read_contents(const Options& options) {
       contents.rows.push_back({recording->streams()[i], summarisers[i].summary()});
     contents.notes = recording->notes();
   }
+  for (const std::string& unused : recording->unused(options.reading)) contents.notes.push_back(unused);
   contents.format = recording->format();
   contents.losses = recording->losses();
   return contents;

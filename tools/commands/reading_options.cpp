@@ -23,11 +23,23 @@ ReadOptions ReadingOptions::of_b() const {
   return either(b, both);
 }
 
+void refuse_reading_options(const ReadingOptions& options, const char* instead) {
+  const auto refuse = [&](bool given, const char* option) {
+    if (given) throw cli::UsageError(std::string(option) + ": does not go with " + instead);
+  };
+  for (const ReadOptions* one : {&options.both, &options.a, &options.b}) {
+    refuse(!one->times_file.empty(), "--times");
+    refuse(!one->columns.empty(), "--columns");
+    refuse(one->rate > 0, "--rate");
+  }
+}
+
 void add_reading_options(cli::App command, ReadOptions& options) {
   command.add_option("--times", options.times_file, "times of KITTI poses, one a line [s]");
   command.add_option("--columns", options.columns,
                      "names of the columns of tables: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
-  command.add_option("--rate", options.rate, "of poses without times [Hz; 10]");
+  command.add_option("--rate", options.rate, "of poses without times [Hz; 10]")
+      .check(cli::Check::above_zero(1e6));
 }
 
 void add_reading_options(cli::App command, ReadingOptions& options) {

@@ -49,10 +49,22 @@ void read_samples(const RequestOptions& options, SolveRequest& request) {
   refuse(!options.time_offset.empty(), "--time-offset");
   refuse(!options.append.empty(), "--append");
   refuse(options.weights != "auto", "--weights");
+  refuse(options.max_gap != RequestOptions().max_gap, "--max-gap");
   refuse(options.scale == "auto" || options.scale_b == "auto", "--scale auto");
   refuse(options.method != "global" && options.method != "dual", "--method");
   request.samples.emplace();
   request.samples->eye_to_hand = options.eye_to_hand;
+}
+
+/// Motion pairs have no times, no poses and no steps.
+void refuse_options_of_streams(const RequestOptions& options) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw UsageError(std::string(option) + ": does not go with --pairs");
+  };
+  refuse_reading_options(options.reading, "--pairs");
+  refuse(!options.stride.empty(), "--stride");
+  refuse(!options.time_offset.empty(), "--time-offset");
+  refuse(options.max_gap != RequestOptions().max_gap, "--max-gap");
 }
 
 }  // namespace
@@ -69,6 +81,8 @@ SolveRequest understood(const RequestOptions& options) {
                                                 : "expected two channel names A and B of the log");
   if (!trajectories && (!options.source.a.empty() || !options.source.log.empty()))
     throw UsageError("--pairs: takes the place of A and B and of --log");
+  if (!trajectories) refuse_options_of_streams(options);
+  if (!options.source.log.empty()) refuse_reading_options(options.reading, "--log");
   result.method = options.method;
 
   if (options.planar != (!options.plane_a.empty() || !options.plane_b.empty()) ||

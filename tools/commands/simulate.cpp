@@ -144,7 +144,14 @@ void write_directory(const std::string& directory, const std::vector<MountedSens
   }
 }
 
-void run(Options options) {
+void run(Options options, const cli::App& command) {
+  if (command.given("--roughness") && options.terrain != "rough")
+    throw UsageError("--roughness: goes with --terrain rough");
+  if (command.given("--speed-variation") && options.terrain == "free")
+    throw UsageError("--speed-variation: is that of the speed on the ground, not of --terrain free");
+  const std::string extension = std::filesystem::path(options.out).extension();
+  if (command.given("--type") && extension != ".log" && options.rig_out.empty())
+    throw UsageError("--type: is that of the messages of a .log or of --rig-out");
   std::vector<MountedSensor> sensors;
   for (const std::string& text : options.sensors) sensors.push_back(mounted(text));
   if (sensors.size() < 2) throw UsageError("--sensor: expected at least two");
@@ -159,7 +166,6 @@ void run(Options options) {
   for (const MountedSensor& sensor : sensors) names.push_back(sensor.name);
   simulation.faults = understood(options.faults, names);
   const std::vector<Trajectory> trajectories = simulate(simulation);
-  const std::string extension = std::filesystem::path(options.out).extension();
   if (extension == ".mcap")
     write_mcap(options.out, sensors, trajectories, simulation);
   else if (extension == ".log")
@@ -213,7 +219,7 @@ void add_simulate(cli::App program) {
                   "of the messages: odometry (egocal.odometry_t) or pose (bot_core.pose_t)")
       .check(cli::Check::one_of({"odometry", "pose"}))
       .show_default();
-  command.callback([options] { run(*options); });
+  command.callback([options, command] { run(*options, command); });
 }
 
 }  // namespace egocal::tools

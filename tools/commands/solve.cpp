@@ -63,6 +63,11 @@ std::string json_text(const Options& options, const SolveRequest& request, const
 void run(const Options& options, const std::string& command_line) {
   if (options.json && !options.format.empty() && options.out.empty())
     throw cli::UsageError("--format: takes the place of --json on standard output; give its file by --out");
+  const bool named = options.frame_a != Options().frame_a || options.frame_b != Options().frame_b;
+  if (named && is_rig(options.rig))
+    throw cli::UsageError("--frame-a, --frame-b: go with two sensors; those of a rig have names");
+  if (named && !options.json && options.format.empty() && options.out.empty())
+    throw cli::UsageError("--frame-a, --frame-b: go with --format, --out or --json");
   if (is_rig(options.rig))
     return solve_rig_command(options.request, options.rig,
                              {options.json, options.format, options.out, command_line});

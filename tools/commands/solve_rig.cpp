@@ -39,6 +39,7 @@ void refuse_options_of_two(const RequestOptions& typed) {
     if (given) throw UsageError(std::string(option) + ": goes with two sensors, not with more or --rig");
   };
   refuse(!typed.source.pairs.empty(), "--pairs");
+  refuse(typed.samples || typed.eye_in_hand || typed.eye_to_hand, "--samples");
   refuse(typed.planar || !typed.plane_a.empty() || !typed.plane_b.empty(), "--planar");
   refuse(!typed.scale.empty() || !typed.scale_b.empty(), "--scale");
   refuse(!typed.truth.empty(), "--truth");
@@ -119,6 +120,7 @@ bool is_rig(const RigOptionsTyped& options) {
 
 void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, const RigOutput& output) {
   refuse_options_of_two(typed);
+  if (!typed.source.log.empty()) refuse_reading_options(typed.reading, "--log");
   const SolveRequest common = common_request(typed);
   RigRequest request = rig_request(typed, rig);
   request.calibration = common.calibration;

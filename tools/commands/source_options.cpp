@@ -15,8 +15,8 @@ void add_source_options(cli::App command, Source& source) {
                          "trajectory of sensor a, or several drives A1,A2; without files: a simulated drive");
   cli::Option b = command.add_option("B", source.file_b, "trajectory of sensor b, or B1,B2");
   a.needs(b);
-  command.add_option("--times-a", source.reading_a.times_file, "times of A, for a KITTI file");
-  command.add_option("--times-b", source.reading_b.times_file, "times of B, for a KITTI file");
+  command.add_option("--times-a", source.reading_a.times_file, "times of A, for a KITTI file").needs(a);
+  command.add_option("--times-b", source.reading_b.times_file, "times of B, for a KITTI file").needs(a);
   const auto text = [&](const char* name, const char* help, auto&& take) {
     return command.add_option_function(name, std::forward<decltype(take)>(take), help);
   };
@@ -36,14 +36,20 @@ void add_source_options(cli::App command, Source& source) {
        });
   command.add_option("--stride", source.stride, "steps of the slower stream in one motion")
       .show_default()
-      .check(cli::Check::range(1, 1000000));
-  command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]").show_default();
+      .check(cli::Check::range(1, 1000000))
+      .needs(a);
+  command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]")
+      .show_default()
+      .check(cli::Check::range(-1e9, 1e9))
+      .needs(a);
   command.add_option("--poses", source.poses, "of the simulated drive")
       .show_default()
-      .check(cli::Check::range(3, 10000000));
+      .check(cli::Check::range(3, 10000000))
+      .excludes(a);
   command.add_option("--noise", source.noise, "of the simulated drive, relative to the mean motion")
       .show_default()
-      .check(cli::Check::range(0.0, 10.0));
+      .check(cli::Check::range(0.0, 10.0))
+      .excludes(a);
   text("--terrain", "of the simulated drive: flat, rough or free (default: rough)",
        [&source](const std::string& value) {
          const std::map<std::string, Terrain> terrains{
@@ -52,8 +58,9 @@ void add_source_options(cli::App command, Source& source) {
          if (found == terrains.end())
            throw UsageError("--terrain: expected flat, rough or free, got '" + value + "'");
          source.terrain = found->second;
-       });
-  command.add_option("--seed", source.seed, "of the simulated drive").show_default();
+       })
+      .excludes(a);
+  command.add_option("--seed", source.seed, "of the simulated drive").show_default().excludes(a);
 }
 
 }  // namespace egocal::tools

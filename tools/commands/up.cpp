@@ -171,10 +171,12 @@ void add_up(cli::App program) {
   const auto options = std::make_shared<Options>();
   cli::App command = program.add_subcommand("up", "all processes of a rig, kept alive and ended together");
   command.add_option("RIG", options->rig, "rig file").required();
-  command.add_option("--log", options->log, "also plays this log; at its end all end");
+  const cli::Option log =
+      command.add_option("--log", options->log, "also plays this log; at its end all end");
   command.add_option("--speed", options->speed, "of the player; 0: as fast as possible")
-      .check(cli::Check::not_negative())
-      .show_default();
+      .check(cli::Check::range(0.0, 1e6))
+      .show_default()
+      .needs(log);
   command.add_option("--fast", options->fast, "fast solver")
       .check(cli::Check::one_of({"sqp", "slsqp"}))
       .show_default();

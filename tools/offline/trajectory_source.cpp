@@ -14,8 +14,15 @@ std::unique_ptr<Recording> open_any_recording(const std::string& file, const Rea
 
 TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions& options) {
   const RecordingName parts = parse_recording_name(name);
-  if (!is_lcm_log(parts.file) || parts.topic.empty())
-    return read_trajectory_of(*open_any_recording(parts.file, options), parts.topic);
+  const auto with = [](TrajectoryReading reading, const std::vector<std::string>& notes) {
+    reading.notes.insert(reading.notes.end(), notes.begin(), notes.end());
+    return reading;
+  };
+  if (!is_lcm_log(parts.file) || parts.topic.empty()) {
+    const std::unique_ptr<Recording> recording = open_any_recording(parts.file, options);
+    TrajectoryReading reading = read_trajectory_of(*recording, parts.topic);
+    return with(std::move(reading), recording->unused(options));
+  }
   // live odometry and its log pass the same checks
   LogTrajectory log = read_log_trajectory(parts.file, parts.topic);
   TrajectoryReading reading;
@@ -23,7 +30,7 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   reading.format = "LCM log";
   reading.stream = parts.topic;
   if (!log.not_used.empty()) reading.notes.push_back(log.not_used);
-  return reading;
+  return with(std::move(reading), unused_by_messages(options));
 }
 
 }  // namespace egocal::tools

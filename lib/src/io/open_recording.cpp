@@ -86,6 +86,14 @@ std::unique_ptr<Recording> open_folder(const std::string& folder) {
 
 }  // namespace
 
+std::vector<std::string> unused_by_messages(const ReadOptions& options) {
+  std::vector<std::string> unused;
+  if (!options.times_file.empty()) unused.emplace_back("--times is not used: messages have their times");
+  if (!options.columns.empty()) unused.emplace_back("--columns is not used: messages name their fields");
+  if (options.rate > 0) unused.emplace_back("--rate is not used: messages have their times");
+  return unused;
+}
+
 std::unique_ptr<Recording> open_recording(const std::string& file, const ReadOptions& options) {
   std::error_code none;
   if (fs::is_directory(file, none)) return open_folder(file);

@@ -36,11 +36,12 @@ class Check {
   static Check one_of(std::vector<std::string> values);
   static Check range(double least, double most);  ///< inclusive
   static Check not_negative();
+  static Check above_zero(double most);
   static Check existing_file();
 
  private:
   friend class Option;
-  enum class Kind { one_of, range, not_negative, existing_file };
+  enum class Kind { one_of, range, not_negative, above_zero, existing_file };
   Kind kind_ = Kind::range;
   std::vector<std::string> values_;
   double least_ = 0, most_ = 0;
@@ -82,7 +83,8 @@ class App {
   void footer(const std::string& text);
   /// The command and its options as they were given, as a shell would read them.
   std::string command_line() const;
-  bool given() const;  ///< this command is on the command line that was parsed
+  bool given() const;                           ///< this command is on the command line that was parsed
+  bool given(const std::string& option) const;  ///< and this option of it, such as "--out"
 
  protected:
   explicit App(CLI::App* app) : app_(app) {}

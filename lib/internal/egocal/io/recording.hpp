@@ -25,6 +25,9 @@ struct RecordedStream {
   bool fixed = false;                ///< a static transform
 };
 
+/// What messages of a bag or log do not need: they name their fields and have times.
+std::vector<std::string> unused_by_messages(const ReadOptions& options);
+
 /// A file with poses, whatever its format, behind one interface. Reading is streaming: memory does not grow
 /// with the file, except by the names of its streams. Not thread-safe; different objects are independent.
 class Recording {
@@ -47,6 +50,10 @@ class Recording {
   const ReadLosses& losses() const { return losses_; }
   /// What was assumed about the file, one sentence each: units, rate, order of columns.
   const std::vector<std::string>& notes() const { return notes_; }
+  /// Options that had no effect on the last pass, one sentence each.
+  virtual std::vector<std::string> unused(const ReadOptions& options) const {
+    return unused_by_messages(options);
+  }
 
  protected:
   explicit Recording(std::string file) : file_(std::move(file)) {}

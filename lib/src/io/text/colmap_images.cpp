@@ -70,6 +70,14 @@ ColmapImages::ColmapImages(std::unique_ptr<ByteSource> source, const ReadOptions
   if (rate_given_) rate_ = options.rate;
 }
 
+std::vector<std::string> ColmapImages::unused(const ReadOptions& options) const {
+  std::vector<std::string> unused;
+  if (!options.columns.empty()) unused.emplace_back("--columns is not used: COLMAP's fields are known");
+  if (options.rate > 0 && times_in_names_)
+    unused.emplace_back("--rate is not used: the names of the images are times");
+  return unused;
+}
+
 void ColmapImages::read(const std::string& topic, const TakePose& take) {
   if (!topic.empty())
     throw error_at(file_, 0, "", "is a file of format " + format() + " without topics, got ':" + topic + "'");
@@ -118,6 +126,7 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
   if (images.empty()) throw error_at(file_, 0, "", "holds no data");
 
   const std::optional<TimeUnit> unit = unit_of(largest);
+  times_in_names_ = unit.has_value();
   if (!unit)
     notes_.push_back("the numbers in the names are taken as frames at " + std::to_string(std::lround(rate_)) +
                      " Hz" + (rate_given_ ? "" : " (--rate)"));

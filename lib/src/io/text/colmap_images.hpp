@@ -26,11 +26,13 @@ class ColmapImages : public Recording {
 
   std::string format() const override { return "COLMAP images"; }
   void read(const std::string& topic, const TakePose& take) override;
+  std::vector<std::string> unused(const ReadOptions& options) const override;
 
  private:
   std::unique_ptr<ByteSource> source_;
   double rate_ = 10;  ///< of images whose names hold numbers of frames [Hz]
   bool rate_given_ = false;
+  bool times_in_names_ = false;  ///< of the last pass
   bool read_before_ = false;
 };
 

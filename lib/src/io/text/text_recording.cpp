@@ -156,6 +156,11 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
   }
 }
 
+std::vector<std::string> TextRecording::unused(const ReadOptions& options) const {
+  if (!(options.rate > 0) || (!layout_.times && times_.empty())) return {};
+  return {"--rate is not used: the poses have times"};
+}
+
 /// Empty: the row is skipped and counted.
 std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
   const std::size_t n = rows.fields.size();

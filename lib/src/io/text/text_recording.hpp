@@ -23,6 +23,7 @@ class TextRecording : public Recording {
 
   std::string format() const override { return layout_.format; }
   void read(const std::string& topic, const TakePose& take) override;
+  std::vector<std::string> unused(const ReadOptions& options) const override;
 
  private:
   struct Rows;
