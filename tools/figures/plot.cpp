@@ -189,23 +189,45 @@ std::string polyline(const std::string& points, const Series& series) {
 }
 
 std::string lines(const Series& series, const Plot& plot, const Frame& frame) {
-  std::string out, points;
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    if (drawable(plot.x, series.x[i]) && drawable(plot.y, series.y[i])) {
-      points += fmt::format("{:.2f},{:.2f} ", frame.x(series.x[i]), frame.y(series.y[i]));
-      continue;
-    }
-    out += polyline(points, series);
+  std::string out;
+  std::vector<Point> points;
+  const auto draw = [&] {
+    std::string text;
+    for (const Point& point : thinned_line(points, plot.thinning))
+      text += fmt::format("{:.2f},{:.2f} ", point.x, point.y);
+    out += polyline(text, series);
     points.clear();
-  }
-  return out + polyline(points, series);
+  };
+  for (std::size_t i = 0; i < series.x.size(); ++i)
+    if (drawable(plot.x, series.x[i]) && drawable(plot.y, series.y[i]))
+      points.push_back({frame.x(series.x[i]), frame.y(series.y[i])});
+    else
+      draw();
+  draw();
+  return out;
+}
+
+/// Round caps of lines without a length: a third of the bytes of circles.
+std::string many_dots(const std::vector<Point>& points, const Series& series) {
+  std::string path;
+  for (const Point& point : points) path += fmt::format("M{:.2f},{:.2f}h0", point.x, point.y);
+  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='{:g}' stroke-linecap='round'/>\n",
+                     path, hex(series.colour), 2 * series.radius);
 }
 
 std::string dots(const Series& series, const Plot& plot, const Frame& frame) {
-  std::string out;
+  std::vector<Point> points;
   for (std::size_t i = 0; i < series.x.size(); ++i)
     if (drawable(plot.x, series.x[i]) && drawable(plot.y, series.y[i]))
-      out += circle(frame.x(series.x[i]), frame.y(series.y[i]), series.radius, series);
+      points.push_back({frame.x(series.x[i]), frame.y(series.y[i])});
+  if (series.style == Series::Style::points && points.size() >= plot.thinning.least_points) {
+    std::erase_if(points, [&](const Point& point) {
+      return !(point.x >= 0 && point.x <= plot.width && point.y >= 0 && point.y <= plot.height);
+    });
+    return many_dots(thinned_dots(points, series.radius, plot.thinning), series);
+  }
+  std::string out;
+  for (const Point& point : points) out += circle(point.x, point.y, series.radius, series);
   return out;
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "figures/thinning.hpp"
+
 namespace egocal::tools {
 
 /// Colours that people with colour-blindness distinguish (Okabe and Ito), of falling contrast in grey.
@@ -48,6 +50,7 @@ struct Plot {
   bool equal_axes = false;  ///< one unit of x is as long as one of y: maps
   double width = 252;       ///< [pt]; 252 pt = 3.5 inch, a column of the paper
   double height = 170;      ///< [pt]
+  Thinning thinning;        ///< of long curves: of lines and filled dots
 };
 
 /// A complete <svg> element, with the data's own ranges, ticks at 1, 2 or 5 times a power of ten, and a
