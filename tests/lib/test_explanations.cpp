@@ -9,6 +9,7 @@
 
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
+#include "../support/turning_machine.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
@@ -119,6 +120,37 @@ TEST(Explanations, ScaleAndClockComeWithTheirValue) {
   const Calibration shifted = calibrate(late.a, late.b);
   ASSERT_NE(find(shifted, "clock_offset"), nullptr);
   EXPECT_NEAR(*find(shifted, "clock_offset")->value, -0.3, 0.005);
+}
+
+/// A machine that mostly turns in place shows the scale in few of its motions: the others fit any scale.
+TEST(Explanations, AWrongScaleIsNamedWhereFewMotionsShowIt) {
+  for (const double noise : {0.003, 0.01})
+    for (const double scale : {0.67, 0.95, 1.05, 1.3, 1.5})
+      for (const std::uint64_t seed : {1, 2}) {
+        const testing::Streams streams = testing::turning_machine(seed, scale, noise);
+        const Calibration calibration = calibrate(streams.a, streams.b);
+        const Finding* finding = find(calibration, "scale");
+        ASSERT_NE(finding, nullptr) << scale << ", " << noise << ": " << calibration.reason;
+        EXPECT_TRUE(finding->certain);
+        EXPECT_NEAR(*finding->value * scale, 1, 0.01);
+        EXPECT_NE(finding->remedy.find("--scale-b auto"), std::string::npos);
+        EXPECT_GE(calibration.verdict, Verdict::doubtful) << scale << ", " << noise;
+        ASSERT_TRUE(finding->T_a_b);
+        const ExtrinsicError error = extrinsic_error(streams.T, to_dual_quaternion(*finding->T_a_b));
+        EXPECT_LT(error.rotation, 0.005);
+        EXPECT_LT(error.translation, 0.03);
+      }
+}
+
+TEST(Explanations, ARightScaleIsNotNamedWhereFewMotionsShowIt) {
+  for (const double noise : {0.003, 0.01, 0.03})
+    for (std::uint64_t seed = 1; seed <= 4; ++seed)
+      for (const double scale : {1.0, 1.005}) {
+        const testing::Streams streams = testing::turning_machine(seed, scale, noise);
+        const Calibration calibration = calibrate(streams.a, streams.b);
+        EXPECT_EQ(find(calibration, "scale"), nullptr) << scale << ", " << noise << ", " << seed;
+        EXPECT_LE(calibration.verdict, Verdict::incomplete) << calibration.reason;
+      }
 }
 
 TEST(Explanations, TheRemedyOfAReadingCures) {

@@ -143,6 +143,20 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   return true;
 }
 
+/// A wrong scale that few motions show, where nothing else is certain.
+void name_wrong_scale(const Evidence& evidence, const DiagnosisOptions& options,
+                      std::vector<Finding>& findings) {
+  for (const Finding& finding : findings)
+    if (finding.certain || finding.code == "samples" || finding.code == "mount_moved") return;
+  std::optional<Finding> scale = wrong_scale(evidence, options);
+  if (!scale) return;
+  // the same with less certainty, and what its motions were taken for
+  std::erase_if(findings, [](const Finding& one) {
+    return one.code == "scale" || one.code == "units" || one.code == "inverted_both";
+  });
+  findings.push_back(*std::move(scale));
+}
+
 }  // namespace
 
 Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
@@ -181,6 +195,7 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
                          std::any_of(result.findings.begin(), result.findings.end(),
                                      [](const Finding& one) { return one.certain || one.code == "samples"; });
   if (!explained) look_further(pairing, evidence, answered, misfit, result.fit, options, result.findings);
+  name_wrong_scale(evidence, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
     for (Finding& finding : in_one_frame(answered)) result.findings.push_back(std::move(finding));

@@ -52,6 +52,7 @@ Explanation explained(const Evidence& evidence, const char* code, const PoseRead
 
 Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& options) {
   Explanation result = explanation;
+  if (explanation.explained.motions.all.empty()) return result;
   ScaledFit scaled = fit_with_scale(explanation.explained.motions, options);
   result.scale = scaled.scale;
   result.explained = std::move(scaled.explained);
@@ -77,6 +78,20 @@ Finding finding_of(const Explanation& explanation, const Comparison& comparison,
   finding.certain = certain;
   finding.improvement = std::exp(comparison.gain);
   finding.T_a_b = to_pose(explanation.explained.fit.T);
+  return finding;
+}
+
+Finding scale_finding(const Explanation& explanation, const Comparison& comparison, bool certain,
+                      const DiagnosisOptions& options) {
+  const double power = std::round(std::log10(explanation.scale) / 3);
+  const bool units = power != 0 && std::abs(std::log(explanation.scale / std::pow(1000, power))) <
+                                       options.scale.unit_tolerance;
+  Finding finding = finding_of(explanation, comparison, certain);
+  finding.code = units ? "units" : "scale";
+  finding.value = units ? std::pow(1000, power) : explanation.scale;
+  finding = worded_scale(std::move(finding));
+  // the answer is in the units of a: those of the longer stream are the wrong ones
+  if (units && power > 0) finding.T_a_b->translation /= *finding.value;
   return finding;
 }
 
@@ -123,11 +138,10 @@ struct BestReading {
 
 /// The best single reading; as given unless another one is clearly better.
 BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options) {
-  const Explanation given_scaled = with_scale(evidence.given, options);
-  Ranked best{evidence.given, given_scaled};
+  Ranked best{evidence.given, evidence.scaled};
   std::optional<Explanation> twin;
   for (Ranked& here : best_readings(evidence, options)) {
-    if (!better(compare(given_scaled.explained, here.scaled.explained), 0.01, options)) continue;
+    if (!better(compare(evidence.scaled.explained, here.scaled.explained), 0.01, options)) continue;
     const Comparison against = compare(best.scaled.explained, here.scaled.explained);
     const bool first = best.as_is.code.empty();
     const bool alike = !first && std::abs(against.gain) < options.alike;
@@ -269,6 +283,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
                     clock,
                     synchronised(a, b, clock, max_gap, 1, options.motions),
                     1,
+                    {},
                     {}};
   evidence.streams.turning_a = evidence.turning_a;
   evidence.streams.turning_b = evidence.turning_b;
@@ -291,6 +306,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
     if (stride < 4) break;
   }
   evidence.given.explained = explained(evidence, "", {}, {}, options).explained;
+  evidence.scaled = with_scale(evidence.given, options);
   return evidence;
 }
 
@@ -327,15 +343,9 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
         worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), certain && !open),
                        reading.twin->read_a, reading.twin->read_b));
   if (best.scale != 1) {
-    const double power = std::round(std::log10(best.scale) / 3);
-    const bool units =
-        power != 0 && std::abs(std::log(best.scale / std::pow(1000, power))) < options.scale.unit_tolerance;
-    Finding finding = finding_of(best, overall, certain);
-    finding.code = units ? "units" : "scale";
-    finding.value = units ? std::pow(1000, power) : best.scale;
-    add(worded_scale(std::move(finding)));
-    // the answer is in the units of a: those of the longer stream are the wrong ones
-    if (units && power > 0) findings.back().T_a_b->translation /= *findings.back().value;
+    Explanation explanation = best;
+    explanation.explained.fit.T = final.fit.T;
+    findings.push_back(scale_finding(explanation, overall, certain, options));
   }
   if (!clocks.empty()) {
     const Explanation& clock = clocks.back();
@@ -351,6 +361,26 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     if (std::optional<Finding> both = both_inverted(evidence, options))
       findings.push_back(worded_reading(std::move(*both), {}, {}));
   return findings;
+}
+
+std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOptions& options) {
+  const Explanation& scaled = evidence.scaled;
+  const double size = std::abs(std::log(scaled.scale));
+  if (!(size >= options.scale_check.least)) return std::nullopt;
+  if (!(scaled.explained.fit.typical < options.explains * options.explains)) return std::nullopt;
+  // a scale fitted to outliers leaves the other motions worse off
+  const Comparison comparison = compare(evidence.given.explained, scaled.explained);
+  if (!(comparison.gain >= options.least_gain)) return std::nullopt;
+  const std::size_t independent = evidence.instants.size() / static_cast<std::size_t>(evidence.stride);
+  const std::optional<double> stddev = stddev_of_log_scale(
+      evidence.given.explained.motions, {scaled.scale, scaled.explained}, independent, options.scale_check);
+  if (!stddev || size < options.scale_check.sigmas * *stddev) return std::nullopt;
+  Finding finding = scale_finding(scaled, comparison, true, options);
+  if (finding.code == "scale" && comparison.gain < options.gain)
+    finding.message = format(
+        "The lengths of b times %.4g fit those of a: few motions show it, but by %.0f standard deviations.",
+        scaled.scale, size / *stddev);
+  return finding;
 }
 
 }  // namespace egocal::detail

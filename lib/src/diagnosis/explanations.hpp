@@ -28,6 +28,7 @@ struct Evidence {
   Instants instants;
   int stride = 1;  ///< of the motions that are compared
   Explanation given;
+  Explanation scaled;  ///< the same with a free scale of b
 };
 
 /// Synchronises, chooses the length of the motions, and fits the streams as given. The stride is the one at
@@ -37,5 +38,9 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
 
 /// Findings about the streams: readings, scale, clock. In the order of importance; answers included.
 std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& options);
+
+/// The scale of b differs from one by much more than its own standard deviation, whatever the single motions
+/// say. Only where nothing else explains the streams: any contradiction has some best scale.
+std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

@@ -38,6 +38,20 @@ double shift(const Finding& finding, const Answered& answered, const DiagnosisOp
                   std::sqrt(translation) / options.tolerance_translation);
 }
 
+/// A wrong scale that moves the answer by more than it states to be uncertain.
+bool significant_scale(const Finding& finding, const Answered& answered, const ScaleCheckOptions& options) {
+  if (!finding.certain || finding.code != "scale" || !finding.T_a_b || !finding.value) return false;
+  if (!(std::abs(std::log(*finding.value)) >= options.least)) return false;
+  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!answered.observability.observable[k]) continue;
+    const double stddev = std::hypot(answered.observability.stddev[k], answered.scale_stddev[k]);
+    if (std::abs(difference[i]) > options.significant * stddev) return true;
+  }
+  return false;
+}
+
 /// Length that a vector keeps below in 95 % of all cases where its components scatter independently with
 /// these standard deviations: a chi-square of as many degrees of freedom as the variances are equal, by
 /// Wilson and Hilferty. 1.94 of one component, 2.79 of three equal ones.
@@ -127,7 +141,8 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
              (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
       verdict = Verdict::contradictory;
     else if (finding.code == "mount_moved" || finding.code == "scale_change" ||
-             (finding.certain && far > 0.5) || (casts_doubt(finding) && far > 1))
+             (finding.certain && far > 0.5) || significant_scale(finding, answered, options.scale_check) ||
+             (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }

@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/scale/solve_scale.hpp"
 #include "egocal/solvers/global.hpp"
 
 namespace egocal::detail {
 
 namespace {
+
+/// The scale that was fitted is solved again within this factor: it is known already, its spread is not. A
+/// minimum at an end of the range would be no minimum (a limit).
+constexpr double search_range = 4;
 
 /// The 8 x 8 cost as a polynomial in the scale of b: rotation + (zero + s one + s^2 two) / s. Dividing by s
 /// makes a and b alike: neither is shrunk to explain noise.
@@ -65,6 +70,21 @@ double best_scale(const ScaledCost& cost, double centre, const ScaleSearchOption
   return std::exp(0.5 * (left + right));
 }
 
+/// The scale solved again from the motions in consecutive parts, with the weights of the fit.
+ScaleSolution solved_in_parts(const Motions& motions, const ScaledFit& fit, std::size_t count) {
+  std::vector<ScaleStatistics> parts(count);
+  const std::size_t n = motions.all.size();
+  for (std::size_t i = 0; i < n; ++i)
+    parts[i * count / n].add(motions.all[i].a, motions.all[i].b, fit.explained.fit.weights[i]);
+  const double length = fit.explained.motions.translation;
+  ScaleOptions options;
+  options.side = Side::b;
+  options.least = 1 / search_range * fit.scale;
+  options.most = search_range * fit.scale;
+  options.balance = {1, length > 0 ? motions.rotation * motions.rotation / (length * length) : 1};
+  return solve_scale(parts, options);
+}
+
 }  // namespace
 
 ScaledFit fit_with_scale(const Motions& motions, const DiagnosisOptions& options, Effort effort) {
@@ -89,6 +109,17 @@ ScaledFit fit_with_scale(const Motions& motions, const DiagnosisOptions& options
     weights = result.explained.fit.weights;
   }
   return result;
+}
+
+std::optional<double> stddev_of_log_scale(const Motions& motions, const ScaledFit& fit,
+                                          std::size_t independent, const ScaleCheckOptions& options) {
+  const ScaleSolution solution = solved_in_parts(motions, fit, std::min(options.blocks, motions.blocks));
+  const double jackknife = solution.stddev / solution.scale;
+  if (!solution.observable || !solution.certified || !std::isfinite(jackknife)) return std::nullopt;
+  // least squares: the noise of one of three equations a motion, as a part of what all of them show
+  const double noise_share = 2 * solution.attenuation;  // ScaleNoise::both halves it
+  const double noise = std::sqrt(noise_share / (3 * static_cast<double>(independent)));
+  return std::hypot(jackknife, options.wandering * noise);
 }
 
 }  // namespace egocal::detail

@@ -118,7 +118,7 @@ Finding worded_scale(Finding finding) {
                                : format("Write the positions of a in metres: divide them by %g.", scale);
   } else {
     finding.message = format("The lengths of b times %.4g fit those of a: %s.", scale, fits(finding).c_str());
-    finding.remedy = "--scale auto";
+    finding.remedy = "--scale-b auto, or --scale auto if it is the lengths of a that are wrong.";
   }
   return finding;
 }
