@@ -351,7 +351,8 @@ inline std::vector<Mistake> mistakes() {
       {"b holds each third pose", "", [](Streams& s) { s.b = held(s.b, 3); }},
       {"b holds each tenth pose", "", [](Streams& s) { s.b = held(s.b, 10); }},
       {"stamps of b rounded to 1 s", "", [](Streams& s) { s.b = with_rounded_stamps(s.b, 1'000'000); }},
-      {"scale of b 1.15 from the middle on", "scale_change", [](Streams& s) { s.b = longer_from_the_middle(s.b, 1.15); }},
+      {"scale of b 1.15 from the middle on", "scale_change",
+       [](Streams& s) { s.b = longer_from_the_middle(s.b, 1.15); }},
   };
 }
 
