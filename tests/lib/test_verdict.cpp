@@ -74,6 +74,16 @@ TEST(Verdict, OfCleanRealDrives) {
   }
 }
 
+TEST(Verdict, OfOneStreamInvertedInARealFlightNamesBothReadingsThatFit) {
+  if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " << paths::data_dir();
+  const testing::Streams streams = testing::euroc();
+  const Calibration calibration = calibrate(testing::inverted(streams.a), streams.b, CalibrationOptions{});
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  ASSERT_EQ(calibration.findings.size(), 2u) << calibration.reason;
+  EXPECT_TRUE(calibration.findings[0].code.starts_with("inverted_")) << calibration.findings[0].code;
+  EXPECT_TRUE(calibration.findings[1].code.starts_with("inverted_")) << calibration.findings[1].code;
+}
+
 TEST(Verdict, OfBothStreamsInvertedOnARealRoad) {
   if (!testing::have_real_drives()) GTEST_SKIP() << "no real drives in " << paths::data_dir();
   testing::Streams streams = testing::kitti("07");

@@ -143,11 +143,18 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   return true;
 }
 
+/// There is nothing further to look for. Twin readings that both fit far better are uncertain each, but one
+/// of them is right.
+bool explains(const Finding& finding, const DiagnosisOptions& options) {
+  return finding.certain || finding.code == "samples" ||
+         (finding.code != "inverted_both" && finding.improvement > options.overwhelming);
+}
+
 /// A wrong scale that few motions show, where nothing else is certain.
 void name_wrong_scale(const Evidence& evidence, const DiagnosisOptions& options,
                       std::vector<Finding>& findings) {
   for (const Finding& finding : findings)
-    if (finding.certain || finding.code == "samples" || finding.code == "mount_moved") return;
+    if (explains(finding, options) || finding.code == "mount_moved") return;
   std::optional<Finding> scale = wrong_scale(evidence, options);
   if (!scale) return;
   // the same with less certainty, and what its motions were taken for
@@ -193,7 +200,7 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
                       median_misfit(motions, at_answer)};
   const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
                          std::any_of(result.findings.begin(), result.findings.end(),
-                                     [](const Finding& one) { return one.certain || one.code == "samples"; });
+                                     [&](const Finding& one) { return explains(one, options); });
   if (!explained) look_further(pairing, evidence, answered, misfit, result.fit, options, result.findings);
   name_wrong_scale(evidence, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),

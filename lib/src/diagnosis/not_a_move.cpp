@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/error.hpp"
@@ -78,7 +79,8 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   if (!course.changes()) return std::nullopt;
   const Trajectory followed = scaled(b, course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
-  if (!moved_mount(instants, answered, options).empty()) return std::nullopt;
+  if (!moved_mount(instants, answered, options).empty() || large_move(instants, evidence.stride, options))
+    return std::nullopt;
   Explained explained;
   explained.motions = motions_of(instants, {}, {}, evidence.stride, options.motions.most, options.motions);
   if (explained.motions.all.empty()) return std::nullopt;
@@ -122,7 +124,10 @@ std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOpti
                                    const Evidence& evidence, const Answered& answered, bool inverted_both,
                                    const DiagnosisOptions& options) {
   if (moves.empty()) return moves;
-  if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options))
+  std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options);
+  // a sensor that was turned aside goes another way by its own axes: that is a scale only as far as it fits
+  if (scale && std::all_of(moves.begin(), moves.end(),
+                           [&](const Finding& move) { return move.improvement <= scale->improvement; }))
     return {*std::move(scale)};
   if (inverted_both && explained_by_inverting_both(evidence, moves, answered, options))
     for (Finding& move : moves) move.certain = false;
