@@ -51,11 +51,6 @@ std::vector<Sort> sorts() {
   for (const auto& [name, seconds] :
        {std::pair{"still-30s", 30.0}, std::pair{"still-60s", 60.0}, std::pair{"still-120s", 120.0}})
     all.push_back({name, seconds});
-  // at the end, as the seed of a sort is that of its number
-  const auto of_motion = [](Sort sort) {
-    sort.of_motion = true;
-    return sort;
-  };
   for (const auto& [name, after] : {std::pair{"bump-5s", 5.0}, std::pair{"bump-10s", 10.0},
                                     std::pair{"bump-15s", 15.0}, std::pair{"bump-20s", 20.0}}) {
     all.push_back({name, 120 + after});
@@ -71,6 +66,11 @@ std::vector<Sort> sorts() {
   all.back().bumps = {100, 200, 300};
   all.push_back({"creep", 1200});
   all.back().creep = 2;
+  // at the end, as the seed of a sort is that of its number
+  const auto of_motion = [](Sort sort) {
+    sort.of_motion = true;
+    return sort;
+  };
   all.push_back(of_motion({"still-of-motion", 200}));
   all.push_back(of_motion({.name = "still-of-motion-heavy", .seconds = 200, .heavy_tails = true}));
   all.push_back(of_motion({.name = "bump-of-motion", .seconds = 240, .bumps = {120}}));

@@ -24,7 +24,7 @@ struct Thinning {
   double tolerance = 0.1;
   /// One that is still longer is drawn with twice the tolerance, and again: nothing but scribble is.
   std::size_t most_points = 20000;
-  /// A dot is left out where others cover it, on a grid of this width: a third of a pixel [pt].
+  /// A dot is omitted if other dots cover all of its cells. Width of a cell: a third of a pixel [pt].
   double cell = 0.25;
 };
 

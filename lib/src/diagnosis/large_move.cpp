@@ -14,17 +14,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// The motions [first, last), measured by the typical motion of the whole drive.
-Motions part_of(const Motions& motions, std::size_t first, std::size_t last) {
-  Motions part;
-  part.all.assign(motions.all.begin() + static_cast<std::ptrdiff_t>(first),
-                  motions.all.begin() + static_cast<std::ptrdiff_t>(last));
-  part.rotation = motions.rotation;
-  part.translation = motions.translation;
-  part.stride = motions.stride;
-  return part;
-}
-
 /// Two answers, before motion number `at` and from it on.
 struct Division {
   std::size_t at = 0;

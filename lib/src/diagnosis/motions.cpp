@@ -175,4 +175,14 @@ Motions scaled(const Motions& given, double scale_b) {
   return motions;
 }
 
+Motions part_of(const Motions& motions, std::size_t first, std::size_t last) {
+  Motions part;
+  part.all.assign(motions.all.begin() + static_cast<std::ptrdiff_t>(first),
+                  motions.all.begin() + static_cast<std::ptrdiff_t>(last));
+  part.rotation = motions.rotation;
+  part.translation = motions.translation;
+  part.stride = motions.stride;
+  return part;
+}
+
 }  // namespace egocal::detail

@@ -56,10 +56,7 @@ Explained in_parts(const Explained& given, const std::vector<Finding>& moves,
     if (k < moves.size() && moves[k].time)
       while (to > from && given.motions.all[to - 1].time > *moves[k].time) --to;
     if (to == from) continue;
-    Motions part = given.motions;
-    part.all.assign(given.motions.all.begin() + static_cast<std::ptrdiff_t>(from),
-                    given.motions.all.begin() + static_cast<std::ptrdiff_t>(to));
-    const RobustFit fit = robust_fit(part, options.fit);
+    const RobustFit fit = robust_fit(part_of(given.motions, from, to), options.fit);
     result.fit.squares.insert(result.fit.squares.end(), fit.squares.begin(), fit.squares.end());
     result.fit.typical = std::max(result.fit.typical, fit.typical);
     from = to;
@@ -92,9 +89,9 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   finding.code = "scale_change";
   finding.certain = true;
   finding.improvement = std::exp(gain);
-  finding.time = 1e-6 * static_cast<double>(course.segments.front().end_us - origin_us);
-  if (course.segments.size() == 1)
-    finding.time = 1e-6 * static_cast<double>(course.segments.front().begin_us - origin_us);
+  const ScaleSegment& first = course.segments.front();
+  const bool drifts = course.segments.size() == 1;
+  finding.time = 1e-6 * static_cast<double>((drifts ? first.begin_us : first.end_us) - origin_us);
   finding.T_a_b = to_pose(explained.fit.T);
   finding.message = "The lengths of b must be multiplied by a factor that changes along the drive: " +
                     in_words(course, origin_us) + ". With these the mounting does not move.";

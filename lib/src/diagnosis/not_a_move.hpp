@@ -17,9 +17,8 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
                                       const Answered& answered, const DiagnosisOptions& options);
 
 /// Findings mount_moved as they are; or scale_change instead; or uncertain, where both streams may be
-/// world-to-sensor
-/// (`inverted_both`): no mount moves then, and one extrinsic explains the motions about as well as one for
-/// each part between the moves.
+/// world-to-sensor (inverted_both): no mount moves then, and one extrinsic explains the motions about as well
+/// as one for each part between the moves.
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
                                    const Evidence& evidence, const Answered& answered, bool inverted_both,
                                    const DiagnosisOptions& options);

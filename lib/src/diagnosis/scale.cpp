@@ -12,10 +12,6 @@ namespace egocal::detail {
 
 namespace {
 
-/// The scale that was fitted is solved again within this factor: it is known already, its spread is not. A
-/// minimum at an end of the range would be no minimum (a limit).
-constexpr double search_range = 4;
-
 /// The 8 x 8 cost as a polynomial in the scale of b: rotation + (zero + s one + s^2 two) / s. Dividing by s
 /// makes a and b alike: neither is shrunk to explain noise.
 struct ScaledCost {
@@ -71,7 +67,8 @@ double best_scale(const ScaledCost& cost, double centre, const ScaleSearchOption
 }
 
 /// The scale solved again from the motions in consecutive parts, with the weights of the fit.
-ScaleSolution solved_in_parts(const Motions& motions, const ScaledFit& fit, std::size_t count) {
+ScaleSolution solved_in_parts(const Motions& motions, const ScaledFit& fit, const ScaleCheckOptions& check) {
+  const std::size_t count = std::min(check.blocks, motions.blocks);
   std::vector<ScaleStatistics> parts(count);
   const std::size_t n = motions.all.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -79,8 +76,8 @@ ScaleSolution solved_in_parts(const Motions& motions, const ScaledFit& fit, std:
   const double length = fit.explained.motions.translation;
   ScaleOptions options;
   options.side = Side::b;
-  options.least = 1 / search_range * fit.scale;
-  options.most = search_range * fit.scale;
+  options.least = 1 / check.widest * fit.scale;
+  options.most = check.widest * fit.scale;
   options.balance = {1, length > 0 ? motions.rotation * motions.rotation / (length * length) : 1};
   return solve_scale(parts, options);
 }
@@ -113,7 +110,7 @@ ScaledFit fit_with_scale(const Motions& motions, const DiagnosisOptions& options
 
 std::optional<double> stddev_of_log_scale(const Motions& motions, const ScaledFit& fit,
                                           std::size_t independent, const ScaleCheckOptions& options) {
-  const ScaleSolution solution = solved_in_parts(motions, fit, std::min(options.blocks, motions.blocks));
+  const ScaleSolution solution = solved_in_parts(motions, fit, options);
   const double jackknife = solution.stddev / solution.scale;
   if (!solution.observable || !solution.certified || !std::isfinite(jackknife)) return std::nullopt;
   // least squares: the noise of one of three equations a motion, as a part of what all of them show

@@ -66,6 +66,9 @@ struct ScaleCheckOptions {
   /// by up to 1 % (KITTI 0.4 %, EuRoC 0.8 %), and interpolation leaves less than 0.1 % (docs/scale.md).
   double least = 0.015;
   std::size_t blocks = 32;  ///< of the jack-knife, at most: they show a spread to an eighth
+  /// The scale that was fitted is solved again within this factor, for its spread. A limit on time: the
+  /// minimum is known already.
+  double widest = 4;
   /// Noise of single motions counts this many times in the standard deviation of the scale: that of motions
   /// one after the other is not independent where it wanders.
   double wandering = 2;
@@ -96,9 +99,9 @@ struct MountCheckOptions {
   /// mistake an odometry at rest for a mount that moved (EuRoC, 8 of its steps are 0.4 s).
   std::size_t least_stride = 8;
   std::size_t blocks = 32;  ///< of three motions each that share no time: enough to know their scatter
-  /// Stated chance that a mount that did not move is called moved, in one look at one drive. In 325 h of
-  /// simulated driving, 6,750 drives, the strongest evidence was below 1e-2 in 13 and below 1e-3 in 1, so the
-  /// real chance is about a fifth (docs/moves.md). Looks that are repeated want less.
+  /// Stated chance that a mount that did not move is called moved, in one look at one drive. In 120 h of
+  /// simulated driving, 3,960 drives, the strongest evidence was below 1e-2 in 3, so the real chance is about
+  /// a tenth (docs/moves.md). Looks that are repeated want less.
   double false_alarms = 2e-3;
   std::size_t most_motions = 20000;  ///< of long drives: overlapping motions say little that is new
   /// A move must have shown already this long before the end of the drive [s]; 0: need not. For looks that

@@ -45,7 +45,7 @@ struct ChangeTestOptions {
 };
 
 struct MovesOptions {
-  /// Stated chance of a false alarm in one drive; the real one is about a fifth of it (MountCheckOptions,
+  /// Stated chance of a false alarm in one drive; the real one is about a tenth of it (MountCheckOptions,
   /// docs/moves.md).
   double false_alarms = 2e-3;
   /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
