@@ -127,6 +127,23 @@ std::array<bool, 6> observable(const Surroundings& around, const ObservabilityOp
   return result;
 }
 
+/// What errors along the hidden directions add to the variances of the coordinates that they lean into: the
+/// covariance of such errors, independent in each coordinate, when they are confined to these directions.
+Vector6d variance_of_hidden(const Surroundings& around, const ObservabilityOptions& options) {
+  if (around.hidden == 0) return Vector6d::Zero();
+  const auto hidden = around.hidden_vectors();
+  const DualQuaternion& q = around.q;
+  const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
+  // what the answer claims there is as little known
+  const double claimed = (hidden.topRows<3>().transpose() * t).norm();
+  const double translation = std::hypot(options.unknown_translation / around.length, claimed);
+  Vector6d precision;
+  precision << Eigen::Vector3d::Constant(1 / (translation * translation)),
+      Eigen::Vector3d::Constant(1 / (options.unknown_rotation * options.unknown_rotation));
+  const Eigen::MatrixXd confined = hidden.transpose() * precision.asDiagonal() * hidden;
+  return (hidden * confined.ldlt().solve(hidden.transpose())).diagonal();
+}
+
 std::string hint(const Surroundings& around, const ObservabilityOptions& options) {
   int hidden_translations = 0;
   bool rotation_hidden = false;
@@ -156,7 +173,9 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
   const Matrix86d tangent = all ? around.tangent : Matrix86d(around.tangent.lazyProduct(basis));
   const detail::ShownDirections directions{
       detail::TangentSpace(around.q, around.length, tangent, problem.balance), basis, 6 - around.hidden};
-  const Vector6d variance = detail::spatial_variance(problem, around.pairs, directions, errors, options);
+  Vector6d variance = detail::spatial_variance(problem, around.pairs, directions, errors, options);
+  // settings of one drive have the same unknown part
+  if (errors == ErrorCorrelation::correlated) variance += variance_of_hidden(around, options);
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const DualQuaternion& q = around.q;

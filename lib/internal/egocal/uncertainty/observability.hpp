@@ -17,6 +17,11 @@ struct ObservabilityOptions {
   /// A direction of x y z roll pitch yaw is unobservable when more than this part of it lies in directions
   /// that the motions do not show: a twentieth leaves it 99.9 % of its information.
   double leak = 0.05;
+  /// How far off the answer may be along a direction that the motions do not show, as a standard deviation:
+  /// the part of such a direction that lies in an observable one adds to its standard deviation. A metre is
+  /// the difference of heights on a vehicle (sensors tilted by 0.5 to 3 degrees on flat ground: docs/method.md).
+  double unknown_translation = 1;  ///< [m]
+  double unknown_rotation = 1;     ///< [rad]
   /// How many times the curvature that independent rotation noise makes a translation needs. Three times is
   /// what the noise makes along the axis that the vehicle turns about.
   double independent_noise = 3;
