@@ -26,6 +26,7 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
   result.counts = counts;
   const Answer answer = solve(problem, method);
   result.T_a_b = to_pose(answer.T_a_b);
+  result.minimum = to_pose(answer.minimum);
   result.T_b_a = inverse(result.T_a_b);
   result.certificate = answer.certificate;
   result.observability = answer.observability;
@@ -38,7 +39,7 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
 Answered answered(const Calibration& calibration, Problem single,
                   const std::optional<ScaleSolution>& scale = std::nullopt) {
   Answered result;
-  result.T_a_b = to_dual_quaternion(calibration.T_a_b);
+  result.T_a_b = to_dual_quaternion(calibration.minimum);
   result.observability = calibration.observability;
   result.counts = calibration.counts;
   result.problem = std::move(single);

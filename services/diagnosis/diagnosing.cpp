@@ -137,7 +137,7 @@ void Diagnosing::judge(Pair& pair) {
   try {
     const Answer answer = solve(problem, Method::dual);
     Answered answered;
-    answered.T_a_b = answer.T_a_b;
+    answered.T_a_b = answer.minimum;
     answered.observability = answer.observability;
     answered.problem = problem;
     answered.stride = message.stride;

@@ -143,6 +143,98 @@ TEST(Observability, FlatDirectionsAreTakenFromThePrior) {
   }
 }
 
+/// Of a noisy drive, whose cost has a minimum in every direction, with a prior that is off in all of them.
+Problem noisy_problem_with_prior(const std::vector<MotionPair>& pairs) {
+  Problem problem = problem_of(pairs);
+  Pose prior = to_pose(T_a_b);
+  prior.translation += Eigen::Vector3d(0.03, -0.02, 0.7);
+  prior.rotation = rotation_exp({0.25, 0.02, -0.03}) * prior.rotation;
+  problem.prior = to_dual_quaternion(prior);
+  return problem;
+}
+
+TEST(Observability, NoiseAloneDoesNotReplaceThePrior) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Problem problem = noisy_problem_with_prior(motions_of_a(T_a_b, 300, 0.01, seed, planar));
+    const Pose prior = to_pose(*problem.prior);
+    Problem without = problem;
+    without.prior.reset();
+    const Answer minimum = solve(without, Method::dual);
+    EXPECT_GT(std::abs(to_pose(minimum.T_a_b).translation.z() - prior.translation.z()), 0.1) << seed;
+    for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
+      const Answer answer = solve(problem, method);
+      const Pose T = to_pose(answer.T_a_b);
+      EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << to_string(method) << " " << seed;
+      EXPECT_EQ(answer.observability.observable, (Flags{true, true, false, true, true, true}));
+      // the axis that hides is known to a degree
+      EXPECT_NEAR(T.translation.z(), prior.translation.z(), 0.02) << to_string(method) << " " << seed;
+      for (const int i : {0, 1})
+        EXPECT_LT(std::abs(T.translation[i] - to_pose(T_a_b).translation[i]),
+                  4 * answer.observability.stddev[static_cast<std::size_t>(i)])
+            << to_string(method) << " " << seed;
+      EXPECT_LT(extrinsic_error(T_a_b, answer.T_a_b).rotation, 0.02) << to_string(method) << " " << seed;
+      EXPECT_LT(extrinsic_error(minimum.T_a_b, answer.minimum).translation, 1e-6);
+    }
+  }
+}
+
+TEST(Observability, RollOfAStraightDriveIsTakenFromThePrior) {
+  const auto straight = [](Random& random) {
+    return displacement({0, 0, 0}, {random.uniform(0.5, 1.5), 0, 0});
+  };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Problem problem = noisy_problem_with_prior(motions_of_a(T_a_b, 300, 0.003, seed, straight));
+    const Answer answer = solve(problem, Method::dual);
+    const Pose T = to_pose(answer.T_a_b), prior = to_pose(*problem.prior), truth = to_pose(T_a_b);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << seed;
+    EXPECT_EQ(answer.observability.observable, (Flags{false, false, false, false, true, true})) << seed;
+    EXPECT_LT((T.translation - prior.translation).norm(), 1e-3) << seed;
+    EXPECT_NEAR(rotation_log(T.rotation * truth.rotation.conjugate()).x(), 0.25, 0.02) << seed;
+    EXPECT_LT(rotation_log(T.rotation * truth.rotation.conjugate()).tail<2>().norm(), 0.01) << seed;
+  }
+}
+
+TEST(Observability, TurningInPlaceTakesHeightAndHeadingFromThePrior) {
+  const Eigen::Vector3d centre(1.2, -0.4, 0);
+  const auto swing = [&](Random& random) {
+    const Eigen::Vector3d turn(0, 0, random.uniform(0.1, 0.3) * (random.normal() > 0 ? 1 : -1));
+    return displacement(turn, centre - rotation_exp(turn) * centre);
+  };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Problem problem = noisy_problem_with_prior(motions_of_a(T_a_b, 300, 0.001, seed, swing));
+    const Answer answer = solve(problem, Method::dual);
+    const Pose prior = to_pose(*problem.prior), T = to_pose(answer.T_a_b);
+    EXPECT_EQ(answer.certificate.optimality, Optimality::certified) << seed;
+    EXPECT_FALSE(answer.observability.observable[2]) << seed;
+    EXPECT_FALSE(answer.observability.observable[5]) << seed;
+    EXPECT_NEAR(T.translation.z(), prior.translation.z(), 0.01) << seed;
+    // the heading is the prior's, the place is where b then has the distance to the centre that it shows
+    EXPECT_NEAR(rotation_log(prior.rotation * T.rotation.conjugate()).z(), 0, 0.01) << seed;
+    const auto radius = [&](const Pose& pose) { return (pose.translation - centre).head<2>().norm(); };
+    EXPECT_NEAR(radius(T), radius(to_pose(T_a_b)), 0.02) << seed;
+  }
+}
+
+TEST(Observability, HiddenHeightCountsWhereATiltedSensorSeesIt) {
+  // On flat ground a sensor that is tilted about y by an angle sees a part of the hidden height in x.
+  for (const double tilt : {0.0, 0.01, 0.02, 0.04}) {
+    int inside = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      const DualQuaternion tilted = displacement({0, tilt, 0}, {0, 0, 0});
+      const DualQuaternion T = conjugate(tilted) * T_a_b;
+      const std::vector<MotionPair> pairs = motions_of_a(
+          T, 300, 0.003, seed, [&](Random& random) { return conjugate(tilted) * planar(random) * tilted; });
+      const Answer answer = solve(problem_of(pairs), Method::dual);
+      ASSERT_TRUE(answer.observability.observable[0]) << tilt << " " << seed;
+      const double error = to_pose(answer.T_a_b).translation.x() - to_pose(T).translation.x();
+      if (std::abs(error) < 2 * answer.observability.stddev[0]) ++inside;
+      // a metre along the hidden axis, and not a centimetre more than twice that
+      EXPECT_LT(answer.observability.stddev[0], 0.03 + 2.5 * tilt) << tilt << " " << seed;
+    }
+    EXPECT_GE(inside, 36) << tilt;
+  }
+}
+
 TEST(Observability, PlanarModeShowsXYAndYaw) {
   const GroundPlane plane_a{Eigen::Vector3d::UnitZ(), -1.8}, plane_b{Eigen::Vector3d(0, -1, 0), -1.6};
   const DualQuaternion G_a = plane_frame(plane_a), G_b = plane_frame(plane_b);

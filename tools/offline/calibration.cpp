@@ -161,6 +161,7 @@ void answer_by_baseline(const std::string& method, const std::vector<MotionPair>
   Calibration& calibration = result.calibration;
   calibration.T_a_b = to_pose(q);
   calibration.T_b_a = inverse(calibration.T_a_b);
+  calibration.problem.prior.reset();  // the baselines know none
   calibration.certificate = verify(cost_matrix(calibration.problem), q);
   result.note = baseline.valid ? "" : baseline.note;
   result.solve_us = median_us([&] { run(); });

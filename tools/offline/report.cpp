@@ -120,7 +120,19 @@ std::string scale_text(const Calibration& calibration) {
                      100 * scale.attenuation);
 }
 
+nlohmann::ordered_json nominal_json(const Calibration& calibration) {
+  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < 6; ++i)
+    if (from_nominal(calibration, i)) names.push_back(directions[i]);
+  return names;
+}
+
 }  // namespace
+
+bool from_nominal(const Calibration& calibration, std::size_t direction) {
+  return calibration.problem.prior && calibration.problem.mode == Mode::spatial &&
+         !calibration.observability.observable[direction];
+}
 
 nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth) {
   const Pose T = result.calibration.T_a_b;
@@ -143,6 +155,7 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
   json["reach_rotation"] = certificate.reach_rotation;
   json["observable"] = result.calibration.observability.observable;
   json["stddev"] = result.calibration.observability.stddev;
+  if (result.calibration.problem.prior) json["from_nominal"] = nominal_json(result.calibration);
   json["hint"] = result.calibration.observability.hint;
   json["method"] = result.method;
   json["note"] = result.note;
@@ -240,6 +253,9 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
       "m, {:.2g} deg\n",
       certificate.cost, certificate.lower_bound, certificate.gap, certificate.scaled_gap,
       certificate.reach_translation, certificate.reach_rotation * degrees);
+  if (!nominal_json(calibration).empty())
+    text +=
+        "              (the nominal value holds what the motions do not show, and is a part of this cost)\n";
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   text += "uncertainty   in the frame of a, one standard deviation\n";
   for (std::size_t i = 0; i < 6; ++i) {
@@ -248,6 +264,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
     std::string value = "NOT OBSERVABLE, the number above is not a measurement";
     if (!calibration.observability.observable[i] && result.calibration.problem.mode == Mode::planar)
       value = "from the ground planes";
+    if (from_nominal(calibration, i)) value = "NOT OBSERVABLE, from the nominal value";
     if (calibration.observability.observable[i])
       value = std::isfinite(stddev)
                   ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")

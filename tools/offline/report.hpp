@@ -9,6 +9,9 @@
 
 namespace egocal::tools {
 
+/// Whether the nominal value gives what the motions do not show of this direction (x y z roll pitch yaw).
+bool from_nominal(const Calibration& calibration, std::size_t direction);
+
 /// One JSON object (docs/json.md); numbers that are not finite are null when it is printed.
 nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth);
 /// For people: degrees and centimetres, both directions of T, fit and optimality and uncertainty kept apart.

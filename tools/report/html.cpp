@@ -11,6 +11,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
+#include "offline/report.hpp"
 #include "report/series.hpp"
 
 namespace egocal::tools {
@@ -89,6 +90,8 @@ std::string uncertainty(const Calibration& calibration) {
     std::string value = "<b>not observable</b>: the number above is not a measurement";
     if (!calibration.observability.observable[i] && calibration.problem.mode == Mode::planar)
       value = "from the ground planes";
+    else if (from_nominal(calibration, i))
+      value = "<b>not observable</b>: from the nominal value";
     else if (calibration.observability.observable[i])
       value = std::isfinite(stddev)
                   ? fmt::format("&plusmn; {:.3f} {}", stddev * (i < 3 ? 100 : degrees), i < 3 ? "cm" : "deg")

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "certificate/verify.hpp"
@@ -9,6 +11,7 @@
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "egocal/uncertainty/observability.hpp"
+#include "online/held_at_prior.hpp"
 #include "online/solve_and_verify.hpp"
 #include "solvers/proven_dual.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -48,7 +51,7 @@ DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimis
   DualQuaternion q = minimiser;
   const double least = cost(Q, q);
   for (int i = 0; i < 50; ++i) {
-    const FlatDirections flat = flat_directions(Q, q);
+    const DirectionBasis flat = flat_directions(Q, q);
     if (flat.basis.cols() == 0) return q;
     detail::Vector6d wish = detail::frame_a_difference(q, prior);
     wish.head<3>() /= flat.length;
@@ -126,12 +129,34 @@ Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Metho
                                       : solve_spatial(problem, Q, method, start, time);
 }
 
+namespace {
+
+/// The answer where the prior gives what the motions do not show. minimum: with its observability.
+Answer held(const Problem& problem, const Matrix8d& Q, const Answer& minimum, NanosecondClock clock) {
+  const std::array<bool, 6>& seen = minimum.observability.observable;
+  if (!problem.prior || problem.mode == Mode::planar || minimum.status != SolverStatus::converged ||
+      std::all_of(seen.begin(), seen.end(), [](bool one) { return one; }))
+    return minimum;
+  const std::optional<detail::HeldCost> cost =
+      detail::held_at_prior(Q, minimum.T_a_b, *problem.prior, hidden_directions(problem, Q, minimum.T_a_b));
+  if (!cost) return minimum;
+  Answer answer = detail::solve_and_verify(problem, cost->Q, minimum.method, cost->start, clock);
+  answer.solve_ns += minimum.solve_ns;
+  answer.verify_ns += minimum.verify_ns;
+  answer.observability = minimum.observability;
+  answer.minimum = minimum.T_a_b;
+  return answer;
+}
+
+}  // namespace
+
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start,
              NanosecondClock clock) {
   const Matrix8d Q = cost_matrix(problem);
   Answer answer = detail::solve_and_verify(problem, Q, method, start, clock);
   answer.observability = assess_observability(problem, Q, answer.T_a_b);
-  return answer;
+  answer.minimum = answer.T_a_b;
+  return held(problem, Q, answer, clock);
 }
 
 }  // namespace egocal

@@ -161,6 +161,7 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   calibration.status = answer.status;
   calibration.T_a_b = to_pose(answer.T_a_b);
   calibration.T_b_a = inverse(calibration.T_a_b);
+  calibration.minimum = to_pose(answer.minimum);
   calibration.choice.stride = 1;
   calibration.choice.balance = calibration.problem.balance;
   calibration.choice.reason = "inverse variances of the residuals";

@@ -129,17 +129,19 @@ std::array<bool, 6> observable(const Surroundings& around, const ObservabilityOp
 
 /// What errors along the hidden directions add to the variances of the coordinates that they lean into: the
 /// covariance of such errors, independent in each coordinate, when they are confined to these directions.
-Vector6d variance_of_hidden(const Surroundings& around, const ObservabilityOptions& options) {
+Vector6d variance_of_hidden(const Surroundings& around, bool has_prior, const ObservabilityOptions& options) {
   if (around.hidden == 0) return Vector6d::Zero();
   const auto hidden = around.hidden_vectors();
   const DualQuaternion& q = around.q;
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
-  // what the answer claims there is as little known
+  // without a prior, what the answer claims there is as little known
   const double claimed = (hidden.topRows<3>().transpose() * t).norm();
-  const double translation = std::hypot(options.unknown_translation / around.length, claimed);
+  const double translation = has_prior ? options.prior_translation / around.length
+                                       : std::hypot(options.unknown_translation / around.length, claimed);
+  const double rotation = has_prior ? options.prior_rotation : options.unknown_rotation;
   Vector6d precision;
   precision << Eigen::Vector3d::Constant(1 / (translation * translation)),
-      Eigen::Vector3d::Constant(1 / (options.unknown_rotation * options.unknown_rotation));
+      Eigen::Vector3d::Constant(1 / (rotation * rotation));
   const Eigen::MatrixXd confined = hidden.transpose() * precision.asDiagonal() * hidden;
   return (hidden * confined.ldlt().solve(hidden.transpose())).diagonal();
 }
@@ -175,7 +177,8 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
       detail::TangentSpace(around.q, around.length, tangent, problem.balance), basis, 6 - around.hidden};
   Vector6d variance = detail::spatial_variance(problem, around.pairs, directions, errors, options);
   // settings of one drive have the same unknown part
-  if (errors == ErrorCorrelation::correlated) variance += variance_of_hidden(around, options);
+  if (errors == ErrorCorrelation::correlated)
+    variance += variance_of_hidden(around, problem.prior.has_value(), options);
   // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
   Vector6d pull = Vector6d::Zero();
   const DualQuaternion& q = around.q;
@@ -286,8 +289,14 @@ std::array<bool, 6> observable_directions(const Problem& problem, const Matrix8d
              : observable(look_around(problem, Q, T_a_b, errors, options), options);
 }
 
-FlatDirections flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {
-  FlatDirections flat;
+DirectionBasis hidden_directions(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                                 ErrorCorrelation errors, const ObservabilityOptions& options) {
+  const Surroundings around = look_around(problem, Q, T_a_b, errors, options);
+  return {around.hidden_vectors(), around.length};
+}
+
+DirectionBasis flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T_a_b) {
+  DirectionBasis flat;
   flat.length = detail::length_scale(Q_metres);
   const Matrix8d Q = detail::in_units_of(flat.length, Q_metres);
   const DualQuaternion q = detail::in_units_of(flat.length, T_a_b);

@@ -29,7 +29,8 @@ EGOCAL_SAME_LAYOUT(Observability)
 
 /// Fit (cost), optimality (certificate) and uncertainty (observability) are three different things.
 struct Answer {
-  DualQuaternion T_a_b;  ///< pose of sensor b in sensor a, canonical sign
+  DualQuaternion T_a_b;    ///< pose of sensor b in sensor a, canonical sign
+  DualQuaternion minimum;  ///< of the cost of the motions alone; T_a_b but where the prior holds directions
   Certificate certificate;
   Observability observability;
   SolverStatus status = SolverStatus::converged;
@@ -43,8 +44,9 @@ EGOCAL_SAME_LAYOUT(Answer)
 using NanosecondClock = std::int64_t (*)();
 
 /// Solve, verify, and say what is known. start: for the local methods; without it they start at the global
-/// minimum. In directions that the motions do not show the answer is the closest to the problem's prior (or
-/// to the identity).
+/// minimum. In directions that the motions do not show the answer is at the problem's prior; the certificate
+/// is then about the cost with squares that hold it there. Without a prior it is the minimum, which is noise
+/// along these directions, or the one closest to the identity where the cost is flat.
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt,
              NanosecondClock clock = nullptr);
 

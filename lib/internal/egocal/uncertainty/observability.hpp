@@ -19,9 +19,13 @@ struct ObservabilityOptions {
   double leak = 0.05;
   /// How far off the answer may be along a direction that the motions do not show, as a standard deviation:
   /// the part of such a direction that lies in an observable one adds to its standard deviation. A metre is
-  /// the difference of heights on a vehicle (sensors tilted by 0.5 to 3 degrees on flat ground: docs/method.md).
+  /// the difference of heights on a vehicle (sensors tilted by 0.5 to 3 degrees on flat ground:
+  /// docs/method.md).
   double unknown_translation = 1;  ///< [m]
   double unknown_rotation = 1;     ///< [rad]
+  /// The same where the problem has a prior, which is taken there: a mounting drawing is known to this.
+  double prior_translation = 0.1;  ///< [m]
+  double prior_rotation = 0.05;    ///< [rad]
   /// How many times the curvature that independent rotation noise makes a translation needs. Three times is
   /// what the noise makes along the axis that the vehicle turns about.
   double independent_noise = 3;
@@ -67,13 +71,17 @@ std::array<bool, 6> observable_directions(const Problem& problem, const Matrix8d
                                           const DualQuaternion& T_a_b, ErrorCorrelation errors,
                                           const ObservabilityOptions& options = {});
 
-/// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of the
-/// directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is
-/// one.
-struct FlatDirections {
+/// Orthonormal basis (columns, t in units of length, rotation vector in radians, sensor a's frame) of some
+/// directions.
+struct DirectionBasis {
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, 6> basis;
   double length = 1;  ///< [m]
 };
-FlatDirections flat_directions(const Matrix8d& Q, const DualQuaternion& T_a_b);
+/// Those that the motions do not show.
+DirectionBasis hidden_directions(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                                 ErrorCorrelation errors = ErrorCorrelation::correlated,
+                                 const ObservabilityOptions& options = {});
+/// Those along which the cost is flat up to rounding: the minimum is not unique, any point along them is one.
+DirectionBasis flat_directions(const Matrix8d& Q, const DualQuaternion& T_a_b);
 
 }  // namespace egocal
