@@ -40,10 +40,13 @@ SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen) {
     squares.emplace_back();
     for (std::size_t i = 0; i < 6; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      if (seen[i]) squares.back()[i < 3 ? 0 : 1] += std::pow(difference[k] - mean[k], 2);
+      const double square = std::pow(difference[k] - mean[k], 2);
+      result.stddev[i] += square * (blocks - 1) / blocks;
+      if (seen[i]) squares.back()[i < 3 ? 0 : 1] += square;
     }
     for (const std::size_t part : {0u, 1u}) sums[part] += squares.back()[part];
   }
+  for (double& stddev : result.stddev) stddev = std::sqrt(stddev);
   result.translation = std::sqrt(sums[0] * (blocks - 1) / blocks);
   result.rotation = std::sqrt(sums[1] * (blocks - 1) / blocks);
   for (const std::size_t part : {0u, 1u}) result.score += sums[part] > 0 ? 0.5 * std::log(sums[part]) : 0;

@@ -21,7 +21,8 @@ struct SpreadByPoses {
   double score = 0;               ///< sum of the logarithms of rotation's and translation's spread
   double rotation = 0;            ///< [rad]
   double translation = 0;         ///< [m]
-  std::vector<double> influence;  ///< of each block on the score
+  std::array<double, 6> stddev{};  ///< of each direction [m, rad]
+  std::vector<double> influence;   ///< of each block on the score
 };
 
 /// problem: touching blocks, as WeightedBlocks make them. The score is not finite where a block cannot be

@@ -234,13 +234,20 @@ class Trials {
   std::size_t least_blocks_;
 };
 
-/// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be.
-bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, const Seen& seen,
+/// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be. shorter: the
+/// sum's motions are shorter than those.
+bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, bool shorter, const Seen& seen,
            const WeightingOptions& options) {
   const auto difference = detail::frame_a_difference(single.T_a_b, sum.T_a_b);
   double translation = 0, rotation = 0;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (seen[i]) (i < 3 ? translation : rotation) += std::pow(difference[static_cast<Eigen::Index>(i)], 2);
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!seen[i]) continue;
+    const double here = std::abs(difference[static_cast<Eigen::Index>(i)]);
+    const double least =
+        i < 3 ? options.residuals.least_translation_spread : options.residuals.least_rotation_spread;
+    if (shorter && here > options.contradicts * single.stddev[i] + least) return false;
+    (i < 3 ? translation : rotation) += here * here;
+  }
   return std::sqrt(translation) <=
              options.agreement * single.translation + options.residuals.least_translation_spread &&
          std::sqrt(rotation) <= options.agreement * single.rotation + options.residuals.least_rotation_spread;
@@ -253,12 +260,13 @@ double weight_taken_off(const Ladder& ladder) {
 }
 
 /// Whether the sum's spread is clearly smaller than that of motions of one stride.
-bool beats(const SpreadByPoses& sum, const SingleStride& rival, bool in_force, const Ladder& ladder,
-           Trials& trials, const Seen& seen, const WeightingOptions& options) {
+bool beats(const SpreadByPoses& sum, double mean_stride, const SingleStride& rival, bool in_force,
+           const Ladder& ladder, Trials& trials, const Seen& seen, const WeightingOptions& options) {
   std::optional<SpreadByPoses> own;  // the rival as it is, in its own blocks
   if (rival.problem.blocks.size() >= options.least_blocks) own = spread_by_poses(rival.problem, seen);
   const auto place = std::find(ladder.strides.begin(), ladder.strides.end(), rival.stride);
-  if (place == ladder.strides.end() || (own && !agree(sum, *own, seen, options))) return false;
+  const bool shorter = mean_stride < rival.stride;
+  if (place == ladder.strides.end() || (own && !agree(sum, *own, shorter, seen, options))) return false;
   if (own && std::isfinite(own->score) && weight_taken_off(ladder) > options.taken_off &&
       own->score - sum.score >= (in_force ? 0 : options.clearly_unpaired))
     return true;
@@ -328,8 +336,8 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   }
   if (!std::isfinite(least.score)) return std::nullopt;
   if (rival)
-    best->beats_single =
-        beats(least, *rival, current && current->beats_single, ladder, trials, seen, options);
+    best->beats_single = beats(least, best->mean_stride, *rival, current && current->beats_single, ladder,
+                               trials, seen, options);
   best->reason = reason(*best, least);
   return best;
 }

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "egocal/uncertainty/observability.hpp"
 #include "online/solve_and_verify.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal {
 
@@ -21,23 +23,43 @@ double score(const Spread& spread, int stride, const SelectionOptions& options) 
   return noise ? sum - options.longer * std::log2(stride) : sum;
 }
 
+/// A setting with its answer.
+struct Trial {
+  DualQuaternion T_a_b;
+  Observability known;
+  Spread spread;
+};
+
 /// parts: with blocks of at least two strides' length.
-std::optional<Spread> spread_of(const Problem& parts, const SelectionOptions& options) {
+std::optional<Trial> tried(const Problem& parts, const SelectionOptions& options) {
   if (parts.blocks.size() < options.least_parts) return std::nullopt;
   const Matrix8d Q = cost_matrix(parts);
-  const Answer answer = detail::solve_and_verify(parts, Q, Method::dual);
-  const Observability known = assess_observability(parts, Q, answer.T_a_b, ErrorCorrelation::independent);
-  Spread result;
+  Trial result;
+  result.T_a_b = detail::solve_and_verify(parts, Q, Method::dual).T_a_b;
+  result.known = assess_observability(parts, Q, result.T_a_b, ErrorCorrelation::independent);
+  const Observability& known = result.known;
   double rotation = 0, translation = 0;
   for (std::size_t i = 0; i < 6; ++i) {
     if (!known.observable[i] || !std::isfinite(known.stddev[i])) continue;
-    ++result.directions;
+    ++result.spread.directions;
     (i < 3 ? translation : rotation) += known.stddev[i] * known.stddev[i];
   }
-  if (result.directions == 0) return std::nullopt;
-  result.rotation = std::sqrt(rotation);
-  result.translation = std::sqrt(translation);
+  if (result.spread.directions == 0) return std::nullopt;
+  result.spread.rotation = std::sqrt(rotation);
+  result.spread.translation = std::sqrt(translation);
   return result;
+}
+
+/// Whether longer motions have another answer in a direction that the shorter ones claim to know better.
+bool contradicted(const Trial& shorter, const Trial& longer, const SelectionOptions& options) {
+  const detail::Vector6d difference = detail::frame_a_difference(shorter.T_a_b, longer.T_a_b);
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!shorter.known.observable[i] || !longer.known.observable[i]) continue;
+    const double stddev = longer.known.stddev[i];
+    if (!(shorter.known.stddev[i] < stddev)) continue;
+    if (std::abs(difference[static_cast<Eigen::Index>(i)]) > options.contradicts * stddev) return true;
+  }
+  return false;
 }
 
 std::uint64_t two_motions(int stride) {
@@ -72,29 +94,52 @@ std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks
 std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options) {
   Problem parts = problem;
   parts.blocks = merge_blocks(problem.blocks, two_motions(stride));
-  return spread_of(parts, options);
+  const std::optional<Trial> trial = tried(parts, options);
+  return trial ? std::optional(trial->spread) : std::nullopt;
 }
 
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
                                           std::optional<std::size_t> current,
                                           const SelectionOptions& options) {
-  std::optional<Selection> best;
-  double best_score = 0;
-  Problem trial = problem;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    trial.balance = candidates[i].balance;
-    trial.blocks = merge_blocks(candidates[i].blocks, two_motions(candidates[i].stride));
-    const std::optional<Spread> here = spread_of(trial, options);
-    if (!here) continue;
-    const double here_score =
-        score(*here, candidates[i].stride, options) - (current == i ? 2 * options.hysteresis : 0);
-    const bool better = !best || here->directions > best->spread.directions ||
-                        (here->directions == best->spread.directions && here_score < best_score);
-    if (!better) continue;
-    best = Selection{i, *here};
-    best_score = here_score;
+  std::vector<std::optional<Trial>> trials;
+  trials.reserve(candidates.size());
+  Problem parts = problem;
+  for (const Candidate& candidate : candidates) {
+    parts.balance = candidate.balance;
+    parts.blocks = merge_blocks(candidate.blocks, two_motions(candidate.stride));
+    trials.push_back(tried(parts, options));
   }
-  return best;
+  const auto score_of = [&](std::size_t i) {
+    return score(trials[i]->spread, candidates[i].stride, options) -
+           (current == i ? 2 * options.hysteresis : 0);
+  };
+  const auto better = [&](std::size_t i, std::size_t than) {
+    const int here = trials[i]->spread.directions, there = trials[than]->spread.directions;
+    return here > there || (here == there && score_of(i) < score_of(than));
+  };
+  // from the longest motions on, each against the best balance of every longer stride
+  std::vector<std::size_t> by_stride(candidates.size());
+  std::iota(by_stride.begin(), by_stride.end(), std::size_t{0});
+  std::stable_sort(by_stride.begin(), by_stride.end(),
+                   [&](std::size_t x, std::size_t y) { return candidates[x].stride > candidates[y].stride; });
+  std::vector<std::size_t> longer;  // the best of each
+  std::vector<bool> possible(candidates.size(), false);
+  for (auto next = by_stride.begin(); next != by_stride.end();) {
+    const int stride = candidates[*next].stride;
+    std::optional<std::size_t> best;
+    for (; next != by_stride.end() && candidates[*next].stride == stride; ++next) {
+      if (!trials[*next]) continue;
+      possible[*next] = std::none_of(longer.begin(), longer.end(), [&](std::size_t other) {
+        return contradicted(*trials[*next], *trials[other], options);
+      });
+      if (!best || better(*next, *best)) best = *next;
+    }
+    if (best) longer.push_back(*best);
+  }
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (possible[i] && (!best || better(i, *best))) best = i;
+  return best ? std::optional(Selection{*best, trials[*best]->spread}) : std::nullopt;
 }
 
 }  // namespace egocal

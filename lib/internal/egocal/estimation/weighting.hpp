@@ -63,6 +63,9 @@ struct WeightingOptions {
   /// in rotation and in translation. Motions of one stride are judged one by one; the sum omits whole
   /// blocks, and many short stretches of wrong poses pass (tests/lib/test_outliers.cpp: 3 deg off).
   double agreement = 3;
+  /// The same in each direction alone (SelectionOptions::contradicts): shorter motions may have been refused
+  /// for one of them.
+  double contradicts = 4;
   /// The choice in force keeps its place unless another's sum of logarithms is smaller by this: settings do
   /// not flap.
   double hysteresis = 0.05;

@@ -33,6 +33,10 @@ struct SelectionOptions {
   /// Another setting replaces the one in force where its spreads are smaller by this part: settings do not
   /// flap.
   double hysteresis = 0.1;
+  /// A setting is not taken where the answer of longer motions differs from its own by this many of their
+  /// standard deviations: what is wrong with every step in the same way (streams interpolated across fast
+  /// turns) no spread shows, but it fades as motions grow. Four: of 36 comparisons a drive, one in 400 drives.
+  double contradicts = 4;
 };
 
 /// The blocks, neighbours joined until each has at least `least_pairs` pairs.
@@ -53,7 +57,8 @@ struct Spread {
 std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options = {});
 
 /// The candidate with the smallest spread, in rotation and translation together (their product: it has no
-/// unit to choose). One that shows more directions beats one that shows fewer. `current` (an index) stays
+/// unit to choose), of those that no longer motions contradict (SelectionOptions::contradicts). One that
+/// shows more directions beats one that shows fewer. `current` (an index) stays
 /// in force unless another is clearly better (SelectionOptions::hysteresis). Empty where no candidate has a
 /// spread.
 struct Selection {
