@@ -67,8 +67,12 @@ double misfit(const Explained& explained) {
   return sum / static_cast<double>(explained.fit.squares.size());
 }
 
-/// Offset, and rate if asked for, from the turning rates alone.
-std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel& start, bool with_rate) {
+/// From the turning rates alone.
+struct CoarseClocks {
+  ClockModel offset, drift;
+};
+
+std::optional<CoarseClocks> coarse_clocks(const Streams& streams, const ClockModel& start) {
   const ClockSearchOptions& options = streams.options.clock;
   const std::int64_t origin_us = streams.a.front().time_us;
   const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - origin_us);
@@ -82,7 +86,7 @@ std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel&
   const std::optional<double> lag = best_lag(x, y, most_lag, 0, count, streams.grid.least_cells);
   if (!lag) return std::nullopt;
   ClockModel clock{start.offset + *lag * step, 0, 0.5 * span};
-  if (!with_rate) return clock;
+  CoarseClocks result{clock, clock};
   const Series aligned = turning_rates(streams.b, streams.turning_b, origin_us, clock.offset, step, count);
   const auto near = static_cast<std::ptrdiff_t>(std::ceil(0.5 * options.most_rate * span / step)) + 2;
   LineFit drift;
@@ -93,45 +97,48 @@ std::optional<ClockModel> coarse_clock(const Streams& streams, const ClockModel&
     if (!own) continue;
     drift.add(0.5 * static_cast<double>(first + last) * step - clock.middle, *own * step);
   }
-  if (drift.points() < 3 || !drift.determined()) return clock;
+  if (drift.points() < 3 || !drift.determined()) return result;
   clock.rate = std::clamp(drift.slope(), -options.most_rate, options.most_rate);
   clock.offset += drift.level(clock.rate);
-  return clock;
+  result.drift = clock;
+  return result;
+}
+
+/// A clock that was tried.
+struct Trial {
+  ClockFit fit;
+  double misfit = INFINITY;
+};
+
+Trial tried(const Streams& streams, const ClockModel& clock) {
+  Trial trial{{clock, explained_by(streams, clock)}, INFINITY};
+  trial.misfit = misfit(trial.fit.explained);
+  return trial;
+}
+
+void take_better(Trial& best, Trial other) {
+  if (other.misfit < best.misfit) best = std::move(other);
+}
+
+bool same(const ClockModel& x, const ClockModel& y) {
+  return x.offset == y.offset && x.rate == y.rate && x.middle == y.middle;
 }
 
 /// Moves one number of the clock to the least misfit, from steps of `width` downwards.
-void refine(const Streams& streams, double ClockModel::*number, double width, int steps, ClockFit& best,
-            double& least) {
+void refine(const Streams& streams, double ClockModel::*number, double width, int steps, Trial& best) {
   for (int i = 0; i < steps; ++i, width /= 2.5) {
-    double values[3] = {0, least, 0};
-    ClockFit found = best;
-    double found_least = least;
-    for (const int side : {-1, 1}) {
-      ClockModel trial = best.clock;
-      trial.*number += side * width;
-      Explained explained = explained_by(streams, trial);
-      values[side + 1] = misfit(explained);
-      if (values[side + 1] < found_least) {
-        found_least = values[side + 1];
-        found = {trial, std::move(explained)};
-      }
-    }
-    const double curvature = values[0] - 2 * values[1] + values[2];
-    if (std::isfinite(curvature) && curvature > 0) {
-      const double vertex = std::clamp(0.5 * (values[0] - values[2]) / curvature, -1.0, 1.0);
-      ClockModel trial = best.clock;
-      trial.*number += vertex * width;
-      Explained explained = explained_by(streams, trial);
-      const double value = misfit(explained);
-      if (value < found_least) {
-        found_least = value;
-        found = {trial, std::move(explained)};
-      }
-    }
-    if (found_least < least) {
-      best = std::move(found);
-      least = found_least;
-    }
+    const auto moved = [&, from = best.fit.clock](double by) {
+      ClockModel clock = from;
+      clock.*number += by * width;
+      return tried(streams, clock);
+    };
+    Trial before = moved(-1), after = moved(1);
+    const double curvature = before.misfit - 2 * best.misfit + after.misfit;
+    const double slope = before.misfit - after.misfit;
+    take_better(best, std::move(before));
+    take_better(best, std::move(after));
+    if (std::isfinite(curvature) && curvature > 0)
+      take_better(best, moved(std::clamp(0.5 * slope / curvature, -1.0, 1.0)));
   }
 }
 
@@ -160,27 +167,30 @@ Explained explained_by(const Streams& streams, const ClockModel& clock) {
   return result;
 }
 
-std::optional<ClockFit> fit_clock(const Streams& streams, const ClockModel& start, bool with_rate) {
-  const std::optional<ClockModel> coarse = coarse_clock(streams, start, with_rate);
-  if (!coarse) return std::nullopt;
-  ClockFit best;
-  double least = INFINITY;
-  for (ClockModel clock : {ClockModel{start.offset, start.rate, coarse->middle}, *coarse}) {
-    Explained explained = explained_by(streams, clock);
-    const double here = misfit(explained);
-    if (here < least) {
-      least = here;
-      best = {clock, std::move(explained)};
-    }
+ClockFits fit_clock(const Streams& streams, const ClockModel& start) {
+  const std::optional<CoarseClocks> coarse = coarse_clocks(streams, start);
+  if (!coarse) return {};
+  Trial offset = tried(streams, {start.offset, start.rate, coarse->offset.middle});
+  Trial drift = offset;
+  take_better(offset, tried(streams, coarse->offset));
+  take_better(drift, tried(streams, coarse->drift));
+  const bool alike = same(offset.fit.clock, drift.fit.clock);
+  ClockFits fits;
+  if (std::isfinite(offset.misfit)) {
+    refine(streams, &ClockModel::offset, 0.05, 3, offset);
+    fits.offset = offset.fit;
   }
-  if (!std::isfinite(least)) return std::nullopt;
-  refine(streams, &ClockModel::offset, 0.05, 3, best, least);
-  if (with_rate) {
+  if (std::isfinite(drift.misfit)) {
+    if (alike)
+      drift = std::move(offset);
+    else
+      refine(streams, &ClockModel::offset, 0.05, 3, drift);
     const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - streams.a.front().time_us);
-    refine(streams, &ClockModel::rate, 0.05 / std::max(1.0, span), 2, best, least);
-    refine(streams, &ClockModel::offset, 0.01, 1, best, least);
+    refine(streams, &ClockModel::rate, 0.05 / std::max(1.0, span), 2, drift);
+    refine(streams, &ClockModel::offset, 0.01, 1, drift);
+    fits.drift = std::move(drift.fit);
   }
-  return best;
+  return fits;
 }
 
 }  // namespace egocal::detail

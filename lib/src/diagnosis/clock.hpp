@@ -41,13 +41,19 @@ struct ClockFit {
   Explained explained;
 };
 
-/// Offset (and rate, if asked for) of b's clock that fit best near `start`: the turning of the two bodies
-/// finds it coarsely, the fit finely. Empty where the streams never turn.
+/// Empty where the streams never turn.
+struct ClockFits {
+  std::optional<ClockFit> offset;
+  std::optional<ClockFit> drift;  ///< offset and rate
+};
+
+/// Offset, and offset with rate, of b's clock that fit best near `start`: the turning of the two bodies
+/// finds them coarsely, the fit finely.
 ///
 /// This is not estimate_time_offset(), with which it shares correlation and line fit. That one measures a
 /// clock, by the certified cost (18) of motions that are right. This one is an explanation among others:
 /// under a wrong reading no extrinsic fits and every motion looks like an outlier, so it minimises the same
 /// robust misfit that explanations are compared by, on a coarse grid, as it is tried for several readings.
-std::optional<ClockFit> fit_clock(const Streams& streams, const ClockModel& start, bool with_rate);
+ClockFits fit_clock(const Streams& streams, const ClockModel& start);
 
 }  // namespace egocal::detail

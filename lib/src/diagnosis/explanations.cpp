@@ -224,11 +224,10 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
     here.explained = fit->explained;
     result.push_back(std::move(here));
   };
-  const std::optional<ClockFit> offset = fit_clock(streams, evidence.clock, false);
-  take("clock_offset", offset, best.explained);
+  const ClockFits fits = fit_clock(streams, evidence.clock);
+  take("clock_offset", fits.offset, best.explained);
   const Explained& so_far = result.empty() ? best.explained : result.back().explained;
-  const std::optional<ClockFit> drift = fit_clock(streams, evidence.clock, true);
-  take("clock_drift", drift, Explained(so_far));
+  take("clock_drift", fits.drift, Explained(so_far));
   return result;
 }
 

@@ -33,7 +33,12 @@ class Lookup {
     double part = 0;
   };
   std::optional<Found> at(double time) {
+    const std::size_t from = from_;
+    // Streams are mostly regular: it goes on by about as much as the last time. In a long drive of which few
+    // poses are looked at, this is most of the work.
+    if (from_ + usual_ < times_.size() && times_[from_ + usual_] <= time) from_ += usual_;
     while (from_ + 1 < times_.size() && times_[from_ + 1] <= time) ++from_;
+    usual_ = from_ - from > 1 ? from_ - from - 1 : 0;
     const double at = times_[from_];
     if (at > time) return std::nullopt;
     const double before = time - at;
@@ -49,6 +54,7 @@ class Lookup {
   const Times& times_;
   double max_gap_;
   std::size_t from_ = 0;
+  std::size_t usual_ = 0;  ///< poses that the last look went on by, less one
 };
 
 Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
