@@ -107,10 +107,10 @@ TEST(Estimation, StepsFarFromTypicalLoseWeightWhereTailsAreHeavy) {
 TEST(Estimation, WithoutHeavyTailsNoStepLosesWeight) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const testing::Streams s = free_drive(seed, 0.02);
-    std::vector<Step> steps;
+    std::vector<MeasuredStep> steps;
     for (std::size_t i = 1; i < s.a.size(); ++i)
-      steps.push_back(
-          {motion_between(s.a[i - 1].pose, s.a[i].pose), motion_between(s.b[i - 1].pose, s.b[i].pose), true});
+      steps.emplace_back(Step{motion_between(s.a[i - 1].pose, s.a[i].pose),
+                              motion_between(s.b[i - 1].pose, s.b[i].pose), true});
     for (const StepVerdict& verdict : find_jumps(steps, {}, Mode::spatial, std::nullopt))
       EXPECT_EQ(verdict.extra_variance, 0) << seed;
   }

@@ -93,14 +93,14 @@ struct Component {
 
 class Judge {
  public:
-  Judge(std::span<const Step> steps, const JumpOptions& options) : steps_(steps), options_(options) {
-    for (const Step& step : steps) {
-      const Pose a = to_pose(step.a), b = to_pose(step.b);
-      rotation_.size.push_back(smaller_angle(step));
-      translation_.size.push_back(std::min(a.translation.norm(), b.translation.norm()));
-      a_.push_back(a);
-      b_.push_back(b);
-      weights.push_back(step.usable ? 1 : 0);
+  Judge(std::span<const MeasuredStep> steps, const JumpOptions& options) : steps_(steps), options_(options) {
+    rotation_.size.reserve(steps.size());
+    translation_.size.reserve(steps.size());
+    weights.reserve(steps.size());
+    for (const MeasuredStep& step : steps) {
+      rotation_.size.push_back(step.angle);
+      translation_.size.push_back(step.length);
+      weights.push_back(step.step.usable ? 1 : 0);
     }
     rotation_.residual.resize(steps.size());
     translation_.residual.resize(steps.size());
@@ -110,8 +110,8 @@ class Judge {
   void look_from(const DualQuaternion& q) {
     const Pose T = to_pose(q);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-      if (!steps_[i].usable) continue;
-      const Pose left = a_[i] * T, right = T * b_[i];
+      if (!usable(i)) continue;
+      const Pose left = steps_[i].a * T, right = T * steps_[i].b;
       rotation_.residual[i] = 2 * (left.rotation * right.rotation.conjugate()).vec().norm();
       translation_.residual[i] = (left.translation - right.translation).norm();
     }
@@ -120,7 +120,7 @@ class Judge {
   }
 
   double excess(std::size_t i) const {
-    return steps_[i].usable ? std::max(rotation_.excess(i), translation_.excess(i)) : 0;
+    return usable(i) ? std::max(rotation_.excess(i), translation_.excess(i)) : 0;
   }
   double largest_excess() const {
     double largest = 0;
@@ -132,7 +132,7 @@ class Judge {
   bool weigh(double mu) {
     bool other = false;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-      if (!steps_[i].usable) continue;
+      if (!usable(i)) continue;
       const double w = mu / (excess(i) + mu);
       const bool counted = weights[i] > options_.least_weight;
       weights[i] = w * w;
@@ -152,7 +152,7 @@ class Judge {
     std::vector<Jump> result(steps_.size(), Jump::none);
     std::size_t jumps = 0;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-      if (!steps_[i].usable || excess(i) <= 1) continue;
+      if (!usable(i) || excess(i) <= 1) continue;
       result[i] = rotation_.excess(i) > 1 ? Jump::all : Jump::translation;
       ++jumps;
     }
@@ -164,13 +164,13 @@ class Judge {
   /// By the newest look.
   std::vector<StepVerdict> verdicts(const std::vector<Jump>& jumps) const {
     std::vector<StepVerdict> result;
-    double far = 0, usable = 0;
+    double far = 0, usable_steps = 0;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       result.push_back({jumps[i], extra_variance(i, jumps[i])});
-      if (steps_[i].usable) ++usable;
+      if (usable(i)) ++usable_steps;
       if (result.back().extra_variance > 0) ++far;
     }
-    if (far < std::max(options_.least_far, options_.heavy_tail * usable))
+    if (far < std::max(options_.least_far, options_.heavy_tail * usable_steps))
       for (StepVerdict& verdict : result) verdict.extra_variance = 0;
     return result;
   }
@@ -178,18 +178,19 @@ class Judge {
   std::vector<double> weights;  ///< per step
 
  private:
+  bool usable(std::size_t i) const { return steps_[i].step.usable; }
+
   /// No motion spans a jump; rotations that span a translation's jump count by rotation alone.
   double extra_variance(std::size_t i, Jump jump) const {
-    if (!steps_[i].usable || jump == Jump::all) return 0;
+    if (!usable(i) || jump == Jump::all) return 0;
     double x = rotation_.multiple(i);
     if (jump == Jump::none) x = std::max(x, translation_.multiple(i));
     x /= options_.doubtful;
     return x > 1 ? x * x * x * x - 1 : 0;
   }
 
-  std::span<const Step> steps_;
+  std::span<const MeasuredStep> steps_;
   const JumpOptions& options_;
-  std::vector<Pose> a_, b_;
   Component rotation_, translation_;
 };
 
@@ -212,13 +213,19 @@ std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q, int most_
 
 }  // namespace
 
-std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
+MeasuredStep::MeasuredStep(const Step& given)
+    : step(given), a(to_pose(given.a)), b(to_pose(given.b)), angle(smaller_angle(given)) {
+  length = std::min(a.translation.norm(), b.translation.norm());
+}
+
+std::vector<StepVerdict> find_jumps(std::span<const MeasuredStep> steps, const Statistics& before, Mode mode,
                                     const std::optional<DualQuaternion>& q, const JumpOptions& options) {
   Judge judge(steps, options);
   if (q) return settle(judge, *q, options.most_rounds);
 
   std::vector<Statistics> statistics;
-  for (const Step& step : steps) {
+  for (const MeasuredStep& measured : steps) {
+    const Step& step = measured.step;
     statistics.emplace_back();
     if (step.usable) statistics.back().add(step.a, step.b);
   }
@@ -228,7 +235,7 @@ std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistic
   for (int round = 0; round < options.most_rounds; ++round) {
     Statistics sum = before;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-      if (!steps[i].usable) continue;
+      if (!steps[i].step.usable) continue;
       sum.dual_rows += judge.weights[i] * statistics[i].dual_rows;
       sum.weight += judge.weights[i];
     }

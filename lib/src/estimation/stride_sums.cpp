@@ -190,18 +190,26 @@ void StrideSums::commit_oldest() {
   if (first_kept + longest < state_.first_open) state_.instants.pop_front();
 }
 
+/// So that measured_ holds the steps to the instants from this place on.
+void StrideSums::measure_steps(std::size_t first) {
+  const std::uint64_t from = state_.instants[first].index;
+  const auto passed = std::min<std::uint64_t>(from - measured_from_, measured_.size());
+  measured_.erase(measured_.begin(), measured_.begin() + static_cast<std::ptrdiff_t>(passed));
+  measured_from_ = from;
+  for (std::size_t i = first + measured_.size(); i < state_.instants.size(); ++i)
+    measured_.emplace_back(step(state_.instants[i - 1], state_.instants[i]));
+}
+
 /// Verdicts on the steps to all open instants. Returns what changed.
 StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) {
-  std::vector<Step> steps;
   std::size_t first = 0;
   while (first < state_.instants.size() && state_.instants[first].index < state_.first_open) ++first;
   first = std::max<std::size_t>(first, 1);
-  for (std::size_t i = first; i < state_.instants.size(); ++i)
-    steps.push_back(step(state_.instants[i - 1], state_.instants[i]));
   Changes changes;
-  if (steps.empty()) return changes;
+  if (first >= state_.instants.size()) return changes;
+  measure_steps(first);
   const std::vector<StepVerdict> verdicts =
-      find_jumps(steps, state_.committed.total(0).motions, options_.mode, q, tuning_.jumps);
+      find_jumps(measured_, state_.committed.total(0).motions, options_.mode, q, tuning_.jumps);
   for (std::size_t i = first; i < state_.instants.size(); ++i) {
     const StepVerdict& verdict = verdicts[i - first];
     const double before = state_.instants[i].step_variance;

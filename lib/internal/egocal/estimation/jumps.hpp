@@ -17,6 +17,16 @@ struct Step {
   bool usable = true;   ///< false: the two instants are in different chains
 };
 
+/// A step with what every look at it needs: the newest steps are looked at several times.
+struct MeasuredStep {
+  explicit MeasuredStep(const Step& given);
+
+  Step step;
+  Pose a, b;          ///< of the step
+  double angle = 0;   ///< by which both sensors turn at least [rad]
+  double length = 0;  ///< by which both move at least [m]
+};
+
 /// What a jump affects. A translation that jumps leaves the rotation of the motions across it valid.
 enum class Jump : std::uint8_t { none, translation, all };
 
@@ -70,7 +80,7 @@ struct StepVerdict {
 /// q: the extrinsic to judge by (planar mode: T_p); empty: found by graduated non-convexity over the steps
 /// and `before`, statistics of earlier steps, so that a first turn is never taken for a jump. Deterministic.
 /// Returns one verdict per step.
-std::vector<StepVerdict> find_jumps(std::span<const Step> steps, const Statistics& before, Mode mode,
+std::vector<StepVerdict> find_jumps(std::span<const MeasuredStep> steps, const Statistics& before, Mode mode,
                                     const std::optional<DualQuaternion>& q, const JumpOptions& options = {});
 
 }  // namespace egocal

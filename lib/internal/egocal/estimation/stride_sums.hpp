@@ -121,6 +121,7 @@ class StrideSums {
     bool jumps = false, variances = false;
     bool any = false;  ///< to the last bit
   };
+  void measure_steps(std::size_t first);
   Changes rejudge(const std::optional<DualQuaternion>& q);
   StrideBlocks& judge_open();
   void leave_out_blocks(StrideBlocks& all);
@@ -138,6 +139,9 @@ class StrideSums {
   StrideBlocks all_;
   std::uint64_t all_until_ = 0;
   bool all_stale_ = true;
+  /// Steps to the instants from index measured_from_ on. Not part of the state either.
+  std::vector<MeasuredStep> measured_;
+  std::uint64_t measured_from_ = 0;
 };
 
 }  // namespace egocal
