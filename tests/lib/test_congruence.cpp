@@ -74,12 +74,13 @@ TEST(RealCongruence, StepsOfRealDrivesAreHardlyEverDoubtful) {
     int steps = 0, doubtful = 0;
     double largest = 0, growing = 0;
     for (const MotionPair& step : pair_motions(options, streams.a, streams.b).pairs) {
-      const double distance = incongruence(step.a, step.b, 1, scale, limits.congruence);
+      const MotionDifference difference = difference_of(step.a, step.b, limits.congruence);
+      const double distance = incongruence(difference, 1, scale, limits.congruence);
       ++steps;
       doubtful += distance > limits.doubtful;
       largest = std::max(largest, distance);
       growing = std::max({growing, scale.angle.growing, scale.length.growing});
-      update_congruence(step.a, step.b, distance > limits.doubtful, scale, limits.congruence);
+      update_congruence(difference, distance > limits.doubtful, scale, limits.congruence);
     }
     std::printf("%-9s %5d steps, largest %6.1f standard deviations, %2d doubtful, noise grows by %.3f\n",
                 name, steps, largest, doubtful, growing);

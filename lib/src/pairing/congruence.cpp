@@ -17,22 +17,6 @@ namespace {
 
 using Seen = TypicalDifference::Seen;
 
-struct Difference {
-  Seen angle, slide, length;
-  bool turns;
-};
-
-Difference difference(const DualQuaternion& a, const DualQuaternion& b, const CongruenceOptions& options) {
-  const Screw screw_a = screw_of(a), screw_b = screw_of(b);
-  const double angle = std::min(screw_a.angle, screw_b.angle);
-  const double length_a = translation_length(a), length_b = translation_length(b),
-               length = std::min(length_a, length_b);
-  return {{angle, std::abs(screw_a.angle - screw_b.angle)},
-          {length, std::abs(screw_a.slide - screw_b.slide)},
-          {length, std::abs(length_a - length_b)},
-          angle > options.least_turn};
-}
-
 /// Of a normal distribution: its standard deviation by the lower quartile and by the median of absolute
 /// values (mathematics, not tuning).
 constexpr double deviations_per_quartile = 3.1386, deviations_per_median = 1.4826;
@@ -147,9 +131,7 @@ void remember(const Seen& seen, TypicalDifference& typical, const CongruenceOpti
   if (typical.newest.size() > options.memory) typical.newest.pop_front();
 }
 
-void remember(const DualQuaternion& a, const DualQuaternion& b, CongruenceScale& scale,
-              const CongruenceOptions& options) {
-  const Difference d = difference(a, b, options);
+void remember(const MotionDifference& d, CongruenceScale& scale, const CongruenceOptions& options) {
   remember(d.angle, scale.angle, options);
   if (d.turns) remember(d.slide, scale.slide, options);
   remember(d.length, scale.length, options);
@@ -195,17 +177,17 @@ double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
   return seen.difference / (typical.constant + typical.growing * seen.size + floor);
 }
 
-double unexplained_length(const Difference& d, const CongruenceScale& scale) {
+double unexplained_length(const MotionDifference& d, const CongruenceScale& scale) {
   return std::max(0.0, d.length.difference - scale.arm * d.angle.size);
 }
 
 /// The first motions after a vehicle stood: what was seen says nothing of them.
-bool longer_than_all_seen(const Difference& d, double steps, const CongruenceScale& scale,
+bool longer_than_all_seen(const MotionDifference& d, double steps, const CongruenceScale& scale,
                           const CongruenceOptions& options) {
   return d.length.size > options.beyond * steps * std::max(scale.length.moving, options.length_floor);
 }
 /// Angles change by as much between a straight road and a turn, so they count where nothing went anywhere.
-bool turns_more_than_all_seen(const Difference& d, double steps, const CongruenceScale& scale,
+bool turns_more_than_all_seen(const MotionDifference& d, double steps, const CongruenceScale& scale,
                               const CongruenceOptions& options) {
   return scale.length.moving <= options.length_floor &&
          d.angle.size > options.beyond * steps * std::max(scale.angle.moving, options.angle_floor);
@@ -213,14 +195,25 @@ bool turns_more_than_all_seen(const Difference& d, double steps, const Congruenc
 
 }  // namespace
 
+MotionDifference difference_of(const DualQuaternion& a, const DualQuaternion& b,
+                               const CongruenceOptions& options) {
+  const Screw screw_a = screw_of(a), screw_b = screw_of(b);
+  const double angle = std::min(screw_a.angle, screw_b.angle);
+  const double length_a = translation_length(a), length_b = translation_length(b),
+               length = std::min(length_a, length_b);
+  return {{angle, std::abs(screw_a.angle - screw_b.angle)},
+          {length, std::abs(screw_a.slide - screw_b.slide)},
+          {length, std::abs(length_a - length_b)},
+          angle > options.least_turn};
+}
+
 bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options) {
   return scale.remembered >= options.first_estimate;
 }
 
-double incongruence(const DualQuaternion& a, const DualQuaternion& b, double steps,
-                    const CongruenceScale& scale, const CongruenceOptions& options) {
+double incongruence(const MotionDifference& d, double steps, const CongruenceScale& scale,
+                    const CongruenceOptions& options) {
   if (!knows_typical(scale, options)) return 0;
-  const Difference d = difference(a, b, options);
   const double unexplained = unexplained_length(d, scale);
   const bool longer = longer_than_all_seen(d, steps, scale, options);
   if (longer || turns_more_than_all_seen(d, steps, scale, options)) {
@@ -232,17 +225,16 @@ double incongruence(const DualQuaternion& a, const DualQuaternion& b, double ste
                    sigmas({d.length.size, unexplained}, scale.length, options.length_floor, options)});
 }
 
-bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, double steps,
-                         const CongruenceScale& scale, const CongruenceOptions& options) {
-  const Difference d = difference(a, b, options);
+bool grossly_incongruent(const MotionDifference& d, double steps, const CongruenceScale& scale,
+                         const CongruenceOptions& options) {
   return d.angle.difference > options.gross_angle ||
          unexplained_length(d, scale) > options.gross_lengths * steps * scale.length.large;
 }
 
-void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubtful,
-                       CongruenceScale& scale, const CongruenceOptions& options) {
+void update_congruence(const MotionDifference& d, bool doubtful, CongruenceScale& scale,
+                       const CongruenceOptions& options) {
   if (doubtful && ++scale.doubtful % options.doubtful_remembered != 0) return;
-  remember(a, b, scale, options);
+  remember(d, scale, options);
   if (!estimate_is_due(scale.remembered, options)) return;
   if (scale.remembered > options.memory)
     estimate_next(scale, options);
@@ -259,12 +251,15 @@ std::vector<bool> incongruent(std::span<const MotionPair> pairs, const Screening
     CongruenceScale scale;
     std::uint64_t last_estimate = count;
     while (last_estimate > 0 && !estimate_is_due(last_estimate, options)) --last_estimate;
+    std::vector<MotionDifference> differences;
+    differences.reserve(count);
     for (const MotionPair& pair : pairs.first(count)) {
-      remember(pair.a, pair.b, scale, options);
+      differences.push_back(difference_of(pair.a, pair.b, options));
+      remember(differences.back(), scale, options);
       if (scale.remembered == last_estimate) estimate(scale, options);
     }
-    for (const MotionPair& pair : pairs.first(count))
-      result.push_back(incongruence(pair.a, pair.b, 1, scale, options) > screening.doubtful);
+    for (const MotionDifference& difference : differences)
+      result.push_back(incongruence(difference, 1, scale, options) > screening.doubtful);
     pairs = pairs.subspan(count);
   }
   return result;

@@ -26,18 +26,16 @@ double steps(const Instant& from, const Instant& to, double period_us) {
   return std::max(1.0, static_cast<double>(to.time_us - from.time_us) / period_us);
 }
 
-/// How far the motion is from congruent, in standard deviations; noise grows with the root of the steps.
-double difference(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
-                  const CongruenceOptions& options) {
+/// How the sensors differ in the motion.
+MotionDifference difference(const Instant& from, const Instant& to, const CongruenceOptions& options) {
   const detail::MotionsOfBoth motions = detail::motions_between(from, to);
-  const double count = steps(from, to, period_us);
-  return incongruence(motions.a, motions.b, count, scale, options) / std::sqrt(count);
+  return difference_of(motions.a, motions.b, options);
 }
 
-bool grossly_different(const Instant& from, const Instant& to, double period_us, const CongruenceScale& scale,
-                       const CongruenceOptions& options) {
-  const detail::MotionsOfBoth motions = detail::motions_between(from, to);
-  return grossly_incongruent(motions.a, motions.b, steps(from, to, period_us), scale, options);
+/// How far the motion is from congruent, in standard deviations; noise grows with the root of the steps.
+double sigmas(const MotionDifference& difference, double steps, const CongruenceScale& scale,
+              const CongruenceOptions& options) {
+  return incongruence(difference, steps, scale, options) / std::sqrt(steps);
 }
 
 }  // namespace
@@ -95,24 +93,26 @@ std::vector<Instant> Screening::screen_first_ones_again(double period_us) {
 void Screening::screen(const Instant& instant, double period_us, std::vector<Instant>& accepted) {
   auto& doubtful = state_.doubtful;
   if (!state_.accepted) return accept(instant, instant.number, accepted);
-  const auto agree = [&](const Instant& from, const Instant& to) {
-    return difference(from, to, period_us, state_.congruence, options_.congruence) <= options_.doubtful;
+  const CongruenceOptions& options = options_.congruence;
+  const auto agrees = [&](const MotionDifference& motion, const Instant& from, const Instant& to) {
+    return sigmas(motion, steps(from, to, period_us), state_.congruence, options) <= options_.doubtful;
   };
-  const auto remember_from = [&](const Instant& from, bool motion_is_doubtful) {
-    const detail::MotionsOfBoth motions = detail::motions_between(from, instant);
-    update_congruence(motions.a, motions.b, motion_is_doubtful, state_.congruence, options_.congruence);
+  const auto agree = [&](const Instant& from, const Instant& to) {
+    return agrees(difference(from, to, options), from, to);
   };
   const Instant newest = *state_.accepted;
-  if (agree(newest, instant)) {
-    if (doubtful.empty()) remember_from(newest, false);
+  const MotionDifference from_newest = difference(newest, instant, options);
+  if (agrees(from_newest, newest, instant)) {
+    if (doubtful.empty()) update_congruence(from_newest, false, state_.congruence, options);
     return confirm({}, instant, accepted);
   }
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
     if (!agree(doubtful[i], instant)) continue;
+    const MotionDifference before = difference(newest, doubtful[i], options);
+    const double count = steps(newest, doubtful[i], period_us);
     const bool one_chain =
-        difference(newest, doubtful[i], period_us, state_.congruence, options_.congruence) <=
-            options_.break_chain &&
-        !grossly_different(newest, doubtful[i], period_us, state_.congruence, options_.congruence);
+        sigmas(before, count, state_.congruence, options) <= options_.break_chain &&
+        !grossly_incongruent(before, count, state_.congruence, options);
     if (one_chain) return confirm({doubtful[i]}, instant, accepted);
     for (std::size_t k = 0; k < i; ++k) {
       if (!agree(doubtful[k], doubtful[i])) continue;
@@ -121,7 +121,8 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
       return confirm({doubtful[k], doubtful[i]}, instant, accepted);
     }
   }
-  remember_from(doubtful.empty() ? newest : doubtful.back(), true);
+  update_congruence(doubtful.empty() ? from_newest : difference(doubtful.back(), instant, options), true,
+                    state_.congruence, options);
   doubtful.push_back(instant);
   if (doubtful.size() > options_.most_doubtful) {
     doubtful.pop_front();

@@ -39,26 +39,34 @@ struct CongruenceScale {
   std::uint64_t doubtful = 0;    ///< motions of doubtful poses, whether remembered or not
 };
 
+/// How two sensors' measurements of one motion differ.
+struct MotionDifference {
+  TypicalDifference::Seen angle, slide, length;
+  bool turns = false;  ///< enough for the axis, along which it slides, to be known
+};
+MotionDifference difference_of(const DualQuaternion& a, const DualQuaternion& b,
+                               const CongruenceOptions& options);
+
 /// Whether enough motions were remembered for an estimate.
 bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options);
 
 /// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
-/// length, for every extrinsic. How far a and b (over the same time, this number of steps) are from that, in
+/// length, for every extrinsic. How far two motions over the same time, this number of steps, are from that, in
 /// standard deviations of the typical difference of one step; 0 before the first estimate.
-double incongruence(const DualQuaternion& a, const DualQuaternion& b, double steps,
-                    const CongruenceScale& scale, const CongruenceOptions& options);
+double incongruence(const MotionDifference& difference, double steps, const CongruenceScale& scale,
+                    const CongruenceOptions& options);
 
-/// Whether a and b, over this number of steps, differ by more than noise ever does, however large it is just
+/// Whether motions over this number of steps differ by more than noise ever does, however large it is just
 /// now: by the size of the motions.
-bool grossly_incongruent(const DualQuaternion& a, const DualQuaternion& b, double steps,
-                         const CongruenceScale& scale, const CongruenceOptions& options);
+bool grossly_incongruent(const MotionDifference& difference, double steps, const CongruenceScale& scale,
+                         const CongruenceOptions& options);
 
 /// Which motion pairs are not congruent, compared with what is typical of the `memory` motions around each:
 /// without poses, nothing else can confirm them. In three dimensions, in any order.
 std::vector<bool> incongruent(std::span<const MotionPair> pairs, const ScreeningOptions& options = {});
 
 /// Remembers the motion and estimates again where that is due. doubtful: the motion of a doubtful pose.
-void update_congruence(const DualQuaternion& a, const DualQuaternion& b, bool doubtful,
-                       CongruenceScale& scale, const CongruenceOptions& options);
+void update_congruence(const MotionDifference& difference, bool doubtful, CongruenceScale& scale,
+                       const CongruenceOptions& options);
 
 }  // namespace egocal
