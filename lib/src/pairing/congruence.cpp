@@ -42,6 +42,33 @@ double robust_deviation(std::span<const double> values, double before,
   return deviation;
 }
 
+/// What is remembered, in the order of time: an estimate goes through it many times.
+struct Remembered {
+  std::vector<double> sizes, differences;
+
+  explicit Remembered(const std::deque<Seen>& newest) {
+    sizes.reserve(newest.size());
+    differences.reserve(newest.size());
+    for (const Seen& one : newest) {
+      sizes.push_back(one.size);
+      differences.push_back(one.difference);
+    }
+  }
+
+  /// Without motions smaller than `least`.
+  void leave_out_smaller(double least) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < sizes.size();
+         ++i) {  // without a branch that the processor could guess wrongly
+      const double size = sizes[count] = sizes[i];
+      differences[count] = differences[i];
+      count += size >= least ? 1 : 0;
+    }
+    sizes.resize(count);
+    differences.resize(count);
+  }
+};
+
 /// The smaller half of the motions and the larger one, each in the order of time.
 struct Halves {
   std::vector<double> small, large;  ///< differences
@@ -49,20 +76,12 @@ struct Halves {
 
   /// Of motions that are as large as `least`, where enough are smaller to reach the lower quartile of the
   /// smaller half: an eighth of all. least: at most moving_size() of these motions, so that some are left.
-  Halves(const std::deque<Seen>& newest, double least) {
+  Halves(Remembered all, double least) {
+    const std::vector<double>&sizes = all.sizes, &differences = all.differences;
     std::size_t standing = 0;
-    for (const Seen& one : newest) standing += one.size < least ? 1 : 0;
-    if (8 * standing < newest.size()) least = 0;
-    std::vector<double> sizes(newest.size()), differences(newest.size());
-    std::size_t count = 0;
-    for (const Seen& one : newest) {
-      sizes[count] = one.size;
-      differences[count] = one.difference;
-      count += one.size >= least ? 1 : 0;
-    }
-    sizes.resize(count);
-    differences.resize(count);
-    const std::size_t half = count / 2;
+    for (const double size : sizes) standing += size < least ? 1 : 0;
+    if (8 * standing >= sizes.size()) all.leave_out_smaller(least);
+    const std::size_t count = sizes.size(), half = count / 2;
     const double least_large = detail::order_statistic(sizes, half);
     std::size_t below = 0;
     for (const double size : sizes) below += size < least_large ? 1 : 0;
@@ -88,20 +107,18 @@ struct Halves {
 };
 
 /// What a vehicle that moves exceeds in at least half of its motions, or in enough for an estimate.
-double moving_size(const std::deque<Seen>& newest, const CongruenceOptions& options) {
-  if (newest.empty()) return 0;
-  std::vector<double> sizes;
-  sizes.reserve(newest.size());
-  for (const Seen& one : newest) sizes.push_back(one.size);
-  const std::size_t larger = std::min(options.first_estimate, (sizes.size() + 1) / 2);
-  return detail::order_statistic(sizes, sizes.size() - larger);
+double moving_size(const Remembered& all, const CongruenceOptions& options) {
+  if (all.sizes.empty()) return 0;
+  const std::size_t larger = std::min(options.first_estimate, (all.sizes.size() + 1) / 2);
+  return detail::order_statistic(all.sizes, all.sizes.size() - larger);
 }
 
 /// The smaller half shows what there is without motion, the larger half what grows with it.
 void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
   if (typical.newest.size() < 4) return;
-  typical.moving = moving_size(typical.newest, options);
-  const Halves halves(typical.newest, options.still * typical.moving);
+  Remembered all(typical.newest);
+  typical.moving = moving_size(all, options);
+  const Halves halves(std::move(all), options.still * typical.moving);
   const double before_small = typical.constant,
                before_large = typical.constant + typical.growing * typical.large;
   typical.large = 0;
@@ -118,8 +135,11 @@ void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
 /// From the motions that turn more than others: three times the median covers the directions in between.
 double arm_of(const TypicalDifference& lever, const CongruenceOptions& options) {
   if (lever.newest.empty()) return 0;
-  const Halves halves(lever.newest, options.still * moving_size(lever.newest, options));
+  Remembered all(lever.newest);
+  const double least = options.still * moving_size(all, options);
+  const Halves halves(std::move(all), least);
   std::vector<double> arms;
+  arms.reserve(halves.large.size());
   for (std::size_t i = 0; i < halves.large.size(); ++i)
     if (halves.large_sizes[i] > 0) arms.push_back(halves.large[i] / halves.large_sizes[i]);
   if (arms.empty()) return 0;

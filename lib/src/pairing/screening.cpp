@@ -110,9 +110,8 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
     if (!agree(doubtful[i], instant)) continue;
     const MotionDifference before = difference(newest, doubtful[i], options);
     const double count = steps(newest, doubtful[i], period_us);
-    const bool one_chain =
-        sigmas(before, count, state_.congruence, options) <= options_.break_chain &&
-        !grossly_incongruent(before, count, state_.congruence, options);
+    const bool one_chain = sigmas(before, count, state_.congruence, options) <= options_.break_chain &&
+                           !grossly_incongruent(before, count, state_.congruence, options);
     if (one_chain) return confirm({doubtful[i]}, instant, accepted);
     for (std::size_t k = 0; k < i; ++k) {
       if (!agree(doubtful[k], doubtful[i])) continue;

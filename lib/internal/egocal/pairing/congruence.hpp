@@ -51,8 +51,8 @@ MotionDifference difference_of(const DualQuaternion& a, const DualQuaternion& b,
 bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& options);
 
 /// Screw congruence: the motions of rigidly mounted sensors turn by the same angle and slide by the same
-/// length, for every extrinsic. How far two motions over the same time, this number of steps, are from that, in
-/// standard deviations of the typical difference of one step; 0 before the first estimate.
+/// length, for every extrinsic. How far two motions over the same time, this number of steps, are from that,
+/// in standard deviations of the typical difference of one step; 0 before the first estimate.
 double incongruence(const MotionDifference& difference, double steps, const CongruenceScale& scale,
                     const CongruenceOptions& options);
 
