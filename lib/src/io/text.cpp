@@ -21,6 +21,15 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
+/// Rows of a file that a program wrote: searching for one character takes half of the time.
+void split_at_spaces(std::string_view text, std::vector<std::string_view>& fields) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (end > begin) fields.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
 }  // namespace
 
 std::string quoted(std::string_view text) {
@@ -57,6 +66,7 @@ void split(std::string_view text, char separator, std::vector<std::string_view>&
   fields.clear();
   std::size_t begin = 0;
   if (separator == ' ') {
+    if (text.find('\t') == text.npos && text.find('\r') == text.npos) return split_at_spaces(text, fields);
     while (begin < text.size()) {
       while (begin < text.size() && blank(text[begin])) ++begin;
       std::size_t end = begin;
