@@ -154,12 +154,14 @@ TEST(Jackknife, TwoAtATimeIsOneAfterTheOther) {
       EXPECT_LT((one.gradient - expected.gradient).norm(), 1e-13 * block.dual_rows.norm());
       EXPECT_EQ(one.curvature, one.curvature.transpose());
     }
-    detail::TangentForm negative = both[0];
-    negative.curvature *= -1;
-    for (const detail::TangentForm& other : {both[1], negative}) {
-      const std::array<Vector6d, 2> steps = detail::TangentSpace::newton_steps(both[0], other);
-      EXPECT_EQ(steps[0], detail::TangentSpace::newton_step(both[0]));
-      EXPECT_EQ(steps[1], detail::TangentSpace::newton_step(other));
+    detail::TangentForm all = both[0];
+    all += both[1];
+    detail::TangentForm too_much = all;
+    too_much.curvature *= 2;
+    for (const detail::TangentForm& other : {both[1], too_much}) {
+      const std::array<Vector6d, 2> steps = detail::TangentSpace::newton_steps_without(all, both[0], other);
+      EXPECT_EQ(steps[0], detail::TangentSpace::newton_step(all - both[0]));
+      EXPECT_EQ(steps[1], detail::TangentSpace::newton_step(all - other));
     }
   }
 }

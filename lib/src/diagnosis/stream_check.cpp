@@ -263,7 +263,7 @@ std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOpt
 }
 
 std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOptions& options) {
-  const Vector6d x = frame_a_difference({}, answered.T_a_b);
+  const Vector6d x = frame_a_difference(DualQuaternion{}, answered.T_a_b);
   const Observability& seen = answered.observability;
   int known_translations = 0;
   for (std::size_t i = 0; i < 6; ++i) {

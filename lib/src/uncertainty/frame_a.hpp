@@ -23,11 +23,15 @@ inline Matrix86d frame_a_basis(const DualQuaternion& T_a_b) {
 }
 
 /// The coordinates of `to` seen from `from`: (dt, dtheta).
-inline Vector6d frame_a_difference(const DualQuaternion& from, const DualQuaternion& to) {
-  const Pose a = to_pose(from), b = to_pose(to);
+inline Vector6d frame_a_difference(const Pose& a, const DualQuaternion& to) {
+  const Pose b = to_pose(to);
   Vector6d x;
   x << b.translation - a.translation, rotation_log(b.rotation * a.rotation.conjugate());
   return x;
+}
+
+inline Vector6d frame_a_difference(const DualQuaternion& from, const DualQuaternion& to) {
+  return frame_a_difference(to_pose(from), to);
 }
 
 /// The extrinsic reached from `from` by (dt, dtheta).

@@ -17,13 +17,14 @@ std::vector<Vector6d> planar_differences(const Problem& problem, const DualQuate
   std::vector<Vector6d> differences;
   const Statistics all = sum_blocks(problem.blocks);
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  const Pose with_all = to_pose(T_a_b);
   for (const Statistics& block : problem.blocks) {
     if (detail::takes_off(block)) continue;
     Statistics rest = all;
     rest.dual_rows -= block.dual_rows;
     rest.weight -= block.weight;
     const Solution without = solve_planar(cost_matrix(rest, problem.balance));
-    differences.push_back(detail::frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)));
+    differences.push_back(detail::frame_a_difference(with_all, extrinsic_from_planar(without.q, G_a, G_b)));
   }
   return differences;
 }
@@ -35,18 +36,22 @@ std::vector<Vector6d> spatial_differences(const Problem& problem, const Matrix8d
   const detail::TangentSpace space(q, length, detail::frame_a_basis(q), problem.balance);
   detail::TangentForm all;
   std::vector<detail::TangentForm> forms;
+  forms.reserve(problem.blocks.size());
   for (const Statistics& block : problem.blocks) {
     const detail::TangentForm form = space.form(block);
     all += form;
     if (!detail::takes_off(block)) forms.push_back(form);
   }
   std::vector<Vector6d> differences;
-  for (const detail::TangentForm& form : forms) {
-    detail::TangentForm rest = all;
-    rest -= form;
-    differences.push_back(detail::TangentSpace::newton_step(rest));
-    differences.back().head<3>() *= length;
+  differences.reserve(forms.size());
+  for (std::size_t i = 0; i < forms.size(); i += 2) {
+    const bool last = i + 1 == forms.size();
+    const auto steps =
+        detail::TangentSpace::newton_steps_without(all, forms[i], last ? forms[i] : forms[i + 1]);
+    differences.push_back(steps[0]);
+    if (!last) differences.push_back(steps[1]);
   }
+  for (Vector6d& difference : differences) difference.head<3>() *= length;
   return differences;
 }
 

@@ -151,14 +151,17 @@ std::array<TangentForm, 2> TangentSpace::forms(const Statistics& first, const St
   return result;
 }
 
-std::array<Vector6d, 2> TangentSpace::newton_steps(const TangentForm& first, const TangentForm& second) {
+std::array<Vector6d, 2> TangentSpace::newton_steps_without(const TangentForm& all, const TangentForm& first,
+                                                           const TangentForm& second) {
   std::array<Both, 36> factors;  // the lower triangle
   std::array<Both, 6> x;
   for (int j = 0; j < 6; ++j)
     for (int i = j; i < 6; ++i)
-      factors[static_cast<std::size_t>(6 * j + i)] = {first.curvature(i, j), second.curvature(i, j)};
-  for (int i = 0; i < 6; ++i) x[static_cast<std::size_t>(i)] = {-first.gradient[i], -second.gradient[i]};
-  if (!factorise_leading(factors.data(), All())) return {newton_step(first), newton_step(second)};
+      factors[static_cast<std::size_t>(6 * j + i)] =
+          all.curvature(i, j) - Both{first.curvature(i, j), second.curvature(i, j)};
+  for (int i = 0; i < 6; ++i)
+    x[static_cast<std::size_t>(i)] = -(all.gradient[i] - Both{first.gradient[i], second.gradient[i]});
+  if (!factorise_leading(factors.data(), All())) return {newton_step(all - first), newton_step(all - second)};
   solve_leading(factors.data(), x.data(), All());
   std::array<Vector6d, 2> steps;
   for (int i = 0; i < 6; ++i) {

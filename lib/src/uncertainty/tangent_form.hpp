@@ -28,6 +28,7 @@ struct TangentForm {
     gradient -= other.gradient;
     return *this;
   }
+  friend TangentForm operator-(TangentForm x, const TangentForm& y) { return x -= y; }
 };
 
 /// Coordinates x in R^6 of the extrinsics around q: directions are the columns of `tangent`, tangent to the
@@ -44,8 +45,10 @@ class TangentSpace {
   /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
   /// Infinite where the curvature is not positive definite.
   static Vector6d newton_step(const TangentForm& form, int directions = 6);
-  /// The same bits for two forms in all six coordinates, at little more than the cost of one.
-  static std::array<Vector6d, 2> newton_steps(const TangentForm& first, const TangentForm& second);
+  /// Without one of two parts of a sum, in all six coordinates: the same bits as newton_step() of the
+  /// differences, at little more than the cost of one.
+  static std::array<Vector6d, 2> newton_steps_without(const TangentForm& all, const TangentForm& first,
+                                                      const TangentForm& second);
 
  private:
   Balance balance_;

@@ -79,19 +79,14 @@ void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
 Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& all, double pairs,
                        const ShownDirections& directions) {
   Jackknife jackknife(pairs);
-  const auto without = [&](const BlockForm& block) {
-    TangentForm rest = all;
-    rest -= block.form;
-    return rest;
-  };
   std::size_t i = 0;
   for (; directions.shown == 6 && i + 1 < blocks.size(); i += 2) {
-    const auto steps = TangentSpace::newton_steps(without(blocks[i]), without(blocks[i + 1]));
+    const auto steps = TangentSpace::newton_steps_without(all, blocks[i].form, blocks[i + 1].form);
     jackknife.leave_out(blocks[i].pairs, steps[0], blocks[i].information);
     jackknife.leave_out(blocks[i + 1].pairs, steps[1], blocks[i + 1].information);
   }
   for (; i < blocks.size(); ++i) {
-    const Vector6d step = TangentSpace::newton_step(without(blocks[i]), directions.shown);
+    const Vector6d step = TangentSpace::newton_step(all - blocks[i].form, directions.shown);
     const bool as_they_are = directions.shown == 6;
     jackknife.leave_out(blocks[i].pairs, as_they_are ? step : Vector6d(directions.basis.lazyProduct(step)),
                         blocks[i].information);
@@ -146,6 +141,7 @@ Vector6d detail::spatial_variance(const Problem& problem, double pairs, const Sh
 Vector6d detail::planar_variance(const Problem& problem, const Statistics& all, const DualQuaternion& T_a_b,
                                  ErrorCorrelation errors, const ObservabilityOptions& options) {
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  const Pose with_all = to_pose(T_a_b);
   const auto jackknife_of = [&](const std::vector<Statistics>& blocks) {
     Jackknife jackknife(std::max(1.0, static_cast<double>(all.count)));
     for (const Statistics& block : blocks) {
@@ -154,7 +150,7 @@ Vector6d detail::planar_variance(const Problem& problem, const Statistics& all, 
       rest.weight -= block.weight;
       const Solution without = solve_planar(cost_matrix(rest, problem.balance));
       jackknife.leave_out(static_cast<double>(block.count),
-                          frame_a_difference(T_a_b, extrinsic_from_planar(without.q, G_a, G_b)),
+                          frame_a_difference(with_all, extrinsic_from_planar(without.q, G_a, G_b)),
                           Vector6d::Zero());
     }
     return jackknife;
