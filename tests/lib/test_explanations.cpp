@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/turning_machine.hpp"
@@ -17,20 +17,8 @@
 namespace egocal {
 namespace {
 
-testing::Streams drive(Terrain terrain, std::uint64_t seed = 1) {
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = 601;
-  options.relative_noise = 0.01;
-  options.seed = seed;
-  return testing::simulated_drive(options);
-}
-
-const Finding* find(const Calibration& calibration, const std::string& code) {
-  for (const Finding& finding : calibration.findings)
-    if (finding.code == code) return &finding;
-  return nullptr;
-}
+using testing::drive;
+using testing::find;
 
 class NamedMistake : public ::testing::TestWithParam<std::string> {
  protected:
@@ -294,142 +282,6 @@ TEST(Explanations, AClockThatIsOffByMoreThanAQuarterOfTheDriveIsNamed) {
       EXPECT_TRUE(clock->certain);
       EXPECT_NEAR(*clock->value, seconds, 0.01);
     }
-}
-
-TEST(Explanations, AMovedMountIsFoundAtItsTime) {
-  testing::Streams streams = drive(Terrain::free);
-  streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0.06, 0}), {0, 0.1, 0}});
-  const Calibration calibration = calibrate(streams.a, streams.b);
-  const Finding* moved = find(calibration, "mount_moved");
-  ASSERT_NE(moved, nullptr) << calibration.reason;
-  EXPECT_NEAR(*moved->time, 30, 4);
-  EXPECT_GE(calibration.verdict, Verdict::doubtful);
-}
-
-/// A drive with 1 % noise in which the mount of b moves at a time [s].
-SimulationOptions moved_at(double time, const Pose& change, int poses) {
-  SimulationOptions simulation;
-  simulation.poses = poses;
-  simulation.relative_noise = 0.01;
-  simulation.faults.resize(2);
-  simulation.faults[1].mount_changes = {{time, time, change}};
-  return simulation;
-}
-
-// A tenth of every motion is noise, and remembered for ten of them.
-TEST(Explanations, StrongNoiseThatWandersInAShortDriveIsNoMove) {
-  SimulationOptions simulation;
-  simulation.terrain = Terrain::flat;
-  simulation.relative_noise = 0.1;
-  simulation.random_walk = true;
-  simulation.poses = 301;
-  const auto expect_no_finding = [&](std::uint64_t seed) {
-    simulation.seed = seed;
-    const testing::Streams streams = testing::simulated_drive(simulation);
-    const Calibration calibration = calibrate(streams.a, streams.b);
-    EXPECT_LE(calibration.verdict, Verdict::incomplete) << seed << ": " << calibration.reason;
-  };
-  for (const std::uint64_t seed : {5, 6, 111, 123}) expect_no_finding(seed);
-  simulation.faults.resize(2);
-  simulation.faults[1].rate = 7;
-  simulation.faults[1].phase = 0.37 / 7;
-  for (const std::uint64_t seed : {1, 4}) expect_no_finding(seed);
-}
-
-// What a look at a drive shows that is judged again every two seconds.
-TEST(Explanations, AScaleThatJumpsIsNoMove) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed)
-    for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
-      SimulationOptions simulation;
-      simulation.terrain = terrain;
-      simulation.poses = 901;
-      simulation.speed_variation = 1;
-      simulation.relative_noise = 0.01;
-      simulation.seed = seed;
-      testing::Streams streams = testing::simulated_drive(simulation);
-      streams.b = testing::longer_from_the_middle(streams.b, 1.3);
-      const Calibration calibration = calibrate(streams.a, streams.b);
-      EXPECT_GE(calibration.verdict, Verdict::doubtful) << seed << ": " << calibration.reason;
-      EXPECT_EQ(find(calibration, "mount_moved"), nullptr) << seed << ": " << calibration.reason;
-      const Finding* changed = find(calibration, "scale_change");
-      ASSERT_NE(changed, nullptr) << seed << ": " << calibration.reason;
-      EXPECT_TRUE(changed->certain);
-      EXPECT_NEAR(*changed->time, 45, 8) << seed << ": between two turns little shows it";
-      const ExtrinsicError error = extrinsic_error(streams.T, to_dual_quaternion(*changed->T_a_b));
-      EXPECT_LT(error.rotation, 0.01) << seed;
-      EXPECT_LT(error.translation, terrain == Terrain::free ? 0.1 : 0.8) << seed;
-    }
-}
-
-// The mounts of streams that are world-to-sensor seem to move where their odometry drifts. A bump of streams
-// as they should be shows under one reading alone as well, but fits it better.
-TEST(Explanations, StreamsThatMayBothBeInvertedMoveForCertainOnlyWhereThatFitsBetter) {
-  int uncertain = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    SimulationOptions simulation = moved_at(45, {rotation_exp({0, 0.02, 0}), {0.03, 0, 0}}, 901);
-    simulation.terrain = Terrain::free;
-    simulation.speed = 1;
-    simulation.seed = seed;
-    testing::Streams streams = testing::simulated_drive(simulation);
-    const Calibration knocked = calibrate(streams.a, streams.b);
-    const Finding* moved = find(knocked, "mount_moved");
-    ASSERT_NE(moved, nullptr) << seed << ": " << knocked.reason;
-    EXPECT_TRUE(moved->certain) << seed << ": " << knocked.reason;
-
-    simulation.faults = {};
-    streams = testing::simulated_drive(simulation);
-    for (Trajectory* stream : {&streams.a, &streams.b})
-      for (StampedPose& stamped : *stream) stamped.pose = conjugate(stamped.pose);
-    const Calibration inverted = calibrate(streams.a, streams.b);
-    EXPECT_NE(find(inverted, "inverted_both"), nullptr) << seed << ": " << inverted.reason;
-    moved = find(inverted, "mount_moved");
-    if (!moved) continue;
-    ++uncertain;
-    EXPECT_FALSE(moved->certain) << seed << ": " << inverted.reason;
-    EXPECT_GE(inverted.verdict, Verdict::doubtful) << seed;
-  }
-  EXPECT_GE(uncertain, 2) << "mounts seem to move where odometry drifts";
-}
-
-TEST(Explanations, AMoveMustHaveShownBefore) {
-  SimulationOptions simulation = moved_at(110, {rotation_exp({0, 0.02, 0}), {0.06, 0, 0}}, 1201);
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    simulation.seed = seed;
-    const testing::Streams streams = testing::simulated_drive(simulation);
-    const auto named = [&](double shown_before) {
-      CalibrationOptions options;
-      options.diagnosis.mount.shown_before = shown_before;
-      const Calibration calibration = calibrate(streams.a, streams.b, options);
-      const Finding* moved = find(calibration, "mount_moved");
-      if (moved) {
-        EXPECT_NEAR(*moved->time, 110, 4);
-      }
-      return moved != nullptr;
-    };
-    EXPECT_TRUE(named(0));
-    EXPECT_TRUE(named(2));
-    EXPECT_FALSE(named(9.5)) << "half a second after it nothing shows it";
-  }
-}
-
-TEST(Explanations, TheSizeOfAMoveIsWhatTheMotionsShowOfIt) {
-  SimulationOptions simulation = moved_at(120, {rotation_exp({0, 0.015, 0}), {0, 0, 0.03}}, 1261);
-  int stated = 0;
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    simulation.seed = seed;
-    const testing::Streams streams = testing::simulated_drive(simulation);
-    const Calibration calibration = calibrate(streams.a, streams.b);
-    const Finding* moved = find(calibration, "mount_moved");
-    if (!moved) continue;
-    ++stated;
-    double turn = 0, shift = 0;
-    const int numbers =
-        std::sscanf(moved->message.c_str(), "The mounting changed by %lf deg and %lf cm", &turn, &shift);
-    ASSERT_GE(numbers, 1) << moved->message;
-    EXPECT_NEAR(turn, 0.86, 0.4) << moved->message;
-    EXPECT_LT(shift, 60) << "a road hardly shows the height in six seconds: " << moved->message;
-  }
-  EXPECT_GE(stated, 6);
 }
 
 TEST(Explanations, AGroundPlaneAboveTheSensorIsRefused) {
