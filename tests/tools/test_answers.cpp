@@ -236,20 +236,43 @@ TEST_F(AnswersTest, OfALogIsTheSessionThatRanAtItsEnd) {
   EXPECT_TRUE(best->certified());
 }
 
+verdict_t verdict(Verdict what, std::int64_t session, std::int64_t seq) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = what;
+  diagnosis.reason = "the lengths differ";
+  verdict_t message = bus::to_message(diagnosis, {DualQuaternion{}, begin_us, begin_us, 0});
+  message.utime = session + 100'000 * seq;
+  message.session = session;
+  message.seq = seq;
+  message.sensor_a = pair_name.first;
+  message.sensor_b = pair_name.second;
+  message.sender = "egocal-diagnosis";
+  return message;
+}
+
+// A mount may have moved since then.
+TEST_F(AnswersTest, AVerdictOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
+  Answers answers;
+  const auto drive_to = [&](std::int64_t seq) {
+    const problem_t to = problem(seq);
+    answers.hear(to);
+    answers.hear(answer(to));
+  };
+  drive_to(10);
+  EXPECT_FALSE(answers.judged_to_the_end(pair_name));
+  EXPECT_FALSE(answers.seconds_not_judged(pair_name).has_value());
+  answers.hear(verdict(Verdict::doubtful, begin_us, 10));
+  EXPECT_TRUE(answers.judged_to_the_end(pair_name));
+  EXPECT_EQ(answers.seconds_not_judged(pair_name), 0);
+  drive_to(30);
+  EXPECT_FALSE(answers.judged_to_the_end(pair_name));
+  EXPECT_NEAR(answers.seconds_not_judged(pair_name).value_or(-1), 2, 1e-9);
+  answers.hear(verdict(Verdict::contradictory, begin_us, 30));
+  EXPECT_TRUE(answers.judged_to_the_end(pair_name));
+}
+
 TEST_F(AnswersTest, TheVerdictOfTheSessionGoesWithTheAnswer) {
   const std::string log = folder / "session.log";
-  const auto verdict = [&](Verdict what, std::int64_t session, std::int64_t seq) {
-    Diagnosis diagnosis;
-    diagnosis.verdict = what;
-    diagnosis.reason = "the lengths differ";
-    verdict_t message = bus::to_message(diagnosis, {DualQuaternion{}, begin_us, begin_us, 0});
-    message.utime = message.session = session;
-    message.seq = seq;
-    message.sensor_a = "left";
-    message.sensor_b = "right";
-    message.sender = "egocal-diagnosis";
-    return message;
-  };
   const problem_t last = problem(5);
   {
     bus::LogWriter writer(log);

@@ -174,6 +174,32 @@ TEST_F(Supervision, AllEndWithThePlayerOrTheMonitor) {
   EXPECT_EQ(ended(), 0);
 }
 
+TEST_F(Supervision, AnswersAreAwaitedAfterALogWhileTheyCome) {
+  Program player = script("player", "exit 0");
+  player.ends_all = true;
+  options.stall = 300ms;
+  options.awaited = [left = 5]() mutable { return left > 0 ? left-- : 0; };
+  start({waiting("one"), player});
+  EXPECT_EQ(ended(), 0);
+  EXPECT_THAT(read(path("said")), HasSubstr("still to be judged: 5"));
+
+  std::filesystem::remove(path("said"));
+  options.awaited = [] { return 1; };
+  start({waiting("one"), player});
+  EXPECT_EQ(ended(), 0) << "what does not come is not waited for";
+}
+
+TEST_F(Supervision, AClosedMonitorWaitsForNoAnswers) {
+  Program player = script("player", "exit 0");
+  player.ends_all = true;
+  Program monitor = script("monitor", "sleep 0.5");
+  monitor.foreground = true;
+  options.stall = 1h;
+  options.awaited = [] { return 1; };
+  start({waiting("one"), player, monitor});
+  EXPECT_EQ(ended(), 0);
+}
+
 TEST_F(Supervision, OutputsAreKeptApartAndBounded) {
   std::ofstream(path("talker.out")) << std::string(10'000'001, 'x');
   Program talker = script("talker", "echo to standard output; echo and to the other >&2; exit 0");

@@ -104,6 +104,51 @@ TEST_F(Up, AnAnswerThatShouldNotBeUsedEndsWithThree) {
   EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven), "));
 }
 
+// The diagnosis takes a small share of a core: at the end of a log most of these pairs have not been judged,
+// or by the part of the drive before the mount moved.
+TEST_F(Up, WaitsUntilEveryPairOfALargeRigIsJudged) {
+  std::vector<std::string> simulate{paths::bin_dir() + "/egocal",
+                                    "simulate",
+                                    "--out",
+                                    log,
+                                    "--rig-out",
+                                    rig,
+                                    "--poses",
+                                    "800",
+                                    "--noise",
+                                    "0.005",
+                                    "--terrain",
+                                    "free",
+                                    "--bump",
+                                    "s6=50:0,0.05,0,0,4,0"};
+  for (int i = 1; i <= 6; ++i) {
+    simulate.push_back("--sensor");
+    simulate.push_back("s" + std::to_string(i) + "=" + std::to_string(0.3 * i) + ",0,1,1,0,0,0");
+  }
+  ASSERT_EQ(ChildProcess(simulate).wait(60s), 0);
+  std::string text = read(rig);
+  text.resize(text.find("[[pair]]"));
+  for (int a = 1; a <= 6; ++a)
+    for (int b = a + 1; b <= 6; ++b)
+      text += "[[pair]]\na = \"s" + std::to_string(a) + "\"\nb = \"s" + std::to_string(b) + "\"\n";
+  std::ofstream(rig) << text;
+  ChildProcess egocal = up({"--log", log, "--speed", "0"});
+  EXPECT_EQ(egocal.wait(200s), 3) << read(path("said"));
+  const std::string said = read(path("said"));
+  for (int a = 1; a <= 6; ++a)
+    for (int b = a + 1; b <= 6; ++b)
+      EXPECT_THAT(said, HasSubstr("s" + std::to_string(a) + " -> s" + std::to_string(b) +
+                                  (b == 6 ? ": contradictory: " : ": good: ")));
+}
+
+TEST_F(Up, NamesAPairWithoutAnAnswer) {
+  std::ofstream(rig, std::ios::app) << "[[sensor]]\nname = \"radar\"\nchannel = \"RADAR\"\n"
+                                       "[[pair]]\na = \"lidar\"\nb = \"radar\"\n";
+  ChildProcess egocal = up({"--log", log, "--speed", "0"});
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> radar: no answer"));
+}
+
 TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
   ChildProcess egocal = up({});
   const pid_t self = egocal.pid();

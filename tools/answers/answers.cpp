@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "answers/answers.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <tuple>
 
@@ -113,7 +114,7 @@ void Answers::hear(const verdict_t& message) {
   if (known != judgements_.end() && known->second.session == message.session &&
       known->second.seq > message.seq)
     return;
-  judgements_[pair] = {message.session, message.seq, std::move(received.value->diagnosis)};
+  judgements_[pair] = {message.session, message.seq, message.utime, std::move(received.value->diagnosis)};
 }
 
 void Answers::hear(const scale_problem_t& message) {
@@ -142,12 +143,32 @@ bool Answers::certified(const PairName& pair) const {
   return answer && answer->certified() && !lacks_scale(pair);
 }
 
-const Diagnosis* Answers::diagnosis(const PairName& pair) const {
+const Answers::Judgement* Answers::judgement(const PairName& pair) const {
   const Best* answer = best(pair);
   const auto entry = judgements_.find(pair);
   return answer && entry != judgements_.end() && entry->second.session == answer->message.session
-             ? &entry->second.diagnosis
+             ? &entry->second
              : nullptr;
+}
+
+const Diagnosis* Answers::diagnosis(const PairName& pair) const {
+  const Judgement* const known = judgement(pair);
+  return known ? &known->diagnosis : nullptr;
+}
+
+bool Answers::judged_to_the_end(const PairName& pair) const {
+  const Judgement* const known = judgement(pair);
+  const auto newest = newest_.find(pair);
+  return known && (newest == newest_.end() ||
+                   (known->session == newest->second.session && known->seq >= newest->second.seq));
+}
+
+std::optional<double> Answers::seconds_not_judged(const PairName& pair) const {
+  const Judgement* const known = judgement(pair);
+  if (!known) return {};
+  const auto newest = newest_.find(pair);
+  if (newest == newest_.end() || newest->second.session != known->session) return 0;
+  return 1e-6 * static_cast<double>(std::max<std::int64_t>(0, newest->second.utime - known->utime));
 }
 
 bool unusable(const Diagnosis& diagnosis) {
@@ -175,7 +196,7 @@ void Answers::note(const problem_t& message) {
   const bool older = std::tie(message.session, message.seq) < std::tie(newest.session, newest.seq);
   newest.older_in_a_row = older ? newest.older_in_a_row + 1 : 0;
   if (older && newest.older_in_a_row < confirmations) return;
-  newest = {message.session, message.seq, 0};
+  newest = {message.session, message.seq, message.utime, 0};
 }
 
 /// Of a problem that is no longer the newest although it has the higher number.

@@ -46,6 +46,10 @@ class Answers {
   const Best* best(const PairName& pair) const;
   /// The newest verdict about the session of the answer that counts; null: none.
   const Diagnosis* diagnosis(const PairName& pair) const;
+  /// That verdict is about the newest problem that was heard.
+  bool judged_to_the_end(const PairName& pair) const;
+  /// How much of the drive came after what that verdict is about [s]; nothing: there is no verdict.
+  std::optional<double> seconds_not_judged(const PairName& pair) const;
   /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
   /// The scale of one of the pair's sensors is to be found, and none that was verified is known of the
@@ -59,15 +63,16 @@ class Answers {
 
  private:
   struct Judgement {
-    std::int64_t session = 0, seq = 0;
+    std::int64_t session = 0, seq = 0, utime = 0;
     Diagnosis diagnosis;
   };
   /// The newest problem of a pair. Numbers may go back: another pairing process took over for a while, or the
   /// disk had no room for the newest session. Problems that arrive again and again are believed then.
   struct Newest {
-    std::int64_t session = 0, seq = 0;
+    std::int64_t session = 0, seq = 0, utime = 0;
     int older_in_a_row = 0;
   };
+  const Judgement* judgement(const PairName& pair) const;
   void note(const problem_t& message);
   bool is_ahead(const PairName& pair, const calibration_t& message) const;
   void consider(const PairName& pair, Best candidate);

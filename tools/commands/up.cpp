@@ -145,7 +145,10 @@ void run(const Options& options) {
     programs.back().ends_all = true;
   }
   std::optional<AnswerListener> listener;
-  if (!options.log.empty()) listener.emplace(rig, url);
+  if (!options.log.empty()) {
+    listener.emplace(rig, url);
+    supervisor.awaited = [&listener] { return listener->not_judged(); };
+  }
   const int code = supervise(programs, supervisor);
   if (code == 0 && passing) passing->discard();
   if (code != 0) {

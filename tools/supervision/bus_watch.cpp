@@ -4,13 +4,16 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include "answers/answers.hpp"
@@ -38,10 +41,19 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 
 namespace {
 
+/// A verdict that does not know the end of the drive states that first.
+std::string judgement_of(const PairName& pair, const Answers& answers) {
+  const Diagnosis* const diagnosis = answers.diagnosis(pair);
+  if (!diagnosis) return "not judged";
+  const double rest = answers.seconds_not_judged(pair).value_or(0);
+  const bool to_the_end = answers.judged_to_the_end(pair) || rest == 0;
+  return (to_the_end ? "" : fmt::format("the last {:.1f} s are not judged; before: ", rest)) +
+         verdict_line(*diagnosis);
+}
+
 /// Of a pair that has an answer.
 std::string line_of(const PairName& pair, const Answers& answers) {
   const Answers::Best& best = *answers.best(pair);
-  const Diagnosis* const diagnosis = answers.diagnosis(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Pose T = to_pose(best.checked.answer.T_a_b);
   const Eigen::Quaterniond& q = T.rotation;
@@ -49,7 +61,7 @@ std::string line_of(const PairName& pair, const Answers& answers) {
       "{} -> {}: {}\n  {}, {} motion pairs; translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} "
       "{:.5f} "
       "{:.5f} {:.5f}\n",
-      pair.first, pair.second, diagnosis ? verdict_line(*diagnosis) : "not judged",
+      pair.first, pair.second, judgement_of(pair, answers),
       answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
       T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
   if (scale)
@@ -66,7 +78,10 @@ std::string report(const bus::Rig& rig, const Answers& answers) {
   Outcome outcome;
   for (const bus::PairConfig& config : rig.pairs) {
     const PairName pair{config.a, config.b};
-    if (!answers.best(pair)) continue;
+    if (!answers.best(pair)) {
+      outcome.text += fmt::format("{} -> {}: no answer\n", pair.first, pair.second);
+      continue;
+    }
     const Diagnosis* diagnosis = answers.diagnosis(pair);
     outcome.answered = true;
     outcome.unusable = outcome.unusable || (diagnosis && unusable(*diagnosis));
@@ -83,7 +98,16 @@ void write_all(int out, const std::string& text) {
   }
 }
 
-[[noreturn]] void listen(const bus::Rig& rig, const std::string& url, int out) {
+int not_judged(const bus::Rig& rig, const Answers& answers) {
+  return static_cast<int>(
+      std::count_if(rig.pairs.begin(), rig.pairs.end(), [&](const bus::PairConfig& config) {
+        const PairName pair{config.a, config.b};
+        return answers.best(pair) && !answers.judged_to_the_end(pair);
+      }));
+}
+
+[[noreturn]] void listen(const bus::Rig& rig, const std::string& url, int out,
+                         std::atomic<int>& not_judged_count) {
   try {
     bus::Loop loop(url, {.require_network = false});
     Answers answers;
@@ -96,6 +120,7 @@ void write_all(int out, const std::string& text) {
       loop.subscribe<scale_problem_t>(bus::scale_problem_channel(pair.a, pair.b), hear);
       loop.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b), hear);
     }
+    loop.every(std::chrono::milliseconds(100), [&] { not_judged_count = not_judged(rig, answers); });
     loop.run();
     write_all(out, report(rig, answers));
   } catch (const std::exception&) {
@@ -107,6 +132,10 @@ void write_all(int out, const std::string& text) {
 }  // namespace
 
 AnswerListener::AnswerListener(const bus::Rig& rig, const std::string& url) {
+  void* const shared =
+      mmap(nullptr, sizeof *not_judged_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) throw Error(std::string("mmap: ") + std::strerror(errno));
+  not_judged_ = new (shared) std::atomic<int>(0);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw Error(std::string("pipe: ") + std::strerror(errno));
   const pid_t parent = getpid();
@@ -116,7 +145,7 @@ AnswerListener::AnswerListener(const bus::Rig& rig, const std::string& url) {
     if (getppid() != parent) _exit(0);
     setpgid(0, 0);  // a Ctrl-C is not for it
     close(ends[0]);
-    listen(rig, url, ends[1]);
+    listen(rig, url, ends[1], *not_judged_);
   }
   close(ends[1]);
   pipe_ = ends[0];
@@ -128,6 +157,7 @@ AnswerListener::AnswerListener(const bus::Rig& rig, const std::string& url) {
 AnswerListener::~AnswerListener() {
   end();
   close(pipe_);
+  munmap(not_judged_, sizeof *not_judged_);
 }
 
 void AnswerListener::end() {

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -19,7 +20,7 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 struct Outcome {
   bool answered = false;  ///< any solver, for any pair
   bool unusable = false;  ///< some pair's motions contradict each other, or miss the goal
-  std::string text;       ///< a line for each pair that was answered: verdict, proof and transform
+  std::string text;       ///< of each pair verdict, proof and transform, or that there is no answer
 };
 
 /// Listens to the answers and verdicts of a rig while this object exists: a process of its own, so that the
@@ -31,6 +32,8 @@ class AnswerListener {
   AnswerListener(const AnswerListener&) = delete;
   AnswerListener& operator=(const AnswerListener&) = delete;
 
+  /// Answers whose newest verdict is not about the newest motions: those of a drive's end still come.
+  int not_judged() const { return *not_judged_; }
   /// Stops listening. Once.
   Outcome outcome();
 
@@ -39,6 +42,7 @@ class AnswerListener {
 
   pid_t pid_ = -1;
   int pipe_ = -1;
+  std::atomic<int>* not_judged_ = nullptr;  ///< in memory that both processes share
 };
 
 }  // namespace egocal::tools

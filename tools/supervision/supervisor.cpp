@@ -27,6 +27,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
+/// Between two questions for what is still awaited: people do not see it, and it costs nothing.
+constexpr milliseconds look_again{100};
+
 struct Child {
   Program program;
   Restarts restarts;
@@ -139,9 +142,23 @@ class Supervisor {
     } else {
       for (Child& child : children_)
         if (child.pid < 0 && !child.finished && now >= child.start_at) start(child);
-      if (end_at_ && now >= *end_at_) end_all(SIGTERM, false);
+      if (end_at_ && now >= *end_at_ && !waits_for_answers(now)) end_all(SIGTERM, false);
     }
     wait();
+  }
+
+  /// After a log's end. What does not come any more is not waited for.
+  bool waits_for_answers(Clock::time_point now) {
+    const int awaited = options_.awaited && !wanted_at_once_ ? options_.awaited() : 0;
+    if (awaited == 0) return false;
+    if (!awaited_ || awaited < *awaited_) {
+      if (!awaited_)
+        messages_.report(fmt::format("the log has ended; answers that are still to be judged: {}", awaited));
+      awaited_ = awaited;
+      fell_at_ = now;
+    }
+    end_at_ = now + look_again;
+    return now - fell_at_ < options_.stall;
   }
 
   void start(Child& child) {
@@ -219,7 +236,8 @@ class Supervisor {
     switch (child.restarts.ended(child.program, code, lived)) {
       case Restarts::Next::finished:
         child.finished = true;
-        end_at_ = Clock::now() + (child.program.foreground ? milliseconds(0) : options_.settle);
+        wanted_at_once_ = wanted_at_once_ || child.program.foreground;
+        end_at_ = Clock::now() + (wanted_at_once_ ? milliseconds(0) : options_.settle);
         return;
       case Restarts::Next::hopeless:
         messages_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
@@ -283,6 +301,9 @@ class Supervisor {
   int signals_ = -1;
   Messages messages_{options_};
   std::optional<Clock::time_point> end_at_;
+  bool wanted_at_once_ = false;  ///< the user has closed the monitor
+  std::optional<int> awaited_;   ///< the fewest so far,
+  Clock::time_point fell_at_{};
   Clock::time_point kill_at_{};
   bool ending_ = false, failed_ = false;
 };

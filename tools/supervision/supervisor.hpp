@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,10 @@ struct SupervisorOptions {
   RestartOptions restarts;
   /// The same death is reported again after this time.
   std::chrono::milliseconds repeat_report{60'000};
-  std::chrono::milliseconds settle{1500};    ///< after the player's end, for the last answers
+  std::chrono::milliseconds settle{1500};  ///< after the player's end, for the last answers
+  /// How many answers are still awaited then; while this number falls within each `stall`, it is waited.
+  std::function<int()> awaited{};
+  std::chrono::milliseconds stall{5000};
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
 
