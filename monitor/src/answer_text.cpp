@@ -115,6 +115,8 @@ Label verdict_of(const PairState& pair, Charset charset) {
   if (!pair.shown.valid) return {std::string(s.no) + " unusable", Style::bad};
   if (!pair.verdict) return {"not judged yet", Style::dim};
   const Verdict verdict = pair.verdict->diagnosis.verdict;
+  // what came since may contradict it; what is contradictory stays that
+  if (verdict <= Verdict::incomplete && pair.verdict->old > 0) return {"? old verdict", Style::warning};
   // the verdict is about the optimum; what is not proven to be the optimum does not share it
   if (verdict <= Verdict::incomplete && answer->status != 0) return {"? not proven", Style::warning};
   return {std::string(mark_of(verdict, s)) + " " + std::string(to_string(verdict)), style_of(verdict)};
@@ -141,9 +143,17 @@ std::string goal_text(const Diagnosis& diagnosis) {
 Label advice_of(const PairState& pair) {
   if (!pair.verdict) return {"", Style::dim};
   const Diagnosis& diagnosis = pair.verdict->diagnosis;
+  if (pair.verdict->old > 0)
+    return {"nothing is judged since " + age(pair.verdict->old) + ": is egocal-diagnosis running? Before: " +
+                std::string(to_string(diagnosis.verdict)) + ". " + diagnosis.reason,
+            Style::warning};
   const Style style = style_of(diagnosis.verdict);
   for (const Finding& finding : diagnosis.findings)
     if (finding.certain) return {finding.message + " Cure: " + finding.remedy, style};
+  if (diagnosis.verdict >= Verdict::doubtful && !diagnosis.findings.empty()) {
+    const Finding& possible = diagnosis.findings.front();
+    return {possible.message + " Cure: " + possible.remedy, style};
+  }
   if (diagnosis.verdict <= Verdict::incomplete && diagnosis.goal && !diagnosis.goal->reached)
     return {"goal " + goal_text(diagnosis), style};
   return {(diagnosis.goal && diagnosis.goal->reached ? "goal done. " : "") + diagnosis.reason, style};

@@ -174,6 +174,8 @@ void Model::on_problem(const problem_t& message, Now now) {
   kept.sensor_b = pair->b;
   kept.choice = bounded(message.choice);
   kept.host = bounded(message.host);
+  if (pair->verdict && message.seq > pair->verdict->seq && !pair->verdict->behind_mono_us)
+    pair->verdict->behind_mono_us = now.mono_us;
   kept.n_blocks = 0;
   kept.blocks = {};  // verified by now, and too large to keep with every copy of the model
   if (chosen_anew)
@@ -401,6 +403,7 @@ void Model::tick(Now now) {
       note(Severity::info, name,
            "the stream is silent: no new motion for " + rounded(options_.stream_timeout, 0) + " s", now);
     }
+    watch_age_of_verdict(pair, now);
     // a solver is missed only where there is something to solve, and only after it has had time to
     if (!pair.has_problem || pair.silent || pair_is_paused(*this, pair)) pair.idle_mono_us = now.mono_us;
     for (SolverTrack& track : pair.solvers) {

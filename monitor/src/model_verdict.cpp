@@ -40,7 +40,13 @@ void Model::on_verdict(const verdict_t& message, const bus::ReceivedVerdict& rec
     begin_session(*pair, message.session);
   }
   if (pair->verdict && message.seq < pair->verdict->seq) return;  // overtaken on the way
-  const PairVerdict verdict{received.diagnosis, received.judged, message.sender, message.seq, now};
+  PairVerdict verdict{received.diagnosis, received.judged, message.sender, message.seq, now};
+  if (pair->verdict && message.seq == pair->verdict->seq) {
+    verdict.behind_mono_us = pair->verdict->behind_mono_us;
+    verdict.old = pair->verdict->old;
+  } else if (pair->has_problem && pair->problem.seq > message.seq) {
+    verdict.behind_mono_us = now.mono_us;
+  }
   watch_verdict(*pair, verdict, now);
   pair->verdict = verdict;
 }
@@ -59,6 +65,19 @@ void Model::watch_verdict(const PairState& pair, const PairVerdict& verdict, Now
   const bool reached_before = before.goal && before.goal->reached;
   if (diagnosis.goal && diagnosis.goal->reached && !reached_before)
     note(Severity::good, name, "the goal is reached", now);
+}
+
+/// A diagnosis that hangs leaves a verdict behind, and the mount may move after it.
+void Model::watch_age_of_verdict(PairState& pair, Now now) {
+  if (!pair.verdict || !pair.verdict->behind_mono_us) return;
+  const double within =
+      options_.judged_within + options_.judged_within_per_pair * static_cast<double>(pairs_.size());
+  const double behind = 1e-6 * static_cast<double>(now.mono_us - *pair.verdict->behind_mono_us);
+  if (behind < within) return;
+  if (pair.verdict->old == 0)
+    note(Severity::warning, pair_name(pair.a, pair.b),
+         "the verdict is old, new motions are not judged: is egocal-diagnosis running?", now);
+  pair.verdict->old = behind;
 }
 
 }  // namespace egocal::monitor

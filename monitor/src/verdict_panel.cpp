@@ -27,7 +27,8 @@ std::vector<Line> lines_of(const PairVerdict& verdict, Charset charset) {
   const std::string fit = fit_text(verdict, charset);
   if (!fit.empty()) lines.push_back({"fit", fit, Style::normal});
   for (const Finding& finding : diagnosis.findings)
-    if (!finding.certain) lines.push_back({"possible", finding.message, Style::dim});
+    if (!finding.certain)
+      lines.push_back({"possible", finding.message + " Cure: " + finding.remedy, Style::dim});
   return lines;
 }
 
@@ -47,7 +48,10 @@ void draw_verdict(const Pane& pane, const PairState& pair, Charset charset) {
     if (x < pane.width()) pane.text(x, y, clean(text, static_cast<std::size_t>(pane.width() - x)), style);
   };
   row(0, "verdict", verdict_of(pair, charset),
-      pair.verdict ? pair.verdict->diagnosis.reason : "is egocal-diagnosis running?", Style::normal);
+      !pair.verdict           ? "is egocal-diagnosis running?"
+      : pair.verdict->old > 0 ? advice_of(pair).text
+                              : pair.verdict->diagnosis.reason,
+      Style::normal);
   row(1, "proof", proof_of(*answer),
       "by " + answer->solver + ", gap " + compact(answer->scaled_gap, charset) + " of 1", Style::dim);
   int y = 2;

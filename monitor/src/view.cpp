@@ -58,8 +58,8 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     for (const PairState& p : model.pairs()) paused += pair_is_paused(model, p);
     for (const PairState& p : model.pairs()) certified += p.answer() && p.answer()->status == 0;
     for (const PairState& p : model.pairs())
-      good +=
-          p.answer() && p.answer()->status == 0 && p.verdict && p.verdict->diagnosis.verdict == Verdict::good;
+      good += p.answer() && p.answer()->status == 0 && p.verdict &&
+              p.verdict->diagnosis.verdict == Verdict::good && p.verdict->old == 0;
     for (const ProcessState& p : model.processes()) gone += !p.alive && p.state != bus::State::ended;
     x = pane.text(x, 0, std::to_string(good) + " of " + std::to_string(model.pairs().size()) + " good",
                   good == model.pairs().size() && good ? Style::good : Style::normal) +

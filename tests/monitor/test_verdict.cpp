@@ -157,6 +157,51 @@ TEST_F(VerdictShown, NeverThatOfAnotherSession) {
   EXPECT_FALSE(model.pairs()[0].verdict) << "a new session is not judged yet";
 }
 
+// The mount may have moved since, and the diagnosis hangs.
+TEST_F(VerdictShown, AnOldOneIsNotCalledGood) {
+  const auto at = [](double seconds) {
+    const auto us = std::llround(1e6 * seconds);
+    return Now{some_time.mono_us + us, some_time.wall_us + us};
+  };
+  const auto drive_to = [&](int step) {
+    const problem_t next = test::problem_at("lidar", "camera", step, 10);
+    model.on_problem(next, at(0.1 * (step - 100)));
+    model.on_calibration(test::calibration_at(next, false), at(0.1 * (step - 100)));
+    model.tick(at(0.1 * (step - 100)));
+  };
+  judge(clean());
+  model.tick(at(100));
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("✓ good")) << "nothing came since";
+  for (int step = 1101; step < 1200; ++step) drive_to(step);
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("✓ good"));
+  for (int step = 1200; step < 1300; ++step) drive_to(step);
+  for (const Screen screen : {Screen::overview, Screen::detail}) {
+    const std::string text = shown(screen, 110, 42);
+    EXPECT_THAT(text, Not(HasSubstr("✓ good")));
+    EXPECT_THAT(text, HasSubstr("? old verdict"));
+    EXPECT_THAT(text, HasSubstr("is egocal-diagnosis running?"));
+  }
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("0 of 1 good"));
+  EXPECT_THAT(pair_lines(model, Charset::ascii),
+              HasSubstr("lidar -> camera: ? old verdict: nothing is judged"));
+  EXPECT_EQ(nlohmann::json::parse(json_line(model))["pairs"][0]["verdict_old"], true);
+  EXPECT_THAT(events(), Contains(HasSubstr("the verdict is old")).Times(1));
+  judge(without_scale(), test::begin_utime, problem.seq + 1199);
+  model.tick(at(120));
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("✗ contradictory"));
+}
+
+TEST_F(VerdictShown, ADoubtfulOneComesWithThePossibleCause) {
+  Diagnosis diagnosis = clean();
+  diagnosis.verdict = Verdict::doubtful;
+  diagnosis.reason = "The mounting seems to have moved.";
+  diagnosis.findings.push_back({"mount_moved", false, diagnosis.reason, "Reset the pair.", 2, std::nullopt,
+                                std::nullopt, std::nullopt});
+  judge(diagnosis);
+  for (const Screen screen : {Screen::overview, Screen::detail})
+    EXPECT_THAT(shown(screen, 110, 42), HasSubstr("The mounting seems to have moved. Cure: Reset the pair."));
+}
+
 TEST_F(VerdictShown, ItsChangesAreEvents) {
   judge(clean());
   judge(clean());

@@ -265,10 +265,28 @@ TEST_F(AnswersTest, AVerdictOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
   EXPECT_TRUE(answers.judged_to_the_end(pair_name));
   EXPECT_EQ(answers.seconds_not_judged(pair_name), 0);
   drive_to(30);
+  EXPECT_NE(answers.diagnosis(pair_name), nullptr);
   EXPECT_FALSE(answers.judged_to_the_end(pair_name));
   EXPECT_NEAR(answers.seconds_not_judged(pair_name).value_or(-1), 2, 1e-9);
   answers.hear(verdict(Verdict::contradictory, begin_us, 30));
   EXPECT_TRUE(answers.judged_to_the_end(pair_name));
+}
+
+// egocal solve prints the cure of what is possible as well.
+TEST(VerdictLine, NamesWhatIsPossibleWithItsCure) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::doubtful;
+  diagnosis.reason = "The mounting changed.";
+  diagnosis.findings.push_back({"mount_moved", false, diagnosis.reason, "Reset the pair.", 2, {}, {}, {}});
+  diagnosis.findings.push_back(
+      {"inverted_both", false, "Both may be inverted.", "Look at them.", 1, {}, {}, {}});
+  EXPECT_EQ(verdict_line(diagnosis), "doubtful: The mounting changed. Cure: Reset the pair.");
+  EXPECT_THAT(possible_lines(diagnosis), ::testing::ElementsAre("Both may be inverted. Cure: Look at them."));
+  diagnosis.verdict = Verdict::good;
+  EXPECT_EQ(verdict_line(diagnosis), "good: The mounting changed.");
+  EXPECT_EQ(possible_lines(diagnosis).size(), 2u);
+  diagnosis.findings[0].certain = true;
+  EXPECT_EQ(verdict_line(diagnosis), "good: The mounting changed. Cure: Reset the pair.");
 }
 
 TEST_F(AnswersTest, TheVerdictOfTheSessionGoesWithTheAnswer) {

@@ -175,11 +175,28 @@ bool unusable(const Diagnosis& diagnosis) {
   return diagnosis.verdict == Verdict::contradictory || (diagnosis.goal && !diagnosis.goal->reached);
 }
 
+namespace {
+
+/// What a doubtful verdict is about; null where a finding is certain, or none is there.
+const Finding* named_as_possible(const Diagnosis& diagnosis) {
+  const auto certain = [](const Finding& finding) { return finding.certain; };
+  const std::vector<Finding>& findings = diagnosis.findings;
+  return diagnosis.verdict < Verdict::doubtful || findings.empty() ||
+                 std::any_of(findings.begin(), findings.end(), certain)
+             ? nullptr
+             : &findings.front();
+}
+
+}  // namespace
+
 std::string verdict_line(const Diagnosis& diagnosis) {
   std::string line = std::string(to_string(diagnosis.verdict)) + ": " + diagnosis.reason;
   for (const Finding& finding : diagnosis.findings)
     if (finding.certain)
       line += (finding.message == diagnosis.reason ? "" : " " + finding.message) + " Cure: " + finding.remedy;
+  if (const Finding* const possible = named_as_possible(diagnosis))
+    line += (possible->message == diagnosis.reason ? "" : " Possible: " + possible->message) +
+            " Cure: " + possible->remedy;
   if (diagnosis.goal) {
     line += diagnosis.goal->reached ? " Goal: reached." : " Goal: missing";
     for (const std::string& direction : diagnosis.goal->missing) line += " " + direction;
@@ -187,6 +204,14 @@ std::string verdict_line(const Diagnosis& diagnosis) {
     if (!diagnosis.goal->next.empty()) line += " " + diagnosis.goal->next;
   }
   return line;
+}
+
+std::vector<std::string> possible_lines(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const Finding& finding : diagnosis.findings)
+    if (!finding.certain && &finding != named_as_possible(diagnosis))
+      lines.push_back(finding.message + " Cure: " + finding.remedy);
+  return lines;
 }
 
 void Answers::note(const problem_t& message) {

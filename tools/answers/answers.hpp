@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "egocal/bus/answer_check.hpp"
 #include "egocal/bus/rig.hpp"
@@ -91,6 +92,9 @@ class Answers {
 bool unusable(const Diagnosis& diagnosis);
 /// "contradictory: the reason. Cure: ...": verdict, reason, what cures it and how far the goal is, one line.
 std::string verdict_line(const Diagnosis& diagnosis);
+/// "What else explains the motions. Cure: ...": what they cannot rule out, besides what the verdict's line
+/// names.
+std::vector<std::string> possible_lines(const Diagnosis& diagnosis);
 
 /// "lidar,camera", as --pair takes it.
 std::string text(const PairName& pair);

@@ -30,6 +30,9 @@ struct Options {
   bool all = false;
 };
 
+/// More of the drive without a verdict is worth a warning [s]: a pair alone is judged every two seconds.
+constexpr double longest_not_judged = 10;
+
 std::string listed(const std::vector<PairName>& pairs) {
   std::string all;
   for (const PairName& pair : pairs) all += (all.empty() ? "" : " ") + text(pair);
@@ -120,6 +123,9 @@ NamedExtrinsic named(const PairName& pair, const Answers& answers) {
     fmt::print(stderr,
                "egocal: warning: {}: the scale of this answer could not be verified: it was not received\n",
                text(pair));
+  if (const double rest = answers.seconds_not_judged(pair).value_or(0); rest > longest_not_judged)
+    fmt::print(stderr, "egocal: warning: {}: the last {:.0f} s of the drive are not judged\n", text(pair),
+               rest);
   if (diagnosis && diagnosis->verdict != Verdict::good)
     fmt::print(stderr, "egocal: {}: {}\n", text(pair), verdict_line(*diagnosis));
   NamedExtrinsic extrinsic{pair.first,

@@ -58,9 +58,8 @@ std::string line_of(const PairName& pair, const Answers& answers) {
   const Pose T = to_pose(best.checked.answer.T_a_b);
   const Eigen::Quaterniond& q = T.rotation;
   std::string text = fmt::format(
-      "{} -> {}: {}\n  {}, {} motion pairs; translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} "
-      "{:.5f} "
-      "{:.5f} {:.5f}\n",
+      "{} -> {}: {}\n  {}, {} motion pairs; "
+      "translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} {:.5f} {:.5f} {:.5f}\n",
       pair.first, pair.second, judgement_of(pair, answers),
       answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
       T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
@@ -68,6 +67,8 @@ std::string line_of(const PairName& pair, const Answers& answers) {
     text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
                         scale->solution.stddev,
                         scale->verified && scale->solution.certified ? "optimal (proven)" : "not proven");
+  if (const Diagnosis* const diagnosis = answers.diagnosis(pair))
+    for (const std::string& line : possible_lines(*diagnosis)) text += "  possible: " + line + "\n";
   if (answers.lacks_scale(pair))
     text += "  the scale could not be verified: this answer holds at a scale that is not known\n";
   return text;
