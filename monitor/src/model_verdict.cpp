@@ -70,8 +70,12 @@ void Model::watch_verdict(const PairState& pair, const PairVerdict& verdict, Now
 /// A diagnosis that hangs leaves a verdict behind, and the mount may move after it.
 void Model::watch_age_of_verdict(PairState& pair, Now now) {
   if (!pair.verdict || !pair.verdict->behind_mono_us) return;
+  const bool gone = std::any_of(processes_.begin(), processes_.end(), [&](const ProcessState& process) {
+    return process.status.name == pair.verdict->sender && !process.alive;
+  });
   const double within =
-      options_.judged_within + options_.judged_within_per_pair * static_cast<double>(pairs_.size());
+      gone ? 0
+           : options_.judged_within + options_.judged_within_per_pair * static_cast<double>(pairs_.size());
   const double behind = 1e-6 * static_cast<double>(now.mono_us - *pair.verdict->behind_mono_us);
   if (behind < within) return;
   if (pair.verdict->old == 0)
