@@ -85,6 +85,7 @@ void Diagnosing::take_problems() {
       // where times ran backwards the number of the session is no time, and the streams have begun again
       if (message.session <= message.utime) pair->sample.begin_session(message.session);
       pair->judged_seq = -1;
+      pair->matched_before = message.matched;
       pair->verdict.reset();
     }
     pair->sample.set_time_offset(message.time_offset);
@@ -94,6 +95,24 @@ void Diagnosing::take_problems() {
 
 bool Diagnosing::idle(const Pair& pair) const {
   return seconds(loop_.mono_us() - pair.newest_mono_us) >= options_.idle;
+}
+
+/// At full speed many motions are there before the first problem is heard, but not before the first pose; and
+/// where one sensor begins later, poses come late but no motions.
+Unseen Diagnosing::unseen_of(const Pair& pair) {
+  const problem_t& message = pair.newest->message;
+  std::int64_t begin = message.session;
+  for (const Side side : {Side::a, Side::b}) {
+    const Trajectory& poses = pair.sample.poses(side);
+    const std::int64_t offset = side == Side::b ? std::llround(1e6 * message.time_offset) : 0;
+    begin = std::max(begin, poses.empty() ? message.utime : poses.front().time_us + offset);
+  }
+  const auto part = [](double unseen, double all) {
+    return all > 0 ? std::clamp(unseen / all, 0.0, 1.0) : 0;
+  };
+  return {std::min(part(static_cast<double>(pair.matched_before), static_cast<double>(message.matched)),
+                   part(seconds(begin - message.session), seconds(message.utime - message.session))),
+          seconds(begin - message.session)};
 }
 
 void Diagnosing::look() {
@@ -153,6 +172,7 @@ void Diagnosing::judge(Pair& pair) {
       diagnosis = diagnose(a, b, pairing, answered, options);
       judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses)};
     }
+    limit_to_what_was_seen(unseen_of(pair), diagnosis, options_.unseen);
     word_remedies(rig_, pair.config, diagnosis.findings);
     verdict_t verdict = bus::to_message(diagnosis, judged);
     verdict.utime = message.utime;

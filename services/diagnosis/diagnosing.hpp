@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnosis/drive_sample.hpp"
+#include "diagnosis/unseen.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/newest.hpp"
 #include "egocal/bus/rig.hpp"
@@ -35,6 +36,7 @@ struct DiagnosingOptions {
   /// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
   int queue_capacity = 1024;
   DriveSampleOptions sample;
+  UnseenOptions unseen;
 };
 
 /// egocal-diagnosis: from the sensors' poses and the problems to verdict_t. Judges the certified optimum of
@@ -69,6 +71,7 @@ class Diagnosing {
     DriveSample sample;
     std::optional<ReceivedProblem> newest;
     std::int64_t newest_mono_us = 0;      ///< when its number was new
+    std::int64_t matched_before = 0;      ///< motions of the session when its first problem was heard
     std::int64_t judged_seq = -1;         ///< of the newest problem's session; -1: none
     std::optional<verdict_t> verdict;     ///< the last one, of the newest problem's session
     std::int64_t restarted_session = -1;  ///< for which a reset was sent
@@ -79,6 +82,7 @@ class Diagnosing {
   void take_problems();
   void look();
   bool idle(const Pair& pair) const;
+  static Unseen unseen_of(const Pair& pair);
   void judge(Pair& pair);
   void restart_after_move(Pair& pair, const Diagnosis& diagnosis);
   void repeat();

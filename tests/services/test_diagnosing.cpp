@@ -93,6 +93,7 @@ class DiagnosisService : public ::testing::Test {
     message.sensor_a = "left";
     message.sensor_b = "right";
     message.stride = pairing.choice().stride;
+    message.matched = static_cast<std::int64_t>(pairing.counts().matched);
     observer.publish(bus::problem_channel("left", "right"), message);
   }
 
@@ -205,6 +206,45 @@ TEST_F(AfterAMove, TheCalibrationStartsAgainWhereTheRigSaysSo) {
   EXPECT_EQ(commands[0].verb, "reset");
   EXPECT_EQ(commands[0].sensor_a, "left");
   EXPECT_EQ(commands[0].session, streams.a[0].time_us);
+}
+
+// It knows nothing of the bump, whose motions are in the answer.
+TEST_F(DiagnosisService, CallsNothingGoodWhoseMotionsItHasHardlySeen) {
+  testing::Streams streams = drive(800);
+  streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0, 0.01}), {0.01, 0, 0}});
+  MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
+  const auto drive_to = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const Side side : {Side::a, Side::b}) {
+        const StampedPose& pose = (side == Side::a ? streams.a : streams.b)[i];
+        observer.publish(side == Side::a ? "ODO_LEFT" : "ODO_RIGHT",
+                         bus::to_message(pose, ++seq[side == Side::a]));
+        problems += static_cast<std::int64_t>(pairing.push(side, pose).size());
+      }
+      pass(100ms);
+      if (i % 40 == 39) publish(pairing, streams.a[0].time_us, streams.a[i].time_us, problems);
+    }
+    pass(2s);
+  };
+  drive_to(0, 480);
+  start();
+  drive_to(480, 800);
+  ASSERT_FALSE(verdicts.empty());
+  for (const verdict_t& verdict : verdicts) EXPECT_NE(verdict.verdict, "good") << verdict.reason;
+}
+
+TEST(UnseenMotions, AreNotCalledGoodUntilTheyAreFew) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::good;
+  diagnosis.reason = "The motions agree.";
+  limit_to_what_was_seen({0.19, 40}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::good);
+  limit_to_what_was_seen({0.3, 40}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::incomplete);
+  EXPECT_THAT(diagnosis.reason, ::testing::HasSubstr("The first 40 s are not judged"));
+  diagnosis.verdict = Verdict::contradictory;
+  limit_to_what_was_seen({0.9, 40}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::contradictory);
 }
 
 TEST_F(DiagnosisService, TellsTheGoalFromWhatIsMissing) {

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/diagnosis/verdict.hpp"
+
+namespace egocal::services {
+
+struct UnseenOptions {
+  /// Part of the motions that may be there without having been judged: so many wrong ones are found as
+  /// outliers (docs/accuracy.md, "Outliers").
+  double largest_share = 0.2;
+};
+
+/// What a process that was started within a session has not seen of it.
+struct Unseen {
+  double share = 0;    ///< of the motions behind the answer
+  double seconds = 0;  ///< from the session's start
+};
+
+/// Motions that nobody judges may contradict those that come now: a mount that moved before. Such an answer
+/// is not called good, until enough is driven for the unseen part to be small.
+void limit_to_what_was_seen(const Unseen& unseen, Diagnosis& diagnosis, const UnseenOptions& options = {});
+
+}  // namespace egocal::services
