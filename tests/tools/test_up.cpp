@@ -86,6 +86,7 @@ TEST_F(Up, PlaysALogToItsEndAndEndsAll) {
   const std::string page = read(path("out/report-lidar-camera.html"));
   EXPECT_THAT(page, HasSubstr("good: "));
   EXPECT_THAT(page, HasSubstr("</html>"));
+  EXPECT_THAT(read(path("said")), HasSubstr("report-lidar-camera.html: good: "));
   for (const char* name :
        {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-diagnosis", "egocal-player"})
     EXPECT_TRUE(std::filesystem::exists(path("out/" + std::string(name) + ".out"))) << name;
@@ -147,6 +148,21 @@ TEST_F(Up, NamesAPairWithoutAnAnswer) {
   ChildProcess egocal = up({"--log", log, "--speed", "0"});
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
   EXPECT_THAT(read(path("said")), HasSubstr("lidar -> radar: no answer"));
+}
+
+// The diagnosis keeps 1200 poses of a stream, the page shows all: here it was killed after it had seen the
+// bump.
+TEST_F(Up, APageThatContradictsEndsWithThreeWhateverTheProcessesSaid) {
+  ASSERT_EQ(ChildProcess({paths::bin_dir() + "/egocal", "simulate", "--out", log, "--rig-out", rig, "--poses",
+                          "600", "--noise", "0.001", "--terrain", "free", "--bump", "camera=20:0,0,0,0,6,0"})
+                .wait(60s),
+            0);
+  ChildProcess egocal = up({"--log", log, "--speed", "10", "--report"});
+  ASSERT_TRUE(until([&] { return child(egocal.pid(), "egocal-diagnosi") > 0; }));
+  std::this_thread::sleep_for(4s);
+  kill(child(egocal.pid(), "egocal-diagnosi"), SIGKILL);  // its successor knows nothing of the bump
+  EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("report-lidar-camera.html: contradictory: The mounting changed"));
 }
 
 TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {

@@ -76,8 +76,10 @@ void report_left_behind(const std::string& directory) {
 }
 
 /// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
-/// offline is named; the answer of the processes remains.
-void write_reports(const Options& options, const bus::Rig& rig, const std::string& directory) {
+/// offline is named; the answer of the processes remains. False: a page says that its answer should not be
+/// used. A page knows all poses, the diagnosis 1200 of each stream, so their verdicts may differ.
+bool write_reports(const Options& options, const bus::Rig& rig, const std::string& directory) {
+  bool usable = true;
   for (const bus::PairConfig& pair : rig.pairs) {
     const std::string file = fmt::format("{}/report-{}-{}.html", directory, pair.a, pair.b);
     SolveRequest request;
@@ -89,12 +91,15 @@ void write_reports(const Options& options, const bus::Rig& rig, const std::strin
     request.calibration.read_b.scale = bus::sensor(rig, pair.b).scale;
     request.truth = pair.truth;
     try {
-      write_report(request, file, fmt::format("egocal up {} --log {} --report", options.rig, options.log));
-      fmt::print(stderr, "egocal up: {}\n", file);
+      const ReportInput page = write_report(
+          request, file, fmt::format("egocal up {} --log {} --report", options.rig, options.log));
+      fmt::print(stderr, "egocal up: {}: {}\n", file, page.verdict);
+      usable = usable && page.calibration.verdict != Verdict::contradictory;
     } catch (const Error& error) {
       fmt::print(stderr, "egocal up: no report of {} and {}: {}\n", pair.a, pair.b, error.what());
     }
   }
+  return usable;
 }
 
 void run(const Options& options) {
@@ -163,9 +168,10 @@ void run(const Options& options) {
     throw Error("up: nothing was calibrated: no solver answered; see " +
                 (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
   fmt::print("{}", outcome.text);
-  if (options.report)
-    write_reports(options, rig, supervisor.output_dir.empty() ? "." : supervisor.output_dir);
-  if (outcome.unusable) throw cli::Exit{not_to_be_used};
+  const bool pages_usable =
+      !options.report ||
+      write_reports(options, rig, supervisor.output_dir.empty() ? "." : supervisor.output_dir);
+  if (outcome.unusable || !pages_usable) throw cli::Exit{not_to_be_used};
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ class Collector {
 
   LogTrajectory finished(const std::string& file, const std::string& channel) {
     add(stream_.flush());
-    return {std::move(poses_), not_used(file, channel)};
+    const std::string text = not_used(file, channel);  // counts the poses
+    return {std::move(poses_), text};
   }
   bool empty() const { return messages_ == 0; }
 
