@@ -33,6 +33,21 @@ StreamOptions stream_options(const bus::Rig& rig) {
   return options;
 }
 
+/// Of the stream that has fewer: poses that are there while the other one has some. None where the clock of
+/// one sensor was set in between.
+std::size_t at_common_times(const Trajectory& a, const Trajectory& b, double time_offset) {
+  if (a.empty() || b.empty()) return 0;
+  const std::int64_t offset = std::llround(1e6 * time_offset);
+  const std::int64_t begin = std::max(a.front().time_us, b.front().time_us + offset);
+  const std::int64_t end = std::min(a.back().time_us, b.back().time_us + offset);
+  const auto between = [](const Trajectory& poses, std::int64_t first, std::int64_t last) {
+    return static_cast<std::size_t>(std::count_if(poses.begin(), poses.end(), [&](const StampedPose& pose) {
+      return pose.time_us >= first && pose.time_us <= last;
+    }));
+  };
+  return std::min(between(a, begin, end), between(b, begin - offset, end - offset));
+}
+
 }  // namespace
 
 Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
@@ -66,7 +81,10 @@ void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
     for (const auto& pair : pairs_)
       for (const Side side : {Side::a, Side::b}) {
         if ((side == Side::a ? pair->config.a : pair->config.b) != sensor.config.name) continue;
-        if (sample.begins_anew) pair->sample.begin_anew(side);
+        if (sample.begins_anew) {
+          pair->sample.begin_anew(side);
+          if (pair->newest) pair->matched_before = pair->newest->message.matched;
+        }
         if (!pair->paused) pair->sample.push(side, sample.pose);
       }
 }
@@ -99,20 +117,20 @@ bool Diagnosing::idle(const Pair& pair) const {
 
 /// At full speed many motions are there before the first problem is heard, but not before the first pose; and
 /// where one sensor begins later, poses come late but no motions.
-Unseen Diagnosing::unseen_of(const Pair& pair) {
+Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
   const problem_t& message = pair.newest->message;
   std::int64_t begin = message.session;
   for (const Side side : {Side::a, Side::b}) {
-    const Trajectory& poses = pair.sample.poses(side);
+    const Trajectory& known = pair.sample.poses(side);
     const std::int64_t offset = side == Side::b ? std::llround(1e6 * message.time_offset) : 0;
-    begin = std::max(begin, poses.empty() ? message.utime : poses.front().time_us + offset);
+    begin = std::max(begin, known.empty() ? message.utime : known.front().time_us + offset);
   }
   const auto part = [](double unseen, double all) {
     return all > 0 ? std::clamp(unseen / all, 0.0, 1.0) : 0;
   };
   return {std::min(part(static_cast<double>(pair.matched_before), static_cast<double>(message.matched)),
                    part(seconds(begin - message.session), seconds(message.utime - message.session))),
-          seconds(begin - message.session)};
+          seconds(begin - message.session), poses};
 }
 
 void Diagnosing::look() {
@@ -152,7 +170,7 @@ void Diagnosing::judge(Pair& pair) {
     return pair.unscaled == side ? scaled(pair.sample.poses(side), *scale) : pair.sample.poses(side);
   };
   const Trajectory a = poses_of(Side::a), b = poses_of(Side::b);
-  const std::size_t poses = std::min(a.size(), b.size());
+  const std::size_t poses = at_common_times(a, b, message.time_offset);
   try {
     const Answer answer = solve(problem, Method::dual);
     Answered answered;
@@ -166,13 +184,13 @@ void Diagnosing::judge(Pair& pair) {
         answered.scale_stddev = with_spread_of_scale({}, problem, *solution);
     bus::Judged judged{answer.T_a_b, message.utime, message.utime, 0};
     Diagnosis diagnosis;
-    if (poses < options_.least_poses) {
+    if (poses < options_.unseen.least_poses) {
       diagnosis = diagnose(answered, options);
     } else {
       diagnosis = diagnose(a, b, pairing, answered, options);
       judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses)};
     }
-    limit_to_what_was_seen(unseen_of(pair), diagnosis, options_.unseen);
+    limit_to_what_was_seen(unseen_of(pair, poses), diagnosis, options_.unseen);
     word_remedies(rig_, pair.config, diagnosis.findings);
     verdict_t verdict = bus::to_message(diagnosis, judged);
     verdict.utime = message.utime;

@@ -26,8 +26,6 @@ struct DiagnosingOptions {
   double least_distance = 1;  ///< [s] between two diagnoses, however quick
   /// A pair without a new problem for this time [s] is judged once without waiting: a drive has ended.
   double idle = 0.6;
-  /// Fewer poses of a stream say nothing about a drive that began before this process did.
-  std::size_t least_poses = 30;
   /// Chance that one diagnosis calls a mount moved that did not, and how long before its end [s] the drive
   /// must have shown it already (MountCheckOptions): an hour has 2,000 diagnoses. Study: docs/moves.md,
   /// "Live".
@@ -71,7 +69,7 @@ class Diagnosing {
     DriveSample sample;
     std::optional<ReceivedProblem> newest;
     std::int64_t newest_mono_us = 0;      ///< when its number was new
-    std::int64_t matched_before = 0;      ///< motions of the session when its first problem was heard
+    std::int64_t matched_before = 0;      ///< motions of the session before the sample begins
     std::int64_t judged_seq = -1;         ///< of the newest problem's session; -1: none
     std::optional<verdict_t> verdict;     ///< the last one, of the newest problem's session
     std::int64_t restarted_session = -1;  ///< for which a reset was sent
@@ -82,7 +80,7 @@ class Diagnosing {
   void take_problems();
   void look();
   bool idle(const Pair& pair) const;
-  static Unseen unseen_of(const Pair& pair);
+  static Unseen unseen_of(const Pair& pair, std::size_t poses);
   void judge(Pair& pair);
   void restart_after_move(Pair& pair, const Diagnosis& diagnosis);
   void repeat();

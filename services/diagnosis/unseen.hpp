@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+
 #include "egocal/diagnosis/verdict.hpp"
 
 namespace egocal::services {
@@ -10,12 +12,17 @@ struct UnseenOptions {
   /// Part of the motions that may be there without having been judged: so many wrong ones are found as
   /// outliers (docs/accuracy.md, "Outliers").
   double largest_share = 0.2;
+  /// Fewer poses of a stream say nothing about a drive: it is judged by the statistics alone, which do not
+  /// say whether the motions agree.
+  std::size_t least_poses = 30;
 };
 
-/// What a process that was started within a session has not seen of it.
+/// What a process that was started within a session has not seen of it, or had to forget: poses of before the
+/// clock of a sensor was set back belong to another timeline.
 struct Unseen {
-  double share = 0;    ///< of the motions behind the answer
-  double seconds = 0;  ///< from the session's start
+  double share = 0;       ///< of the motions behind the answer
+  double seconds = 0;     ///< from the session's start
+  std::size_t poses = 0;  ///< that it knows of each stream, at common times
 };
 
 /// Motions that nobody judges may contradict those that come now: a mount that moved before. Such an answer

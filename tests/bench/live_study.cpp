@@ -107,7 +107,7 @@ Outcome outcome_of(const Sort& sort, double minutes, double noise, double every,
     if (time < next) continue;
     next += every;
     const Problem problem = pairing.problem();
-    if (problem.blocks.empty() || sample.poses(Side::a).size() < live.least_poses) continue;
+    if (problem.blocks.empty() || sample.poses(Side::a).size() < live.unseen.least_poses) continue;
     const Answer answer = solve(problem, Method::dual);
     Answered answered;
     answered.T_a_b = answer.T_a_b;

@@ -95,6 +95,7 @@ class DiagnosisService : public ::testing::Test {
     message.stride = pairing.choice().stride;
     message.matched = static_cast<std::int64_t>(pairing.counts().matched);
     observer.publish(bus::problem_channel("left", "right"), message);
+    sent = message;
   }
 
   void tell(const std::string& verb) {
@@ -115,6 +116,7 @@ class DiagnosisService : public ::testing::Test {
   std::vector<verdict_t> verdicts;
   status_t status;
   std::int64_t problems = 0;
+  problem_t sent{};  ///< the newest
   std::int64_t seq[2]{};
 };
 
@@ -233,17 +235,44 @@ TEST_F(DiagnosisService, CallsNothingGoodWhoseMotionsItHasHardlySeen) {
   for (const verdict_t& verdict : verdicts) EXPECT_NE(verdict.verdict, "good") << verdict.reason;
 }
 
+// Its poses have no common times with the others then, and those before were forgotten.
+TEST_F(DiagnosisService, AClockThatIsSetBackIsNoLackOfMotions) {
+  start();
+  testing::Streams streams = drive(400);
+  play(streams, 0, 400);
+  ASSERT_FALSE(verdicts.empty());
+  EXPECT_EQ(verdicts.back().verdict, "good") << verdicts.back().reason;
+  for (std::size_t i = 0; i < 300; ++i) {
+    StampedPose a = streams.a[i], b = streams.b[i];
+    a.time_us += 40'000'000;
+    b.time_us -= 1'000'000'000;
+    observer.publish("ODO_LEFT", bus::to_message(a, ++seq[1]));
+    observer.publish("ODO_RIGHT", bus::to_message(b, ++seq[0]));
+    pass(10ms);
+  }
+  ++sent.seq;
+  observer.publish(bus::problem_channel("left", "right"), sent);
+  pass(3s);
+  EXPECT_EQ(verdicts.back().seq, sent.seq);
+  EXPECT_EQ(verdicts.back().verdict, "incomplete") << verdicts.back().reason;
+  EXPECT_THAT(verdicts.back().reason, ::testing::HasSubstr("Are their clocks the same"));
+}
+
 TEST(UnseenMotions, AreNotCalledGoodUntilTheyAreFew) {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::good;
   diagnosis.reason = "The motions agree.";
-  limit_to_what_was_seen({0.19, 40}, diagnosis);
+  limit_to_what_was_seen({0.19, 40, 500}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::good);
-  limit_to_what_was_seen({0.3, 40}, diagnosis);
+  limit_to_what_was_seen({0.3, 40, 500}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::incomplete);
   EXPECT_THAT(diagnosis.reason, ::testing::HasSubstr("The first 40 s are not judged"));
+  diagnosis.verdict = Verdict::good;
+  limit_to_what_was_seen({0, 0, 29}, diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::incomplete);
+  EXPECT_THAT(diagnosis.reason, ::testing::HasSubstr("has 29 poses of each sensor at common times"));
   diagnosis.verdict = Verdict::contradictory;
-  limit_to_what_was_seen({0.9, 40}, diagnosis);
+  limit_to_what_was_seen({0.9, 40, 500}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::contradictory);
 }
 
