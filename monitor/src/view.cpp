@@ -64,6 +64,12 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     x = pane.text(x, 0, std::to_string(good) + " of " + std::to_string(model.pairs().size()) + " good",
                   good == model.pairs().size() && good ? Style::good : Style::normal) +
         2;
+    // a pair that is so may be below the last row
+    const auto contradictory =
+        std::count_if(model.pairs().begin(), model.pairs().end(), [](const PairState& p) {
+          return p.verdict && p.verdict->diagnosis.verdict == Verdict::contradictory;
+        });
+    if (contradictory > 0 && item(std::to_string(contradictory) + " contradictory", Style::bad)) x += 2;
     if (pane.width() >= 50)
       x = pane.text(x, 0, std::to_string(certified) + " proven optimal",
                     certified == model.pairs().size() && certified ? Style::good : Style::normal) +

@@ -110,7 +110,8 @@ TEST_F(VerdictShown, AFindingComesWithItsCure) {
     EXPECT_THAT(text, HasSubstr("The lengths of b are 0.37 times those of a. Cure: --scale-b auto"));
     EXPECT_THAT(text, HasSubstr("optimal (proven)")) << "which it is all the same";
   }
-  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("0 of 1 good"));
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("0 of 1 good  1 contradictory"));
+  EXPECT_THAT(shown(Screen::overview, 80, 24), HasSubstr("0 of 1 good  1 contradictory"));
 }
 
 TEST_F(VerdictShown, TheGoalSaysWhatIsMissingForHowLongAndWhatToDrive) {

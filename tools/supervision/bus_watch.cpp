@@ -13,8 +13,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <map>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
@@ -67,10 +69,22 @@ std::string line_of(const PairName& pair, const Answers& answers) {
     text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
                         scale->solution.stddev,
                         scale->verified && scale->solution.certified ? "optimal (proven)" : "not proven");
-  if (const Diagnosis* const diagnosis = answers.diagnosis(pair))
-    for (const std::string& line : possible_lines(*diagnosis)) text += "  possible: " + line + "\n";
   if (answers.lacks_scale(pair))
     text += "  the scale could not be verified: this answer holds at a scale that is not known\n";
+  return text;
+}
+
+/// What the motions cannot rule out, once for all pairs of which it holds.
+std::string possible_of_all(const bus::Rig& rig, const Answers& answers) {
+  std::map<std::string, std::vector<std::string>> pairs_of;
+  for (const bus::PairConfig& config : rig.pairs)
+    if (const Diagnosis* const diagnosis = answers.diagnosis({config.a, config.b}))
+      for (const std::string& line : possible_lines(*diagnosis))
+        pairs_of[line].push_back(config.a + " -> " + config.b);
+  std::string text;
+  for (const auto& [line, pairs] : pairs_of)
+    text += fmt::format("possible, {}: {}\n",
+                        pairs.size() == 1 ? pairs[0] : fmt::format("{} pairs", pairs.size()), line);
   return text;
 }
 
@@ -88,6 +102,7 @@ std::string report(const bus::Rig& rig, const Answers& answers) {
     outcome.unusable = outcome.unusable || (diagnosis && unusable(*diagnosis));
     outcome.text += line_of(pair, answers);
   }
+  outcome.text += possible_of_all(rig, answers);
   return std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text;
 }
 
