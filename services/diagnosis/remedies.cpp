@@ -3,6 +3,7 @@
 #include "diagnosis/remedies.hpp"
 
 #include <cstdio>
+#include <optional>
 
 namespace egocal::services {
 
@@ -21,6 +22,15 @@ std::string scale_remedy(const bus::Rig& rig, const bus::PairConfig& pair, doubl
          " if that one is not in metres.";
 }
 
+/// Of a sensor with scale = "auto" no other change of scale can be found live.
+std::string or_its_scale(const bus::Rig& rig, const bus::PairConfig& pair) {
+  const std::optional<Side> unscaled = bus::unscaled_side(rig, pair);
+  if (!unscaled) return {};
+  return " Or the scale of " + (*unscaled == Side::a ? pair.a : pair.b) +
+         " changed, which egocal solve --scale-" + (*unscaled == Side::a ? "a" : "b") +
+         " auto finds in a recording.";
+}
+
 std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Finding& finding) {
   const std::string& code = finding.code;
   const std::string both = pair.a + " and " + pair.b;
@@ -37,12 +47,14 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
   if (code.starts_with("quaternion_order_"))
     return "The odometry of " + one() + " has to fill quat in the order w x y z.";
   if (code == "scale_change")
-    return "In the rig file: scale = \"auto\" for " + pair.b + ", or for " + pair.a +
-           " if that one is not in metres.";
+    return "Live, a session has one scale: reset the pair (key r in the monitor) after it has changed. In a "
+           "recording egocal solve --scale-b auto finds the factors, --scale-a auto where " +
+           pair.b + " is in metres.";
   if (code == "mount_moved")
-    return pair.on_move == bus::OnMove::restart
-               ? "The calibration starts again by itself."
-               : "Reset the pair (key r in the monitor), or set on_move = \"restart\" in the rig file.";
+    return (pair.on_move == bus::OnMove::restart
+                ? "The calibration starts again by itself."
+                : "Reset the pair (key r in the monitor), or set on_move = \"restart\" in the rig file.") +
+           or_its_scale(rig, pair);
   return finding.remedy;
 }
 

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "diagnosis/diagnosing.hpp"
+#include "diagnosis/remedies.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -274,6 +275,36 @@ TEST(UnseenMotions, AreNotCalledGoodUntilTheyAreFew) {
   diagnosis.verdict = Verdict::contradictory;
   limit_to_what_was_seen({0.9, 40, 500}, diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::contradictory);
+}
+
+// scale = "auto" finds one scale a session (docs/scale.md): it is no cure of one that changes.
+TEST_F(DiagnosisService, AScaleThatChangesIsNotCuredByTheRigFile) {
+  start();
+  testing::Streams streams = drive(800);
+  streams.b = testing::longer_from_the_middle(streams.b, 1.3);
+  play(streams, 0, 800);
+  ASSERT_FALSE(verdicts.empty());
+  const std::vector<finding_t>& findings = verdicts.back().findings;
+  const auto changed = std::find_if(findings.begin(), findings.end(),
+                                    [](const finding_t& finding) { return finding.code == "scale_change"; });
+  ASSERT_NE(changed, findings.end()) << verdicts.back().reason;
+  EXPECT_THAT(changed->remedy, ::testing::HasSubstr("reset the pair"));
+  EXPECT_THAT(changed->remedy, ::testing::HasSubstr("egocal solve --scale-b auto"));
+}
+
+TEST(Remedies, OfAMoveNameAScaleThatIsLookedFor) {
+  bus::Rig rig;
+  rig.sensors = {{"left", "ODO_LEFT", bus::OdometryType::odometry, {}},
+                 {"right", "ODO_RIGHT", bus::OdometryType::odometry, {}}};
+  rig.pairs.resize(1);
+  rig.pairs[0].a = "left";
+  rig.pairs[0].b = "right";
+  std::vector<Finding> findings{{"mount_moved", true, "", "", 3, {}, {}, {}}};
+  word_remedies(rig, rig.pairs[0], findings);
+  EXPECT_THAT(findings[0].remedy, ::testing::Not(::testing::HasSubstr("scale")));
+  rig.sensors[1].find_scale = true;
+  word_remedies(rig, rig.pairs[0], findings);
+  EXPECT_THAT(findings[0].remedy, ::testing::HasSubstr("Or the scale of right changed"));
 }
 
 TEST_F(DiagnosisService, TellsTheGoalFromWhatIsMissing) {
