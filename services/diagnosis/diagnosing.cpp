@@ -48,6 +48,13 @@ std::size_t at_common_times(const Trajectory& a, const Trajectory& b, double tim
   return std::min(between(a, begin, end), between(b, begin - offset, end - offset));
 }
 
+/// Time until which both streams have poses, by the clock of a; 0: one has none.
+std::int64_t common_end(const DriveSample& sample, double time_offset) {
+  const Trajectory &a = sample.poses(Side::a), &b = sample.poses(Side::b);
+  if (a.empty() || b.empty()) return 0;
+  return std::min<std::int64_t>(a.back().time_us, b.back().time_us + std::llround(1e6 * time_offset));
+}
+
 }  // namespace
 
 Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
@@ -85,7 +92,9 @@ void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
           pair->sample.begin_anew(side);
           if (pair->newest) pair->matched_before = pair->newest->message.matched;
         }
-        if (!pair->paused) pair->sample.push(side, sample.pose);
+        if (pair->paused) continue;
+        pair->sample.push(side, sample.pose);
+        pair->newest_pose_mono_us = loop_.mono_us();
       }
 }
 
@@ -133,13 +142,23 @@ Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
           seconds(begin - message.session), poses};
 }
 
+/// By a new problem, or by poses alone; without waiting where nothing more comes.
+bool Diagnosing::to_be_judged(const Pair& pair, bool early) const {
+  if (!pair.newest) return false;
+  if (pair.newest->message.seq != pair.judged_seq) return !early || idle(pair);
+  const bool more_poses = seconds(common_end(pair.sample, pair.newest->message.time_offset) -
+                                  pair.judged_until_us) >= options_.pose_step;
+  const bool no_poses_come = seconds(loop_.mono_us() - pair.newest_pose_mono_us) >= options_.idle;
+  return more_poses && (!early || (idle(pair) && no_poses_come));
+}
+
 void Diagnosing::look() {
   take_problems();
   const bool early = loop_.mono_us() < not_before_mono_us_;
   for (std::size_t n = 0; n < pairs_.size(); ++n) {
     const std::size_t i = (turn_ + n) % pairs_.size();
     Pair& pair = *pairs_[i];
-    if (!pair.newest || pair.newest->message.seq == pair.judged_seq || (early && !idle(pair))) continue;
+    if (!to_be_judged(pair, early)) continue;
     turn_ = i + 1;
     const std::int64_t began = loop_.mono_us();
     judge(pair);
@@ -159,6 +178,7 @@ void Diagnosing::judge(Pair& pair) {
       pair.unscaled ? pair.scale.in_force(pair.config.a, pair.config.b, message.session) : 1;
   if (!scale) return;
   pair.judged_seq = message.seq;
+  pair.judged_until_us = common_end(pair.sample, message.time_offset);
   DiagnosisOptions options;
   options.goal = pair.config.goal;
   options.platform = pair.config.platform;

@@ -26,6 +26,9 @@ struct DiagnosingOptions {
   double least_distance = 1;  ///< [s] between two diagnoses, however quick
   /// A pair without a new problem for this time [s] is judged once without waiting: a drive has ended.
   double idle = 0.6;
+  /// Poses without a new problem are judged in steps of this [s]: where all motions are rejected, as after a
+  /// sensor was lost, nothing else says so. Short beside what a finding needs, long beside a pose.
+  double pose_step = 2;
   /// Chance that one diagnosis calls a mount moved that did not, and how long before its end [s] the drive
   /// must have shown it already (MountCheckOptions): an hour has 2,000 diagnoses. Study: docs/moves.md,
   /// "Live".
@@ -68,11 +71,13 @@ class Diagnosing {
     bus::ScaleCheck scale;
     DriveSample sample;
     std::optional<ReceivedProblem> newest;
-    std::int64_t newest_mono_us = 0;      ///< when its number was new
-    std::int64_t matched_before = 0;      ///< motions of the session before the sample begins
-    std::int64_t judged_seq = -1;         ///< of the newest problem's session; -1: none
-    std::optional<verdict_t> verdict;     ///< the last one, of the newest problem's session
-    std::int64_t restarted_session = -1;  ///< for which a reset was sent
+    std::int64_t newest_mono_us = 0;       ///< when its number was new
+    std::int64_t matched_before = 0;       ///< motions of the session before the sample begins
+    std::int64_t judged_seq = -1;          ///< of the newest problem's session; -1: none
+    std::int64_t judged_until_us = 0;      ///< time of the last poses that were judged
+    std::int64_t newest_pose_mono_us = 0;  ///< arrival
+    std::optional<verdict_t> verdict;      ///< the last one, of the newest problem's session
+    std::int64_t restarted_session = -1;   ///< for which a reset was sent
     bool paused = false;
   };
 
@@ -80,6 +85,7 @@ class Diagnosing {
   void take_problems();
   void look();
   bool idle(const Pair& pair) const;
+  bool to_be_judged(const Pair& pair, bool early) const;
   static Unseen unseen_of(const Pair& pair, std::size_t poses);
   void judge(Pair& pair);
   void restart_after_move(Pair& pair, const Diagnosis& diagnosis);

@@ -25,6 +25,11 @@ void DriveSample::push(Side side, const StampedPose& pose) {
   EGOCAL_CHECK(!full(), "the sample of a drive is bounded");
 }
 
+bool DriveSample::full() const {
+  return std::min(a_.size(), b_.size()) > options_.most_poses ||
+         std::max(a_.size(), b_.size()) > options_.most_poses * options_.most_of_faster;
+}
+
 void DriveSample::begin_anew(Side side) {
   const bool second = begun_anew_ && *begun_anew_ != side;
   of(side).clear();
@@ -59,6 +64,7 @@ void DriveSample::set_time_offset(double seconds) {
 void DriveSample::thin() {
   for (thin(Side::a), thin(Side::b); full() && level_ < highest_level; thin(Side::a), thin(Side::b)) ++level_;
   // more in the newest stretch than there is room for, which least_distance_us rules out for sane options
+  if (!full()) return;
   for (Trajectory* poses : {&a_, &b_})
     if (poses->size() > options_.most_poses)
       poses->erase(poses->begin(), poses->end() - static_cast<std::ptrdiff_t>(options_.most_poses));

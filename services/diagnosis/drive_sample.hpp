@@ -11,8 +11,13 @@
 namespace egocal::services {
 
 struct DriveSampleOptions {
-  /// Of each stream. A diagnosis of this number takes some 50 ms.
+  /// Of the stream that has fewer: at its stamps motions are judged. A diagnosis of this number takes some 50
+  /// ms.
   std::size_t most_poses = 1200;
+  /// Of the other one, which is interpolated there: this many times as much. With fewer a sensor of 20 Hz
+  /// beside one of 10 Hz would cost half of the motions; a sensor of 4 Hz may be beside one of 1 kHz, whose
+  /// poses are no closer than least_distance_us.
+  std::size_t most_of_faster = 6;
   /// Poses closer than this are skipped [us]: motions are compared over tenths of seconds and more.
   std::int64_t least_distance_us = 45'000;
   /// Poses are kept or dropped in stretches of this length [us], so that neighbours stay neighbours: several
@@ -43,7 +48,7 @@ class DriveSample {
  private:
   Trajectory& of(Side side) { return side == Side::a ? a_ : b_; }
   std::int64_t offset_of(Side side) const { return side == Side::b ? time_offset_us_ : 0; }
-  bool full() const { return a_.size() > options_.most_poses || b_.size() > options_.most_poses; }
+  bool full() const;
   void thin();
   void thin(Side side);
 

@@ -259,6 +259,26 @@ TEST_F(DiagnosisService, AClockThatIsSetBackIsNoLackOfMotions) {
   EXPECT_THAT(verdicts.back().reason, ::testing::HasSubstr("Are their clocks the same"));
 }
 
+// Pairing rejects all motions after a sensor was lost: no new problem comes, but poses do.
+TEST_F(DiagnosisService, JudgesPosesThatMakeNoMotions) {
+  start();
+  testing::Streams streams = drive(800);
+  const testing::Streams other = drive(800, 9);
+  play(streams, 0, 400);
+  ASSERT_FALSE(verdicts.empty());
+  EXPECT_EQ(verdicts.back().verdict, "good") << verdicts.back().reason;
+  for (std::size_t i = 400; i < 800; ++i) {
+    observer.publish("ODO_LEFT", bus::to_message(streams.a[i], ++seq[1]));
+    observer.publish("ODO_RIGHT", bus::to_message(other.b[i], ++seq[0]));
+    pass(100ms);
+  }
+  pass(3s);
+  EXPECT_EQ(verdicts.back().verdict, "contradictory") << verdicts.back().reason;
+  const std::size_t before = verdicts.size();
+  pass(5s);
+  EXPECT_LE(verdicts.size(), before + 6) << "repeated once a second, not judged again";
+}
+
 TEST(UnseenMotions, AreNotCalledGoodUntilTheyAreFew) {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::good;

@@ -77,7 +77,7 @@ void report_left_behind(const std::string& directory) {
 
 /// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
 /// offline is named; the answer of the processes remains. False: a page says that its answer should not be
-/// used. A page knows all poses, the diagnosis 1200 of each stream, so their verdicts may differ.
+/// used. A page knows all poses, the diagnosis 1200 of the slower stream, so their verdicts may differ.
 bool write_reports(const Options& options, const bus::Rig& rig, const std::string& directory) {
   bool usable = true;
   for (const bus::PairConfig& pair : rig.pairs) {
