@@ -24,10 +24,8 @@ bool same(const DualQuaternion& x, const DualQuaternion& y) {
   return difference.norm() <= same_pose * length;
 }
 
-}  // namespace
-
-Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b) {
-  const Matrix8d Q = cost_matrix(problem);
+/// Q: certified_cost() of the problem.
+Certificate verified(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b) {
   if (problem.mode == Mode::spatial) return verify(Q, T_a_b);
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
   const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, G_b);
@@ -37,13 +35,20 @@ Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b) {
   return certificate;
 }
 
+}  // namespace
+
+Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b) {
+  return verified(problem, certified_cost(problem), T_a_b);
+}
+
 std::string AnswerCheck::take(const problem_t& message) {
   Checked<Problem> problem = to_problem(message);
   if (!problem) return problem.reason;
   Pair& pair = pairs_[{message.sensor_a, message.sensor_b}];
   pair.touched = ++touches_;
-  Known known{message.session, message.seq, message.utime, std::move(*problem.value)};
-  known.problem.blocks = {sum_blocks(known.problem.blocks)};
+  Known known{message.session, message.seq, message.utime, certified_cost(*problem.value),
+              std::move(*problem.value)};
+  known.problem.blocks.clear();
   const auto again = std::find_if(pair.problems.begin(), pair.problems.end(), [&](const Known& k) {
     return k.session == known.session && k.seq == known.seq && k.utime == known.utime;
   });
@@ -89,7 +94,7 @@ CheckedAnswer AnswerCheck::check(const calibration_t& message) const {
     if (claimed == Optimality::certified) checked.answer.certificate.optimality = Optimality::undecided;
     return checked;
   }
-  checked.answer.certificate = verify_answer(known->problem, checked.answer.T_a_b);
+  checked.answer.certificate = verified(known->problem, known->Q, checked.answer.T_a_b);
   if (claimed == Optimality::certified && checked.answer.certificate.optimality != Optimality::certified) {
     checked.reason = denied;
     return checked;
@@ -102,7 +107,7 @@ std::string AnswerCheck::refusal(const verdict_t& message, const ReceivedVerdict
   if (received.diagnosis.verdict != Verdict::good) return {};
   const Known* known = find(message);
   if (!known) return {};
-  const Certificate certificate = verify_answer(known->problem, received.judged.T_a_b);
+  const Certificate certificate = verified(known->problem, known->Q, received.judged.T_a_b);
   return certificate.optimality == Optimality::certified ? "" : denied_verdict;
 }
 

@@ -77,6 +77,52 @@ TEST(AnswerCheck, TrueAnswersAreVerifiedInBothModes) {
     }
 }
 
+/// Of motions on flat ground, which do not show the height, with a prior for it.
+Problem flat_problem_with_prior(unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const auto pose = [&](double turn, double noise) {
+    return to_dual_quaternion(
+        Pose{rotation_exp({noise * normal(random), noise * normal(random), turn}),
+             {(turn == 0 ? 0 : 1) + noise * normal(random), noise * normal(random), noise * normal(random)}});
+  };
+  Problem problem;
+  for (int block = 0; block < 12; ++block) {
+    Statistics statistics;
+    for (int i = 0; i < 20; ++i) {
+      const DualQuaternion a = pose(0.2 * normal(random), 0);
+      statistics.add(a * pose(0, 0.005), conjugate(truth) * a * truth * pose(0, 0.005));
+    }
+    problem.blocks.push_back(statistics);
+  }
+  Pose prior = to_pose(truth);
+  prior.translation.z() += 2;
+  problem.prior = to_dual_quaternion(prior);
+  return problem;
+}
+
+TEST(AnswerCheck, AnswersAtThePriorAreVerified) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    const Problem problem = flat_problem_with_prior(seed);
+    const problem_t message = problem_message(problem);
+    const Answer answer = solve(problem, Method::dual);
+    ASSERT_FALSE(answer.observability.observable[2]) << seed;
+    EXPECT_NEAR(to_pose(answer.T_a_b).translation.z(), to_pose(*problem.prior).translation.z(), 0.05) << seed;
+    AnswerCheck check;
+    ASSERT_EQ(check.take(message), "");
+    for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
+      const CheckedAnswer checked = check.check(answer_message(problem, message, method));
+      EXPECT_EQ(checked.standing, Standing::verified) << checked.reason << ", seed " << seed;
+    }
+    // the minimum that noise has elsewhere is not the answer
+    Answer elsewhere = answer;
+    elsewhere.T_a_b = answer.minimum;
+    calibration_t forged = to_message(elsewhere, message);
+    forged.solver = "egocal-global";
+    EXPECT_EQ(check.check(forged).standing, Standing::refused) << seed;
+  }
+}
+
 verdict_t verdict_message(Verdict verdict, const DualQuaternion& T_a_b, const problem_t& of) {
   Diagnosis diagnosis;
   diagnosis.verdict = verdict;

@@ -131,32 +131,41 @@ Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Metho
 
 namespace {
 
-/// The answer where the prior gives what the motions do not show. minimum: with its observability.
-Answer held(const Problem& problem, const Matrix8d& Q, const Answer& minimum, NanosecondClock clock) {
-  const std::array<bool, 6>& seen = minimum.observability.observable;
+/// Empty where the motions show everything, or the minimum is at the prior.
+std::optional<detail::HeldCost> held(const Problem& problem, const Matrix8d& Q, const Answer& minimum,
+                                     const std::array<bool, 6>& seen) {
   if (!problem.prior || problem.mode == Mode::planar || minimum.status != SolverStatus::converged ||
       std::all_of(seen.begin(), seen.end(), [](bool one) { return one; }))
-    return minimum;
-  const std::optional<detail::HeldCost> cost =
-      detail::held_at_prior(Q, minimum.T_a_b, *problem.prior, hidden_directions(problem, Q, minimum.T_a_b));
+    return std::nullopt;
+  return detail::held_at_prior(Q, minimum.T_a_b, *problem.prior,
+                               hidden_directions(problem, Q, minimum.T_a_b));
+}
+
+}  // namespace
+
+Matrix8d certified_cost(const Problem& problem) {
+  Matrix8d Q = cost_matrix(problem);
+  if (!problem.prior || problem.mode == Mode::planar) return Q;
+  const Answer minimum = detail::solve_and_verify(problem, Q, Method::dual);
+  const std::optional<detail::HeldCost> cost = held(
+      problem, Q, minimum, observable_directions(problem, Q, minimum.T_a_b, ErrorCorrelation::correlated));
+  return cost ? cost->Q : Q;
+}
+
+Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start,
+             NanosecondClock clock) {
+  const Matrix8d Q = cost_matrix(problem);
+  Answer minimum = detail::solve_and_verify(problem, Q, method, start, clock);
+  minimum.observability = assess_observability(problem, Q, minimum.T_a_b);
+  minimum.minimum = minimum.T_a_b;
+  const std::optional<detail::HeldCost> cost = held(problem, Q, minimum, minimum.observability.observable);
   if (!cost) return minimum;
-  Answer answer = detail::solve_and_verify(problem, cost->Q, minimum.method, cost->start, clock);
+  Answer answer = detail::solve_and_verify(problem, cost->Q, method, cost->start, clock);
   answer.solve_ns += minimum.solve_ns;
   answer.verify_ns += minimum.verify_ns;
   answer.observability = minimum.observability;
   answer.minimum = minimum.T_a_b;
   return answer;
-}
-
-}  // namespace
-
-Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start,
-             NanosecondClock clock) {
-  const Matrix8d Q = cost_matrix(problem);
-  Answer answer = detail::solve_and_verify(problem, Q, method, start, clock);
-  answer.observability = assess_observability(problem, Q, answer.T_a_b);
-  answer.minimum = answer.T_a_b;
-  return held(problem, Q, answer, clock);
 }
 
 }  // namespace egocal

@@ -43,10 +43,15 @@ EGOCAL_SAME_LAYOUT(Answer)
 /// The caller's clock [ns]: the library has none of its own.
 using NanosecondClock = std::int64_t (*)();
 
+/// The cost that the certificate of an answer is about. Along directions that the motions do not show, noise
+/// has a minimum that means nothing: where the problem has a prior, squares are added to (16) that hold the
+/// answer at the prior there. Without a prior, and in planar mode, it is cost_matrix().
+Matrix8d certified_cost(const Problem& problem);
+
 /// Solve, verify, and say what is known. start: for the local methods; without it they start at the global
-/// minimum. In directions that the motions do not show the answer is at the problem's prior; the certificate
-/// is then about the cost with squares that hold it there. Without a prior it is the minimum, which is noise
-/// along these directions, or the one closest to the identity where the cost is flat.
+/// minimum. In directions that the motions do not show the answer is at the problem's prior. Without a prior
+/// it is the minimum, which is noise along these directions, or the one closest to the identity where the
+/// cost is flat. The certificate is about certified_cost().
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt,
              NanosecondClock clock = nullptr);
 
