@@ -215,6 +215,18 @@ TEST(Observability, TurningInPlaceTakesHeightAndHeadingFromThePrior) {
   }
 }
 
+TEST(Observability, NoiseOfARigThatStandsLeavesThePrior) {
+  const auto stands = [](Random&) { return displacement({0, 0, 0}, {0, 0, 0}); };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Problem problem = noisy_problem_with_prior(motions_of_a(T_a_b, 300, 0.01, seed, stands));
+    const Answer answer = solve(problem, Method::dual);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(answer.observability.observable[i]) << seed;
+    if (answer.observability.observable != Flags{}) continue;
+    EXPECT_LT(extrinsic_error(*problem.prior, answer.T_a_b).rotation, 1e-3) << seed;
+    EXPECT_LT(extrinsic_error(*problem.prior, answer.T_a_b).translation, 1e-3) << seed;
+  }
+}
+
 TEST(Observability, HiddenHeightCountsWhereATiltedSensorSeesIt) {
   // On flat ground a sensor that is tilted about y by an angle sees a part of the hidden height in x.
   for (const double tilt : {0.0, 0.01, 0.02, 0.04}) {

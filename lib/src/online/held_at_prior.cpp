@@ -16,14 +16,6 @@ namespace {
 
 using Axes = std::vector<Eigen::Vector3d>;
 
-/// How many times the curvature of what holds is that of the motions: noise then pulls the answer from the
-/// prior by less than 1e-5 of the difference, and rounding costs five of the sixteen digits of a proof.
-constexpr double stiffness = 1e5;
-/// A direction with more than this part of its square in translation is held as one.
-constexpr double mostly = 0.5;
-/// Rounding: an answer that is closer to the prior is there [m, rad].
-constexpr double there = 1e-9;
-
 /// A rotation about a line, in the frame of sensor a.
 struct Turn {
   Eigen::Vector3d axis;
@@ -37,13 +29,13 @@ struct Hidden {
 
 /// Pure translations that the hidden directions contain, and what remains as rotations about lines: a small
 /// part of the other kind is noise, and a finite step along a mixed direction would leave the flat set.
-Hidden taken_apart(const DirectionBasis& directions) {
+Hidden taken_apart(const DirectionBasis& directions, const HoldOptions& options) {
   Hidden result;
-  const Eigen::MatrixXd basis = directions.basis;
+  const auto& basis = directions.basis;
   const SymmetricEigen<3> parts =
       symmetric_eigen<3>(Eigen::Matrix3d(basis.topRows<3>() * basis.topRows<3>().transpose()));
   Matrix6d rest = basis * basis.transpose();
-  for (int k = 2; k >= 0 && parts.values[k] > mostly; --k) {
+  for (int k = 2; k >= 0 && parts.values[k] > options.mostly_translation; --k) {
     result.translations.emplace_back(parts.vectors.col(k));
     Vector6d along = Vector6d::Zero();
     along.head<3>() = parts.vectors.col(k);
@@ -82,32 +74,35 @@ Eigen::Vector4d vector_part(const Eigen::Vector3d& v) {
 }  // namespace
 
 std::optional<HeldCost> held_at_prior(const Matrix8d& Q, const DualQuaternion& minimiser,
-                                      const DualQuaternion& prior, const DirectionBasis& directions) {
-  const Hidden hidden = taken_apart(directions);
+                                      const DualQuaternion& prior, const DirectionBasis& directions,
+                                      const HoldOptions& options) {
+  const Hidden hidden = taken_apart(directions, options);
   const Pose wanted = to_pose(prior);
   Pose T = to_pose(minimiser);
   double moved = 0;
-  for (const Turn& turn : hidden.turns) {
-    const double angle = angle_towards(T.rotation, wanted.rotation, turn.axis);
-    const Rotation rotation = rotation_exp(angle * turn.axis);
-    T = {(rotation * T.rotation).normalized(), T.translation + (rotation * turn.arm - turn.arm)};
-    moved = std::max(moved, std::abs(angle));
-  }
+  const int sweeps = hidden.turns.size() > 1 ? options.sweeps : 1;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (const Turn& turn : hidden.turns) {
+      const double angle = angle_towards(T.rotation, wanted.rotation, turn.axis);
+      const Rotation rotation = rotation_exp(angle * turn.axis);
+      T = {(rotation * T.rotation).normalized(), T.translation + (rotation * turn.arm - turn.arm)};
+      moved = std::max(moved, std::abs(angle));
+    }
   for (const Eigen::Vector3d& along : hidden.translations) {
     const double distance = along.dot(wanted.translation - T.translation);
     T.translation += distance * along;
     moved = std::max(moved, std::abs(distance));
   }
-  if (!(moved > there)) return std::nullopt;
+  if (!(moved > options.there)) return std::nullopt;
 
   HeldCost result{Q, to_dual_quaternion(T)};
   const Eigen::Vector4d r = result.start.real;
   // with n across: (n r)'r_q is the sine of half the angle to r
-  const double turning = stiffness * Q.topLeftCorner<4, 4>().trace();
+  const double turning = options.stiffness * Q.topLeftCorner<4, 4>().trace();
   for (const Turn& turn : hidden.turns)
     result.Q += turning * square_of(quaternion_product(vector_part(turn.axis), r), Eigen::Vector4d::Zero());
   // t = 2 d r*, so (n r)'d is half the translation along n
-  const double shifting = stiffness * Q.bottomRightCorner<4, 4>().trace();
+  const double shifting = options.stiffness * Q.bottomRightCorner<4, 4>().trace();
   for (const Eigen::Vector3d& along : hidden.translations)
     result.Q +=
         shifting * square_of(-0.5 * along.dot(T.translation) * r, quaternion_product(vector_part(along), r));

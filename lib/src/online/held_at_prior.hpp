@@ -8,6 +8,19 @@
 
 namespace egocal::detail {
 
+struct HoldOptions {
+  /// How many times the curvature of what holds is that of the motions: noise then pulls the answer from the
+  /// prior by less than 1e-5 of the difference, and rounding costs five of the sixteen digits of a proof.
+  double stiffness = 1e5;
+  /// A hidden direction with more than this part of its square in translation is held as one. Others keep at
+  /// least as much rotation.
+  double mostly_translation = 0.5;
+  /// An answer that is closer to the prior is there: rounding [m, rad].
+  double there = 1e-9;
+  /// Rotations about several axes do not commute: they are brought to the prior so many times in turn.
+  int sweeps = 8;
+};
+
 struct HeldCost {
   Matrix8d Q;            ///< a cost matrix as (16), with terms that hold the hidden directions
   DualQuaternion start;  ///< the minimiser, moved along them to the prior
@@ -19,6 +32,7 @@ struct HeldCost {
 /// and the certificate is about this cost. hidden: hidden_directions() at the minimiser of Q. Empty where the
 /// minimiser is at the prior already.
 std::optional<HeldCost> held_at_prior(const Matrix8d& Q, const DualQuaternion& minimiser,
-                                      const DualQuaternion& prior, const DirectionBasis& hidden);
+                                      const DualQuaternion& prior, const DirectionBasis& hidden,
+                                      const HoldOptions& options = {});
 
 }  // namespace egocal::detail

@@ -142,7 +142,8 @@ Vector6d variance_of_hidden(const Surroundings& around, bool has_prior, const Ob
   Vector6d precision;
   precision << Eigen::Vector3d::Constant(1 / (translation * translation)),
       Eigen::Vector3d::Constant(1 / (rotation * rotation));
-  const Eigen::MatrixXd confined = hidden.transpose() * precision.asDiagonal() * hidden;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> confined =
+      hidden.transpose() * precision.asDiagonal() * hidden;
   return (hidden * confined.ldlt().solve(hidden.transpose())).diagonal();
 }
 
