@@ -134,6 +134,10 @@ TEST_F(JsonKeys, OfSolveAreThoseOfThePage) {
   EXPECT_EQ(last["settings"]["stride"], "auto");
   EXPECT_NE(last["command"].get<std::string>().find("egocal solve"), std::string::npos);
   run("solve", drive + " --stride 2 --weights 1:0.1 --time-offset auto");
+  simulate("flat", "--poses 400 --noise 0.01 --terrain flat");
+  run("solve", files("flat") + " --nominal 0.5,0.2,-0.3,0.5,-0.5,0.5,-0.5");
+  EXPECT_EQ(last["from_nominal"], json({"z"}));
+  EXPECT_NEAR(last["translation"][2].get<double>(), -0.3, 0.02);
   run("solve", files("scaled") + " --scale-b auto");
   run("solve", files("scaled") + " --scale-b 4");
   simulate("drifting",
