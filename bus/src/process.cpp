@@ -13,6 +13,14 @@ constexpr std::array<std::string_view, 6> roles{"player", "pairing",   "global",
                                                 "fast",   "diagnosis", "monitor"};
 constexpr std::array<std::string_view, 5> states{"waiting", "standby", "running", "paused", "ended"};
 
+/// In the order of Role. A verdict follows the session by itself: the diagnosis has nothing to reset.
+constexpr std::array<std::string_view, 6> verbs{"pause, resume, step, seek, speed",
+                                                "pause, resume, reset",
+                                                "pause, resume",
+                                                "pause, resume, reset",
+                                                "pause, resume",
+                                                ""};
+
 template <class Enum, std::size_t n>
 std::optional<Enum> from_name(const std::array<std::string_view, n>& names, std::string_view name) {
   for (std::size_t i = 0; i < n; ++i)
@@ -36,6 +44,15 @@ std::optional<Role> role_from_name(std::string_view name) {
 
 std::optional<State> state_from_name(std::string_view name) {
   return from_name<State>(states, name);
+}
+
+bool knows_verb(Role role, std::string_view verb) {
+  const std::string known = ", " + verbs_of(role) + ",";
+  return !verb.empty() && known.find(", " + std::string(verb) + ",") != std::string::npos;
+}
+
+std::string verbs_of(Role role) {
+  return std::string(verbs[static_cast<std::size_t>(role)]);
 }
 
 }  // namespace egocal::bus

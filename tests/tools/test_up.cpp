@@ -253,6 +253,15 @@ TEST_F(Up, TheirProcessesCanBeTold) {
   ASSERT_TRUE(seen([&] { return state == "running"; }));
   EXPECT_EQ(tell({"egocal-player", "pause"}), 0);
   ASSERT_TRUE(seen([&] { return state == "paused"; }));
+  // verbs that the process would ignore
+  for (const std::vector<std::string>& ignored : std::vector<std::vector<std::string>>{
+           {"egocal-fast", "seek", "3"}, {"egocal-player", "reset"}, {"egocal-diagnosis", "reset"}}) {
+    EXPECT_EQ(tell(ignored), 1) << ignored[0];
+    ASSERT_EQ(lines(path("told")).size(), 1u) << read(path("told"));
+    EXPECT_THAT(read(path("told")), HasSubstr("does not know " + ignored[1])) << ignored[0];
+    EXPECT_THAT(read(path("told")), HasSubstr(ignored[1] == "seek" ? "egocal-player" : "egocal-pairing"));
+  }
+  EXPECT_EQ(tell({"egocal-diagnosis", "resume"}), 0);
   EXPECT_EQ(tell({"egocal-player", "seek", "3.5"}), 0);
   const std::int64_t before = out;
   EXPECT_EQ(tell({"egocal-player", "step"}), 0);

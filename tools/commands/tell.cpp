@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/process.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 
@@ -31,6 +34,19 @@ std::string words(const Options& options) {
   return options.verb + " " + options.value;
 }
 
+/// Why the process that was addressed does nothing on this verb, and who would.
+std::string refusal(const Options& options, const std::string& role) {
+  std::string who;
+  for (const bus::Role known :
+       {bus::Role::player, bus::Role::pairing, bus::Role::fast, bus::Role::global, bus::Role::diagnosis})
+    if (bus::knows_verb(known, options.verb))
+      who += (who.empty() ? "" : ", ") + ("egocal-" + std::string(bus::role_name(known)));
+  if (options.to == "*") return "no process that is alive knows " + options.verb + "; these do: " + who;
+  const std::string verbs = bus::verbs_of(*bus::role_from_name(role));
+  return options.to + " (" + role + ") does not know " + options.verb + "; these do: " + who + "; it knows " +
+         (verbs.empty() ? "no command" : verbs);
+}
+
 void run(const Options& options) {
   using namespace std::chrono_literals;
   const std::string verb = words(options);
@@ -39,14 +55,22 @@ void run(const Options& options) {
   const bus::Rig rig = options.rig.empty() ? bus::Rig{} : bus::read_rig(options.rig);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
   // LCM does not report whether a message was received; every process sends a status once a second
-  bool heard = false;
+  bool obeys = false;
+  std::optional<std::string> heard;  // the role of one that ignores the verb
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
-    heard = heard || ((options.to == "*" || status.name == options.to) && status.state != "ended");
+    if ((options.to != "*" && status.name != options.to) || status.state == "ended") return;
+    const std::optional<bus::Role> role = bus::role_from_name(status.role);
+    // what a role of another version knows is not known here
+    if (!role || bus::knows_verb(*role, options.verb))
+      obeys = true;
+    else
+      heard = status.role;
   });
   const auto end = std::chrono::steady_clock::now() + 3s;
-  while (!heard && std::chrono::steady_clock::now() < end)
+  while (!obeys && !(heard && options.to != "*") && std::chrono::steady_clock::now() < end)
     if (!loop.run_once(50ms)) return;
-  if (!heard) throw Error("tell: no process " + (options.to == "*" ? "" : options.to + " ") + "is alive");
+  if (!obeys && heard) throw Error("tell: " + refusal(options, *heard));
+  if (!obeys) throw Error("tell: no process " + (options.to == "*" ? "" : options.to + " ") + "is alive");
   command_t command{};
   command.utime = bus::wall_us();
   command.to = options.to;

@@ -26,4 +26,10 @@ std::string_view state_name(State state);
 std::optional<Role> role_from_name(std::string_view name);
 std::optional<State> state_from_name(std::string_view name);
 
+/// Whether a process of this role does anything on a command_t with this verb ("seek 3": seek). Listeners
+/// alone (monitor, up, export) obey none.
+bool knows_verb(Role role, std::string_view verb);
+/// The verbs that it knows, for messages: "pause, resume, reset"; empty: none.
+std::string verbs_of(Role role);
+
 }  // namespace egocal::bus
