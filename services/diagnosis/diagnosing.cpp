@@ -256,6 +256,8 @@ void Diagnosing::repeat() {
 }
 
 void Diagnosing::obey(Verb verb, const command_t& command) {
+  // told to all it is pairing's; told to this process alone it would change nothing
+  if (verb == Verb::reset && command.to != "*") return heartbeat_.reject(not_understood);
   bool any = false;
   for (const auto& pair : pairs_) {
     const std::int64_t session = pair->newest ? pair->newest->message.session : 0;

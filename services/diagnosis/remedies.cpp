@@ -9,6 +9,9 @@ namespace egocal::services {
 
 namespace {
 
+/// How the library words it: the wire's finding has no field for the kind of a move.
+constexpr const char* creeping = "The mounting creeps";
+
 std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.5g", value);
@@ -50,6 +53,9 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
     return "Live, a session has one scale: reset the pair (key r in the monitor) after it has changed. In a "
            "recording egocal solve --scale-b auto finds the factors, --scale-a auto where " +
            pair.b + " is in metres.";
+  // what creeps goes on after a reset: the cure is that of a recording
+  if (code == "mount_moved" && finding.message.starts_with(creeping))
+    return finding.remedy + or_its_scale(rig, pair);
   if (code == "mount_moved")
     return (pair.on_move == bus::OnMove::restart
                 ? "The calibration starts again by itself."

@@ -33,7 +33,7 @@ void hear_commands(bus::Loop& loop, bus::Heartbeat& heartbeat,
     if (command.to != "*" && command.to != heartbeat.identity().name) return;
     const std::optional<Verb> verb = verb_from_name(command.verb);
     if (!verb || !plausible(command))
-      heartbeat.reject("command not understood");
+      heartbeat.reject(not_understood);
     else
       callback(*verb, command);
   });

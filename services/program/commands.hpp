@@ -22,6 +22,9 @@ void hear_commands(bus::Loop& loop, bus::Heartbeat& heartbeat,
 bool means(const command_t& command, Verb verb, const std::string& sensor_a, const std::string& sensor_b,
            std::int64_t session);
 
+/// Why a command that this process does not know is rejected.
+inline const std::string not_understood = "command not understood";
+
 /// Why a command that means no pair at all is rejected.
 inline const std::string not_meant = "command for another session or pair";
 

@@ -327,6 +327,42 @@ TEST(Remedies, OfAMoveNameAScaleThatIsLookedFor) {
   EXPECT_THAT(findings[0].remedy, ::testing::HasSubstr("Or the scale of right changed"));
 }
 
+/// A reset does not end a creep: the cure is the one that egocal check names.
+TEST_F(DiagnosisService, TheCureOfACreepIsThatOfARecording) {
+  start();
+  SimulationOptions options;
+  options.terrain = Terrain::free;
+  options.poses = 1500;
+  options.relative_noise = 0.01;
+  options.faults.resize(2);
+  options.faults[1].mount_changes = {{0, 150, {rotation_exp({0, 0.1, 0}), {0, 0, 0}}}};
+  testing::Streams streams = testing::simulated_drive(options);
+  for (Trajectory* trajectory : {&streams.a, &streams.b})
+    for (StampedPose& pose : *trajectory) pose.time_us += 1'600'000'000'000'000;
+  play(streams, 0, 1500);
+  ASSERT_FALSE(verdicts.empty());
+  const std::vector<finding_t>& findings = verdicts.back().findings;
+  const auto moved = std::find_if(findings.begin(), findings.end(),
+                                  [](const finding_t& finding) { return finding.code == "mount_moved"; });
+  ASSERT_NE(moved, findings.end()) << verdicts.back().reason;
+  EXPECT_THAT(moved->message, ::testing::HasSubstr("creeps"));
+  EXPECT_THAT(moved->remedy, ::testing::HasSubstr("Fasten the mounting"));
+  EXPECT_THAT(moved->remedy, ::testing::Not(::testing::HasSubstr("eset")));
+}
+
+TEST_F(DiagnosisService, AResetToldToItAloneIsRefused) {
+  start();
+  pass(1s);
+  command_t command{};
+  command.to = "egocal-diagnosis";
+  command.verb = "reset";
+  observer.publish(bus::command_channel, command);
+  pass(2s);
+  EXPECT_TRUE(std::any_of(status.counters.begin(), status.counters.end(), [](const counter_t& counter) {
+    return counter.name == "rejected: " + not_understood && counter.value == 1;
+  }));
+}
+
 TEST_F(DiagnosisService, TellsTheGoalFromWhatIsMissing) {
   rig.pairs[0].goal = GoalOptions{1e-6, 1e-6, std::nullopt};
   start();
