@@ -2,9 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/accumulation.hpp"
 
+#include <algorithm>
+
 #include "egocal/bus/odometry.hpp"
 
 namespace egocal::services {
+
+namespace {
+
+/// Numbers farther ahead of the stream are not remembered when they are refused: a limit on memory. Several
+/// times what a player has on its way.
+constexpr std::int64_t farthest_refused = 256;
+
+}  // namespace
 
 Accumulation::Accumulation(const bus::Rig& rig) {
   StreamOptions options;
@@ -16,7 +26,8 @@ Accumulation::Accumulation(const bus::Rig& rig) {
 void Accumulation::apply(const Input& input) {
   switch (input.kind) {
     case Input::Kind::message:
-      return take(channels_.at(input.index), input);
+      take(channels_.at(input.index), input);
+      return go_on_behind_damage(channels_.at(input.index));
     case Input::Kind::give_up:
       return hand_on(channels_.at(input.index), channels_.at(input.index).stream.flush());
     case Input::Kind::nothing_sent:
@@ -38,17 +49,22 @@ void Accumulation::apply(const Input& input) {
 void Accumulation::take(Channel& channel, const Input& input) {
   ++channel.state.in;
   channel.state.utime = bus::utime_in(input.bytes);
+  const std::int64_t refused_before = std::exchange(channel.state.refused_last, -1);
   const bus::ReceivedOdometry odometry = bus::decode_odometry(channel.sensor, input.bytes);
   if (!odometry.decoded) {
     ++channel.state.undecodable;
   } else if (!odometry.pose) {
     ++rejected_[odometry.pose.reason];
+    note_refusal(channel, odometry.seq, refused_before);
   } else {
     hand_on(channel, channel.stream.push({*odometry.pose.value, odometry.seq, input.mono_us, false}));
   }
 }
 
 void Accumulation::hand_on(Channel& channel, const std::vector<NumberedPose>& samples) {
+  // the numbers begin again
+  if (std::any_of(samples.begin(), samples.end(), [](const auto& sample) { return sample.begins_anew; }))
+    channel.state.refused.clear();
   // one that fills a gap completes those behind it
   if (!samples.empty()) channel.state.utime = channel.stream.newest_us().value_or(0);
   for (const NumberedPose& sample : samples)
@@ -58,9 +74,44 @@ void Accumulation::hand_on(Channel& channel, const std::vector<NumberedPose>& sa
     }
 }
 
+/// Of a message that the stream misses: it can come again, whole, if it was damaged on its way.
+void Accumulation::note_refusal(Channel& channel, std::int64_t number, std::int64_t refused_before) {
+  const std::int64_t expected = channel.stream.expected();
+  if (expected < 0 || number < expected || number - expected > farthest_refused) return;
+  channel.state.refused_last = number;
+  Refusals& refusals = channel.state.refused[number];
+  ++refusals.times;
+  if (refused_before != number) ++refusals.apart;
+}
+
+/// Messages that were refused, and that their sender is to send again.
+std::size_t Accumulation::awaited_again(const Channel& channel) {
+  const auto& refused = channel.state.refused;
+  return static_cast<std::size_t>(std::count_if(
+      refused.begin(), refused.end(), [](const auto& entry) { return !entry.second.in_the_log(); }));
+}
+
+/// Does not wait for numbers that are damaged in the log. Where another number is missing in the same gap,
+/// that one is waited for first.
+void Accumulation::go_on_behind_damage(Channel& channel) {
+  auto& refused = channel.state.refused;
+  const StreamState& stream = channel.stream.state();
+  const auto forget = [&] { refused.erase(refused.begin(), refused.lower_bound(channel.stream.expected())); };
+  for (forget(); !refused.empty() && !stream.early.empty(); forget()) {
+    const std::int64_t first = channel.stream.expected(), behind = stream.early.begin()->first;
+    for (std::int64_t number = first; number < behind; ++number) {
+      const auto entry = refused.find(number);
+      if (entry == refused.end() || !entry->second.in_the_log()) return;
+    }
+    channel.state.damaged += behind - first;
+    hand_on(channel, channel.stream.give_up_first_gap());
+    if (channel.stream.expected() <= first) return;
+  }
+}
+
 std::int64_t Accumulation::complete_until(std::size_t index) const {
   const Channel& channel = channels_[index];
-  if (channel.stream.waiting() || channel.stream.unconfirmed() > 0)
+  if (channel.stream.waiting() || channel.stream.unconfirmed() > 0 || awaited_again(channel) > 0)
     return channel.stream.newest_us().value_or(0);
   return channel.state.utime;
 }
@@ -68,6 +119,7 @@ std::int64_t Accumulation::complete_until(std::size_t index) const {
 void Accumulation::count(std::map<std::string, std::int64_t>& counters) const {
   for (const PairSession& pair : pairs_) pair.count(counters);
   StreamCounts sum;
+  std::int64_t given_up = 0, at_the_end = 0;  // damaged in the log
   for (const Channel& channel : channels_) {
     const StreamCounts& counts = channel.stream.counts();
     sum.lost += counts.lost;
@@ -77,9 +129,14 @@ void Accumulation::count(std::map<std::string, std::int64_t>& counters) const {
     counters["in"] += channel.state.in;
     if (channel.state.undecodable > 0)
       counters["rejected: not decodable on " + channel.sensor.channel] = channel.state.undecodable;
-    counters["held back: " + channel.sensor.channel] = static_cast<std::int64_t>(channel.stream.held_back());
+    counters["held back: " + channel.sensor.channel] =
+        static_cast<std::int64_t>(channel.stream.held_back() + awaited_again(channel));
+    given_up += channel.state.damaged;
+    for (const auto& [number, refusals] : channel.state.refused)
+      if (refusals.in_the_log()) ++at_the_end;
   }
-  counters["lost"] = sum.lost;
+  counters["lost"] = std::max<std::int64_t>(0, sum.lost - given_up);
+  if (given_up + at_the_end > 0) counters["lost: damaged in the log"] = given_up + at_the_end;
   counters["rejected: duplicate"] = sum.duplicate;
   counters["rejected: too late"] = sum.out_of_order;
   counters["rejected: time or number jumps"] = sum.jump;

@@ -34,11 +34,22 @@ struct Input {
   std::int64_t mono_us = 0;  ///< arrival; nothing that is accumulated depends on it
 };
 
+/// Messages that came with one number and were refused, as damaged: their pose is none.
+struct Refusals {
+  std::int32_t times = 0;
+  std::int32_t apart = 0;  ///< of these, behind another message: no copies that the network made
+  /// Twice as it was sent, or so often that its sender has nothing else: what is damaged is the log.
+  bool in_the_log() const { return apart >= 2 || times >= 3; }
+};
+
 struct ChannelState {
   StreamState stream;
   std::int64_t utime = 0;  ///< see complete_until(), while nothing is waited for
   std::int64_t in = 0;
   std::int64_t undecodable = 0;
+  std::map<std::int64_t, Refusals> refused;  ///< by number, those that the stream still misses
+  std::int64_t refused_last = -1;            ///< number of the last message, where that was refused; -1
+  std::int64_t damaged = 0;                  ///< numbers given up because the log holds no pose for them
 };
 
 struct AccumulationState {
@@ -67,8 +78,8 @@ class Accumulation {
   const bus::Sensor& sensor(std::size_t channel) const { return channels_[channel].sensor; }
   const Stream& stream(std::size_t channel) const { return channels_[channel].stream; }
   /// Time of the newest message before which nothing is missing [us]; for acknowledgements. After a message
-  /// that has no place in the stream (a second time, damaged) it is that one's bus::utime_in(): it is done
-  /// with.
+  /// that has no place in the stream (a second time, damaged in the log) it is that one's bus::utime_in(): it
+  /// is done with. What was refused once may have been damaged on its way, and is waited for.
   std::int64_t complete_until(std::size_t channel) const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 
@@ -79,6 +90,9 @@ class Accumulation {
     ChannelState state;  // without the stream's
   };
   void take(Channel& channel, const Input& input);
+  static void note_refusal(Channel& channel, std::int64_t number, std::int64_t refused_before);
+  static std::size_t awaited_again(const Channel& channel);
+  void go_on_behind_damage(Channel& channel);
   void hand_on(Channel& channel, const std::vector<NumberedPose>& samples);
 
   std::vector<Channel> channels_;

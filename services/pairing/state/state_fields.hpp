@@ -312,7 +312,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 21;
+constexpr int state_layout = 22;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;
@@ -324,9 +324,14 @@ void fields(auto& archive, Is<PairState> auto& value) {
   archive(drive, scale, session, last_session, seq, restarted_by, early, paused);
 }
 
+void fields(auto& archive, Is<Refusals> auto& value) {
+  auto& [times, apart] = value;
+  archive(times, apart);
+}
+
 void fields(auto& archive, Is<ChannelState> auto& value) {
-  auto& [stream, utime, in, undecodable] = value;
-  archive(stream, utime, in, undecodable);
+  auto& [stream, utime, in, undecodable, refused, refused_last, damaged] = value;
+  archive(stream, utime, in, undecodable, refused, refused_last, damaged);
 }
 
 void fields(auto& archive, Is<AccumulationState> auto& value) {
