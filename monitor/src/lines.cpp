@@ -136,6 +136,9 @@ std::string pair_lines(const Model& model, Charset charset) {
     if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " outliers, ";
     if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
     if (pair_is_paused(model, pair)) text += "paused, ";
+    if (pairing_is_silent(pair))
+      text +=
+          pair.has_problem ? "pairing is silent, " : "pairing is silent: not verified without its problem, ";
     if (pair.shown.valid) {
       const Pose& T = pair.shown.T_a_b;
       const Eigen::Vector3d rpy = roll_pitch_yaw(T.rotation) * degrees_per_radian;
@@ -220,6 +223,7 @@ json pair_json(const Model& model, const PairState& pair) {
         pair.problem.time_offset_stddev < 0 ? json(nullptr) : real(pair.problem.time_offset_stddev);
   }
   p["paused"] = pair_is_paused(model, pair);
+  p["pairing_silent"] = pairing_is_silent(pair);
   p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
   verdict_into(p, pair);
   p["scale"] = scale_json(pair);

@@ -56,6 +56,10 @@ bool pair_is_paused(const Model& model, const PairState& pair) {
          });
 }
 
+bool pairing_is_silent(const PairState& pair) {
+  return pair.answer() && (!pair.has_problem || pair.silent);
+}
+
 std::string pair_name(const std::string& a, const std::string& b) {
   return a + " -> " + b;
 }

@@ -17,9 +17,10 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
                                    : pair.has_problem ? pair.problem.matched
                                                       : 0) +
                              " frames";
-  const std::string mode = paused             ? "PAUSED  "
-                           : pair.has_problem ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
-                                              : "";
+  const std::string mode = paused                    ? "PAUSED  "
+                           : pairing_is_silent(pair) ? "PAIRING IS SILENT  "
+                           : pair.has_problem        ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
+                                                     : "";
   const std::string left_out =
       pair.has_problem && pair.problem.left_out > 0 ? "  " + count(pair.problem.left_out) + " outliers" : "";
   const std::string rejected =
@@ -33,7 +34,7 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
       if (chosen >> i & 1u) text += *parts[i];
     if (x + width_of(text) + 1 > pane.width()) continue;
     pane.text(pane.width() - width_of(text) - 1, 0, text,
-              pair.silent || paused ? Style::warning : Style::dim);
+              pair.silent || pairing_is_silent(pair) || paused ? Style::warning : Style::dim);
     break;
   }
 }

@@ -26,6 +26,7 @@ class FastSolver final : public Solver {
   };
 
   void answer_newest() override;
+  void repeat_scales() override { scales_.repeat(!heartbeat_.alive(bus::Role::global)); }
   void hear(std::size_t pair, const calibration_t& message) override;
   void reset(std::size_t pair) override { progress_[pair].state = {}; }
   bus::State state() const override { return bus::State::running; }

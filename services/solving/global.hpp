@@ -24,6 +24,7 @@ class GlobalSolver final : public Solver {
   };
 
   void answer_newest() override;
+  void repeat_scales() override { scales_.repeat(); }
   void hear(std::size_t pair, const calibration_t& message) override;
   /// Nothing is remembered from problem to problem.
   void reset(std::size_t) override {}

@@ -54,6 +54,10 @@ class AnswerOutbox {
   std::optional<calibration_t> last_;
 };
 
+/// Pairing that sends nothing for this time is silent [us]: half as long again as the second after which it
+/// repeats its problems. Solvers repeat their answers themselves then.
+constexpr std::int64_t pairing_is_silent_us = 1'500'000;
+
 /// CLOCK_MONOTONIC for the library's timings [ns].
 std::int64_t monotonic_ns();
 

@@ -19,8 +19,16 @@ ScaleDesk::ScaleDesk(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig&
 void ScaleDesk::answer_newest(bool publishes) {
   for (const auto& pair : pairs_) {
     scale_problem_t problem{};
-    if (pair->inbox.take(problem)) answer(*pair, problem, publishes);
+    if (!pair->inbox.take(problem)) continue;
+    pair->heard_mono_us = loop_.mono_us();
+    answer(*pair, problem, publishes);
   }
+}
+
+void ScaleDesk::repeat(bool publishes) {
+  for (const auto& pair : pairs_)
+    if (publishes && pair->last && loop_.mono_us() - pair->heard_mono_us >= pairing_is_silent_us)
+      loop_.publish(bus::scale_channel(pair->config.a, pair->config.b), *pair->last);
 }
 
 Answer ScaleDesk::with_spread(Answer answer, const ReceivedProblem& received) const {

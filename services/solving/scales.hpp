@@ -24,6 +24,8 @@ class ScaleDesk {
 
   /// Problems may be waiting. publishes: false where another solver answers them.
   void answer_newest(bool publishes = true);
+  /// Sends the newest scales again where pairing is silent, which would ask for them.
+  void repeat(bool publishes = true);
   /// An answer at an unknown scale is as uncertain as that is: adds the scale's part to its standard
   /// deviations, once a scale of the problem's session was solved here.
   Answer with_spread(Answer answer, const ReceivedProblem& received) const;
@@ -35,6 +37,7 @@ class ScaleDesk {
     bus::Newest<scale_problem_t> inbox;
     std::optional<scale_t> last;
     ScaleSolution solution;  ///< of the last one
+    std::int64_t heard_mono_us = 0;
   };
   void answer(Pair& pair, const scale_problem_t& problem, bool publishes);
 

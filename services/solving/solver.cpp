@@ -28,16 +28,34 @@ Solver::Solver(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig)
   loop_.every(std::chrono::seconds(1), [this] {
     report();
     answer_newest();
+    repeat_answers();
   });
 }
 
 std::optional<ReceivedProblem> Solver::take(std::size_t pair) {
   std::optional<ReceivedProblem> received = pairs_[pair]->inbox.take();
-  if (received) pairs_[pair]->session = received->message.session;
+  if (!received) return received;
+  Pair& of = *pairs_[pair];
+  of.session = received->message.session;
+  of.newest = received->message;
+  of.newest.n_blocks = 0;
+  of.newest.blocks.clear();
+  of.heard_mono_us = loop_.mono_us();
   return received;
 }
 
+/// Pairing sends its problems again once a second, which brings the answers again. Where it does not, it
+/// hangs or is gone: listeners that come now would believe that nothing was ever answered.
+void Solver::repeat_answers() {
+  for (const auto& pair : pairs_)
+    if (pair->session >= 0 && !pair->paused && loop_.mono_us() - pair->heard_mono_us >= pairing_is_silent_us)
+      pair->outbox.repeat(pair->newest);
+  repeat_scales();
+}
+
 void Solver::obey(Verb verb, const command_t& command) {
+  if (verb == Verb::reset && command.to != "*" && !bus::knows_verb(heartbeat_.identity().role, "reset"))
+    return heartbeat_.reject(not_understood);
   bool any = false;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = *pairs_[i];

@@ -29,7 +29,9 @@ class Solver {
         : inbox(loop, heartbeat, config), outbox(loop, heartbeat) {}
     ProblemInbox inbox;
     AnswerOutbox outbox;
-    std::int64_t session = -1;  ///< of the newest problem
+    std::int64_t session = -1;       ///< of the newest problem
+    problem_t newest{};              ///< whose answer may be sent again; without its blocks
+    std::int64_t heard_mono_us = 0;  ///< when it was received last
     bool paused = false;
   };
 
@@ -42,6 +44,8 @@ class Solver {
 
   /// Problems may be waiting. Also called once a second: another process may have fallen silent.
   virtual void answer_newest() = 0;
+  /// Once a second: scales of a pairing that is silent.
+  virtual void repeat_scales() = 0;
   /// An answer of another process to a problem of this pair.
   virtual void hear(std::size_t pair, const calibration_t& message) = 0;
   virtual void reset(std::size_t pair) = 0;
@@ -56,6 +60,7 @@ class Solver {
 
  private:
   void obey(Verb verb, const command_t& command);
+  void repeat_answers();
 };
 
 }  // namespace egocal::services

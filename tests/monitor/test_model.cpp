@@ -390,6 +390,27 @@ TEST(Lines, SayWhatTheScreenSays) {
     EXPECT_THAT(json, HasSubstr(part));
 }
 
+TEST(Lines, AnswersOfAPairingThatIsSilentAreShown) {
+  PairDrive drive;
+  drive.run(40);
+  EXPECT_THAT(pair_lines(drive.model, Charset::ascii), Not(HasSubstr("silent")));
+  const calibration_t answer = *drive.pair().answer();
+  Now now = drive.now();
+  now.mono_us += 3'000'000;
+  drive.model.tick(now);
+  EXPECT_THAT(pair_lines(drive.model, Charset::ascii), HasSubstr("pairing is silent"));
+  // a monitor that was started since then has the answers alone
+  Model late;
+  late.expect_pair("lidar", "camera");
+  late.on_calibration(answer, now, false);
+  const std::string line = pair_lines(late, Charset::ascii);
+  EXPECT_THAT(line, HasSubstr("x y z "));
+  EXPECT_THAT(line, HasSubstr("pairing is silent: not verified"));
+  EXPECT_THAT(json_line(late), HasSubstr("\"pairing_silent\":true"));
+  late.on_problem(drive.pair().problem, now);
+  EXPECT_THAT(pair_lines(late, Charset::ascii), Not(HasSubstr("silent")));
+}
+
 TEST(ModelProcesses, CountsAndRates) {
   PairDrive drive;
   status_t status = status_of("egocal-pairing", "pairing", 100);

@@ -149,6 +149,33 @@ TEST_F(Solving, TheGlobalSolverAnswersTheScaleAndTheFastOneStepsIn) {
   EXPECT_NEAR(scales.back().scale, 2.7, 0.15);
 }
 
+TEST_F(Solving, AnswersComeAgainWhilePairingIsSilent) {
+  start_fast();
+  start_global();
+  pass(5s);
+  send_scale(5, 0.37);
+  send(1, 1);
+  pass(1s);
+  ASSERT_EQ(answers["egocal-fast"].seq, 1);
+  const calibration_t before = answers["egocal-fast"];
+  pass(60s);
+  answers.clear();
+  scales.clear();
+  pass(1100ms);
+  ASSERT_TRUE(answers.contains("egocal-fast"));
+  EXPECT_EQ(answers["egocal-fast"].seq, 1);
+  EXPECT_EQ(answers["egocal-fast"].cost, before.cost);
+  EXPECT_EQ(scales.size(), 1u) << "the global solver's; the fast one leaves it to that";
+  command_t command{};
+  command.to = "*";
+  command.verb = "pause";
+  observer.publish(bus::command_channel, command);
+  pass(100ms);
+  answers.clear();
+  pass(5s);
+  EXPECT_TRUE(answers.empty()) << "a paused solver sends nothing";
+}
+
 TEST_F(Solving, StandardDeviationsContainThatOfTheScale) {
   problem.blocks.assign(10, {});
   for (std::size_t i = 0; i < motions.size(); ++i)

@@ -215,6 +215,9 @@ class Model {
 /// Whether a pair's calibration was paused by a user: by the commands received for it, or because
 /// pairing reports it of all its pairs (a monitor that started later has received no command).
 bool pair_is_paused(const Model& model, const PairState& pair);
+/// There are answers, and the pairing process whose problems they answer sends nothing: it hangs or is gone.
+/// It repeats its problems once a second.
+bool pairing_is_silent(const PairState& pair);
 /// "lidar -> camera", for events and lines.
 std::string pair_name(const std::string& a, const std::string& b);
 /// An answer made plain, with its error against the pair's truth, else against its nominal value.
