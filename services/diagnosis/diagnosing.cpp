@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <utility>
 
@@ -14,6 +15,8 @@
 #include "egocal/bus/odometry.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
+#include "egocal/error.hpp"
+#include "egocal/limits.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 #include "egocal/scale/solve_scale.hpp"
 
@@ -58,12 +61,24 @@ std::int64_t common_end(const DriveSample& sample, double time_offset) {
 }  // namespace
 
 Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
-                       const DiagnosingOptions& options)
-    : loop_(loop), heartbeat_(heartbeat), rig_(rig), options_(options) {
+                       std::unique_ptr<SavedMemory> saved, const DiagnosingOptions& options)
+    : loop_(loop), heartbeat_(heartbeat), rig_(rig), options_(options), saved_(std::move(saved)) {
   for (const bus::Sensor& sensor : rig.sensors) sensors_.push_back({sensor, Stream(stream_options(rig)), 0});
   for (const bus::PairConfig& pair : rig.pairs)
     pairs_.push_back(
         std::make_unique<Pair>(loop, heartbeat, pair, bus::unscaled_side(rig, pair), options.sample));
+  if (saved_) {
+    if (saved_->restore([this](Memory memory) { restore(std::move(memory)); })) {
+      heartbeat_.counter("restored") = 1;
+    } else if (!saved_->refused().empty()) {
+      heartbeat_.reject("saved state that does not fit");
+      heartbeat_.set_error(saved_->refused());
+    }
+    save_mono_us_ = loop_.mono_us() + std::llround(1e6 * options_.save_distance);
+    loop_.every(500ms, [this] {
+      if (loop_.mono_us() >= save_mono_us_) save();
+    });
+  }
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     loop_.subscribe_bytes(
         sensors_[i].config.channel, [this, i](const bus::Arrival& arrival) { take(i, arrival); },
@@ -90,12 +105,84 @@ void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
         if ((side == Side::a ? pair->config.a : pair->config.b) != sensor.config.name) continue;
         if (sample.begins_anew) {
           pair->sample.begin_anew(side);
-          if (pair->newest) pair->matched_before = pair->newest->message.matched;
+          if (pair->newest) pair->known.matched_before = pair->newest->message.matched;
+          forget_what_was_missed(*pair);
         }
         if (pair->paused) continue;
+        note_what_was_missed(*pair, side, sample.pose);
         pair->sample.push(side, sample.pose);
         pair->newest_pose_mono_us = loop_.mono_us();
       }
+}
+
+/// The first pose of a stream since the restart: what came before it and behind the state nobody judges.
+void Diagnosing::note_what_was_missed(Pair& pair, Side side, const StampedPose& pose) {
+  if (!std::exchange(pair.continues[side == Side::b], false) || pair.sample.poses(side).empty()) return;
+  const std::int64_t missed = pose.time_us - pair.sample.poses(side).back().time_us;
+  // both streams lack about the same time: it counts once
+  if (pair.continues[side != Side::b]) pair.known.missed_us += std::max<std::int64_t>(0, missed);
+}
+
+void Diagnosing::forget_what_was_missed(Pair& pair) {
+  pair.known.matched_between = pair.known.missed_us = 0;
+  pair.continues[0] = pair.continues[1] = false;
+}
+
+Memory Diagnosing::memory() const {
+  Memory memory;
+  for (const Sensor& sensor : sensors_) memory.streams.push_back(sensor.stream.state());
+  for (const auto& pair : pairs_) {
+    memory.pairs.push_back(pair->known);
+    memory.pairs.back().sample = pair->sample.state();
+  }
+  return memory;
+}
+
+/// Throws Error where it is not of this rig; what has been taken over by then is replaced.
+void Diagnosing::restore(Memory memory) {
+  if (memory.streams.size() != sensors_.size() || memory.pairs.size() != pairs_.size())
+    throw Error("is of another rig");
+  std::vector<Stream> streams(sensors_.size(), Stream(stream_options(rig_)));
+  std::vector<DriveSample> samples(pairs_.size(), DriveSample(options_.sample));
+  for (std::size_t i = 0; i < streams.size(); ++i) streams[i].restore(std::move(memory.streams[i]));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const PairMemory& known = memory.pairs[i];
+    for (const std::int64_t count :
+         {known.matched, known.matched_before, known.matched_between, known.missed_us})
+      if (!plausible_count(count)) throw Error("holds counts that no drive can have");
+    samples[i].restore(std::exchange(memory.pairs[i].sample, {}));
+  }
+  for (std::size_t i = 0; i < streams.size(); ++i) sensors_[i].stream = std::move(streams[i]);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    pairs_[i]->sample = std::move(samples[i]);
+    pairs_[i]->known = std::move(memory.pairs[i]);
+    pairs_[i]->continues[0] = pairs_[i]->continues[1] = true;
+  }
+}
+
+/// Continues without it where the disk does not take it, and tries again.
+void Diagnosing::save() {
+  std::int64_t poses = 0;
+  for (const Sensor& sensor : sensors_) poses += sensor.in;
+  if (poses == saved_poses_) return;  // nothing new
+  const std::int64_t begin_mono_us = loop_.mono_us();
+  try {
+    saved_->save(memory());
+    saved_poses_ = poses;
+    if (!save_error_.empty()) heartbeat_.set_error("");
+    save_error_.clear();
+  } catch (const Error& error) {
+    if (save_error_.empty()) std::fprintf(stderr, "egocal-diagnosis: %s\n", error.what());
+    save_error_ = error.what();
+    heartbeat_.set_error(save_error_);
+  }
+  const std::int64_t now = loop_.mono_us();
+  const double took = static_cast<double>(now - begin_mono_us);
+  save_mono_us_ = now + std::llround(std::max(1e6 * options_.save_distance, took / options_.save_share));
+}
+
+Diagnosing::~Diagnosing() {
+  if (saved_ && std::uncaught_exceptions() == 0) save();
 }
 
 void Diagnosing::take_problems() {
@@ -106,15 +193,22 @@ void Diagnosing::take_problems() {
     std::optional<ReceivedProblem> received = pair->inbox.take();
     if (!received) continue;
     const problem_t& message = received->message;
-    const bool same_session = pair->newest && pair->newest->message.session == message.session;
-    if (!same_session || pair->newest->message.seq != message.seq) pair->newest_mono_us = loop_.mono_us();
+    const bool same_session = pair->known.session == message.session;
+    if (!same_session || !pair->newest || pair->newest->message.seq != message.seq)
+      pair->newest_mono_us = loop_.mono_us();
     if (!same_session) {
       // where times ran backwards the number of the session is no time, and the streams have begun again
       if (message.session <= message.utime) pair->sample.begin_session(message.session);
       pair->judged_seq = -1;
-      pair->matched_before = message.matched;
+      pair->known.matched_before = message.matched;
+      forget_what_was_missed(*pair);
       pair->verdict.reset();
+    } else if (!pair->newest) {
+      // the first one since the restart
+      pair->known.matched_between += std::max<std::int64_t>(0, message.matched - pair->known.matched);
     }
+    pair->known.session = message.session;
+    pair->known.matched = message.matched;
     pair->sample.set_time_offset(message.time_offset);
     pair->newest = std::move(received);
   }
@@ -130,16 +224,19 @@ Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
   const problem_t& message = pair.newest->message;
   std::int64_t begin = message.session;
   for (const Side side : {Side::a, Side::b}) {
-    const Trajectory& known = pair.sample.poses(side);
+    const Trajectory& sample = pair.sample.poses(side);
     const std::int64_t offset = side == Side::b ? std::llround(1e6 * message.time_offset) : 0;
-    begin = std::max(begin, known.empty() ? message.utime : known.front().time_us + offset);
+    begin = std::max(begin, sample.empty() ? message.utime : sample.front().time_us + offset);
   }
   const auto part = [](double unseen, double all) {
     return all > 0 ? std::clamp(unseen / all, 0.0, 1.0) : 0;
   };
-  return {std::min(part(static_cast<double>(pair.matched_before), static_cast<double>(message.matched)),
-                   part(seconds(begin - message.session), seconds(message.utime - message.session))),
-          seconds(begin - message.session), poses};
+  const PairMemory& known = pair.known;
+  const std::int64_t unseen_us = begin - message.session + known.missed_us;
+  return {std::min(part(static_cast<double>(known.matched_before + known.matched_between),
+                        static_cast<double>(message.matched)),
+                   part(seconds(unseen_us), seconds(message.utime - message.session))),
+          seconds(unseen_us), poses, known.missed_us > 0};
 }
 
 /// By a new problem, or by poses alone; without waiting where nothing more comes.
@@ -236,8 +333,8 @@ void Diagnosing::restart_after_move(Pair& pair, const Diagnosis& diagnosis) {
   const bool moved =
       std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
                   [](const Finding& finding) { return finding.code == "mount_moved" && finding.certain; });
-  if (!moved || pair.restarted_session == session) return;
-  pair.restarted_session = session;
+  if (!moved || pair.known.restarted_session == session) return;
+  pair.known.restarted_session = session;
   command_t command{};
   command.utime = loop_.wall_us();
   command.to = "*";

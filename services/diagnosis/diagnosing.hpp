@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "diagnosis/drive_sample.hpp"
+#include "diagnosis/memory.hpp"
+#include "diagnosis/saved_memory.hpp"
 #include "diagnosis/unseen.hpp"
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/newest.hpp"
@@ -38,15 +41,20 @@ struct DiagnosingOptions {
   int queue_capacity = 1024;
   DriveSampleOptions sample;
   UnseenOptions unseen;
+  /// Time between two states on the disk [s], and the part of the time that writing them may take: a disk
+  /// that is slow is written to less often, and messages wait for no longer than one state takes.
+  double save_distance = 2;
+  double save_share = 0.02;
 };
 
 /// egocal-diagnosis: from the sensors' poses and the problems to verdict_t. Judges the certified optimum of
-/// the newest problem, so it needs no solver process and believes none. What it is interrupted for is lost
-/// except the poses since then: it judges what it has received.
+/// the newest problem, so it needs no solver process and believes none. It judges what it has received; with
+/// a saved memory that is what a process before it had received, too.
 class Diagnosing {
  public:
   Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
-             const DiagnosingOptions& options = {});
+             std::unique_ptr<SavedMemory> saved = nullptr, const DiagnosingOptions& options = {});
+  ~Diagnosing();
   Diagnosing(const Diagnosing&) = delete;
   Diagnosing& operator=(const Diagnosing&) = delete;
 
@@ -72,12 +80,12 @@ class Diagnosing {
     DriveSample sample;
     std::optional<ReceivedProblem> newest;
     std::int64_t newest_mono_us = 0;       ///< when its number was new
-    std::int64_t matched_before = 0;       ///< motions of the session before the sample begins
+    PairMemory known;                      ///< without its sample
+    bool continues[2] = {};                ///< of each side: no pose has come since the restart
     std::int64_t judged_seq = -1;          ///< of the newest problem's session; -1: none
     std::int64_t judged_until_us = 0;      ///< time of the last poses that were judged
     std::int64_t newest_pose_mono_us = 0;  ///< arrival
     std::optional<verdict_t> verdict;      ///< the last one, of the newest problem's session
-    std::int64_t restarted_session = -1;   ///< for which a reset was sent
     bool paused = false;
   };
 
@@ -86,6 +94,11 @@ class Diagnosing {
   void look();
   bool idle(const Pair& pair) const;
   bool to_be_judged(const Pair& pair, bool early) const;
+  void restore(Memory memory);
+  void save();
+  Memory memory() const;
+  static void note_what_was_missed(Pair& pair, Side side, const StampedPose& pose);
+  static void forget_what_was_missed(Pair& pair);
   static Unseen unseen_of(const Pair& pair, std::size_t poses);
   void judge(Pair& pair);
   void restart_after_move(Pair& pair, const Diagnosis& diagnosis);
@@ -100,6 +113,10 @@ class Diagnosing {
   DiagnosingOptions options_;
   std::vector<Sensor> sensors_;
   std::vector<std::unique_ptr<Pair>> pairs_;
+  std::unique_ptr<SavedMemory> saved_;  ///< empty: no state is kept
+  std::int64_t save_mono_us_ = 0;       ///< not before
+  std::int64_t saved_poses_ = -1;       ///< received when the last state was written
+  std::string save_error_;
   std::size_t turn_ = 0;                 ///< the pair that is judged next where several wait
   std::int64_t not_before_mono_us_ = 0;  ///< see DiagnosingOptions::share
 };

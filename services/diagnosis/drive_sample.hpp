@@ -27,6 +27,15 @@ struct DriveSampleOptions {
   std::int64_t recent_us = 20'000'000;
 };
 
+/// Everything that a DriveSample remembers.
+struct DriveSampleState {
+  Trajectory a, b;
+  std::int64_t time_offset_us = 0;
+  std::optional<std::int64_t> origin_us;  ///< the first stretch begins here and is always kept
+  std::int32_t level = 0;                 ///< of 2^level stretches one is kept
+  std::optional<Side> begun_anew;
+};
+
 /// The poses of one sensor pair that a diagnosis looks at: the whole session in bounded memory. When it is
 /// full every second stretch of what is older than recent_us is dropped, the same stretches of both streams.
 /// What is kept depends on the poses alone.
@@ -43,21 +52,22 @@ class DriveSample {
   /// Added to the stamps of b: both streams are thinned at the same instants [s].
   void set_time_offset(double seconds);
 
-  const Trajectory& poses(Side side) const { return side == Side::a ? a_ : b_; }
+  const Trajectory& poses(Side side) const { return side == Side::a ? state_.a : state_.b; }
+
+  const DriveSampleState& state() const { return state_; }
+  /// Throws Error where no DriveSample can have had this state.
+  void restore(DriveSampleState state);
 
  private:
-  Trajectory& of(Side side) { return side == Side::a ? a_ : b_; }
-  std::int64_t offset_of(Side side) const { return side == Side::b ? time_offset_us_ : 0; }
-  bool full() const;
+  Trajectory& of(Side side) { return side == Side::a ? state_.a : state_.b; }
+  std::int64_t offset_of(Side side) const { return side == Side::b ? state_.time_offset_us : 0; }
+  static bool full(const DriveSampleState& state, const DriveSampleOptions& options);
+  bool full() const { return full(state_, options_); }
   void thin();
   void thin(Side side);
 
   DriveSampleOptions options_;
-  Trajectory a_, b_;
-  std::int64_t time_offset_us_ = 0;
-  std::optional<std::int64_t> origin_us_;  ///< the first stretch begins here and is always kept
-  int level_ = 0;                          ///< of 2^level stretches one is kept
-  std::optional<Side> begun_anew_;
+  DriveSampleState state_;
 };
 
 }  // namespace egocal::services

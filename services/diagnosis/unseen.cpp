@@ -17,9 +17,9 @@ void limit_to_what_was_seen(const Unseen& unseen, Diagnosis& diagnosis, const Un
     diagnosis.reason = text;
   } else if (unseen.share > options.largest_share) {
     std::snprintf(text, sizeof text,
-                  "The first %.0f s are not judged (egocal-diagnosis was started later, or a clock was set): "
+                  "%s%.0f s are not judged (egocal-diagnosis was started later, or a clock was set): "
                   "drive on, or reset the pair. Since then: ",
-                  unseen.seconds);
+                  unseen.within ? "" : "The first ", unseen.seconds);
     diagnosis.reason = text + diagnosis.reason;
   } else {
     return;

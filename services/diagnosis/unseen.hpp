@@ -23,6 +23,7 @@ struct Unseen {
   double share = 0;       ///< of the motions behind the answer
   double seconds = 0;     ///< from the session's start
   std::size_t poses = 0;  ///< that it knows of each stream, at common times
+  bool within = false;    ///< some of it is not at the start: the process was killed and started again
 };
 
 /// Motions that nobody judges may contradict those that come now: a mount that moved before. Such an answer

@@ -3,8 +3,11 @@
 #include "pairing/accumulation.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "egocal/bus/odometry.hpp"
+#include "egocal/error.hpp"
+#include "egocal/limits.hpp"
 
 namespace egocal::services {
 
@@ -13,6 +16,17 @@ namespace {
 /// Numbers farther ahead of the stream are not remembered when they are refused: a limit on memory. Several
 /// times what a player has on its way.
 constexpr std::int64_t farthest_refused = 256;
+
+/// Of a state that was read: what is counted on cannot overflow.
+bool plausible_refusals(const ChannelState& state) {
+  const auto plausible = [](const auto& entry) {
+    return entry.first >= 0 && entry.second.times >= 0 && entry.second.times < INT32_MAX / 2 &&
+           entry.second.apart >= 0 && entry.second.apart <= entry.second.times;
+  };
+  return state.damaged >= 0 && state.damaged <= limits::largest_count &&
+         state.refused.size() <= static_cast<std::size_t>(farthest_refused) + 1 &&
+         std::all_of(state.refused.begin(), state.refused.end(), plausible);
+}
 
 }  // namespace
 
@@ -156,6 +170,7 @@ AccumulationState Accumulation::state() const {
 
 void Accumulation::restore(AccumulationState state) {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if (!plausible_refusals(state.channels.at(i))) throw Error("holds counts that no channel can have");
     channels_[i].stream.restore(std::move(state.channels.at(i).stream));
     channels_[i].state = std::move(state.channels[i]);
     channels_[i].state.stream = {};

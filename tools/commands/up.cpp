@@ -128,7 +128,7 @@ void run(const Options& options) {
   };
   // what a killed pairing process had accumulated is for the one that takes its place; for another day only
   // if asked for
-  std::vector<std::string> pairing;
+  std::vector<std::string> pairing, diagnosis;
   std::optional<PassingState> passing;
   if (!options.state.empty()) {
     pairing = {"--state", options.state};
@@ -137,9 +137,10 @@ void run(const Options& options) {
     passing.emplace(supervisor.output_dir);
     pairing = {"--state", passing->file()};
   }
+  if (!pairing.empty()) diagnosis = {"--state", PassingState::of_diagnosis(pairing.back())};
   std::vector<Program> programs = {
       program("egocal-pairing", pairing), program("egocal-fast", {"--method", options.fast}),
-      program("egocal-global", {"--method", options.global}), program("egocal-diagnosis", {})};
+      program("egocal-global", {"--method", options.global}), program("egocal-diagnosis", diagnosis)};
   if (options.monitor || options.follow) {
     programs.push_back(program("egocal-monitor", options.follow ? std::vector<std::string>{"--follow"}
                                                                 : std::vector<std::string>{}));

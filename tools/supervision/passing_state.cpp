@@ -59,6 +59,7 @@ PassingState::~PassingState() {
 }
 
 void PassingState::discard() {
+  remove_all_of(of_diagnosis(file_));
   remove_all_of(file_);
 }
 

@@ -20,6 +20,8 @@ class PassingState {
   PassingState& operator=(const PassingState&) = delete;
 
   const std::string& file() const { return file_; }
+  /// Of the diagnosis process, beside the one of pairing whatever that is called: one goes with the other.
+  static std::string of_diagnosis(const std::string& file) { return file + ".diagnosis"; }
   void discard();
 
   /// States whose command did not end as it should: killed, or the machine was. Oldest first.

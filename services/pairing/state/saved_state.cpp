@@ -13,10 +13,22 @@ namespace egocal::services {
 
 namespace {
 
-/// Whose state it is: what is accumulated means nothing to another rig, nor to another version of the
-/// mathematics.
-std::string identity(const bus::Rig& rig) {
-  std::string text = "egocal-pairing " EGOCAL_VERSION ", layout " + std::to_string(state_layout) + "\n";
+void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
+  Reader reader(inputs);
+  while (!reader.done()) {
+    Input input;
+    std::uint32_t size = 0;
+    reader(input.kind, input.index, size);
+    input.bytes = reader.view(size);
+    accumulation.apply(input);
+    accumulation.take_motions();  // were sent before
+  }
+}
+
+}  // namespace
+
+std::string state_identity(const std::string& process, int layout, const bus::Rig& rig) {
+  std::string text = process + " " EGOCAL_VERSION ", layout " + std::to_string(layout) + "\n";
   char line[320];
   for (const bus::Sensor& sensor : rig.sensors) {
     std::snprintf(line, sizeof line, "sensor %s on %s, %s, scale %.17g%s, reorder_window %g\n",
@@ -35,27 +47,16 @@ std::string identity(const bus::Rig& rig) {
   return text;
 }
 
-void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
-  Reader reader(inputs);
-  while (!reader.done()) {
-    Input input;
-    std::uint32_t size = 0;
-    reader(input.kind, input.index, size);
-    input.bytes = reader.view(size);
-    accumulation.apply(input);
-    accumulation.take_motions();  // were sent before
-  }
-}
-
-}  // namespace
-
 SavedState::SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock,
                        const StateOptions& options)
     : SavedState(open_state_medium(file, options), rig, std::move(clock), options) {}
 
 SavedState::SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock,
                        const StateOptions& options)
-    : options_(options), rig_(rig), file_(std::move(medium), identity(rig), std::move(clock), options) {}
+    : options_(options),
+      rig_(rig),
+      file_(std::move(medium), state_identity("egocal-pairing", state_layout, rig), std::move(clock),
+            options) {}
 
 Accumulation SavedState::restore() {
   Accumulation accumulation(rig_);

@@ -12,6 +12,10 @@
 
 namespace egocal::services {
 
+/// Whose state it is, one line each: of a process with this layout of its fields, for this rig. What is
+/// accumulated means nothing to another rig, nor to another version of the mathematics.
+std::string state_identity(const std::string& process, int layout, const bus::Rig& rig);
+
 /// Keeps an Accumulation on disk: a snapshot, and every input since then.
 class SavedState {
  public:
