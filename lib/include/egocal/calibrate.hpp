@@ -34,9 +34,9 @@ struct CalibrationOptions {
 
 /// Everything that is known about one pair of sensors. Lengths in metres, angles in radians.
 struct Calibration {
-  Pose T_a_b;                             ///< pose of sensor b in the frame of sensor a: p_a = T_a_b p_b
-  Pose T_b_a;                             ///< its inverse: p_b = T_b_a p_a
-  Pose minimum;                           ///< of the motions alone; T_a_b but where the prior holds directions
+  Pose T_a_b;    ///< pose of sensor b in the frame of sensor a: p_a = T_a_b p_b
+  Pose T_b_a;    ///< its inverse: p_b = T_b_a p_a
+  Pose minimum;  ///< of the motions alone; T_a_b but where the prior holds directions
   Verdict verdict = Verdict::incomplete;  ///< whether the answer can be used
   std::string reason;                     ///< of the verdict, one sentence
   Fit fit;                                ///< how well the answer explains the motions, in units

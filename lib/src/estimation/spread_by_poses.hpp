@@ -17,10 +17,10 @@ Seen seen_directions(const Problem& problem);
 /// How far the answers scatter when blocks of instants are omitted, each with all motions that touch it.
 /// Over the directions that are seen.
 struct SpreadByPoses {
-  DualQuaternion T_a_b;           ///< minimiser of (18) over all
-  double score = 0;               ///< sum of the logarithms of rotation's and translation's spread
-  double rotation = 0;            ///< [rad]
-  double translation = 0;         ///< [m]
+  DualQuaternion T_a_b;            ///< minimiser of (18) over all
+  double score = 0;                ///< sum of the logarithms of rotation's and translation's spread
+  double rotation = 0;             ///< [rad]
+  double translation = 0;          ///< [m]
   std::array<double, 6> stddev{};  ///< of each direction [m, rad]
   std::vector<double> influence;   ///< of each block on the score
 };

@@ -35,7 +35,8 @@ struct SelectionOptions {
   double hysteresis = 0.1;
   /// A setting is not taken where the answer of longer motions differs from its own by this many of their
   /// standard deviations: what is wrong with every step in the same way (streams interpolated across fast
-  /// turns) no spread shows, but it fades as motions grow. Four: of 36 comparisons a drive, one in 400 drives.
+  /// turns) no spread shows, but it fades as motions grow. Four: of 36 comparisons a drive, one in 400
+  /// drives.
   double contradicts = 4;
 };
 
