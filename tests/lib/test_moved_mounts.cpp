@@ -7,6 +7,7 @@
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
+#include "../support/turning_machine.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 
@@ -79,6 +80,23 @@ TEST(MovedMount, AScaleThatJumpsIsNoMove) {
       EXPECT_LT(error.rotation, 0.01) << seed;
       EXPECT_LT(error.translation, terrain == Terrain::free ? 0.1 : 0.8) << seed;
     }
+}
+
+// Of a machine that mostly turns in place the extrinsic at one scale is too far off to show where the scale
+// changes, but that of a part before or after it is not.
+TEST(MovedMount, AScaleThatJumpsOnATurningMachineIsNoMove) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    testing::Streams streams = testing::turning_machine(seed, 1, 0.01);
+    for (Trajectory* stream : {&streams.a, &streams.b}) stream->resize(901);
+    streams.b = testing::longer_from_the_middle(streams.b, 1.3);
+    const double middle = 45;
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_GE(calibration.verdict, Verdict::doubtful) << seed << ": " << calibration.reason;
+    EXPECT_EQ(find(calibration, "mount_moved"), nullptr) << seed << ": " << calibration.reason;
+    const Finding* changed = find(calibration, "scale_change");
+    ASSERT_NE(changed, nullptr) << seed << ": " << calibration.reason;
+    EXPECT_NEAR(*changed->time, middle, 8) << seed << ": " << calibration.reason;
+  }
 }
 
 // The mounts of streams that are world-to-sensor seem to move where their odometry drifts. A bump of streams

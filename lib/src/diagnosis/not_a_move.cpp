@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
@@ -19,16 +20,46 @@ namespace egocal::detail {
 
 namespace {
 
-/// One scale for the whole drive, as a first guess; empty where no motion shows it.
-std::optional<ScaleSolution> scale_of_b(const Trajectory& a, const Trajectory& b,
-                                        const PairingOptions& pairing) {
+using ScaleGuesses = std::vector<ScaleSolution>;
+
+/// Its poses of a part of the time.
+Trajectory between(const Trajectory& trajectory, std::int64_t begin_us, std::int64_t end_us) {
+  Trajectory result;
+  for (const StampedPose& pose : trajectory)
+    if (pose.time_us >= begin_us && pose.time_us < end_us) result.push_back(pose);
+  return result;
+}
+
+void add_scale_of_b(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                    ScaleGuesses& guesses) {
   DriveScaleOptions options;
   options.scale.side = Side::b;
   try {
-    return estimate_scale(a, b, pairing, options);
-  } catch (const Error&) {
-    return std::nullopt;
+    guesses.push_back(estimate_scale(a, b, pairing, options));
+  } catch (const Error&) {  // no motion shows it
   }
+}
+
+/// First guesses: one scale for the whole drive, and that of each part between the moves. Where a machine
+/// mostly turns in place, a scale that changes spoils the extrinsic of the whole drive so far that its course
+/// is not found from there; a part before or after the change has the right one.
+ScaleGuesses scales_of_b(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                         const std::vector<Finding>& moves) {
+  ScaleGuesses guesses;
+  add_scale_of_b(a, b, pairing, guesses);
+  if (moves.empty()) return guesses;
+  const std::int64_t offset_us = std::llround(1e6 * pairing.time_offset);
+  std::int64_t from = a.front().time_us;
+  for (std::size_t k = 0; k <= moves.size(); ++k) {
+    std::int64_t to = a.back().time_us + 1;
+    if (k < moves.size()) {
+      if (!moves[k].time) continue;
+      to = a.front().time_us + std::llround(1e6 * *moves[k].time);
+    }
+    add_scale_of_b(between(a, from, to), between(b, from - offset_us, to - offset_us), pairing, guesses);
+    from = to;
+  }
+  return guesses;
 }
 
 /// Times are counted from origin_us.
@@ -64,15 +95,14 @@ Explained in_parts(const Explained& given, const std::vector<Finding>& moves,
   return result;
 }
 
-}  // namespace
-
+/// With the scale of b as it is found from a first guess; empty where it does not change, or where a mount
+/// still moves.
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
-                                      const Answered& answered, const DiagnosisOptions& options) {
+                                      const Answered& answered, const ScaleSolution& guess,
+                                      const DiagnosisOptions& options) {
   const Trajectory& a = evidence.streams.a;
   const Trajectory& b = evidence.streams.b;
-  const std::optional<ScaleSolution> whole = scale_of_b(a, b, pairing);
-  if (!whole) return std::nullopt;
-  const ScaleCourse course = find_scale_course(a, b, pairing, *whole, Side::b);
+  const ScaleCourse course = find_scale_course(a, b, pairing, guess, Side::b);
   if (!course.changes()) return std::nullopt;
   const Trajectory followed = scaled(b, course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
@@ -99,6 +129,19 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   return finding;
 }
 
+}  // namespace
+
+std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
+                                      const Answered& answered, const DiagnosisOptions& options,
+                                      const std::vector<Finding>& moves) {
+  std::optional<Finding> best;
+  for (const ScaleSolution& guess : scales_of_b(evidence.streams.a, evidence.streams.b, pairing, moves)) {
+    std::optional<Finding> found = changing_scale(pairing, evidence, answered, guess, options);
+    if (found && (!best || found->improvement > best->improvement)) best = std::move(found);
+  }
+  return best;
+}
+
 namespace {
 
 /// No mount moves where both streams are world-to-sensor, and one extrinsic fits about as well as one a part.
@@ -121,7 +164,7 @@ std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOpti
                                    const Evidence& evidence, const Answered& answered, bool inverted_both,
                                    const DiagnosisOptions& options) {
   if (moves.empty()) return moves;
-  std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options);
+  std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options, moves);
   // a sensor that was turned aside goes another way by its own axes: that is a scale only as far as it fits
   if (scale && std::all_of(moves.begin(), moves.end(),
                            [&](const Finding& move) { return move.improvement <= scale->improvement; }))

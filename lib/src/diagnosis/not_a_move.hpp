@@ -12,9 +12,11 @@
 namespace egocal::detail {
 
 /// Finding scale_change: the scale of b changes along the drive, and at the scales found no mount moves.
-/// Empty where the scale is one, or where the motions do not fit better.
+/// Empty where the scale is one, or where the motions do not fit better. moves: found so far, each of which
+/// may be a change of the scale.
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
-                                      const Answered& answered, const DiagnosisOptions& options);
+                                      const Answered& answered, const DiagnosisOptions& options,
+                                      const std::vector<Finding>& moves = {});
 
 /// Findings mount_moved as they are; or scale_change instead; or uncertain, where both streams may be
 /// world-to-sensor (inverted_both): no mount moves then, and one extrinsic explains the motions about as well
