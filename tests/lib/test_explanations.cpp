@@ -313,6 +313,20 @@ TEST(Explanations, AGroundPlaneAboveTheSensorIsRefused) {
   EXPECT_NE(find(calibrate(streams[0], streams[1], sideways), "plane_a"), nullptr);
 }
 
+TEST(Explanations, TimesInAnotherUnitAreNamedByAnImpossiblePace) {
+  testing::Streams streams = drive(Terrain::free);
+  EXPECT_EQ(find(calibrate(streams.a, streams.b), "time_unit"), nullptr);
+  for (Trajectory* stream : {&streams.a, &streams.b})
+    for (StampedPose& pose : *stream) pose.time_us /= 1000;
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  const Finding* finding = find(calibration, "time_unit");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_TRUE(finding->certain);
+  ASSERT_TRUE(finding->value);
+  EXPECT_EQ(*finding->value, 1000);
+  EXPECT_EQ(calibration.verdict, Verdict::doubtful) << calibration.reason;
+}
+
 TEST(Explanations, AreDeterministic) {
   testing::Streams streams = drive(Terrain::rough);
   streams.b = testing::late(streams.b, 0.2);

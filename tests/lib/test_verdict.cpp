@@ -6,6 +6,7 @@
 #include "../support/mistakes.hpp"
 #include "../support/paths.hpp"
 #include "../support/real_drives.hpp"
+#include "diagnosis/judge.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal {
@@ -92,6 +93,29 @@ TEST(Verdict, OfBothStreamsInvertedOnARealRoad) {
   EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
   ASSERT_FALSE(calibration.findings.empty());
   EXPECT_EQ(calibration.findings.front().code, "inverted_both");
+}
+
+// The standard deviations of an answer with a wrong scale are those of lengths that do not fit.
+TEST(Verdict, AClearlyWrongScaleIsDoubtfulWhereItMovesTheAnswerByMoreThanItStates) {
+  Answered answered;
+  answered.observability.observable.fill(true);
+  answered.observability.stddev.fill(0.005);
+  const auto verdict_of = [&](double scale, double moved) {
+    Diagnosis diagnosis;
+    Finding finding;
+    finding.code = "scale";
+    finding.certain = true;
+    finding.improvement = 5;
+    finding.value = scale;
+    finding.T_a_b = Pose{Eigen::Quaterniond::Identity(), {moved, 0, 0}};
+    diagnosis.findings = {finding};
+    detail::judge(diagnosis, answered, {}, {});
+    return diagnosis.verdict;
+  };
+  EXPECT_EQ(verdict_of(0.91, 0.009), Verdict::doubtful);
+  EXPECT_LE(verdict_of(0.91, 0.003), Verdict::incomplete) << "within what the answer states";
+  EXPECT_LE(verdict_of(0.983, 0.009), Verdict::incomplete) << "as far as real sensors differ";
+  EXPECT_EQ(verdict_of(0.983, 0.018), Verdict::doubtful);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/not_a_move.hpp"
+#include "diagnosis/pace.hpp"
 #include "diagnosis/planes.hpp"
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/wording.hpp"
@@ -206,6 +207,9 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
     for (Finding& finding : in_one_frame(answered)) result.findings.push_back(std::move(finding));
+  if (std::optional<Finding> pace = impossible_pace(motions, evidence.stride * evidence.instants.period,
+                                                    evidence.instants.period, options.pace))
+    result.findings.insert(result.findings.begin(), *std::move(pace));
   judge(result, answered, misfit, options);
   return result;
 }

@@ -41,13 +41,15 @@ double shift(const Finding& finding, const Answered& answered, const DiagnosisOp
 /// A wrong scale that moves the answer by more than it states to be uncertain.
 bool significant_scale(const Finding& finding, const Answered& answered, const ScaleCheckOptions& options) {
   if (!finding.certain || finding.code != "scale" || !finding.T_a_b || !finding.value) return false;
-  if (!(std::abs(std::log(*finding.value)) >= options.least)) return false;
+  const double size = std::abs(std::log(*finding.value));
+  if (!(size >= options.least)) return false;
+  const double significant = size >= options.clear ? options.significant_where_clear : options.significant;
   const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!answered.observability.observable[k]) continue;
     const double stddev = std::hypot(answered.observability.stddev[k], answered.scale_stddev[k]);
-    if (std::abs(difference[i]) > options.significant * stddev) return true;
+    if (std::abs(difference[i]) > significant * stddev) return true;
   }
   return false;
 }
@@ -98,7 +100,8 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
 /// Not another reading: what is wrong with the poses themselves. Pairing rejects those that repeat.
 bool stream_fault(const Finding& finding) {
   return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
-         finding.code == "flat_b" || (finding.code == "same_stream" && finding.certain);
+         finding.code == "flat_b" ||
+         ((finding.code == "same_stream" || finding.code == "time_unit") && finding.certain);
 }
 
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.

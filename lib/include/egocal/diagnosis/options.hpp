@@ -75,6 +75,20 @@ struct ScaleCheckOptions {
   /// An answer is doubtful where the scale moves it by more than this many of its standard deviations in some
   /// direction: less is within what it states.
   double significant = 3;
+  /// The same of a scale whose logarithm is at least `clear`: the standard deviations are then those of
+  /// lengths that do not fit, up to seven times larger than at the right scale (an arm with a scale of 1.1).
+  /// No drive with a right scale has a certain one so large (`least`).
+  double significant_where_clear = 1, clear = 0.02;
+};
+
+/// What no sensor does: the times, or the lengths of both streams, are in another unit.
+struct PaceCheckOptions {
+  double most_rate = 2000;   ///< poses a second; inertial sensors have up to 1 kHz
+  double most_speed = 150;   ///< [m/s] in the median of both streams: cars and drones stay below 100
+  double most_turning = 50;  ///< [rad/s] in the median: eight turns a second
+  /// Usual distance of poses [s], in the middle of 1 kHz and 1 Hz: the unit that comes nearest is the likely
+  /// one, as where text files are read.
+  double usual_period = 0.06;
 };
 
 /// In which direction of their own bodies the sensors travel.
@@ -186,6 +200,7 @@ struct DiagnosisOptions {
   ClockSearchOptions clock;
   ScaleSearchOptions scale;
   ScaleCheckOptions scale_check;
+  PaceCheckOptions pace;
   HeadingOptions heading;
   PlaneCheckOptions planes;
   MountCheckOptions mount;

@@ -46,7 +46,7 @@ struct Fit {
 struct Finding {
   std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
                      ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
-                     ///< scale_change, too_little_motion
+                     ///< scale_change, time_unit, too_little_motion
   bool certain = false;         ///< it fits clearly better; otherwise both remain possible
   std::string message;          ///< what was found, one sentence
   std::string remedy;           ///< option or action that cures it
