@@ -134,6 +134,12 @@ bool from_nominal(const Calibration& calibration, std::size_t direction) {
          !calibration.observability.observable[direction];
 }
 
+bool any_from_nominal(const Calibration& calibration) {
+  for (std::size_t i = 0; i < 6; ++i)
+    if (from_nominal(calibration, i)) return true;
+  return false;
+}
+
 nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth) {
   const Pose T = result.calibration.T_a_b;
   const Certificate& certificate = result.calibration.certificate;
@@ -253,9 +259,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
       "m, {:.2g} deg\n",
       certificate.cost, certificate.lower_bound, certificate.gap, certificate.scaled_gap,
       certificate.reach_translation, certificate.reach_rotation * degrees);
-  if (!nominal_json(calibration).empty())
-    text +=
-        "              (the nominal value holds what the motions do not show, and is a part of this cost)\n";
+  if (any_from_nominal(calibration)) text += fmt::format("              {}\n", cost_with_nominal);
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   text += "uncertainty   in the frame of a, one standard deviation\n";
   for (std::size_t i = 0; i < 6; ++i) {

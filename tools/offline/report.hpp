@@ -11,6 +11,11 @@ namespace egocal::tools {
 
 /// Whether the nominal value gives what the motions do not show of this direction (x y z roll pitch yaw).
 bool from_nominal(const Calibration& calibration, std::size_t direction);
+/// The same of any direction.
+bool any_from_nominal(const Calibration& calibration);
+/// What the cost then is, one sentence.
+inline constexpr const char* cost_with_nominal =
+    "The nominal value holds what the motions do not show, and is a part of this cost.";
 
 /// One JSON object (docs/json.md); numbers that are not finite are null when it is printed.
 nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth);

@@ -268,9 +268,11 @@ std::string report_html(const ReportInput& input) {
                        error.translation * 100);
   }
   out += section("Uncertainty", uncertainty(calibration));
-  out += section("Optimality", fmt::format("<p>{}. Cost {:.6g}, lower bound {:.6g}, gap {:.3g}.</p>\n",
-                                           optimality(certificate), certificate.cost, certificate.lower_bound,
-                                           certificate.gap));
+  out +=
+      section("Optimality",
+              fmt::format("<p>{}. Cost {:.6g}, lower bound {:.6g}, gap {:.3g}.{}</p>\n",
+                          optimality(certificate), certificate.cost, certificate.lower_bound, certificate.gap,
+                          any_from_nominal(calibration) ? std::string(" ") + cost_with_nominal : ""));
   out += section("Fit and motion", pictures(input));
   out += section("How it was made", settings(input));
   return out + "</body>\n</html>\n";
