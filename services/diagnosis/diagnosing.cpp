@@ -115,7 +115,8 @@ void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
       }
 }
 
-/// The first pose of a stream since the restart: what came before it and behind the state nobody judges.
+/// At the first pose of a stream since the restart: what came after the saved state and before this pose is
+/// never judged.
 void Diagnosing::note_what_was_missed(Pair& pair, Side side, const StampedPose& pose) {
   if (!std::exchange(pair.continues[side == Side::b], false) || pair.sample.poses(side).empty()) return;
   const std::int64_t missed = pose.time_us - pair.sample.poses(side).back().time_us;

@@ -9,8 +9,8 @@
 namespace egocal::services {
 
 struct UnseenOptions {
-  /// Part of the motions that may be there without having been judged: so many wrong ones are found as
-  /// outliers (docs/accuracy.md, "Outliers").
+  /// A verdict may be `good` while at most this part of the motions was not judged. That many wrong motions
+  /// are found as outliers (docs/accuracy.md, "Outliers").
   double largest_share = 0.2;
   /// Fewer poses of a stream say nothing about a drive: it is judged by the statistics alone, which do not
   /// say whether the motions agree.
@@ -26,8 +26,8 @@ struct Unseen {
   bool within = false;    ///< some of it is not at the start: the process was killed and started again
 };
 
-/// Motions that nobody judges may contradict those that come now: a mount that moved before. Such an answer
-/// is not called good, until enough is driven for the unseen part to be small.
+/// Motions that were not judged may contradict the later ones, for instance where a mount moved before. The
+/// answer is not called good until the part that was not judged is small.
 void limit_to_what_was_seen(const Unseen& unseen, Diagnosis& diagnosis, const UnseenOptions& options = {});
 
 }  // namespace egocal::services

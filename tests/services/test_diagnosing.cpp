@@ -57,18 +57,23 @@ class DiagnosisService : public ::testing::Test {
   }
   void pass(std::chrono::nanoseconds time) { test::run_for(clock, {&observer, &loop}, time); }
 
+  /// One pose of each stream, to the service and to the test's own pairing.
+  void send_poses(const testing::Streams& streams, std::size_t i, MotionPairing& pairing) {
+    for (const Side side : {Side::a, Side::b}) {
+      const StampedPose& pose = (side == Side::a ? streams.a : streams.b)[i];
+      observer.publish(side == Side::a ? "ODO_LEFT" : "ODO_RIGHT",
+                       bus::to_message(pose, ++seq[side == Side::a]));
+      problems += static_cast<std::int64_t>(pairing.push(side, pose).size());
+    }
+    pass(100ms);
+  }
+
   /// Plays poses [begin, end) in real time, with the problem that pairing makes of them once a second.
   void play(const testing::Streams& streams, std::size_t begin, std::size_t end) {
     MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
     const std::int64_t session = streams.a[begin].time_us;
     for (std::size_t i = begin; i < end; ++i) {
-      for (const Side side : {Side::a, Side::b}) {
-        const StampedPose& pose = (side == Side::a ? streams.a : streams.b)[i];
-        observer.publish(side == Side::a ? "ODO_LEFT" : "ODO_RIGHT",
-                         bus::to_message(pose, ++seq[side == Side::a]));
-        problems += static_cast<std::int64_t>(pairing.push(side, pose).size());
-      }
-      pass(100ms);
+      send_poses(streams, i, pairing);
       if ((i % 40 != 39 && i + 1 != end) || problems == 0) continue;
       publish(pairing, session, streams.a[i].time_us, problems);
     }
@@ -218,13 +223,7 @@ TEST_F(DiagnosisService, CallsNothingGoodWhoseMotionsItHasHardlySeen) {
   MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
   const auto drive_to = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      for (const Side side : {Side::a, Side::b}) {
-        const StampedPose& pose = (side == Side::a ? streams.a : streams.b)[i];
-        observer.publish(side == Side::a ? "ODO_LEFT" : "ODO_RIGHT",
-                         bus::to_message(pose, ++seq[side == Side::a]));
-        problems += static_cast<std::int64_t>(pairing.push(side, pose).size());
-      }
-      pass(100ms);
+      send_poses(streams, i, pairing);
       if (i % 40 == 39) publish(pairing, streams.a[0].time_us, streams.a[i].time_us, problems);
     }
     pass(2s);

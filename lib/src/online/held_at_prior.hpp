@@ -17,7 +17,7 @@ struct HoldOptions {
   double mostly_translation = 0.5;
   /// An answer that is closer to the prior is there: rounding [m, rad].
   double there = 1e-9;
-  /// Rotations about several axes do not commute: they are brought to the prior so many times in turn.
+  /// Rotations about several axes do not commute, so each is brought to the prior in turn, this many times.
   int sweeps = 8;
 };
 

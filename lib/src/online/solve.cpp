@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "certificate/verify.hpp"
@@ -132,13 +130,12 @@ Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Metho
 namespace {
 
 /// Empty where the motions show everything, or the minimum is at the prior.
-std::optional<detail::HeldCost> held(const Problem& problem, const Matrix8d& Q, const Answer& minimum,
-                                     const std::array<bool, 6>& seen) {
-  if (!problem.prior || problem.mode == Mode::planar || minimum.status != SolverStatus::converged ||
-      std::all_of(seen.begin(), seen.end(), [](bool one) { return one; }))
+std::optional<detail::HeldCost> held(const Problem& problem, const Matrix8d& Q, const Answer& minimum) {
+  if (!problem.prior || problem.mode == Mode::planar || minimum.status != SolverStatus::converged)
     return std::nullopt;
-  return detail::held_at_prior(Q, minimum.T_a_b, *problem.prior,
-                               hidden_directions(problem, Q, minimum.T_a_b));
+  const DirectionBasis hidden = hidden_directions(problem, Q, minimum.T_a_b);
+  if (hidden.basis.cols() == 0) return std::nullopt;
+  return detail::held_at_prior(Q, minimum.T_a_b, *problem.prior, hidden);
 }
 
 }  // namespace
@@ -146,9 +143,8 @@ std::optional<detail::HeldCost> held(const Problem& problem, const Matrix8d& Q, 
 Matrix8d certified_cost(const Problem& problem) {
   Matrix8d Q = cost_matrix(problem);
   if (!problem.prior || problem.mode == Mode::planar) return Q;
-  const Answer minimum = detail::solve_and_verify(problem, Q, Method::dual);
-  const std::optional<detail::HeldCost> cost = held(
-      problem, Q, minimum, observable_directions(problem, Q, minimum.T_a_b, ErrorCorrelation::correlated));
+  const std::optional<detail::HeldCost> cost =
+      held(problem, Q, detail::solve_and_verify(problem, Q, Method::dual));
   return cost ? cost->Q : Q;
 }
 
@@ -158,7 +154,7 @@ Answer solve(const Problem& problem, Method method, const std::optional<DualQuat
   Answer minimum = detail::solve_and_verify(problem, Q, method, start, clock);
   minimum.observability = assess_observability(problem, Q, minimum.T_a_b);
   minimum.minimum = minimum.T_a_b;
-  const std::optional<detail::HeldCost> cost = held(problem, Q, minimum, minimum.observability.observable);
+  const std::optional<detail::HeldCost> cost = held(problem, Q, minimum);
   if (!cost) return minimum;
   Answer answer = detail::solve_and_verify(problem, cost->Q, method, cost->start, clock);
   answer.solve_ns += minimum.solve_ns;
