@@ -50,10 +50,10 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
     if (instants.time(k) - instants.time(i) > options.motions.most_stretched * stride * instants.period)
       continue;
     const bool in_b = wrong == Side::b;
-    const DualQuaternion s = canonical_sign(in_b ? conjugate(instants.a(i)) * instants.a(k)
-                                                 : conjugate(instants.b(i)) * instants.b(k));
-    const DualQuaternion w0 = in_b ? instants.b(i) : instants.a(i);
-    const DualQuaternion w1 = in_b ? instants.b(k) : instants.a(k);
+    const PosePair from = instants.at(i), to = instants.at(k);
+    const DualQuaternion s = canonical_sign(in_b ? conjugate(from.a) * to.a : conjugate(from.b) * to.b);
+    const DualQuaternion w0 = in_b ? from.b : from.a;
+    const DualQuaternion w1 = in_b ? to.b : to.a;
     const QuaternionVector r0 = conjugated ? quaternion_conjugate(w0.real) : w0.real;
     const QuaternionVector r1 = conjugated ? quaternion_conjugate(w1.real) : w1.real;
     QuaternionVector w = quaternion_product(quaternion_conjugate(r0), r1);

@@ -3,10 +3,13 @@
 #include "diagnosis/motions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "pairing/cut_alike.hpp"
+#include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -88,25 +91,41 @@ void measure_sizes(Motions& motions) {
 
 }  // namespace
 
-DualQuaternion Instants::key(std::size_t i, const PoseReading& reading) const {
-  const Place& place = places_[i];
-  const std::size_t k = place.key;
-  const auto read = [&](const StampedPose& given) {
+PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,
+                                const PoseReading& read_other) const {
+  const SynchroniserOptions options;
+  const auto read = [](const StampedPose& given, const PoseReading& reading) {
     return StampedPose{given.time_us, reread(given.pose, reading)};
   };
-  const StampedPose pose = read((*keys_)[k]);
-  if (place.part == 0 || k == 0 || k + 1 == keys_->size()) return pose.pose;
-  const StampedPose before = read((*keys_)[k - 1]), after = read((*keys_)[k + 1]);
-  const StampedPose &from = (*others_)[place.before], &to = (*others_)[place.before + 1];
-  return cut_alike({before, pose, after},
-                   {place.part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, {});
+  const StampedPose pose = read((*keys_)[place.key], read_key);
+  const std::size_t side = options.smooth_poses / 2;
+  if (place.before + 1 >= side && place.before + side < others_->size()) {
+    std::array<StampedPose, SynchroniserOptions::most_smooth_poses> around;
+    for (std::size_t i = 0; i < 2 * side; ++i)
+      around[i] = read((*others_)[place.before + 1 - side + i], read_other);
+    if (const auto smooth = interpolate_smoothly(std::span(around).first(2 * side), place.part, options))
+      return {pose.pose, *smooth};
+  }
+  const StampedPose from = read((*others_)[place.before], read_other),
+                    to = read((*others_)[place.before + 1], read_other);
+  const DualQuaternion other = interpolate(from.pose, to.pose, place.part);
+  if (place.key == 0 || place.key + 1 == keys_->size()) return {pose.pose, other};
+  const StampedPose before = read((*keys_)[place.key - 1], read_key),
+                    after = read((*keys_)[place.key + 1], read_key);
+  return {cut_alike({before, pose, after},
+                    {place.part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, options),
+          other};
 }
 
-DualQuaternion Instants::between(std::size_t i, const PoseReading& reading) const {
+PosePair Instants::at(std::size_t i, const PoseReading& read_a, const PoseReading& read_b) const {
   const Place& place = places_[i];
-  const DualQuaternion before = reread((*others_)[place.before].pose, reading);
-  return place.part > 0 ? interpolate(before, reread((*others_)[place.before + 1].pose, reading), place.part)
-                        : before;
+  const PoseReading& read_key = b_slower_ ? read_b : read_a;
+  const PoseReading& read_other = b_slower_ ? read_a : read_b;
+  PosePair poses = place.part > 0 ? interpolated(place, read_key, read_other)
+                                  : PosePair{reread((*keys_)[place.key].pose, read_key),
+                                             reread((*others_)[place.before].pose, read_other)};
+  if (b_slower_) std::swap(poses.a, poses.b);
+  return poses;
 }
 
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
@@ -148,8 +167,8 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > options.most_stretched * stride * instants.period) continue;
-    Motion motion = motion_from(conjugate(instants.a(i, read_a)) * instants.a(k, read_a),
-                                conjugate(instants.b(i, read_b)) * instants.b(k, read_b));
+    const PosePair from = instants.at(i, read_a, read_b), to = instants.at(k, read_a, read_b);
+    Motion motion = motion_from(conjugate(from.a) * to.a, conjugate(from.b) * to.b);
     if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
     motion.time = 0.5 * (instants.time(i) + instants.time(k));
     motions.all.push_back(std::move(motion));

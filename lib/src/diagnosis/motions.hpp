@@ -42,6 +42,11 @@ class Times {
   ClockModel clock_;
 };
 
+/// Poses of both sensors at one time.
+struct PosePair {
+  DualQuaternion a, b;
+};
+
 /// Both poses at the stamps of the slower stream; the other one is interpolated when it is asked for, as the
 /// comparison of two clocks looks at a few hundred motions of a drive of any length.
 class Instants {
@@ -52,14 +57,9 @@ class Instants {
   std::size_t size() const { return places_.size(); }
   /// [s], since the first stamp of a.
   double time(std::size_t i) const { return (*key_times_)[places_[i].key]; }
-  /// Poses at instant i under a reading of the stream, interpolated and cut alike (pairing/cut_alike.hpp) as
-  /// read; the trajectories of synchronised() must still be there.
-  DualQuaternion a(std::size_t i, const PoseReading& reading = {}) const {
-    return b_slower_ ? between(i, reading) : key(i, reading);
-  }
-  DualQuaternion b(std::size_t i, const PoseReading& reading = {}) const {
-    return b_slower_ ? key(i, reading) : between(i, reading);
-  }
+  /// Poses of both sensors at instant i under readings of the streams, interpolated as read and as pairing
+  /// does (pairing/synchroniser.hpp); the trajectories of synchronised() must still be there.
+  PosePair at(std::size_t i, const PoseReading& read_a = {}, const PoseReading& read_b = {}) const;
 
  private:
   friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
@@ -70,8 +70,8 @@ class Instants {
     std::uint32_t before = 0;  ///< pose of the other one, at or before the instant
     double part = 0;           ///< of the way to the next one
   };
-  DualQuaternion key(std::size_t i, const PoseReading& reading) const;
-  DualQuaternion between(std::size_t i, const PoseReading& reading) const;
+  /// Both poses, of the slower stream first.
+  PosePair interpolated(const Place& place, const PoseReading& read_key, const PoseReading& read_other) const;
 
   const Trajectory* keys_ = nullptr;
   const Trajectory* others_ = nullptr;

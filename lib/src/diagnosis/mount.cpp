@@ -30,8 +30,9 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   for (std::size_t i = 0; i + steps < instants.size(); i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > longest) continue;
-    MotionPair pair{canonical_sign(normalized(conjugate(instants.a(i, reading)) * instants.a(k, reading))),
-                    canonical_sign(normalized(conjugate(instants.b(i, reading)) * instants.b(k, reading))),
+    const PosePair from = instants.at(i, reading, reading), to = instants.at(k, reading, reading);
+    MotionPair pair{canonical_sign(normalized(conjugate(from.a) * to.a)),
+                    canonical_sign(normalized(conjugate(from.b) * to.b)),
                     std::llround(1e6 * instants.time(i)), std::llround(1e6 * instants.time(k)), 1};
     if (planar) {
       pair.a = planar_motion(pair.a, G_a);

@@ -33,10 +33,10 @@ Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
   const std::size_t n = instants.size();
   const std::size_t each = std::max<std::size_t>(1, n / options.most);
   for (std::size_t i = 0; i + 1 < n; i += each) {
-    const DualQuaternion a0 = instants.a(i), b0 = instants.b(i), a1 = instants.a(i + 1),
-                         b1 = instants.b(i + 1);
-    const DualQuaternion a = canonical_sign(conjugate(a0) * a1), b = canonical_sign(conjugate(b0) * b1);
-    const double rounding = options.same * (1 + a0.dual.norm() + b0.dual.norm());
+    const PosePair from = instants.at(i), to = instants.at(i + 1);
+    const DualQuaternion a = canonical_sign(conjugate(from.a) * to.a),
+                         b = canonical_sign(conjugate(from.b) * to.b);
+    const double rounding = options.same * (1 + from.a.dual.norm() + from.b.dual.norm());
     const double size_a = size_of(a), size_b = size_of(b);
     const bool still_a = size_a < rounding, still_b = size_b < rounding;
     if (still_a && still_b) continue;

@@ -12,25 +12,11 @@ namespace egocal::detail {
 
 namespace {
 
-/// Medians.
-KeyStep typical(const std::deque<KeyStep>& steps) {
-  std::vector<double> lengths, angles;
-  for (const KeyStep& step : steps) {
-    lengths.push_back(step.length);
-    angles.push_back(step.angle);
-  }
-  return {order_statistic(lengths, steps.size() / 2), order_statistic(angles, steps.size() / 2)};
-}
-
 /// A pose between its neighbours.
 struct Corner {
   DualQuaternion from, to;             ///< motions to the pose, and from it
   double before_us = 0, after_us = 0;  ///< their times
 };
-
-KeyStep step_of(const DualQuaternion& motion) {
-  return {translation_length(motion), rotation_angle(motion)};
-}
 
 /// Empty where a neighbour is too far away.
 std::optional<Corner> corner_at(const Neighbours& neighbours, std::int64_t max_gap_us) {
@@ -40,6 +26,11 @@ std::optional<Corner> corner_at(const Neighbours& neighbours, std::int64_t max_g
   if (before_us <= 0 || before_us > max_gap_us || after_us <= 0 || after_us > max_gap_us) return std::nullopt;
   return Corner{conjugate(neighbours.before.pose) * pose.pose, conjugate(pose.pose) * neighbours.after.pose,
                 static_cast<double>(before_us), static_cast<double>(after_us)};
+}
+
+/// The product of the times to both poses that are interpolated [us^2].
+double sides_of(const InterpolatedPart& interpolated) {
+  return interpolated.part * (1 - interpolated.part) * interpolated.gap_us * interpolated.gap_us;
 }
 
 /// sides: the product of the times to both poses that are interpolated [us^2]. typical: of the stream.
@@ -59,16 +50,25 @@ DualQuaternion cut(const DualQuaternion& pose, const Corner& corner, double side
 
 }  // namespace
 
-DualQuaternion cut_alike(const Neighbours& neighbours, const Interpolated& interpolated,
-                         std::deque<KeyStep>& steps, const SynchroniserOptions& options) {
-  const StampedPose& pose = neighbours.pose;
+KeyStep step_of(const DualQuaternion& motion) {
+  return {translation_length(motion), rotation_angle(motion)};
+}
+
+KeyStep typical(const std::deque<KeyStep>& steps) {
+  if (steps.empty()) return {};
+  std::vector<double> lengths, angles;
+  for (const KeyStep& step : steps) {
+    lengths.push_back(step.length);
+    angles.push_back(step.angle);
+  }
+  return {order_statistic(lengths, steps.size() / 2), order_statistic(angles, steps.size() / 2)};
+}
+
+DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
+                         const KeyStep& typical, const SynchroniserOptions& options) {
+  const DualQuaternion& pose = neighbours.pose.pose;
   const std::optional<Corner> corner = corner_at(neighbours, interpolated.max_gap_us);
-  if (!corner) return pose.pose;
-  steps.push_back(step_of(corner->from));
-  if (steps.size() > options.typical_steps) steps.pop_front();
-  const double sides = static_cast<double>(pose.time_us - interpolated.from_us) *
-                       static_cast<double>(interpolated.to_us - pose.time_us);
-  return cut(pose.pose, *corner, sides, typical(steps), options);
+  return corner ? cut(pose, *corner, sides_of(interpolated), typical, options) : pose;
 }
 
 DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
@@ -77,10 +77,8 @@ DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& i
   const std::optional<Corner> corner = corner_at(neighbours, interpolated.max_gap_us);
   if (!corner) return pose;
   const KeyStep from = step_of(corner->from), to = step_of(corner->to);
-  const double sides =
-      interpolated.part * (1 - interpolated.part) * interpolated.gap_us * interpolated.gap_us;
-  return cut(pose, *corner, sides, {std::min(from.length, to.length), std::min(from.angle, to.angle)},
-             options);
+  return cut(pose, *corner, sides_of(interpolated),
+             {std::min(from.length, to.length), std::min(from.angle, to.angle)}, options);
 }
 
 }  // namespace egocal::detail

@@ -18,26 +18,25 @@ struct Neighbours {
   const StampedPose& after;
 };
 
-/// Stamps of the two poses that are interpolated, and the longest time to a neighbour [us].
-struct Interpolated {
-  std::int64_t from_us = 0, to_us = 0, max_gap_us = 0;
-};
-
-/// The middle pose, which is paired with an interpolated one. With h the time between the two poses that are
-/// interpolated, x the time since the first, and p'' how the path bends, the interpolated pose is x (h - x) /
-/// 2 p'' off its path. The middle pose is h_before h_after / 2 p'' off the path between its neighbours: it
-/// moves towards that path by the quotient of the two. Both sensors are on one body, so their paths bend
-/// alike. Returns the pose as it is where a neighbour is too far away or the options do not allow it. Adds to
-/// `steps`.
-DualQuaternion cut_alike(const Neighbours& neighbours, const Interpolated& interpolated,
-                         std::deque<KeyStep>& steps, const SynchroniserOptions& options);
-
 /// Where between two poses the other stream is interpolated, by a clock that may not be that of the stamps.
 struct InterpolatedPart {
   double part = 0;              ///< of the way to the second one
   double gap_us = 0;            ///< time between the two
   std::int64_t max_gap_us = 0;  ///< longest time to a neighbour
 };
+
+KeyStep step_of(const DualQuaternion& motion);
+/// Medians; zero where there are none.
+KeyStep typical(const std::deque<KeyStep>& steps);
+
+/// The middle pose, which is paired with an interpolated one. With h the time between the two poses that are
+/// interpolated, x the time since the first, and p'' how the path bends, the interpolated pose is x (h - x) /
+/// 2 p'' off its path. The middle pose is h_before h_after / 2 p'' off the path between its neighbours: it
+/// moves towards that path by the quotient of the two. Both sensors are on one body, so their paths bend
+/// alike. Returns the pose as it is where a neighbour is too far away or the options do not allow it.
+/// typical: of the steps of its stream.
+DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
+                         const KeyStep& typical, const SynchroniserOptions& options);
 
 /// The same for any pose of a recorded stream: the shorter one of the steps to and from it is what is
 /// typical.

@@ -31,6 +31,13 @@ void check(const SynchroniserOptions& options) {
   require("most_cut", options.most_cut, {0, 10}, "");
   require("most_bent", options.most_bent, {0, 10}, "");
   require("typical_steps", options.typical_steps >= 1 && options.typical_steps <= 1000, "1 to 1000");
+  require("smooth_poses",
+          options.smooth_poses == 0 || (options.smooth_poses % 2 == 0 && options.smooth_poses >= 4 &&
+                                        options.smooth_poses <= SynchroniserOptions::most_smooth_poses),
+          "0 or an even number from 4 to 16");
+  require("correlation_length", options.correlation_length, {0.1, 10}, " periods");
+  require("most_rough", options.most_rough, {0, 100}, "");
+  require("most_uneven", options.most_uneven, {1, 100}, "");
 }
 
 void check(const ClockOptions& options) {

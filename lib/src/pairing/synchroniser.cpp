@@ -3,10 +3,14 @@
 #include "egocal/pairing/synchroniser.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "pairing/cut_alike.hpp"
+#include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {
@@ -87,6 +91,12 @@ void Synchroniser::decide_keys() {
   state_.period_us = std::max<std::int64_t>(1, std::max(period_a, period_b));
 }
 
+void Synchroniser::remember_step(const StampedPose& key) {
+  if (!state_.previous_key || key.time_us - state_.previous_key->time_us > max_gap_us_) return;
+  state_.key_steps.push_back(detail::step_of(conjugate(state_.previous_key->pose) * key.pose));
+  if (state_.key_steps.size() > options_.typical_steps) state_.key_steps.pop_front();
+}
+
 std::vector<Instant> Synchroniser::synchronise() {
   std::vector<Instant> instants;
   auto& keys = state_.waiting[index(*state_.keys)];
@@ -96,6 +106,8 @@ std::vector<Instant> Synchroniser::synchronise() {
     state_.previous_key = keys.front();
     keys.pop_front();
   };
+  // so many poses on each side of an instant are there before it is interpolated
+  const std::size_t side = std::max<std::size_t>(1, options_.smooth_poses / 2);
   while (!keys.empty() && !others.empty()) {
     const StampedPose key = keys.front();
     if (key.time_us < others.front().time_us) {
@@ -103,24 +115,34 @@ std::vector<Instant> Synchroniser::synchronise() {
       pass_key();
       continue;
     }
-    while (others.size() > 1 && others[1].time_us <= key.time_us) others.pop_front();
-    const bool exact = others.front().time_us == key.time_us;
-    if (!exact && others.size() < 2) break;
-    if (!exact && others[1].time_us - others[0].time_us > max_gap_us_) {
-      state_.rejections.add(Rejection::gap);
-      pass_key();
-      continue;
-    }
-    Instant instant{key.time_us, key.pose, others[0].pose, state_.chain, 0};
-    if (!exact) {
-      if (options_.cut_alike && keys.size() < 2) break;
-      instant.b = interpolate(others[0].pose, others[1].pose,
-                              static_cast<double>(key.time_us - others[0].time_us) /
-                                  static_cast<double>(others[1].time_us - others[0].time_us));
-      if (options_.cut_alike && state_.previous_key)
+    std::size_t at = 0;
+    while (at + 1 < others.size() && others[at + 1].time_us <= key.time_us) ++at;
+    for (; at >= side; --at) others.pop_front();
+    Instant instant{key.time_us, key.pose, others[at].pose, state_.chain, 0};
+    if (others[at].time_us != key.time_us) {
+      if (at + 1 >= others.size()) break;
+      const std::int64_t period_us = others[at + 1].time_us - others[at].time_us;
+      if (period_us > max_gap_us_) {
+        state_.rejections.add(Rejection::gap);
+        pass_key();
+        continue;
+      }
+      if (at + side >= others.size()) break;
+      const double part =
+          static_cast<double>(key.time_us - others[at].time_us) / static_cast<double>(period_us);
+      std::optional<DualQuaternion> smooth;
+      if (options_.smooth_poses > 0 && at + 1 == side) {
+        std::array<StampedPose, SynchroniserOptions::most_smooth_poses> around;
+        std::copy_n(others.begin(), 2 * side, around.begin());
+        smooth = detail::interpolate_smoothly(std::span(around).first(2 * side), part, options_);
+      }
+      if (!smooth && options_.cut_alike && keys.size() < 2) break;
+      remember_step(key);
+      instant.b = smooth ? *smooth : interpolate(others[at].pose, others[at + 1].pose, part);
+      if (!smooth && options_.cut_alike && state_.previous_key)
         instant.a = detail::cut_alike({*state_.previous_key, key, keys[1]},
-                                      {others[0].time_us, others[1].time_us, max_gap_us_}, state_.key_steps,
-                                      options_);
+                                      {part, static_cast<double>(period_us), max_gap_us_},
+                                      detail::typical(state_.key_steps), options_);
     }
     instant.number = ++state_.synchronised;
     if (*state_.keys == Side::b) std::swap(instant.a, instant.b);

@@ -38,8 +38,10 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
 }
 
 void fields(auto& archive, services::Is<SynchroniserOptions> auto& value) {
-  auto& [poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps] = value;
-  archive(poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps);
+  auto& [poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps, smooth_poses,
+         correlation_length, most_rough, most_uneven] = value;
+  archive(poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps, smooth_poses,
+          correlation_length, most_rough, most_uneven);
 }
 
 void fields(auto& archive, services::Is<ClockOptions> auto& value) {
@@ -312,7 +314,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 22;
+constexpr int state_layout = 23;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -24,19 +24,21 @@ struct KeyStep {
 /// All that a Synchroniser remembers. Bounded; continuing from a copy gives the same bits.
 struct SynchroniserState {
   std::array<std::optional<std::int64_t>, 2> newest_us;  ///< of each stream
-  std::array<std::deque<StampedPose>, 2> waiting;  ///< not yet synchronised; the faster one keeps a neighbour
+  std::array<std::deque<StampedPose>, 2> waiting;  ///< not yet synchronised; the faster one keeps neighbours
   std::optional<Side> keys;    ///< the slower stream, at whose stamps poses are paired; empty until known
   std::int64_t period_us = 0;  ///< typical, of the slower stream; 0 until known
   std::optional<std::int64_t> last_key_us;  ///< newest stamp that was paired or given up
   std::optional<StampedPose> previous_key;  ///< the pose with it, within a chain
-  std::deque<KeyStep> key_steps;            ///< the last ones up to keys that no other pose has the stamp of
+  std::deque<KeyStep> key_steps;            ///< the last ones, up to keys that no other pose has the stamp of
   std::uint64_t synchronised = 0;           ///< instants
   std::uint64_t chain = 0;                  ///< of the instants: clocks so far
   Rejections rejections;                    ///< out of order, no partner, gap
 };
 
-/// Two streams of poses in, instants out: the faster stream is interpolated along a screw at the stamps of
-/// the slower one, whose poses cut corners as interpolation does (cut_alike()), once the next one is there.
+/// Two streams of poses in, instants out: the faster stream is interpolated at the stamps of the slower one,
+/// smoothly through several poses on both sides (detail::interpolate_smoothly()), once they are there. Where
+/// its path is not smooth it is interpolated along a screw, and the pose of the slower stream is cut alike
+/// (detail::cut_alike()), once its next one is there.
 /// The result depends on the poses of each stream alone, not on how the two interleave.
 class Synchroniser {
  public:
@@ -60,6 +62,7 @@ class Synchroniser {
 
  private:
   void decide_keys();
+  void remember_step(const StampedPose& key);
   std::vector<Instant> synchronise();
 
   SynchroniserOptions options_;
