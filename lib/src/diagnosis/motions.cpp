@@ -164,10 +164,18 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   if (n <= steps) return motions;
   const std::size_t each = std::max<std::size_t>(1, (n - steps) / most);
   motions.all.reserve((n - steps) / each + 1);
+  // the end of one motion is the begin of a later one
+  std::vector<std::optional<PosePair>> known(steps % each == 0 ? n / each + 1 : 0);
+  const auto poses_at = [&](std::size_t i) {
+    if (known.empty()) return instants.at(i, read_a, read_b);
+    std::optional<PosePair>& poses = known[i / each];
+    if (!poses) poses = instants.at(i, read_a, read_b);
+    return *poses;
+  };
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > options.most_stretched * stride * instants.period) continue;
-    const PosePair from = instants.at(i, read_a, read_b), to = instants.at(k, read_a, read_b);
+    const PosePair from = poses_at(i), to = poses_at(k);
     Motion motion = motion_from(conjugate(from.a) * to.a, conjugate(from.b) * to.b);
     if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
     motion.time = 0.5 * (instants.time(i) + instants.time(k));

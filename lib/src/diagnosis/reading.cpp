@@ -21,9 +21,15 @@ DualQuaternion from_parts(const Eigen::Vector4d& real, const Eigen::Vector3d& po
   return {real, 0.5 * quaternion_product(t, real)};
 }
 
+bool as_given(const detail::PoseReading& reading) {
+  return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && !reading.conjugate &&
+         reading.scale == 1 && reading.axes == Eigen::Matrix3d::Identity();
+}
+
 }  // namespace
 
 DualQuaternion detail::reread(const DualQuaternion& given, const PoseReading& reading) {
+  if (as_given(reading)) return given;
   Eigen::Vector3d t = reading.scale * (reading.axes * position(given));
   Eigen::Vector4d r = given.real;
   // read as x y z w and stored here as w x y z: the columns were (r1, r2, r3, r0)

@@ -2,98 +2,126 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pairing/smooth_interpolation.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "egocal/geometry/pose.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
-constexpr auto most = static_cast<int>(SynchroniserOptions::most_smooth_poses);
-constexpr int polynomials = 4;  ///< a constant, a line, a parabola, a cubic
+constexpr std::size_t most = SynchroniserOptions::most_smooth_poses;
+constexpr std::size_t polynomials = 4;  ///< a constant, a line, a parabola, a cubic
+constexpr double nugget = 1e-6;         ///< poses of nearly one time would have no solution
 
-using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, most, 1>;
+using Values = std::array<double, most>;
 
-template <typename Values>
-double middle_of(Values& values, std::size_t count) {
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(values.begin(), nth, values.begin() + static_cast<std::ptrdiff_t>(count));
-  return *nth;
+double median_of(Values values, std::size_t count) {
+  const auto at = [&values](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(values.begin(), at(count / 2), at(count));
+  return values[count / 2];
 }
 
 /// How far the poses are from the instant, in typical periods. Empty where the periods are too uneven.
-std::optional<Weights> places(std::span<const StampedPose> poses, double part,
-                              const SynchroniserOptions& options) {
+std::optional<Values> places_of(std::span<const StampedPose> poses, double part,
+                                const SynchroniserOptions& options) {
   const std::size_t n = poses.size(), before = n / 2 - 1;
-  std::array<double, most> periods{};
-  double longest = 0;
-  for (std::size_t i = 1; i < n; ++i) {
+  Values periods{}, places{};
+  for (std::size_t i = 1; i < n; ++i)
     periods[i - 1] = static_cast<double>(poses[i].time_us - poses[i - 1].time_us);
-    longest = std::max(longest, periods[i - 1]);
-  }
-  const double here = part * periods[before];
-  const double period = middle_of(periods, n - 1);
-  if (!(longest <= options.most_uneven * period)) return std::nullopt;
-  Weights result(static_cast<Eigen::Index>(n));
+  const double period = median_of(periods, n - 1);
+  if (!(*std::max_element(periods.begin(), periods.end()) <= options.most_uneven * period))
+    return std::nullopt;
   for (std::size_t i = 0; i < n; ++i)
-    result[static_cast<Eigen::Index>(i)] =
-        (static_cast<double>(poses[i].time_us - poses[before].time_us) - here) / period;
-  return result;
+    places[i] =
+        (static_cast<double>(poses[i].time_us - poses[before].time_us) - part * periods[before]) / period;
+  return places;
 }
 
-/// Weights of values at these places for the value at 0. They add up to one.
-Weights kriging_weights(const Weights& places, double correlation_length) {
-  const Eigen::Index n = places.size();
-  const auto correlation = [&](double distance) {
-    const double x = distance / correlation_length;
-    return std::exp(-0.5 * x * x);
-  };
+/// Weights of the values at n places for the value at 0: the first n of [K F; F' 0]^-1 [k; f], which add up
+/// to one. K is positive definite and F has full rank, so L D L' of the whole needs no exchange of rows.
+Values kriging_weights(const Values& places, std::size_t n, double correlation_length) {
+  constexpr std::size_t largest = most + polynomials;
+  const std::size_t size = n + polynomials;
   const double half = 0.5 * static_cast<double>(n);
-  using System = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, most + polynomials,
-                               most + polynomials>;
-  using Side = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, most + polynomials, 1>;
-  System system = System::Zero(n + polynomials, n + polynomials);
-  Side side = Side::Zero(n + polynomials);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    system(i, i) = 1 + 1e-6;  // without it equal places would have no solution
-    for (Eigen::Index k = 0; k < i; ++k) system(i, k) = system(k, i) = correlation(places[i] - places[k]);
+  const double falls = -0.5 / (correlation_length * correlation_length);
+  const auto correlation = [falls](double distance) { return std::exp(falls * distance * distance); };
+  double L[largest][largest], D[largest], inverse[largest], x[largest];
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < i; ++k) L[i][k] = correlation(places[i] - places[k]);
+    D[i] = 1 + nugget;
+    x[i] = correlation(places[i]);
     double power = 1;
-    for (Eigen::Index p = n; p < n + polynomials; ++p, power *= places[i] / half)
-      system(i, p) = system(p, i) = power;
-    side[i] = correlation(places[i]);
+    for (std::size_t p = n; p < size; ++p, power *= places[i] / half) L[p][i] = power;
   }
-  side[n] = 1;
-  return Weights(system.partialPivLu().solve(side).head(n));
+  for (std::size_t p = n; p < size; ++p) {
+    for (std::size_t k = n; k < p; ++k) L[p][k] = 0;
+    D[p] = 0;
+    x[p] = p == n ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t k = 0; k < i; ++k) {  // L D
+      double sum = L[i][k];
+      for (std::size_t j = 0; j < k; ++j) sum -= L[i][j] * L[k][j];
+      L[i][k] = sum;
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      const double scaled = L[i][k];
+      L[i][k] = scaled * inverse[k];
+      D[i] -= scaled * L[i][k];
+      x[i] -= L[i][k] * x[k];
+    }
+    inverse[i] = 1 / D[i];
+  }
+  for (std::size_t i = size; i-- > 0;) {
+    x[i] *= inverse[i];
+    for (std::size_t k = i + 1; k < size; ++k) x[i] -= L[k][i] * x[k];
+  }
+  Values weights{};
+  std::copy_n(x, n, weights.begin());
+  return weights;
 }
 
-/// Seen from the pose before the instant.
-using Seen = std::array<Pose, static_cast<std::size_t>(most)>;
+/// A pose as seen from the one before the instant: twice the vector part of the rotation, which is its angle
+/// about its axis for small ones and needs no trigonometry; the position in the axes of the world [m].
+struct Seen {
+  Eigen::Vector3d turned, moved;
+};
+using SeenPoses = std::array<Seen, most>;
+
+Eigen::Vector3d position(const DualQuaternion& pose) {
+  return 2 * quaternion_product(pose.dual, quaternion_conjugate(pose.real)).tail<3>();
+}
+
+SeenPoses seen_from(std::span<const StampedPose> poses, const QuaternionVector& rotation,
+                    const Eigen::Vector3d& origin) {
+  SeenPoses seen;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const QuaternionVector turned = quaternion_product(rotation, poses[i].pose.real);
+    seen[i] = {(turned[0] < 0 ? -2 : 2) * turned.tail<3>(), position(poses[i].pose) - origin};
+  }
+  return seen;
+}
 
 /// Whether each pose is about where its neighbours are, in typical steps.
-bool is_smooth(std::span<const StampedPose> poses, const Seen& seen, const SynchroniserOptions& options) {
-  const std::size_t n = poses.size();
-  std::array<double, most> lengths{}, angles{};
-  std::array<Eigen::Vector3d, static_cast<std::size_t>(most)> turned;
-  for (std::size_t i = 0; i < n; ++i) turned[i] = rotation_log(seen[i].rotation);
+bool is_smooth(const SeenPoses& seen, const Values& places, std::size_t n,
+               const SynchroniserOptions& options) {
+  Values lengths{}, angles{};
   for (std::size_t i = 1; i < n; ++i) {
-    lengths[i - 1] = (seen[i].translation - seen[i - 1].translation).norm();
-    angles[i - 1] = (turned[i] - turned[i - 1]).norm();
+    lengths[i - 1] = (seen[i].moved - seen[i - 1].moved).norm();
+    angles[i - 1] = (seen[i].turned - seen[i - 1].turned).norm();
     if (lengths[i - 1] == 0 && angles[i - 1] == 0) return false;
   }
-  const double length = middle_of(lengths, n - 1), angle = middle_of(angles, n - 1);
+  const double longest = options.most_rough * median_of(lengths, n - 1),
+               largest = options.most_rough * median_of(angles, n - 1);
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double part = static_cast<double>(poses[i].time_us - poses[i - 1].time_us) /
-                        static_cast<double>(poses[i + 1].time_us - poses[i - 1].time_us);
-    const auto off = [part](const Eigen::Vector3d& from, const Eigen::Vector3d& at,
-                            const Eigen::Vector3d& to) { return (at - from - part * (to - from)).norm(); };
-    if (off(seen[i - 1].translation, seen[i].translation, seen[i + 1].translation) >
-            options.most_rough * length ||
-        off(turned[i - 1], turned[i], turned[i + 1]) > options.most_rough * angle)
-      return false;
+    const double part = (places[i] - places[i - 1]) / (places[i + 1] - places[i - 1]);
+    const auto off = [&](Eigen::Vector3d Seen::*value) {
+      const Eigen::Vector3d &from = seen[i - 1].*value, &to = seen[i + 1].*value;
+      return (seen[i].*value - from - part * (to - from)).norm();
+    };
+    if (off(&Seen::moved) > longest || off(&Seen::turned) > largest) return false;
   }
   return true;
 }
@@ -102,23 +130,29 @@ bool is_smooth(std::span<const StampedPose> poses, const Seen& seen, const Synch
 
 std::optional<DualQuaternion> interpolate_smoothly(std::span<const StampedPose> poses, double part,
                                                    const SynchroniserOptions& options) {
-  const std::optional<Weights> at = places(poses, part, options);
-  if (!at) return std::nullopt;
+  const std::optional<Values> places = places_of(poses, part, options);
+  if (!places) return std::nullopt;
   const std::size_t n = poses.size();
   const DualQuaternion& from = poses[n / 2 - 1].pose;
-  Seen seen;
+  const Eigen::Vector3d origin = position(from);
+  const SeenPoses seen = seen_from(poses, quaternion_conjugate(from.real), origin);
+  if (!is_smooth(seen, *places, n, options)) return std::nullopt;
+  const Values weights = kriging_weights(*places, n, options.correlation_length);
+  Seen here{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (std::size_t i = 0; i < n; ++i) {
-    seen[i] = to_pose(conjugate(from) * poses[i].pose);
+    here.turned += 0.5 * weights[i] * seen[i].turned;
+    here.moved += weights[i] * seen[i].moved;
   }
-  if (!is_smooth(poses, seen, options)) return std::nullopt;
-  const Weights weights = kriging_weights(*at, options.correlation_length);
-  Eigen::Vector3d turned = Eigen::Vector3d::Zero(), moved = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < n; ++i) {
-    const double weight = weights[static_cast<Eigen::Index>(i)];
-    turned += weight * rotation_log(seen[i].rotation);
-    moved += weight * seen[i].translation;
-  }
-  return normalized(from * to_dual_quaternion({rotation_exp(turned), moved}));
+  const double squares = here.turned.squaredNorm();
+  if (!(squares < 1)) return std::nullopt;
+  QuaternionVector turned;
+  turned << std::sqrt(1 - squares), here.turned;
+  DualQuaternion pose;
+  pose.real = quaternion_product(from.real, turned);
+  QuaternionVector moved;
+  moved << 0, origin + here.moved;
+  pose.dual = 0.5 * quaternion_product(moved, pose.real);
+  return normalized(pose);
 }
 
 }  // namespace egocal::detail
