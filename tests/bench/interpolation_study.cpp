@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Streams that are not measured at the same times: how far an extrinsic is off because one of them is
-// interpolated, with both streams cut alike (lib/src/pairing/cut_alike.hpp) and without. A table of
-// docs/method.md.
+// interpolated: along screws, along screws with both streams cut alike (lib/src/pairing/cut_alike.hpp), and
+// smoothly (lib/src/pairing/smooth_interpolation.hpp). A table of docs/method.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +13,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/cli/cli.hpp"
 #include "markdown_tables.hpp"
+#include "support/shaken_car.hpp"
 #include "support/simulated_drive.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -23,8 +24,9 @@ using namespace egocal;
 struct Case {
   const char* name;
   Terrain terrain;
-  double rate_a, rate_b;  ///< [Hz]
-  double dropped = 0;     ///< part of the poses of both that are missing
+  double rate_a, rate_b;           ///< [Hz]
+  double dropped = 0;              ///< part of the poses of both that are missing
+  double lowest = 0, highest = 0;  ///< a road whose car pitches and rolls with these frequencies [Hz]
 };
 
 constexpr Case cases[] = {{"free, 4 Hz and 4 Hz", Terrain::free, 4, 4},
@@ -33,9 +35,23 @@ constexpr Case cases[] = {{"free, 4 Hz and 4 Hz", Terrain::free, 4, 4},
                           {"free, 10 Hz and 10 Hz", Terrain::free, 10, 10},
                           {"free, 10 Hz and 10 Hz, 30 % lost", Terrain::free, 10, 10, 0.3},
                           {"free, 20 Hz and 20 Hz", Terrain::free, 20, 20},
-                          {"road, 10 Hz and 10 Hz", Terrain::rough, 10, 10}};
+                          {"road, 10 Hz and 10 Hz", Terrain::rough, 10, 10},
+                          {"shaken at 0.5 to 1.5 Hz, 10 Hz and 20 Hz", Terrain::rough, 10, 20, 0, 0.5, 1.5},
+                          {"shaken at 1 to 3 Hz, 10 Hz and 10 Hz", Terrain::rough, 10, 10, 0, 1, 3},
+                          {"shaken at 1 to 3 Hz, 10 Hz and 20 Hz", Terrain::rough, 10, 20, 0, 1, 3},
+                          {"shaken at 2 to 6 Hz, 10 Hz and 20 Hz", Terrain::rough, 10, 20, 0, 2, 6},
+                          {"shaken at 2 to 6 Hz, 20 Hz and 20 Hz", Terrain::rough, 20, 20, 0, 2, 6}};
 
 testing::Streams drive(const Case& of, std::uint64_t seed) {
+  const double phase = (0.1 + 0.1 * static_cast<double>(seed % 8)) / of.rate_b;
+  if (of.highest > 0)
+    return testing::shaken_car({.rate_a = of.rate_a,
+                                .rate_b = of.rate_b,
+                                .phase_b = phase,
+                                .lowest = of.lowest,
+                                .highest = of.highest,
+                                .seconds = 120,
+                                .seed = seed});
   SimulationOptions options;
   options.terrain = of.terrain;
   options.seed = seed;
@@ -46,7 +62,7 @@ testing::Streams drive(const Case& of, std::uint64_t seed) {
   options.faults[0].rate = of.rate_a;
   options.faults[1].rate = of.rate_b;
   for (SensorFaults& faults : options.faults) faults.dropped = of.dropped;
-  options.faults[1].phase = (0.1 + 0.1 * static_cast<double>(seed % 8)) / of.rate_b;
+  options.faults[1].phase = phase;
   return testing::simulated_drive(options);
 }
 
@@ -55,9 +71,9 @@ struct Measured {
   double errors = 0, variances = 0;
   int within = 0, of = 0;
 
-  void add(const testing::Streams& streams, bool cut_alike) {
+  void add(const testing::Streams& streams, const SynchroniserOptions& synchroniser) {
     CalibrationOptions options;
-    options.pairing.synchroniser.cut_alike = cut_alike;
+    options.pairing.synchroniser = synchroniser;
     const Calibration found = calibrate(streams.a, streams.b, options);
     const auto error = detail::frame_a_difference(streams.T, to_dual_quaternion(found.T_a_b));
     for (int i = 0; i < 3; ++i) {
@@ -90,20 +106,25 @@ int main(int argc, char** argv) {
   app.add_option("--check", check, "a page: exit 1 where its table differs");
   if (const auto code = app.parse(argc, argv)) return *code;
 
+  SynchroniserOptions screws, cut_alike;
+  screws.smooth_poses = cut_alike.smooth_poses = 0;
+  screws.cut_alike = false;
   bench::Table table{"interpolation",
-                     {{"drive, rates", "error, not cut alike", "standard deviation", "within", "error",
+                     {{"drive, rates", "error, along screws", "within", "both cut alike", "within", "smooth",
                        "standard deviation", "within"}}};
   for (const Case& of : cases) {
     if (std::string(of.name).find(only) == std::string::npos) continue;
-    Measured plain, cut;
+    Measured plain, cut, smooth;
     for (int seed = 1; seed <= drives; ++seed) {
       const testing::Streams streams = drive(of, static_cast<std::uint64_t>(seed));
-      plain.add(streams, false);
-      cut.add(streams, true);
+      plain.add(streams, screws);
+      cut.add(streams, cut_alike);
+      smooth.add(streams, {});
     }
-    table.rows.push_back({of.name, plain.centimetres(plain.errors), plain.centimetres(plain.variances),
-                          bench::part(plain.within, plain.of), cut.centimetres(cut.errors),
-                          cut.centimetres(cut.variances), bench::part(cut.within, cut.of)});
+    table.rows.push_back({of.name, plain.centimetres(plain.errors), bench::part(plain.within, plain.of),
+                          cut.centimetres(cut.errors), bench::part(cut.within, cut.of),
+                          smooth.centimetres(smooth.errors), smooth.centimetres(smooth.variances),
+                          bench::part(smooth.within, smooth.of)});
   }
   return bench::publish(table, write, check);
 }

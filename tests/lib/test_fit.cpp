@@ -71,7 +71,7 @@ TEST(Fit, ASpikeIsNotSpreadOverItsNeighbours) {
           };
           return off(x) < off(y);
         });
-    wrong += translation_length(motion_between(nearest->pose, instants.b(i))) > 0.05 ? 1 : 0;
+    wrong += translation_length(motion_between(nearest->pose, instants.at(i).b)) > 0.05 ? 1 : 0;
   }
   EXPECT_LE(wrong, 2u);
 }

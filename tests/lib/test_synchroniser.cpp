@@ -30,7 +30,7 @@ TEST(Synchroniser, InterpolatesTheFasterStreamAtTheStampsOfTheSlowerOne) {
     if (i % 10 == 5) take(synchroniser.push(Side::b, {i * 10'000 + 4'000, {}}));
   }
   take(synchroniser.finish());
-  ASSERT_EQ(instants.size(), 19u);  // the last one waits for the next
+  ASSERT_EQ(instants.size(), 20u);
   EXPECT_EQ(synchroniser.period_us(), 100'000);
   for (std::size_t k = 0; k < instants.size(); ++k) {
     EXPECT_EQ(instants[k].time_us, static_cast<std::int64_t>(k) * 100'000 + 54'000);
@@ -98,20 +98,29 @@ double slack(const std::vector<Instant>& instants, const DualQuaternion& T) {
   return std::sqrt(squares);
 }
 
-PairingOptions not_cut() {
+/// Along screws, as where the path is not smooth.
+PairingOptions cut_alike() {
   PairingOptions options;
+  options.synchroniser.smooth_poses = 0;
+  return options;
+}
+
+PairingOptions not_cut() {
+  PairingOptions options = cut_alike();
   options.synchroniser.cut_alike = false;
   return options;
 }
 
-TEST(Synchroniser, BothStreamsLoseAlikeByInterpolation) {
+TEST(Synchroniser, BothStreamsLoseAlikeByInterpolationAlongScrews) {
   for (const double rate : {5.0, 10.0, 20.0}) {
     const Streams data = apart(rate, 3);
-    const std::vector<Instant> cut = synchronised(data, {}), plain = synchronised(data, not_cut());
+    const std::vector<Instant> smooth = synchronised(data, {}), cut = synchronised(data, cut_alike()),
+                               plain = synchronised(data, not_cut());
     EXPECT_EQ(cut.size() + 1, plain.size());
-    std::printf("%g Hz: %.2f mm off a rigid mounting, not cut alike %.2f mm\n", rate,
-                1e3 * slack(cut, data.T), 1e3 * slack(plain, data.T));
+    std::printf("%g Hz: %.2f mm off a rigid mounting, along screws %.2f mm, not cut alike %.2f mm\n", rate,
+                1e3 * slack(smooth, data.T), 1e3 * slack(cut, data.T), 1e3 * slack(plain, data.T));
     EXPECT_LT(slack(cut, data.T), 0.5 * slack(plain, data.T));
+    EXPECT_LT(slack(smooth, data.T), slack(cut, data.T));
   }
 }
 
@@ -142,7 +151,8 @@ TEST(Synchroniser, AWrongPoseAndAJumpStayWhereTheyAre) {
   const DualQuaternion jump = displacement({0.2, -0.3, 0.4}, {1.5, -1, 2});
   wrong.b[100].pose = normalized(wrong.b[100].pose * jump);
   for (std::size_t i = 200; i < wrong.b.size(); ++i) wrong.b[i].pose = normalized(jump * wrong.b[i].pose);
-  const std::vector<Instant> before = synchronised(right, {}), after = synchronised(wrong, {});
+  const std::vector<Instant> before = synchronised(right, cut_alike()),
+                             after = synchronised(wrong, cut_alike());
   ASSERT_EQ(before.size(), after.size());
   const auto at = [&](const std::vector<Instant>& instants, std::size_t key) {
     for (const Instant& instant : instants)
@@ -162,8 +172,21 @@ TEST(Synchroniser, AWrongPoseAndAJumpStayWhereTheyAre) {
   }
 }
 
-TEST(Synchroniser, AKeyWaitsForTheNextOne) {
+TEST(Synchroniser, AKeyWaitsForFourPosesOfTheOtherStream) {
   Synchroniser synchroniser{PairingOptions{}};
+  for (int i = 0; i < 20; ++i) {
+    synchroniser.push(Side::a, {i * 100'000, displacement({}, {0.1 * i, 0, 0})});
+    synchroniser.push(Side::b, {i * 100'000 + 40'000, displacement({}, {0.1 * i + 0.04, 0, 0})});
+  }
+  EXPECT_EQ(synchroniser.state().synchronised, 16u);
+  synchroniser.push(Side::a, {2'000'000, displacement({}, {2, 0, 0})});
+  EXPECT_EQ(synchroniser.state().synchronised, 17u);
+  EXPECT_TRUE(synchroniser.finish().empty());
+  EXPECT_EQ(rejected(synchroniser.state().rejections, Rejection::no_partner), 3u);
+}
+
+TEST(Synchroniser, AlongScrewsAKeyWaitsForTheNextOne) {
+  Synchroniser synchroniser{cut_alike()};
   for (int i = 0; i < 20; ++i) {
     synchroniser.push(Side::a, {i * 100'000, displacement({}, {0.1 * i, 0, 0})});
     synchroniser.push(Side::b, {i * 100'000 + 40'000, displacement({}, {0.1 * i + 0.04, 0, 0})});

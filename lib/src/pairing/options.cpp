@@ -37,6 +37,7 @@ void check(const SynchroniserOptions& options) {
           "0 or an even number from 4 to 16");
   require("correlation_length", options.correlation_length, {0.1, 10}, " periods");
   require("most_rough", options.most_rough, {0, 100}, "");
+  require("most_uneven_here", options.most_uneven_here, {1, 100}, "");
   require("most_uneven", options.most_uneven, {1, 100}, "");
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "egocal/pairing/congruence.hpp"
+#include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {
@@ -33,7 +34,8 @@ std::size_t slowest(std::span<const Trajectory> sensors) {
   return found;
 }
 
-/// The pose at a time, interpolated; empty outside of the trajectory and within a gap.
+/// The pose at a time, interpolated as pairing does (pairing/synchroniser.hpp); empty outside of the
+/// trajectory and within a gap.
 std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t time_us, double max_gap) {
   const auto next =
       std::lower_bound(trajectory.begin(), trajectory.end(), time_us,
@@ -44,7 +46,13 @@ std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t
   const auto last = std::prev(next);
   const auto gap = static_cast<double>(next->time_us - last->time_us);
   if (gap > 1e6 * max_gap) return std::nullopt;
-  return interpolate(last->pose, next->pose, static_cast<double>(time_us - last->time_us) / gap);
+  const double part = static_cast<double>(time_us - last->time_us) / gap;
+  const SynchroniserOptions options;
+  const auto side = static_cast<std::ptrdiff_t>(options.smooth_poses / 2);
+  if (next - trajectory.begin() >= side && trajectory.end() - next >= side)
+    if (const auto smooth = detail::interpolate_smoothly({next - side, next + side}, part, options))
+      return smooth;
+  return interpolate(last->pose, next->pose, part);
 }
 
 std::vector<Instant> instants_of(std::span<const Trajectory> sensors, double max_gap) {

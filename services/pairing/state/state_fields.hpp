@@ -38,10 +38,10 @@ void fields(auto& archive, services::Is<GroundPlane> auto& value) {
 }
 
 void fields(auto& archive, services::Is<SynchroniserOptions> auto& value) {
-  auto& [poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps, smooth_poses,
-         correlation_length, most_rough, most_uneven] = value;
-  archive(poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps, smooth_poses,
-          correlation_length, most_rough, most_uneven);
+  auto& [poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps,
+         smooth_poses, correlation_length, most_rough, most_uneven_here, most_uneven] = value;
+  archive(poses_to_decide, most_waiting, slower_by, cut_alike, most_cut, most_bent, typical_steps,
+          smooth_poses, correlation_length, most_rough, most_uneven_here, most_uneven);
 }
 
 void fields(auto& archive, services::Is<ClockOptions> auto& value) {

@@ -88,12 +88,13 @@ struct SynchroniserOptions {
   double most_cut = 4, most_bent = 1;
   std::size_t typical_steps = 9;  ///< two outliers are four steps
   /// So many poses of the faster stream, half of them on each side of an instant, make the pose there
-  /// (universal kriging with a Gaussian correlation over correlation_length periods), where each is off the
-  /// path between its neighbours by at most most_rough typical steps and no period is most_uneven times as
-  /// long as the typical one. Even, at most most_smooth_poses; 0: the screw between two, both streams cut
-  /// alike, as wherever the path is not smooth. Study: docs/method.md, "Interpolation".
+  /// (universal kriging with a Gaussian correlation over correlation_length periods). Each of them is off the
+  /// path between its neighbours by at most most_rough typical steps, the period at the instant is at most
+  /// most_uneven_here times as long as the typical one, the others most_uneven times. Elsewhere it is the
+  /// screw between two, and both streams are cut alike. Even, at most most_smooth_poses; 0: never. Study:
+  /// docs/method.md, "Interpolation".
   std::size_t smooth_poses = 8;
-  double correlation_length = 1.5, most_rough = 2, most_uneven = 3;
+  double correlation_length = 1.5, most_rough = 2, most_uneven_here = 1.5, most_uneven = 3;
   static constexpr std::size_t most_smooth_poses = 16;
 };
 
