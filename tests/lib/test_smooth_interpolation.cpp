@@ -20,6 +20,7 @@ using detail::interpolate_smoothly;
 using testing::displacement;
 
 constexpr std::int64_t period_us = 100'000;
+const Eigen::Vector3d none(0, 0, 0);
 
 /// Eight poses of a path, the instant is between the fourth and the fifth.
 template <typename Path>
@@ -101,10 +102,12 @@ TEST(SmoothInterpolation, IsRefusedWhereThePathIsNotSmooth) {
     change(poses);
     EXPECT_FALSE(interpolate_smoothly(poses, part, {})) << what;
   };
-  refused("spike", [](Trajectory& poses) { poses[5].pose = poses[5].pose * displacement({}, {0, 3, 0}); });
-  refused("turned", [](Trajectory& poses) { poses[2].pose = poses[2].pose * displacement({0.5, 0, 0}, {}); });
+  refused("spike", [](Trajectory& poses) { poses[5].pose = poses[5].pose * displacement(none, {0, 3, 0}); });
+  refused("turned", [](Trajectory& poses) {
+    poses[2].pose = poses[2].pose * displacement({0.5, 0, 0}, none);
+  });
   refused("jump", [](Trajectory& poses) {
-    for (std::size_t i = 4; i < 8; ++i) poses[i].pose = displacement({}, {0, 5, 0}) * poses[i].pose;
+    for (std::size_t i = 4; i < 8; ++i) poses[i].pose = displacement(none, {0, 5, 0}) * poses[i].pose;
   });
   refused("repeated", [](Trajectory& poses) { poses[1].pose = poses[0].pose; });
   refused("pause", [](Trajectory& poses) {
@@ -113,7 +116,7 @@ TEST(SmoothInterpolation, IsRefusedWhereThePathIsNotSmooth) {
   refused("the pose at the instant is missing", [](Trajectory& poses) {
     for (std::size_t i = 4; i < 8; ++i) {
       poses[i].time_us += period_us;
-      poses[i].pose = displacement({0, 0, 0.3e-6 * static_cast<double>(poses[i].time_us)}, {});
+      poses[i].pose = displacement({0, 0, 0.3e-6 * static_cast<double>(poses[i].time_us)}, none);
     }
   });
   refused("stands, then moves", [](Trajectory& poses) {

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "pairing/offset/turning.hpp"
+#include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -19,9 +21,10 @@ namespace egocal::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double second_us = 1e6;  // unit
+constexpr double second_us = 1e6;              // unit
+constexpr std::size_t interpolation_cost = 4;  ///< of a motion's two poses, in poses looked at
 
-/// Pose at a time [us] relative to `at_us`; empty where not known.
+/// Pose at a time [us] relative to `at_us`, interpolated as pairing does; empty where not known.
 std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t at_us, double time_us,
                                       double max_gap_us, std::size_t& from) {
   const auto since = [&](std::size_t i) { return static_cast<double>(trajectory[i].time_us - at_us); };
@@ -29,7 +32,14 @@ std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t
   if (from + 1 >= trajectory.size() || since(from) > time_us) return std::nullopt;
   const double gap = since(from + 1) - since(from);
   if (gap > max_gap_us) return std::nullopt;
-  return interpolate(trajectory[from].pose, trajectory[from + 1].pose, (time_us - since(from)) / gap);
+  const double part = (time_us - since(from)) / gap;
+  const SynchroniserOptions options;
+  const std::size_t side = options.smooth_poses / 2;
+  if (part > 0 && from + 1 >= side && from + side < trajectory.size())
+    if (const auto smooth = interpolate_smoothly(
+            std::span(trajectory).subspan(from + 1 - side, options.smooth_poses), part, options))
+      return smooth;
+  return interpolate(trajectory[from].pose, trajectory[from + 1].pose, part);
 }
 
 /// Where to begin looking for a time.
@@ -124,8 +134,9 @@ void Refinement::round() {
   for (std::size_t which = 0; which < 3; ++which) {
     others_[which].assign(motions_.size(), {});
     statistics_[which].assign(tuning_.blocks, {});
-    schedule_.add_range(motions_.size(),
-                        [this, which](std::size_t begin, std::size_t end) { sample(which, begin, end); });
+    schedule_.add_range(
+        motions_.size(), [this, which](std::size_t begin, std::size_t end) { sample(which, begin, end); },
+        interpolation_cost);
   }
   schedule_.add(motions_.size() / 4, [this] { find_outliers(); });
   schedule_.add_range(motions_.size(),

@@ -18,13 +18,13 @@ class Schedule {
   /// cost: about as many poses as the piece looks at.
   void add(std::size_t cost, std::function<void()> piece) { added_.push_back({cost, std::move(piece)}); }
 
-  /// piece(begin, end) on consecutive ranges of n items.
+  /// piece(begin, end) on consecutive ranges of n items, each of which costs as much as `cost` poses.
   template <typename Piece>
-  void add_range(std::size_t n, Piece piece) {
-    constexpr std::size_t most = 256;  // poses of a piece: bounds its time, changes no bit
+  void add_range(std::size_t n, Piece piece, std::size_t cost = 1) {
+    const std::size_t most = 256 / cost;  // items of a piece: bounds its time, changes no bit
     for (std::size_t begin = 0; begin < n; begin += most) {
       const std::size_t end = std::min(n, begin + most);
-      add(end - begin, [piece, begin, end] { piece(begin, end); });
+      add(cost * (end - begin), [piece, begin, end] { piece(begin, end); });
     }
   }
 
