@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Simulated drives with a goal: whether "reached" is true when it is said, how late it is said, and how good
-// the time still needed is at half time. The goal of each kind of drive is what its drives reach at half of
-// their length: the root mean square errors of all of them there. The table of docs/trust.md.
+// the time still needed is at half time. The goal of each kind of drive is what its drives reach at a third
+// of their length: the root mean square errors of all of them there. The rest is for those that are late. The
+// table of docs/trust.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,14 +31,31 @@ using Six = std::array<double, 6>;
 struct Kind {
   const char* name;
   Terrain terrain;
-  double noise;
+  double noise;  ///< of each motion, as a part of the mean one
   bool wanders, heavy;
+  double rate = 10;            ///< [Hz]
+  double speed = 8;            ///< [m/s]
+  double roughness = 0.05;     ///< [m]
+  double noise_of_motion = 0;  ///< as a part of each motion itself
+  double speed_variation = 0;
 };
 constexpr Kind kinds[] = {{"road, 1 %, white", Terrain::rough, 0.01, false, false},
                           {"road, 3 %, heavy-tailed", Terrain::rough, 0.03, false, true},
                           {"road, 1 %, wandering", Terrain::rough, 0.01, true, false},
                           {"free, 2 %, white", Terrain::free, 0.02, false, false},
                           {"free, 5 %, wandering", Terrain::free, 0.05, true, false}};
+/// GoalSpreadOptions were not tuned on these: --more.
+constexpr Kind more_kinds[] = {
+    {"road, 0.5 %, white, 4 Hz, 15 m/s", Terrain::rough, 0.005, false, false, 4, 15},
+    {"rough road, 2 %, wandering, 20 Hz, 12 m/s", Terrain::rough, 0.02, true, false, 20, 12, 0.1},
+    {"road, 2 % of each motion", Terrain::rough, 0, false, false, 10, 8, 0.05, 0.02},
+    {"free, 1 %, heavy-tailed, 20 Hz, 1 m/s", Terrain::free, 0.01, false, true, 20, 1},
+    {"free, 3 % of each motion, 4 Hz", Terrain::free, 0, false, false, 4, 8, 0.05, 0.03},
+    {"smooth road, 2 %, heavy-tailed, wandering, 8 Hz", Terrain::rough, 0.02, true, true, 8, 8, 0.02},
+    {"rough road, 1 %, white, changing speed", Terrain::rough, 0.01, false, false, 10, 8, 0.1, 0, 0.5},
+    {"free, 0.5 %, wandering, 0.5 m/s", Terrain::free, 0.005, true, false, 10, 0.5},
+    {"road, 5 %, white, 4 m/s", Terrain::rough, 0.05, false, false, 10, 4},
+    {"free, 3 %, heavy-tailed, 3 m/s", Terrain::free, 0.03, false, true, 10, 3}};
 
 /// What was known of one drive at one time.
 struct Look {
@@ -46,13 +65,18 @@ struct Look {
 };
 
 /// Looks at one drive, evenly in time.
-std::vector<Look> looks_at(const Kind& kind, std::uint64_t seed, int poses, int looks) {
+std::vector<Look> looks_at(const Kind& kind, std::uint64_t seed, double seconds, int looks) {
   SimulationOptions options;
   options.terrain = kind.terrain;
   options.relative_noise = kind.noise;
   options.random_walk = kind.wanders;
   options.heavy_tails = kind.heavy;
-  options.poses = poses;
+  options.rate = kind.rate;
+  options.speed = kind.speed;
+  options.roughness = kind.roughness;
+  options.noise_of_motion = kind.noise_of_motion;
+  options.speed_variation = kind.speed_variation;
+  options.poses = static_cast<int>(std::lround(seconds * kind.rate)) + 1;
   options.seed = seed;
   const testing::Streams streams = testing::simulated_drive(options);
   MotionPairing pairing{PairingOptions{}};
@@ -76,6 +100,7 @@ std::vector<Look> looks_at(const Kind& kind, std::uint64_t seed, int poses, int 
     look.answered.observability = answer.observability;
     look.answered.problem = pairing.single_stride_problem();
     look.answered.minimised = problem;
+    look.answered.stride = pairing.choice().stride;
     look.answered.platform = kind.terrain == Terrain::free ? Platform::handheld : Platform::car;
     look.answered.seconds = look.seconds;
     const detail::Vector6d error = detail::frame_a_difference(streams.T, answer.T_a_b);
@@ -122,7 +147,37 @@ Goal goal_at(const Look& look, const GoalOptions& goal) {
 
 struct Tally {
   int drives = 0, said = 0, right = 0, in_time = 0, asked = 0, near = 0;
+  std::vector<double> ratios;  ///< of the time left to the real one
+
+  Tally& operator+=(const Tally& other) {
+    drives += other.drives;
+    said += other.said;
+    right += other.right;
+    in_time += other.in_time;
+    asked += other.asked;
+    near += other.near;
+    ratios.insert(ratios.end(), other.ratios.begin(), other.ratios.end());
+    return *this;
+  }
 };
+
+std::vector<std::string> row_of(const char* name, Tally tally) {
+  std::string median = "-";
+  if (!tally.ratios.empty()) {
+    const auto middle = tally.ratios.begin() + static_cast<std::ptrdiff_t>(tally.ratios.size() / 2);
+    std::nth_element(tally.ratios.begin(), middle, tally.ratios.end());
+    char text[16];
+    std::snprintf(text, sizeof text, "%.2f", *middle);
+    median = text;
+  }
+  return {name,
+          std::to_string(tally.drives),
+          std::to_string(tally.said),
+          bench::part(tally.right, tally.said),
+          bench::part(tally.in_time, tally.said),
+          bench::part(tally.near, tally.asked),
+          median};
+}
 
 /// The worst standard deviation over the goal at each look.
 void print(const std::vector<Look>& drive, const GoalOptions& goal) {
@@ -143,10 +198,10 @@ void print(const std::vector<Look>& drive, const GoalOptions& goal) {
 
 /// One line a look: kind, seed, seconds, then six standard deviations compared with the goal, six reported
 /// ones and six errors.
-void record(std::FILE* file, const Kind& kind, std::uint64_t seed, const std::vector<Look>& drive) {
+void record(std::FILE* file, std::size_t kind, std::uint64_t seed, const std::vector<Look>& drive) {
   for (const Look& look : drive) {
     if (look.answered.problem.blocks.empty()) continue;
-    std::fprintf(file, "%td %llu %.3f", &kind - kinds, static_cast<unsigned long long>(seed), look.seconds);
+    std::fprintf(file, "%zu %llu %.3f", kind, static_cast<unsigned long long>(seed), look.seconds);
     for (const Six& six :
          {detail::goal_spread(look.answered), look.answered.observability.stddev, look.error})
       for (const double x : six) std::fprintf(file, " %.6g", x);
@@ -154,15 +209,15 @@ void record(std::FILE* file, const Kind& kind, std::uint64_t seed, const std::ve
   }
 }
 
-Tally study(const Kind& kind, int count, int poses, int looks, bool verbose, std::FILE* records) {
+Tally study(const Kind& kind, std::size_t index, int count, int first_seed, double seconds, int looks,
+            bool verbose, std::FILE* records) {
   std::vector<std::vector<Look>> drives;
-  for (int seed = 1; seed <= count; ++seed) {
-    const auto number = 500 + static_cast<std::uint64_t>(seed);
-    drives.push_back(looks_at(kind, number, poses, looks));
-    if (records) record(records, kind, number, drives.back());
+  for (int i = 0; i < count; ++i) {
+    const auto number = static_cast<std::uint64_t>(first_seed + i);
+    drives.push_back(looks_at(kind, number, seconds, looks));
+    if (records) record(records, index, number, drives.back());
   }
-  const std::size_t half = static_cast<std::size_t>(looks) / 2 - 1;
-  const Six reached = rms_at(drives, half);
+  const Six reached = rms_at(drives, static_cast<std::size_t>(looks) / 3 - 1);
   const GoalOptions goal{*std::max_element(reached.begin() + 3, reached.end()),
                          *std::max_element(reached.begin(), reached.begin() + 3),
                          {}};
@@ -189,6 +244,7 @@ Tally study(const Kind& kind, int count, int poses, int looks, bool verbose, std
     ++tally.asked;
     const double ratio = *left / (drive[said].seconds - middle.seconds);
     tally.near += ratio > 1 / 1.5 && ratio < 1.5;
+    tally.ratios.push_back(ratio);
   }
   return tally;
 }
@@ -196,35 +252,39 @@ Tally study(const Kind& kind, int count, int poses, int looks, bool verbose, std
 }  // namespace
 
 int main(int argc, char** argv) {
-  cli::Program app(
-      "goal_study",
-      "goals of simulated drives: exit code 1 where fewer than 90 % of the goals that are said to "
-      "be reached are");
-  int drives = 100, poses = 1601, looks = 40;
+  cli::Program app("goal_study",
+                   "goals of simulated drives: exit code 1 where fewer than 95 % of the goals that are said "
+                   "to be reached are, or fewer than 70 % of the times left are within a factor 1.5");
+  int drives = 100, looks = 60, first_seed = 501;
+  double seconds = 240;
   std::string write, record_file;
-  bool verbose = false;
+  bool verbose = false, more = false;
   app.add_flag("--verbose", verbose, "the worst standard deviation over the goal at each look");
+  app.add_flag("--more", more, "ten more kinds of drives, on which nothing was tuned");
   app.add_option("--drives", drives, "of each kind").show_default();
-  app.add_option("--poses", poses, "of each drive").show_default();
-  app.add_option("--looks", looks, "at each drive").check(cli::Check::range(8, 1000)).show_default();
+  app.add_option("--first-seed", first_seed, "of each kind; the options were tuned on the defaults")
+      .check(cli::Check::range(1, 1'000'000'000))
+      .show_default();
+  app.add_option("--seconds", seconds, "of each drive").show_default();
+  app.add_option("--looks", looks, "at each drive").check(cli::Check::range(12, 1000)).show_default();
   app.add_option("--write", write, "a page: put the table in its place");
   app.add_option("--record", record_file, "every look at every drive, one a line, for other evaluations");
   if (const auto code = app.parse(argc, argv)) return *code;
-  bench::Table table{"goals",
+  bench::Table table{more ? "more-goals" : "goals",
                      {{"drives", "number", "reached is said", "and true (1.96 times the goal)",
-                       "at most 1.5 times later than true", "time left within a factor 1.5 at half time"}}};
+                       "at most 1.5 times later than true", "time left within a factor 1.5 at half time",
+                       "time left over the real one, median"}}};
   std::FILE* const records = record_file.empty() ? nullptr : std::fopen(record_file.c_str(), "w");
-  int said = 0, right = 0;
-  for (const Kind& kind : kinds) {
-    const Tally tally = study(kind, drives, poses, looks, verbose, records);
-    table.rows.push_back({kind.name, std::to_string(tally.drives), std::to_string(tally.said),
-                          bench::part(tally.right, tally.said), bench::part(tally.in_time, tally.said),
-                          bench::part(tally.near, tally.asked)});
-    said += tally.said;
-    right += tally.right;
+  Tally all;
+  std::size_t index = 0;
+  for (const Kind& kind : more ? std::span<const Kind>(more_kinds) : std::span<const Kind>(kinds)) {
+    const Tally tally = study(kind, index++, drives, first_seed, seconds, looks, verbose, records);
+    table.rows.push_back(row_of(kind.name, tally));
+    all += tally;
   }
+  table.rows.push_back(row_of("all", all));
   if (records) std::fclose(records);
   std::printf("%s\n", bench::markdown(table).c_str());
   if (!write.empty()) write_whole_file(write, bench::with_table(bench::read_page(write), table));
-  return 10 * right < 9 * said ? 1 : 0;
+  return 100 * all.right < 95 * all.said || 100 * all.near < 70 * all.asked ? 1 : 0;
 }

@@ -170,6 +170,7 @@ class Rig {
     answered.observability = answer.observability;
     answered.problem = pairing_.single_stride_problem();
     answered.minimised = problem;
+    answered.stride = pairing_.choice().stride;
     answered.platform = kind_.platform;
     answered.seconds = seconds();
     DiagnosisOptions options;

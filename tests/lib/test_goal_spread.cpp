@@ -1,31 +1,44 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The standard deviations that are compared with a goal.
+// The standard deviations that are compared with a goal, and when it is reached.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "../support/simulated_drive.hpp"
+#include "diagnosis/goal.hpp"
 #include "diagnosis/goal_spread.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal {
 namespace {
 
-Answered answered_after(Terrain terrain, std::uint64_t seed) {
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = 401;
-  options.relative_noise = 0.02;
-  options.seed = seed;
-  const testing::Streams streams = testing::simulated_drive(options);
-  const Problem problem = pair_motions({}, streams.a, streams.b).drive.problem();
-  const Answer answer = solve(problem, Method::dual);
+Answered answered_at(const testing::Streams& streams) {
+  const MotionPairing drive = pair_motions({}, streams.a, streams.b).drive;
   Answered answered;
+  answered.problem = drive.problem();
+  const Answer answer = solve(answered.problem, Method::dual);
   answered.T_a_b = answer.T_a_b;
   answered.observability = answer.observability;
-  answered.problem = problem;
+  answered.stride = drive.choice().stride;
+  answered.seconds = 1e-6 * static_cast<double>(streams.a.back().time_us - streams.a.front().time_us);
   return answered;
+}
+
+SimulationOptions drive_of(Terrain terrain, std::uint64_t seed, int poses) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = poses;
+  options.relative_noise = 0.02;
+  options.seed = seed;
+  return options;
+}
+
+Answered answered_after(Terrain terrain, std::uint64_t seed, int poses = 401) {
+  return answered_at(testing::simulated_drive(drive_of(terrain, seed, poses)));
 }
 
 double scatter(const std::vector<double>& values) {
@@ -49,6 +62,60 @@ TEST(GoalSpread, ScattersLessThanTheReportedOnesAndIsAsLarge) {
     }
   }
   EXPECT_LT(scatter(differences), 0.75 * scatter(own));
+}
+
+TEST(GoalSpread, OfPlainNoiseFallsSteadily) {
+  // an error of 13 % is a factor of 1.5 in the time left
+  std::array<std::vector<double>, 6> falls, reported_falls;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const Answered half = answered_after(Terrain::free, seed, 401),
+                   whole = answered_after(Terrain::free, seed, 801);
+    const std::array<double, 6> before = detail::goal_spread(half), after = detail::goal_spread(whole);
+    for (std::size_t k = 0; k < 6; ++k) {
+      falls[k].push_back(std::log(after[k] / before[k]));
+      reported_falls[k].push_back(std::log(whole.observability.stddev[k] / half.observability.stddev[k]));
+    }
+  }
+  // those of the translations scatter with the path as well
+  for (std::size_t k = 3; k < 6; ++k) {
+    EXPECT_LT(scatter(falls[k]), 0.09) << k;
+    EXPECT_LT(scatter(falls[k]), 0.5 * scatter(reported_falls[k])) << k;
+  }
+}
+
+TEST(GoalSpread, OfWanderingNoiseIsNotTakenForPlain) {
+  std::array<double, 6> squares{}, errors{};
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    SimulationOptions options = drive_of(Terrain::free, seed, 601);
+    options.random_walk = true;
+    const testing::Streams streams = testing::simulated_drive(options);
+    const Answered answered = answered_at(streams);
+    const std::array<double, 6> spread = detail::goal_spread(answered);
+    const auto error = detail::frame_a_difference(streams.T, answered.T_a_b);
+    for (std::size_t k = 0; k < 6; ++k) {
+      squares[k] += spread[k] * spread[k];
+      errors[k] += std::pow(error[static_cast<Eigen::Index>(k)], 2);
+    }
+  }
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_GT(std::sqrt(squares[k] / errors[k]), 0.85) << k;
+}
+
+TEST(GoalSpread, AGoalIsReachedWhereAllDirectionsAreWithinItTogether) {
+  const Answered answered = answered_after(Terrain::free, 1);
+  const std::array<double, 6> spread = detail::goal_spread(answered);
+  const GoalOptions each{*std::max_element(spread.begin() + 3, spread.end()),
+                         *std::max_element(spread.begin(), spread.begin() + 3),
+                         {}};
+  const Goal one_by_one = detail::goal_of(answered, each);
+  EXPECT_FALSE(one_by_one.reached);
+  EXPECT_FALSE(one_by_one.missing.empty());
+  ASSERT_TRUE(one_by_one.seconds_left);
+  EXPECT_GT(*one_by_one.seconds_left, 0);
+  EXPECT_LT(*one_by_one.seconds_left, answered.seconds);
+  // six that are alike are within 1.96 goals together by 95 % where each is by 99.1 %: 2.63 of its standard
+  // deviations
+  EXPECT_TRUE(
+      detail::goal_of(answered, {each.rotation * 2.64 / 1.96, each.translation * 2.64 / 1.96, {}}).reached);
 }
 
 TEST(GoalSpread, IsTheReportedOneWhereNothingElseIsKnown) {

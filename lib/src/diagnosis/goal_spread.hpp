@@ -10,10 +10,11 @@ namespace egocal::detail {
 
 /// Standard deviation of each direction (x y z roll pitch yaw in sensor a's frame [m, rad]) for the
 /// comparison with a goal, with a reserve for its own uncertainty. The reported standard deviations come from
-/// about 20 blocks and scatter by a fifth; the first of many looks at which all six are below a goal comes
-/// late, and at a random time. The blocks of all directions together say by half that much scatter how many
-/// times larger the errors are than those of white noise. A direction keeps its own factor as far as it
-/// differs from the common one by more than chance. As reported where that cannot be computed.
+/// about 20 blocks and scatter by a fifth; the first of many looks at which all six are below a goal comes at
+/// a random time. The blocks of all directions together say by a third of that scatter how many times larger
+/// the variances are than the inverse curvature. And where noise does not wander, that factor follows from
+/// the squared residuals, which are known to a percent: how far it is taken from there depends on how well
+/// both agree. As reported where that cannot be computed.
 std::array<double, 6> goal_spread(const Answered& answered, const GoalSpreadOptions& options = {});
 
 }  // namespace egocal::detail

@@ -128,21 +128,37 @@ struct MountCheckOptions {
   double long_interval = 10;
 };
 
-/// Standard deviations as they are compared with a goal, and the time left. Study:
-/// tests/bench/goal_study.cpp; docs/trust.md has its table.
+/// Standard deviations as they are compared with a goal, when it is reached, and the time left. Study:
+/// tests/bench/goal_study.cpp, tuned on its first kinds of drives and checked on the others (--more);
+/// docs/trust.md has its table.
 struct GoalSpreadOptions {
   /// Fewer blocks have no common factor of all directions: it would be known to a quarter only.
   std::size_t least_blocks = 8;
-  /// Variance of the logarithm of a direction's variance from 20 blocks. Measured: 0.11; 2/19 under white
-  /// noise. A direction whose log variance differs from the common one by d keeps d^2 / (d^2 + 2 chance) of
-  /// it.
-  double chance = 0.11;
-  double reserve = 1.2;  ///< 1.5 standard deviations of the common estimate, which is known to 12 %
+  /// Standard deviation of the logarithm of the common factor of the variances from n blocks, in units of
+  /// sqrt(2 / (6 n)): 1 if the blocks were alike, 1.2 measured.
+  double scatter = 1.2;
+  /// The mean of squared changes by omitting a block over the square of their mean size, which scatters by a
+  /// tenth less: 1.09 if the blocks were alike, 1.12 measured.
+  double unequal = 1.12;
+  /// Noise that does not wander: the common factor over what the squared residuals say of white noise, and
+  /// the standard deviation of its logarithm over kinds of noise. 1.0 (white) to 1.36 (a part of each
+  /// motion).
+  double plain = 1.13, plain_scatter = 0.15;
+  /// How probable such noise is before the drive is seen, and the range of the logarithm of the factor
+  /// otherwise: wandering noise has 6 to 14. Results hardly depend on either.
+  double plain_part = 0.5, range = 8;
+  /// A direction whose log variance differs from the common one by d keeps this part of d where the noise
+  /// wanders, none where it is plain. d from 20 blocks has a standard deviation of 0.33, and is about 1 for
+  /// the height on a road, 0.2 otherwise.
+  double own_part = 0.6;
+  double reserve = 1.5;  ///< standard deviations of the common factor that are added
   /// The reported standard deviation is never overruled by more: three standard deviations of their ratio.
   double most_different = 1.5;
-  /// Spreads fall with this power of the time: faster than with the square root, as longer motions count with
-  /// time. With it the median of the estimated to the real time left is one in the study.
-  double exponent = 0.63;
+  /// A goal is reached where this is the probability that all directions are within `interval` goals.
+  double probability = 0.95, interval = 1.96;
+  /// Spreads fall with this power of the time. With it the median of the estimated to the real time left is
+  /// one in the study.
+  double exponent = 0.51;
 };
 
 /// Whether the answer stays where it is without a part of the drive.
