@@ -44,7 +44,7 @@ constexpr Kind kinds[] = {{"road, 1 %, white", Terrain::rough, 0.01, false, fals
                           {"road, 1 %, wandering", Terrain::rough, 0.01, true, false},
                           {"free, 2 %, white", Terrain::free, 0.02, false, false},
                           {"free, 5 %, wandering", Terrain::free, 0.05, true, false}};
-/// GoalSpreadOptions were not tuned on these: --more.
+/// Other rates, speeds, surfaces and kinds of noise: --more.
 constexpr Kind more_kinds[] = {
     {"road, 0.5 %, white, 4 Hz, 15 m/s", Terrain::rough, 0.005, false, false, 4, 15},
     {"rough road, 2 %, wandering, 20 Hz, 12 m/s", Terrain::rough, 0.02, true, false, 20, 12, 0.1},
@@ -260,9 +260,9 @@ int main(int argc, char** argv) {
   std::string write, record_file;
   bool verbose = false, more = false;
   app.add_flag("--verbose", verbose, "the worst standard deviation over the goal at each look");
-  app.add_flag("--more", more, "ten more kinds of drives, on which nothing was tuned");
+  app.add_flag("--more", more, "ten other kinds of drives");
   app.add_option("--drives", drives, "of each kind").show_default();
-  app.add_option("--first-seed", first_seed, "of each kind; the options were tuned on the defaults")
+  app.add_option("--first-seed", first_seed, "of each kind; the options were chosen on the default's")
       .check(cli::Check::range(1, 1'000'000'000))
       .show_default();
   app.add_option("--seconds", seconds, "of each drive").show_default();

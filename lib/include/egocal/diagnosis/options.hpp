@@ -129,8 +129,8 @@ struct MountCheckOptions {
 };
 
 /// Standard deviations as they are compared with a goal, when it is reached, and the time left. Study:
-/// tests/bench/goal_study.cpp, tuned on its first kinds of drives and checked on the others (--more);
-/// docs/trust.md has its table.
+/// tests/bench/goal_study.cpp and its --more kinds, checked on other drives (--first-seed 3001);
+/// docs/trust.md has its tables.
 struct GoalSpreadOptions {
   /// Fewer blocks have no common factor of all directions: it would be known to a quarter only.
   std::size_t least_blocks = 8;
