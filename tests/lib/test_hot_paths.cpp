@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "../support/random_motion.hpp"
+#include "diagnosis/robust_fit.hpp"
 #include "pairing/motions_between.hpp"
 #include "robust/residual_limit.hpp"
 #include "statistics/order_statistic.hpp"
@@ -35,6 +38,30 @@ TEST(MotionsBetween, HasTheBitsOfTheMotionOfEachSensor) {
     const detail::MotionsOfBoth motions = detail::motions_between(from, to);
     EXPECT_EQ(motions.a.vec(), motion_between(from.a, to.a).vec()) << i;
     EXPECT_EQ(motions.b.vec(), motion_between(from.b, to.b).vec()) << i;
+  }
+}
+
+TEST(WeightedQuantile, IsWhatSortingFinds) {
+  Random random(5);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<std::pair<double, double>> values(i % 4 == 0 ? 1 + random.below(100)
+                                                             : 256 + random.below(800));
+    for (auto& [value, weight] : values) {  // heavy-tailed, few different ones; weights that grow with them
+      value = i % 5 == 1 ? std::floor(random.uniform(0, 4)) : std::exp(3 * random.normal());
+      weight = i % 3 == 0 ? 1 : i % 3 == 1 ? random.uniform() : value;
+    }
+    std::vector<std::pair<double, double>> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    double total = 0;
+    for (const auto& entry : sorted) total += entry.second;
+    for (const double part : {0.0, 0.05, 1.0 / 3, 0.5, 0.9, 1.0}) {
+      double sum = 0;
+      const auto expected = std::find_if(sorted.begin(), sorted.end(), [&](const auto& entry) {
+        return (sum += entry.second) >= part * total;
+      });
+      ASSERT_NE(expected, sorted.end());
+      EXPECT_EQ(detail::weighted_quantile(values, part), expected->first) << i;
+    }
   }
 }
 

@@ -128,6 +128,21 @@ PosePair Instants::at(std::size_t i, const PoseReading& read_a, const PoseReadin
   return poses;
 }
 
+MotionEnds::MotionEnds(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b,
+                       std::size_t steps, std::size_t each)
+    : instants_(&instants),
+      read_a_(read_a),
+      read_b_(read_b),
+      each_(each),
+      known_(steps % each == 0 ? steps / each + 1 : 0) {}
+
+PosePair MotionEnds::at(std::size_t i) {
+  if (known_.empty()) return instants_->at(i, read_a_, read_b_);
+  Known& known = known_[i / each_ % known_.size()];
+  if (known.end != i + 1) known = {i + 1, instants_->at(i, read_a_, read_b_)};
+  return known.poses;
+}
+
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
                       std::size_t each, const MotionSampleOptions& options) {
   Instants instants;
@@ -164,18 +179,11 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   if (n <= steps) return motions;
   const std::size_t each = std::max<std::size_t>(1, (n - steps) / most);
   motions.all.reserve((n - steps) / each + 1);
-  // the end of one motion is the begin of a later one
-  std::vector<std::optional<PosePair>> known(steps % each == 0 ? n / each + 1 : 0);
-  const auto poses_at = [&](std::size_t i) {
-    if (known.empty()) return instants.at(i, read_a, read_b);
-    std::optional<PosePair>& poses = known[i / each];
-    if (!poses) poses = instants.at(i, read_a, read_b);
-    return *poses;
-  };
+  MotionEnds ends(instants, read_a, read_b, steps, each);
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > options.most_stretched * stride * instants.period) continue;
-    const PosePair from = poses_at(i), to = poses_at(k);
+    const PosePair from = ends.at(i), to = ends.at(k);
     Motion motion = motion_from(conjugate(from.a) * to.a, conjugate(from.b) * to.b);
     if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;
     motion.time = 0.5 * (instants.time(i) + instants.time(k));

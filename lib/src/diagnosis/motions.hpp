@@ -85,6 +85,26 @@ class Instants {
 Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel& clock, double max_gap,
                       std::size_t each = 1, const MotionSampleOptions& options = {});
 
+/// Poses at the ends of motions over `steps` instants, one of which begins at each `each`-th instant: mostly
+/// the end of one is the begin of a later one, and is worked out once. The instants must still be there.
+class MotionEnds {
+ public:
+  MotionEnds(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b,
+             std::size_t steps, std::size_t each);
+  /// Poses at instant i, in the order of the motions.
+  PosePair at(std::size_t i);
+
+ private:
+  struct Known {
+    std::size_t end = 0;  ///< number of the instant, from 1; 0: none yet
+    PosePair poses;
+  };
+  const Instants* instants_;
+  PoseReading read_a_, read_b_;
+  std::size_t each_;
+  std::vector<Known> known_;
+};
+
 /// One motion of both sensors, in the parts that residuals are made of.
 struct Motion {
   DualQuaternion a, b;

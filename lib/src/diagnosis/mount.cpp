@@ -27,10 +27,11 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   const std::size_t each = std::clamp<std::size_t>(instants.size() / options.mount.most_motions, 1, steps);
   const double longest = options.motions.most_stretched * static_cast<double>(steps) * instants.period;
   pairs.reserve(instants.size() / each + 1);
+  MotionEnds ends(instants, reading, reading, steps, each);
   for (std::size_t i = 0; i + steps < instants.size(); i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > longest) continue;
-    const PosePair from = instants.at(i, reading, reading), to = instants.at(k, reading, reading);
+    const PosePair from = ends.at(i), to = ends.at(k);
     MotionPair pair{canonical_sign(normalized(conjugate(from.a) * to.a)),
                     canonical_sign(normalized(conjugate(from.b) * to.b)),
                     std::llround(1e6 * instants.time(i)), std::llround(1e6 * instants.time(k)), 1};

@@ -10,15 +10,23 @@ namespace egocal {
 
 namespace {
 
+// Number by number: a diagnosis reads some hundred thousand poses, and temporary vectors cost more than the
+// arithmetic.
+
 /// Vector part of 2 dual conj(real): the position [m].
 Eigen::Vector3d position(const DualQuaternion& pose) {
-  return 2 * quaternion_product(pose.dual, quaternion_conjugate(pose.real)).tail<3>();
+  const QuaternionVector &p = pose.dual, &r = pose.real;
+  const double w = r[0], x = -r[1], y = -r[2], z = -r[3];
+  return {2 * (p[0] * x + p[1] * w + p[2] * z - p[3] * y), 2 * (p[0] * y - p[1] * z + p[2] * w + p[3] * x),
+          2 * (p[0] * z + p[1] * y - p[2] * x + p[3] * w)};
 }
 
-DualQuaternion from_parts(const Eigen::Vector4d& real, const Eigen::Vector3d& position) {
-  Eigen::Vector4d t;
-  t << 0, position;
-  return {real, 0.5 * quaternion_product(t, real)};
+/// 0.5 t r. The zero scalar of t counts: it turns negative zeros into positive ones.
+QuaternionVector dual_part(const QuaternionVector& r, const Eigen::Vector3d& t) {
+  return {0.5 * (0.0 * r[0] - t[0] * r[1] - t[1] * r[2] - t[2] * r[3]),
+          0.5 * (0.0 * r[1] + t[0] * r[0] + t[1] * r[3] - t[2] * r[2]),
+          0.5 * (0.0 * r[2] - t[0] * r[3] + t[1] * r[0] + t[2] * r[1]),
+          0.5 * (0.0 * r[3] + t[0] * r[2] - t[1] * r[1] + t[2] * r[0])};
 }
 
 bool as_given(const detail::PoseReading& reading) {
@@ -31,13 +39,13 @@ bool as_given(const detail::PoseReading& reading) {
 DualQuaternion detail::reread(const DualQuaternion& given, const PoseReading& reading) {
   if (as_given(reading)) return given;
   Eigen::Vector3d t = reading.scale * (reading.axes * position(given));
-  Eigen::Vector4d r = given.real;
+  QuaternionVector r = given.real;
   // read as x y z w and stored here as w x y z: the columns were (r1, r2, r3, r0)
   if (reading.quaternion_order == QuaternionOrder::wxyz) r = {r[1], r[2], r[3], r[0]};
   // read as w x y z: the columns were (r0, r1, r2, r3), the scalar is the last
   if (reading.quaternion_order == QuaternionOrder::xyzw) r = {r[3], r[0], r[1], r[2]};
   if (reading.conjugate) r = quaternion_conjugate(r);
-  const DualQuaternion pose = from_parts(r, t);
+  const DualQuaternion pose{r, dual_part(r, t)};
   return reading.invert ? conjugate(pose) : pose;
 }
 

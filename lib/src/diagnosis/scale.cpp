@@ -61,7 +61,8 @@ double best_scale(const ScaledCost& cost, double centre, const ScaleSearchOption
   double left = low + (best - 1) * step, right = low + (best + 1) * step;
   for (int i = 0; i < options.refinements; ++i) {
     const double x = right - golden * (right - left), y = left + golden * (right - left);
-    (value(x) < value(y) ? right : left) = value(x) < value(y) ? y : x;
+    const bool in_left = value(x) < value(y);
+    (in_left ? right : left) = in_left ? y : x;
   }
   return std::exp(0.5 * (left + right));
 }

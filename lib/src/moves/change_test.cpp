@@ -73,20 +73,26 @@ Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& optio
   return d;
 }
 
-/// Covariance of the whitened residuals; two extrinsics were fitted. They are whitened together, by the sum
-/// of all blocks' noise: that of one block is uncertain, and its inverse would be too large in the mean. The
-/// eigenvalues below their mean are raised to it: the noise has about the shape assumed, so what is smaller
-/// is so by chance, and chance must not be taken for a precise direction.
-ParameterMatrix residual_covariance(Blocks blocks, const std::vector<Parameters>& residuals) {
-  ParameterMatrix found = zero_matrix(blocks), assumed = found;
+/// What whitens residuals together, by the sum of all blocks' noise: that of one block is uncertain, and its
+/// inverse would be too large in the mean.
+ParameterMatrix whitener(Blocks blocks) {
+  ParameterMatrix assumed = zero_matrix(blocks);
+  for (const LinearBlock& block : blocks) assumed += block.root * block.root;
+  const SymmetricEigen<Eigen::Dynamic> noise = symmetric_eigen<Eigen::Dynamic>(assumed);
+  const Parameters inverse = noise.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  return noise.vectors * inverse.asDiagonal() * noise.vectors.transpose();
+}
+
+/// Covariance of the whitened residuals; two extrinsics were fitted. The eigenvalues below their mean are
+/// raised to it: the noise has about the shape assumed, so what is smaller is so by chance, and chance must
+/// not be taken for a precise direction. whiten: of the same blocks.
+ParameterMatrix residual_covariance(Blocks blocks, const std::vector<Parameters>& residuals,
+                                    const ParameterMatrix& whiten) {
+  ParameterMatrix found = zero_matrix(blocks);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Parameters e = blocks[i].root * residuals[i];
     found += e * e.transpose();
-    assumed += blocks[i].root * blocks[i].root;
   }
-  const SymmetricEigen<Eigen::Dynamic> noise = symmetric_eigen<Eigen::Dynamic>(assumed);
-  const Parameters inverse = noise.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const ParameterMatrix whiten = noise.vectors * inverse.asDiagonal() * noise.vectors.transpose();
   const auto n = static_cast<double>(blocks.size());
   const SymmetricEigen<Eigen::Dynamic> eigen =
       symmetric_eigen<Eigen::Dynamic>(n / (n - 2) * whiten * found * whiten);
@@ -107,11 +113,11 @@ struct Evidence {
   double t2 = 0;
 };
 
-Evidence evidence(Blocks blocks, std::size_t split, const Division& d) {
+Evidence evidence(Blocks blocks, std::size_t split, const Division& d, const ParameterMatrix& whiten) {
   const Eigen::LDLT<ParameterMatrix> whole(d.H);
   const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
   const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
-  const ParameterMatrix C = residual_covariance(blocks, d.residuals);
+  const ParameterMatrix C = residual_covariance(blocks, d.residuals, whiten);
   ParameterMatrix C1 = zero_matrix(blocks), C2 = C1;
   Parameters g1 = zero_vector(blocks), g2 = g1;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -228,7 +234,7 @@ void test_even_change(Blocks blocks, const EvenChange& fit, const ChangeTestOpti
                       ChangeTest& test) {
   test.begin = fit.x0 - fit.v;
   test.end = fit.x0 + fit.v;
-  const ParameterMatrix C = residual_covariance(blocks, fit.residuals);
+  const ParameterMatrix C = residual_covariance(blocks, fit.residuals, whitener(blocks));
   ParameterMatrix V = zero_matrix(blocks);
   for (const LinearBlock& block : blocks) {
     const ParameterMatrix weight =
@@ -277,15 +283,16 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   ChangeTest test;
   const std::size_t count = blocks.size();
   if (count < 2 * least_side + 1 || least_side == 0) return test;
+  const ParameterMatrix whiten = whitener(blocks);
   double largest = 0;
   for (std::size_t split = least_side; split + least_side <= count; ++split) {
-    const double t2 = evidence(blocks, split, divide(blocks, split, options)).t2;
+    const double t2 = evidence(blocks, split, divide(blocks, split, options), whiten).t2;
     if (t2 > largest) largest = t2, test.split = split;
   }
   if (test.split == 0) return test;
 
   const Division d = divide(blocks, test.split, options);
-  const Evidence found = evidence(blocks, test.split, d);
+  const Evidence found = evidence(blocks, test.split, d, whiten);
   test.correlation = correlation_of(d.residuals, options);
   const double places = static_cast<double>(count + 1 - 2 * least_side);
   test.false_alarm =
@@ -306,11 +313,12 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
 ChangeAt test_change_at(Blocks blocks, std::size_t split, std::size_t least_side,
                         const ChangeTestOptions& options) {
   ChangeAt best;
+  const ParameterMatrix whiten = whitener(blocks);
   for (const std::size_t either : {split, split - std::min<std::size_t>(split, 1)}) {
     const std::size_t at = std::clamp(either, least_side, blocks.size() - least_side);
     const Division d = divide(blocks, at, options);
     const double correlation = correlation_of(d.residuals, options);
-    const double t2 = evidence(blocks, at, d).t2 / correlation;
+    const double t2 = evidence(blocks, at, d, whiten).t2 / correlation;
     const double chance = std::min(1.0, 2 * chance_of(t2, d.x1.size(), blocks.size(), options));
     if (either == split || chance < best.chance) best = {chance, correlation};
   }
