@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "../support/random_motion.hpp"
 #include "diagnosis/robust_fit.hpp"
+#include "estimation/motions_to_one.hpp"
 #include "pairing/motions_between.hpp"
 #include "robust/residual_limit.hpp"
 #include "statistics/order_statistic.hpp"
@@ -38,6 +40,40 @@ TEST(MotionsBetween, HasTheBitsOfTheMotionOfEachSensor) {
     const detail::MotionsOfBoth motions = detail::motions_between(from, to);
     EXPECT_EQ(motions.a.vec(), motion_between(from.a, to.a).vec()) << i;
     EXPECT_EQ(motions.b.vec(), motion_between(from.b, to.b).vec()) << i;
+  }
+}
+
+TEST(MotionsToOne, HaveTheBitsOfOneAtATime) {
+  Random random(4);
+  for (int i = 0; i < 1000; ++i) {
+    Instant to;
+    to.a = random_pose(random);
+    to.b = random_pose(random);
+    std::array<Instant, detail::MotionsToOne::count> from;
+    std::array<const Instant*, detail::MotionsToOne::count> places;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      from[k].a = random_pose(random);
+      from[k].b = i % 10 == 0 ? to.b : random_pose(random);
+      places[k] = &from[k];
+    }
+    if (i % 7 == 0) from[1].a = to.a * DualQuaternion{QuaternionVector(0, 1, 0, 0), {}};  // a half turn
+    for (const bool in_pairs : {false, true}) {
+      detail::MotionsToOne found;
+      detail::set_motions_to_one(places, to, found, in_pairs);
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        if (!found.plain[k]) {
+          EXPECT_TRUE(i % 7 == 0 && k == 1) << i;
+          continue;
+        }
+        const detail::MotionsOfBoth motions = detail::motions_between(from[k], to);
+        EXPECT_EQ(found.least_scalar[k], std::min(motions.a.real[0], motions.b.real[0])) << i;
+        Matrix8d sum = Matrix8d::Zero();
+        found.squares[k].add_to(sum);
+        Statistics expected;
+        expected.add(motions.a, motions.b);
+        EXPECT_EQ(sum, expected.dual_rows) << i;
+      }
+    }
   }
 }
 

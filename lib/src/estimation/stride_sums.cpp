@@ -3,10 +3,12 @@
 #include "egocal/estimation/stride_sums.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "egocal/robust/consensus.hpp"
+#include "estimation/motions_to_one.hpp"
 #include "pairing/choice_schedule.hpp"
 #include "pairing/motions_between.hpp"
 #include "problem/motion_square.hpp"
@@ -40,12 +42,17 @@ StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& t
   }
 }
 
+/// There is a gap between the two.
+bool StrideSums::too_long(const JudgedInstant& from, const JudgedInstant& to) const {
+  const double longest_us = options_.accumulator.stretch * static_cast<double>(to.index - from.index) *
+                            static_cast<double>(state_.period_us);
+  return static_cast<double>(to.instant.time_us - from.instant.time_us) > longest_us;
+}
+
 Step StrideSums::step(const JudgedInstant& from, const JudgedInstant& to) const {
   const detail::MotionsOfBoth motions = detail::motions_between(from.instant, to.instant);
   Step result{motions.a, motions.b, from.instant.chain == to.instant.chain};
-  const double longest_us = options_.accumulator.stretch * static_cast<double>(to.index - from.index) *
-                            static_cast<double>(state_.period_us);
-  if (static_cast<double>(to.instant.time_us - from.instant.time_us) > longest_us) result.usable = false;
+  if (too_long(from, to)) result.usable = false;
   if (std::min(result.a.real[0], result.b.real[0]) < least_scalar_) result.usable = false;
   if (options_.mode == Mode::planar) {
     result.a = planar_motion(result.a, G_a_);
@@ -79,23 +86,55 @@ void StrideSums::add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBl
   if (sums) sums->add_instant(index);
   if (weighted) weighted->add_instant(index);
   if (to.doubtful) return;
+  const auto add = [&](std::size_t stride, const JudgedInstant& from, const detail::MotionSquare& square) {
+    const bool rotation_only = from.translation_chain != to.translation_chain;
+    const double weight = certainty(from, to);
+    if (sums) sums->add(stride, from.index, square, rotation_only, weight);
+    if (!weighted) return;
+    const StrideWeights& weights = state_.choice->weights;
+    weighted->add(from.index, index, square, {weights.rotation[stride], weights.translation[stride], weight},
+                  rotation_only);
+  };
+  const auto add_step = [&](std::size_t stride, const JudgedInstant& from) {
+    const Step motion = step(from, to);
+    if (motion.usable) add(stride, from, detail::MotionSquare(motion.a, motion.b));
+  };
+  // a few at a time, in the order of the strides
+  constexpr std::size_t at_once = detail::MotionsToOne::count;
+  std::array<std::size_t, at_once> strides;
+  std::array<const JudgedInstant*, at_once> begins;
+  std::array<const Instant*, at_once> instants;
+  detail::MotionsToOne motions;
+  std::size_t waiting = 0;
+  const auto add_waiting = [&] {
+    if (waiting == 0) return;
+    for (std::size_t k = waiting; k < at_once; ++k) instants[k] = instants[0];
+    detail::set_motions_to_one(instants, to.instant, motions);
+    for (std::size_t k = 0; k < waiting; ++k) {
+      if (!motions.plain[k])
+        add_step(strides[k], *begins[k]);
+      else if (!(motions.least_scalar[k] < least_scalar_))
+        add(strides[k], *begins[k], motions.squares[k]);
+    }
+    waiting = 0;
+  };
   for (std::size_t i = 0; i < tuning_.strides.size(); ++i) {
     const auto steps = static_cast<std::size_t>(tuning_.strides[i]);
     if (steps > position) break;
     const JudgedInstant& from = state_.instants[position - steps];
-    if (from.doubtful || from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain)
+    if (from.doubtful || from.rotation_chain != to.rotation_chain || from.instant.chain != to.instant.chain ||
+        too_long(from, to))
       continue;
-    const Step motion = step(from, to);
-    if (!motion.usable) continue;
-    const bool rotation_only = from.translation_chain != to.translation_chain;
-    const detail::MotionSquare square(motion.a, motion.b);
-    const double weight = certainty(from, to);
-    if (sums) sums->add(i, from.index, square, rotation_only, weight);
-    if (!weighted) continue;
-    const StrideWeights& weights = state_.choice->weights;
-    weighted->add(from.index, index, square, {weights.rotation[i], weights.translation[i], weight},
-                  rotation_only);
+    if (options_.mode == Mode::planar) {
+      add_step(i, from);
+      continue;
+    }
+    strides[waiting] = i;
+    begins[waiting] = &from;
+    instants[waiting] = &from.instant;
+    if (++waiting == at_once) add_waiting();
   }
+  add_waiting();
 }
 
 /// Whether what `all_` holds is as judged now; motions that end later may be missing.

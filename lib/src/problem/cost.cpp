@@ -20,112 +20,67 @@ namespace {
 
 using detail::QuaternionDifference;
 
-/// Row and column of the upper triangle's entries of E'E in a 4 x 4 block, in the order of set_square().
-constexpr std::array<std::array<int, 2>, 10> square_entries = {
-    {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {2, 2}, {3, 3}, {1, 2}, {1, 3}, {2, 3}}};
-/// The same of E_d'E_r in the upper right block, in the order of set_product().
-constexpr std::array<std::array<int, 2>, 16> product_entries = {{{0, 4},
-                                                                 {0, 5},
-                                                                 {0, 6},
-                                                                 {0, 7},
-                                                                 {1, 4},
-                                                                 {2, 4},
-                                                                 {3, 4},
-                                                                 {1, 5},
-                                                                 {2, 6},
-                                                                 {3, 7},
-                                                                 {2, 7},
-                                                                 {3, 6},
-                                                                 {3, 5},
-                                                                 {1, 7},
-                                                                 {1, 6},
-                                                                 {2, 5}}};
+namespace single {
+using Number = double;
+#include "problem/square_numbers.hpp"
+}  // namespace single
 
-/// E'E = s^2 I - K^2. Number by number, as temporary matrices and loops over three axes cost more than the
-/// arithmetic.
-void set_square(const QuaternionDifference& e, double* to) {
-  const double ss = e.s * e.s, u0 = e.u[0], u1 = e.u[1], u2 = e.u[2], w0 = e.w[0], w1 = e.w[1], w2 = e.w[2];
-  const double sw = ss + (w0 * w0 + w1 * w1 + w2 * w2);
-  to[0] = ss + (u0 * u0 + u1 * u1 + u2 * u2);
-  to[1] = w1 * u2 - w2 * u1;
-  to[2] = w2 * u0 - w0 * u2;
-  to[3] = w0 * u1 - w1 * u0;
-  to[4] = sw + u0 * u0 - w0 * w0;
-  to[5] = sw + u1 * u1 - w1 * w1;
-  to[6] = sw + u2 * u2 - w2 * w2;
-  to[7] = u0 * u1 - w0 * w1;
-  to[8] = u0 * u2 - w0 * w2;
-  to[9] = u1 * u2 - w1 * w2;
+single::Difference plain(const QuaternionDifference& e) {
+  return {e.s, {e.u[0], e.u[1], e.u[2]}, {e.w[0], e.w[1], e.w[2]}};
 }
 
-/// E_d' E_r = (s_d I - K_d)(s_r I + K_r).
-void set_product(const QuaternionDifference& d, const QuaternionDifference& r, double* to) {
-  const double d0 = d.u[0], d1 = d.u[1], d2 = d.u[2], r0 = r.u[0], r1 = r.u[1], r2 = r.u[2];
-  const double dw0 = d.w[0], dw1 = d.w[1], dw2 = d.w[2], rw0 = r.w[0], rw1 = r.w[1], rw2 = r.w[2];
-  const double u0 = d.s * r0 - r.s * d0, u1 = d.s * r1 - r.s * d1, u2 = d.s * r2 - r.s * d2;
-  const double w0 = d.s * rw0 - r.s * dw0, w1 = d.s * rw1 - r.s * dw1, w2 = d.s * rw2 - r.s * dw2;
-  const double ss = d.s * r.s, sw = ss + (dw0 * rw0 + dw1 * rw1 + dw2 * rw2);
-  to[0] = ss + (d0 * r0 + d1 * r1 + d2 * r2);
-  to[1] = (rw1 * d2 - rw2 * d1) - u0;
-  to[2] = (rw2 * d0 - rw0 * d2) - u1;
-  to[3] = (rw0 * d1 - rw1 * d0) - u2;
-  to[4] = u0 + (dw1 * r2 - dw2 * r1);
-  to[5] = u1 + (dw2 * r0 - dw0 * r2);
-  to[6] = u2 + (dw0 * r1 - dw1 * r0);
-  to[7] = sw + d0 * r0 - rw0 * dw0;
-  to[8] = sw + d1 * r1 - rw1 * dw1;
-  to[9] = sw + d2 * r2 - rw2 * dw2;
-  // -[w]x holds +w_i at (j, k) and -w_i at (k, j)
-  to[10] = d1 * r2 - rw1 * dw2 + w0;
-  to[11] = d2 * r1 - rw2 * dw1 - w0;
-  to[12] = d2 * r0 - rw2 * dw0 + w1;
-  to[13] = d0 * r2 - rw0 * dw2 - w1;
-  to[14] = d0 * r1 - rw0 * dw1 + w2;
-  to[15] = d1 * r0 - rw1 * dw0 - w2;
+void set_numbers(const DualQuaternion& a, const DualQuaternion& b, double* to) {
+  // The dual rows of Q_b^r - Q_a^l are [E_d E_r] (10), for both signs scalar >= 0.
+  const double sa = detail::positive_sign(a), sb = detail::positive_sign(b);
+  const QuaternionDifference real(a.real, sa, b.real, sb), dual(a.dual, sa, b.dual, sb);
+  single::set_all(plain(dual), plain(real), to);
 }
 
-/// Adds eta times entry k to its place (shifted by `corner`) and to the mirrored one.
-template <const auto& entries, int corner, std::size_t... k>
-[[gnu::always_inline]] inline void add_entries(double* sum, const double* values, double eta,
+/// Adds eta times number k to its place and to the mirrored one.
+template <std::size_t... k>
+[[gnu::always_inline]] inline void add_numbers(double* sum, const double* numbers, double eta,
                                                std::index_sequence<k...>) {
   const auto add = [sum](int i, int j, double value) {
     const double total = sum[8 * j + i] + value;
     sum[8 * j + i] = total;
     sum[8 * i + j] = total;
   };
-  (add(entries[k][0] + corner, entries[k][1] + corner, eta * values[k]), ...);
+  (add(detail::square_places[k][0], detail::square_places[k][1], eta * numbers[k]), ...);
 }
 
 }  // namespace
 
 detail::MotionSquare::MotionSquare(const DualQuaternion& a, const DualQuaternion& b) {
-  // The dual rows of Q_b^r - Q_a^l are [E_d E_r] (10), for both signs scalar >= 0.
-  const double sa = positive_sign(a), sb = positive_sign(b);
-  const QuaternionDifference real(a.real, sa, b.real, sb), dual(a.dual, sa, b.dual, sb);
-  set_square(dual, dual_);
-  set_product(dual, real, product_);
-  set_square(real, real_);
+  std::array<double, square_places.size()> numbers;
+  set_numbers(a, b, numbers.data());
+  for (std::size_t k = 0; k < square_places.size(); ++k) {
+    const auto [i, j] = square_places[k];
+    entries_[static_cast<std::size_t>(8 * j + i)] = entries_[static_cast<std::size_t>(8 * i + j)] =
+        numbers[k];
+  }
 }
 
 void detail::MotionSquare::add_to(Matrix8d& sum, double eta) const {
   double* const to = sum.data();
-  add_entries<square_entries, 0>(to, dual_, eta, std::make_index_sequence<10>());
-  add_entries<product_entries, 0>(to, product_, eta, std::make_index_sequence<16>());
-  add_entries<square_entries, 4>(to, real_, eta, std::make_index_sequence<10>());
+  for (std::size_t k = 0; k < 64; ++k) to[k] += eta * entries_[k];
 }
 
 detail::MotionSquare detail::MotionSquare::weighted(double rotation, double translation,
                                                     bool rotation_only) const {
   const double all = rotation_only ? 0.0 : translation;
   MotionSquare result;
-  for (int k = 0; k < 10; ++k) result.dual_[k] = all * dual_[k] + rotation * real_[k];
-  for (int k = 0; k < 16; ++k) result.product_[k] = all * product_[k];
-  for (int k = 0; k < 10; ++k) result.real_[k] = all * real_[k];
+  for (std::size_t k = 0; k < 64; ++k) result.entries_[k] = all * entries_[k];
+  for (std::size_t j = 0; j < 4; ++j)
+    for (std::size_t i = 0; i < 4; ++i)
+      result.entries_[8 * j + i] += rotation * entries_[8 * (j + 4) + i + 4];
   return result;
 }
 
 void Statistics::add(const DualQuaternion& a, const DualQuaternion& b, double eta) {
-  detail::MotionSquare(a, b).add_to(dual_rows, eta);
+  std::array<double, detail::square_places.size()> numbers;
+  set_numbers(a, b, numbers.data());
+  add_numbers(dual_rows.data(), numbers.data(), eta,
+              std::make_index_sequence<detail::square_places.size()>());
   weight += eta;
   ++count;
 }

@@ -108,6 +108,7 @@ class StrideSums {
   std::uint64_t choice_part(std::uint64_t index) const;
   std::uint64_t choice_delay() const;
   void append(JudgedInstant& judged, const JudgedInstant* before, const StepVerdict& verdict) const;
+  bool too_long(const JudgedInstant& from, const JudgedInstant& to) const;
   Step step(const JudgedInstant& from, const JudgedInstant& to) const;
   double certainty(const JudgedInstant& from, const JudgedInstant& to) const;
   void add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBlocks* weighted) const;
