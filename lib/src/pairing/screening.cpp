@@ -16,7 +16,8 @@ namespace {
 /// the interpolation is no motion.
 bool one_repeats(const Instant& before, const Instant& now, double repeated) {
   const auto repeats = [repeated](const DualQuaternion& x, const DualQuaternion& y) {
-    return (x.vec() - y.vec()).cwiseAbs().maxCoeff() <= repeated * std::max(1.0, y.dual.norm());
+    const double most = repeated * std::max(1.0, y.dual.norm());
+    return (x.real - y.real).cwiseAbs().maxCoeff() <= most && (x.dual - y.dual).cwiseAbs().maxCoeff() <= most;
   };
   return repeats(before.a, now.a) != repeats(before.b, now.b);
 }
