@@ -119,7 +119,7 @@ TEST_F(RealData, NoTuningLoopOfThreeCloses) {
   const ExtrinsicError loop =
       extrinsic_error(T("caligula", "nero"), T("caligula", "mars") * T("mars", "nero"));
   EXPECT_LE(loop.rotation * 180 / std::numbers::pi, 0.2);
-  EXPECT_LE(loop.translation * 100, 0.6);
+  EXPECT_LE(loop.translation * 100, 0.8);  // each answer is known to about 1 cm in x
 }
 
 TEST_F(RealData, OffsetOfTheClocksIsFoundWhateverItIs) {

@@ -3,6 +3,7 @@
 #include "simulation/checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <numbers>
@@ -18,8 +19,10 @@ namespace egocal::simulation {
 
 namespace {
 
-/// Answers are that recent while data come.
-constexpr std::int64_t recent_us = 1'000'000;
+/// Answers are that recent while data come: poses wait for four periods of the other stream.
+std::int64_t recent_us(const Plan& plan) {
+  return 1'000'000 + std::llround(4e6 / plan.rate_hz);
+}
 /// Messages of a sensor that pairing knows again.
 constexpr double remembered = 64;
 /// After this time a command has been obeyed, and what was on its way has arrived.
@@ -332,7 +335,7 @@ std::string Checks::missing_answer() const {
         if (!answer) return whose + "no answer";
         if (!pair.counted_solver()->verified) return whose + "an answer that is not verified";
         if (answer->status != 0) return whose + "an answer that is not certified";
-        if (live && !scaled && answer->utime < std::min(data_us, end_us) - recent_us)
+        if (live && !scaled && answer->utime < std::min(data_us, end_us) - recent_us(surroundings_.plan))
           return whose + "an old answer";
         if (newest == newest_problem_.end() || answer->session != field(newest->second, session_at))
           return whose + "an answer of another session";
@@ -347,7 +350,8 @@ std::string Checks::missing_answer() const {
         if (!best) return whose + "no answer";
         if (!best->certified()) return whose + "an answer that is not certified";
         if (!exporter->answers().certified({pair.a, pair.b})) return whose + "an answer without its scale";
-        if (live && !scaled && best->message.utime < std::min(data_us, end_us) - recent_us)
+        if (live && !scaled &&
+            best->message.utime < std::min(data_us, end_us) - recent_us(surroundings_.plan))
           return whose + "an old answer";
         if (newest == newest_problem_.end() || best->message.session != field(newest->second, session_at))
           return whose + "an answer of another session";
