@@ -95,7 +95,7 @@ struct SynchroniserOptions {
   /// docs/method.md, "Interpolation".
   std::size_t smooth_poses = 8;
   double correlation_length = 1.5, most_rough = 2, most_uneven_here = 1.5, most_uneven = 3;
-  static constexpr std::size_t most_smooth_poses = 16;
+  static constexpr std::size_t most_smooth_poses = 16;  ///< bounds the time of one interpolation
 };
 
 /// Tuning of the Screening. Distances from congruence are in standard deviations of the typical difference.
