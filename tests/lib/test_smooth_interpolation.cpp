@@ -113,6 +113,10 @@ TEST(SmoothInterpolation, IsRefusedWhereThePathIsNotSmooth) {
   refused("pause", [](Trajectory& poses) {
     for (std::size_t i = 6; i < 8; ++i) poses[i].time_us += 4 * period_us;
   });
+  refused("two poses at nearly one time", [](Trajectory& poses) {
+    poses[6].time_us = poses[5].time_us + 1000;
+    poses[6].pose = displacement({0, 0, 0.3e-6 * static_cast<double>(poses[6].time_us)}, none);
+  });
   refused("the pose at the instant is missing", [](Trajectory& poses) {
     for (std::size_t i = 4; i < 8; ++i) {
       poses[i].time_us += period_us;

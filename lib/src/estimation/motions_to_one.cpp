@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#if defined(__SSE2__)
+#ifdef __SSE2__
 #include <immintrin.h>
 #endif
 
@@ -41,7 +41,7 @@ using Lanes [[gnu::vector_size(16)]] = double;
 constexpr int lane_count = 2;  // numbers in 16 bytes
 
 [[gnu::always_inline]] inline Lanes root(const Lanes& x) {
-#if defined(__SSE2__)
+#ifdef __SSE2__
   return _mm_sqrt_pd(x);
 #else
   return Lanes{std::sqrt(x[0]), std::sqrt(x[1])};
@@ -60,9 +60,14 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 
 // GCC and clang compile functions for other processors than the rest of a file. AVX2 brings no fused
 // multiply-add: the bits are those of the pairs.
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef __x86_64__
+#ifdef __GNUC__
 #define EGOCAL_WIDE_LANES
-#if defined(__clang__)
+#endif
+#endif
+
+#ifdef EGOCAL_WIDE_LANES
+#ifdef __clang__
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
 #else
 #pragma GCC push_options
@@ -93,7 +98,7 @@ constexpr int lane_count = 4;  // numbers in 32 bytes
 
 }  // namespace wide
 
-#if defined(__clang__)
+#ifdef __clang__
 #pragma clang attribute pop
 #else
 #pragma GCC pop_options
@@ -114,7 +119,7 @@ void set_motions_to_one(const std::array<const Instant*, MotionsToOne::count>& f
     poses.to[part] = numbers_of(to, part);
   }
   for (std::size_t i = 0; i < from.size(); ++i) poses.squares[i] = result.squares[i].entries();
-#if defined(EGOCAL_WIDE_LANES)
+#ifdef EGOCAL_WIDE_LANES
   static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
   if (is_wide && !in_pairs) return wide::motions_to_one(poses, 0, result);
 #endif

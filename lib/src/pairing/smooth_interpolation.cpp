@@ -31,8 +31,10 @@ std::optional<Values> places_of(std::span<const StampedPose> poses, double part,
   for (std::size_t i = 1; i < n; ++i)
     periods[i - 1] = static_cast<double>(poses[i].time_us - poses[i - 1].time_us);
   const double period = median_of(periods, n - 1);
-  if (!(*std::max_element(periods.begin(), periods.end()) <= options.most_uneven * period) ||
-      periods[before] > options.most_uneven_here * period)
+  const auto [shortest, longest] =
+      std::minmax_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(n - 1));
+  if (!(*longest <= options.most_uneven * period && *shortest * options.most_uneven >= period &&
+        periods[before] <= options.most_uneven_here * period))
     return std::nullopt;
   for (std::size_t i = 0; i < n; ++i)
     places[i] =

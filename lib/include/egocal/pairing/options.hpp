@@ -89,10 +89,10 @@ struct SynchroniserOptions {
   std::size_t typical_steps = 9;  ///< two outliers are four steps
   /// So many poses of the faster stream, half of them on each side of an instant, make the pose there
   /// (universal kriging with a Gaussian correlation over correlation_length periods). Each of them is off the
-  /// path between its neighbours by at most most_rough typical steps, the period at the instant is at most
-  /// most_uneven_here times as long as the typical one, the others most_uneven times. Elsewhere it is the
-  /// screw between two, and both streams are cut alike. Even, at most most_smooth_poses; 0: never. Study:
-  /// docs/method.md, "Interpolation".
+  /// path between its neighbours by at most most_rough typical steps; the period at the instant is at most
+  /// most_uneven_here times as long as the typical one, no other most_uneven times as long or short. Where
+  /// that does not hold it is the screw between two, and both streams are cut alike. Even, at most
+  /// most_smooth_poses; 0: never. Study: docs/method.md, "Interpolation".
   std::size_t smooth_poses = 8;
   double correlation_length = 1.5, most_rough = 2, most_uneven_here = 1.5, most_uneven = 3;
   static constexpr std::size_t most_smooth_poses = 16;  ///< bounds the time of one interpolation
