@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../support/random_motion.hpp"
+#include "../support/shaken_car.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
@@ -73,6 +74,26 @@ Trajectory drifting(Trajectory path, double rate) {
   for (StampedPose& pose : path)
     pose.time_us -= std::llround(rate * static_cast<double>(pose.time_us - begin));
   return path;
+}
+
+// Offsets were up to 10 ms wrong with half a period between the three that are compared.
+TEST(TimeOffset, OfAShakenCarIsFound) {
+  for (const auto& [rate_a, rate_b] : {std::pair{10.0, 20.0}, std::pair{10.0, 10.0}, std::pair{20.0, 20.0}})
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      testing::ShakenCar car;
+      car.rate_a = rate_a;
+      car.rate_b = rate_b;
+      car.lowest = 2;
+      car.highest = 4;
+      car.phase_b = 0.4 / rate_b;
+      car.seed = seed;
+      const Streams streams = testing::shaken_car(car);
+      const auto offset = estimate_time_offset(streams.a, streams.b);
+      ASSERT_TRUE(offset);
+      std::printf("%g and %g Hz: %.2f ms off, standard deviation %.2f ms\n", rate_a, rate_b,
+                  1e3 * offset->seconds, 1e3 * offset->stddev);
+      EXPECT_LT(std::abs(offset->seconds), 0.001);
+    }
 }
 
 TEST(TimeOffset, GlitchesDoNotMoveIt) {

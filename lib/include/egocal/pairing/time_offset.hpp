@@ -59,8 +59,8 @@ struct TimeOffsetOptions {
   /// A drift smears the correlation of a long drive. Where it is below this, the part of this length that
   /// turns most is searched by itself [s].
   double smeared_correlation = 0.7, liveliest_part = 300;
-  /// The refinement compares the costs at three offsets, at least this far apart [s], or half a period of the
-  /// slower stream: closer ones differ by less than the noise of the cost.
+  /// The refinement compares the costs at three offsets, at least this far apart [s], or a part of the slower
+  /// stream's period: closer ones differ by less than the noise of the cost.
   double least_arm = 0.02;
   /// Instants compared by the refinement are at least this far apart [s]: 20 Hz show all that odometry has to
   /// say about time.

@@ -102,7 +102,7 @@ void Refinement::begin(const ClockLine& model, double arm_us) {
   model_ = model;
   drifts_ = model.rate != 0;
   // far enough apart for the cost to rise above its noise
-  least_arm_us_ = std::max(options_.least_arm * second_us, 0.5 * period_us_);
+  least_arm_us_ = std::max(options_.least_arm * second_us, tuning_.least_arm * period_us_);
   arm_us_ = std::max(arm_us, least_arm_us_);
   schedule_.add(256, [this] {
     collect_motions();

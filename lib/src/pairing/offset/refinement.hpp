@@ -28,6 +28,10 @@ struct RefinementOptions {
   std::size_t blocks = 32;        ///< parts of the drive, for the standard deviation: as StrideBlocks has
   std::size_t size_classes = 4;   ///< of the motions, each with its own typical difference: quartiles
   std::size_t least_motions = 8;  ///< of all classes; fewer show nothing typical
+  /// The three offsets are at least this far apart, in periods of the slower stream. Half a period, as before
+  /// interpolation was smooth, is no parabola where a car is shaken at a third of the rate: offsets were up
+  /// to 16 ms wrong (test_time_offset.cpp).
+  double least_arm = 0.15;
 };
 
 /// Minimises the certified minimum of the cost (18) over offset and rate of the clock, by parabolas through
