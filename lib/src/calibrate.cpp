@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/calibrate.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -51,6 +52,10 @@ Answered answered(const Calibration& calibration, Problem single,
 
 Calibration judged(Calibration calibration, Diagnosis diagnosis) {
   calibration.verdict = diagnosis.verdict;
+  for (std::size_t i = 0; i < diagnosis.timing_stddev.size(); ++i)
+    if (diagnosis.timing_stddev[i] > 0)  // else not a bit is changed
+      calibration.observability.stddev[i] =
+          std::hypot(calibration.observability.stddev[i], diagnosis.timing_stddev[i]);
   calibration.reason = std::move(diagnosis.reason);
   calibration.fit = std::move(diagnosis.fit);
   calibration.findings = std::move(diagnosis.findings);

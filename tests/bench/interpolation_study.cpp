@@ -40,7 +40,9 @@ constexpr Case cases[] = {{"free, 4 Hz and 4 Hz", Terrain::free, 4, 4},
                           {"shaken at 1 to 3 Hz, 10 Hz and 10 Hz", Terrain::rough, 10, 10, 0, 1, 3},
                           {"shaken at 1 to 3 Hz, 10 Hz and 20 Hz", Terrain::rough, 10, 20, 0, 1, 3},
                           {"shaken at 2 to 6 Hz, 10 Hz and 20 Hz", Terrain::rough, 10, 20, 0, 2, 6},
-                          {"shaken at 2 to 6 Hz, 20 Hz and 20 Hz", Terrain::rough, 20, 20, 0, 2, 6}};
+                          {"shaken at 2 to 6 Hz, 20 Hz and 20 Hz", Terrain::rough, 20, 20, 0, 2, 6},
+                          {"shaken at 2 to 6 Hz, 15 Hz and 8 Hz", Terrain::rough, 15, 8, 0, 2, 6},
+                          {"shaken at 4 to 9 Hz, 10 Hz and 10 Hz", Terrain::rough, 10, 10, 0, 4, 9}};
 
 testing::Streams drive(const Case& of, std::uint64_t seed) {
   const double phase = (0.1 + 0.1 * static_cast<double>(seed % 8)) / of.rate_b;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "diagnosis/clock_check.hpp"
 #include "diagnosis/explanations.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/forward.hpp"
@@ -18,7 +19,9 @@
 #include "diagnosis/pace.hpp"
 #include "diagnosis/planes.hpp"
 #include "diagnosis/stream_check.hpp"
+#include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal {
 
@@ -165,6 +168,43 @@ void name_wrong_scale(const Evidence& evidence, const DiagnosisOptions& options,
   findings.push_back(*std::move(scale));
 }
 
+bool of_clock(const Finding& finding) {
+  return finding.code.starts_with("clock_");
+}
+
+/// What clocks that differ and interpolation change. Of streams that are understood otherwise: a wrong answer
+/// has no standard deviation that could be right.
+void look_at_times(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                   const DiagnosisOptions& options, Answered& answered, Diagnosis& result) {
+  if (answered.problem.mode == Mode::planar) return;
+  const auto certain = [&](const auto& which) {
+    return std::find_if(result.findings.begin(), result.findings.end(),
+                        [&](const Finding& one) { return one.certain && which(one); });
+  };
+  if (certain([](const Finding& one) { return !of_clock(one); }) != result.findings.end()) return;
+  const MiddlePart part = middle_part(a, b, options.change.most_poses);
+  const Instants instants =
+      synchronised(part.a, part.b, {pairing.time_offset, 0, 0}, pairing.max_gap, 1, options.motions);
+  const std::array<double, 6> of_interpolation = interpolation_stddev(instants, answered.T_a_b, options);
+  auto clock = certain(of_clock);
+  if (clock == result.findings.end())
+    if (std::optional<Finding> offset =
+            small_clock_offset(part, instants, pairing.time_offset, pairing.max_gap, answered, options)) {
+      // the same with less certainty
+      std::erase_if(result.findings, of_clock);
+      clock = result.findings.insert(result.findings.begin(), *std::move(offset));
+    }
+  Vector6d moved = Vector6d::Zero();
+  if (clock != result.findings.end() && clock->T_a_b)
+    moved = frame_a_difference(answered.T_a_b, to_dual_quaternion(*clock->T_a_b));
+  for (std::size_t i = 0; i < 6; ++i)
+    answered.timing_stddev[i] = std::hypot(of_interpolation[i], moved[static_cast<Eigen::Index>(i)]);
+  result.timing_stddev = answered.timing_stddev;
+  if (std::optional<Finding> finding =
+          undersampled(instants, answered, of_interpolation, options.undersampling))
+    result.findings.push_back(*std::move(finding));
+}
+
 }  // namespace
 
 Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
@@ -210,6 +250,7 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   if (std::optional<Finding> pace = impossible_pace(motions, evidence.stride * evidence.instants.period,
                                                     evidence.instants.period, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
+  look_at_times(a, b, pairing, options, answered, result);
   judge(result, answered, misfit, options);
   return result;
 }

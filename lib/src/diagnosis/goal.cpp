@@ -49,6 +49,10 @@ double excess_of(const std::vector<double>& ratios, const GoalSpreadOptions& tun
 
 }  // namespace
 
+double with_further_parts(double stddev, const Answered& answered, std::size_t direction) {
+  return std::hypot(std::hypot(stddev, answered.scale_stddev[direction]), answered.timing_stddev[direction]);
+}
+
 Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpreadOptions& tuning) {
   constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   const std::array<double, 6> spread = goal_spread(answered, tuning);
@@ -59,7 +63,7 @@ Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpr
     if (!expected(answered, i)) continue;
     const double wanted = i < 3 ? options.translation : options.rotation;
     const double stddev =
-        answered.observability.observable[i] ? std::hypot(spread[i], answered.scale_stddev[i]) : INFINITY;
+        answered.observability.observable[i] ? with_further_parts(spread[i], answered, i) : INFINITY;
     const double ratio = stddev / wanted;
     missing.emplace_back(ratio, i);
     ratios.push_back(ratio);

@@ -10,6 +10,9 @@ namespace egocal::detail {
 /// come from the ground planes.
 bool expected(const Answered& answered, std::size_t direction);
 
+/// A standard deviation from the motions [m, rad] with what an unknown scale and interpolation add to it.
+double with_further_parts(double stddev, const Answered& answered, std::size_t direction);
+
 /// Which directions are not known well enough yet, how long that takes at this driving, and the manoeuvre
 /// that helps most.
 Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpreadOptions& tuning = {});

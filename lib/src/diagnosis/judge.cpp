@@ -48,7 +48,7 @@ bool significant_scale(const Finding& finding, const Answered& answered, const S
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!answered.observability.observable[k]) continue;
-    const double stddev = std::hypot(answered.observability.stddev[k], answered.scale_stddev[k]);
+    const double stddev = with_further_parts(answered.observability.stddev[k], answered, k);
     if (std::abs(difference[i]) > significant * stddev) return true;
   }
   return false;
@@ -79,10 +79,11 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
     std::array<double, 3> stddev{};
     for (std::size_t i = 0; i < 3; ++i)
       if (expected(answered, first + i))
-        stddev[i] = answered.observability.observable[first + i]
-                        ? std::hypot(std::max(answered.observability.stddev[first + i], unstable[first + i]),
-                                     answered.scale_stddev[first + i])
-                        : INFINITY;
+        stddev[i] =
+            answered.observability.observable[first + i]
+                ? with_further_parts(std::max(answered.observability.stddev[first + i], unstable[first + i]),
+                                     answered, first + i)
+                : INFINITY;
     for (std::size_t known = 3; known > 0; --known) {
       const auto worst = std::max_element(stddev.begin(), stddev.end());
       if (std::isfinite(*worst) && length_95(stddev) <= tolerance) break;
@@ -104,11 +105,16 @@ bool stream_fault(const Finding& finding) {
          ((finding.code == "same_stream" || finding.code == "time_unit") && finding.certain);
 }
 
+/// Right streams, which leave the answer less certain than its motions say.
+bool undersampling(const Finding& finding) {
+  return finding.code.starts_with("undersampled_");
+}
+
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.
 bool misread(const Finding& finding) {
   return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
          finding.code != "clock_drift" && finding.code != "mount_moved" && finding.code != "scale_change" &&
-         !stream_fault(finding);
+         !stream_fault(finding) && !undersampling(finding);
 }
 
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
@@ -138,6 +144,8 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     const double far = shift(finding, answered, options);
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
+    else if (undersampling(finding))
+      verdict = Verdict::good;  // what is unknown by it counts as unknown
     else if (stream_fault(finding))
       verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
     else if (misread(finding) || refutes(finding, far, options) ||

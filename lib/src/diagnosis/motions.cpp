@@ -93,7 +93,7 @@ void measure_sizes(Motions& motions) {
 
 PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,
                                 const PoseReading& read_other) const {
-  const SynchroniserOptions options;
+  const SynchroniserOptions& options = interpolation_;
   const auto read = [](const StampedPose& given, const PoseReading& reading) {
     return StampedPose{given.time_us, reread(given.pose, reading)};
   };
@@ -126,6 +126,12 @@ PosePair Instants::at(std::size_t i, const PoseReading& read_a, const PoseReadin
                                              reread((*others_)[place.before].pose, read_other)};
   if (b_slower_) std::swap(poses.a, poses.b);
   return poses;
+}
+
+Instants Instants::through(std::size_t smooth_poses) const {
+  Instants other = *this;
+  other.interpolation_.smooth_poses = smooth_poses;
+  return other;
 }
 
 MotionEnds::MotionEnds(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b,

@@ -11,6 +11,7 @@
 
 #include "diagnosis/reading.hpp"
 #include "egocal/diagnosis/options.hpp"
+#include "egocal/pairing/options.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/cost.hpp"
 
@@ -60,6 +61,12 @@ class Instants {
   /// Poses of both sensors at instant i under readings of the streams, interpolated as read and as pairing
   /// does (pairing/synchroniser.hpp); the trajectories of synchronised() must still be there.
   PosePair at(std::size_t i, const PoseReading& read_a = {}, const PoseReading& read_b = {}) const;
+  /// Whether a pose is interpolated at instant i.
+  bool between_poses(std::size_t i) const { return places_[i].part > 0; }
+  /// Whether the stream of b gives the stamps, and that of a is interpolated.
+  bool b_slower() const { return b_slower_; }
+  /// The same instants, interpolated through another number of poses (SynchroniserOptions::smooth_poses).
+  Instants through(std::size_t smooth_poses) const;
 
  private:
   friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
@@ -78,6 +85,7 @@ class Instants {
   std::optional<Times> key_times_;
   std::int64_t max_gap_us_ = 0;
   bool b_slower_ = false;
+  SynchroniserOptions interpolation_;
   std::vector<Place> places_;
 };
 

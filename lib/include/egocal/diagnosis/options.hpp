@@ -166,6 +166,37 @@ struct StabilityOptions {
   std::size_t parts = 5;  ///< one is dropped at a time; fewer parts have no spread, more are as the blocks
 };
 
+/// How an answer changes where its motions are taken otherwise from the streams.
+struct AnswerChangeOptions {
+  std::size_t motions = 300;  ///< of each length, evenly spread over the drive: 2 ms
+  int longer = 4;             ///< instants that the longer motions span, besides single ones
+  double inlier = 0.25;       ///< least weight of a motion that counts (RobustFitOptions::inlier)
+  std::size_t parts = 10;     ///< of the drive, whose own changes show what is chance
+  std::size_t least = 3;      ///< motions in a part
+  /// Of a longer stream only the middle is looked at: a limit on time and memory.
+  std::size_t most_poses = 20'000;
+};
+
+/// Whether the interpolation of one stream changes the answer. Study: docs/method.md, "Interpolation".
+struct UndersamplingOptions {
+  std::size_t poses = 12;  ///< of the better interpolation (SynchroniserOptions::smooth_poses)
+  double significant = 3;  ///< standard deviations of the change that may be chance
+  double share = 1;        ///< standard deviation of the answer as a part of the rest of the change
+  double matters = 1;      ///< of these, in standard deviations of the answer: more is a finding
+};
+
+/// Whether the clocks differ by so little that no single block of the drive shows it. Study: docs/trust.md.
+struct ClockCheckOptions {
+  /// Of the offset from 0. Clean drives of the study stay below 3.8, real ones below 4.9 but for an arm whose
+  /// clocks do differ.
+  double sigmas = 5;
+  double widest = 0.1;  ///< larger offsets are found by ClockSearchOptions [s]
+  /// The corrected clock changes the answer by more than this many of its standard deviations, and of those
+  /// of the change.
+  double significant = 3;
+  std::size_t instants = 1500;  ///< that the offset is estimated from: a limit on time
+};
+
 /// When an answer counts as known or as wrong.
 struct DiagnosisOptions {
   bool enabled = true;  ///< of calibrate(): without it the verdict knows of no other explanation
@@ -222,6 +253,9 @@ struct DiagnosisOptions {
   MountCheckOptions mount;
   GoalSpreadOptions goal_spread;
   StabilityOptions stability;
+  AnswerChangeOptions change;
+  UndersamplingOptions undersampling;
+  ClockCheckOptions clock_check;
   std::optional<GoalOptions> goal;
   /// Whose manoeuvres are advised where no goal is stated; empty: as the motions look.
   std::optional<Platform> platform;

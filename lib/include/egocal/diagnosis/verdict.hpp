@@ -46,7 +46,7 @@ struct Fit {
 struct Finding {
   std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
                      ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
-                     ///< scale_change, time_unit, too_little_motion
+                     ///< scale_change, time_unit, too_little_motion, undersampled_a, undersampled_b
   bool certain = false;         ///< it fits clearly better; otherwise both remain possible
   std::string message;          ///< what was found, one sentence
   std::string remedy;           ///< option or action that cures it
@@ -87,6 +87,10 @@ struct Diagnosis {
   Fit fit;
   std::vector<Finding> findings;  ///< most important first
   std::optional<Goal> goal;       ///< where one was given
+  /// What the times of the poses add to the standard deviations of the answer (x y z roll pitch yaw in sensor
+  /// a's frame [m, rad]): the interpolation of one stream at the stamps of the other one, and clocks that
+  /// differ. 0 where they add nothing.
+  std::array<double, 6> timing_stddev{};
 };
 
 }  // namespace egocal

@@ -23,6 +23,8 @@ struct Answered {
   Problem minimised{};                ///< by T_a_b, where that is not `problem`; no blocks: it is
   /// What an unknown scale adds to the standard deviation of each direction [m, rad]; 0 where it is known.
   std::array<double, 6> scale_stddev{};
+  /// What the times of the poses add (Diagnosis::timing_stddev); diagnose() finds it.
+  std::array<double, 6> timing_stddev{};
 };
 
 /// Whether the answer can be used, and if not, why: tries other readings of the streams, scale, clock, ground

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Clocks that differ by a few milliseconds.
+#pragma once
+
+#include <optional>
+
+#include "diagnosis/answer_change.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+/// Finding clock_offset, certain, where the offset differs from zero by its own standard deviation and moves
+/// the answer by more than the answer states to be uncertain. Roll, pitch and yaw of a walking machine have
+/// fixed phases: late by 2 ms, its axes seem turned by half a degree, in every part of the drive alike.
+/// instants: of `part`; offset_in_force [s] is added to b's stamps already.
+std::optional<Finding> small_clock_offset(const MiddlePart& part, const Instants& instants,
+                                          double offset_in_force, double max_gap, const Answered& answered,
+                                          const DiagnosisOptions& options);
+
+}  // namespace egocal::detail
