@@ -60,6 +60,9 @@ class Instants {
   /// Poses of both sensors at instant i under readings of the streams, interpolated as read and as pairing
   /// does (pairing/synchroniser.hpp); the trajectories of synchronised() must still be there.
   PosePair at(std::size_t i, const PoseReading& read_a = {}, const PoseReading& read_b = {}) const;
+  /// Has the memory of what at() needs brought near: a long drive does not fit into the processor's caches.
+  /// Nothing where there is no such instant.
+  void fetch(std::size_t i) const;
 
  private:
   friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
@@ -93,6 +96,8 @@ class MotionEnds {
              std::size_t steps, std::size_t each);
   /// Poses at instant i, in the order of the motions.
   PosePair at(std::size_t i);
+  /// Has the poses of the motion after the one from instant i to k brought near.
+  void fetch_next(std::size_t i, std::size_t k) const;
 
  private:
   struct Known {
