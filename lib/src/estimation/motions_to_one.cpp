@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "problem/wide_lanes.hpp"
+
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif
@@ -57,14 +59,6 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 #include "estimation/motions_to_one_lanes.hpp"
 
 }  // namespace narrow
-
-// GCC and clang compile functions for other processors than the rest of a file. AVX2 brings no fused
-// multiply-add: the bits are those of the pairs.
-#ifdef __x86_64__
-#ifdef __GNUC__
-#define EGOCAL_WIDE_LANES
-#endif
-#endif
 
 #ifdef EGOCAL_WIDE_LANES
 #ifdef __clang__
@@ -120,8 +114,7 @@ void set_motions_to_one(const std::array<const Instant*, MotionsToOne::count>& f
   }
   for (std::size_t i = 0; i < from.size(); ++i) poses.squares[i] = result.squares[i].entries();
 #ifdef EGOCAL_WIDE_LANES
-  static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
-  if (is_wide && !in_pairs) return wide::motions_to_one(poses, 0, result);
+  if (has_wide_lanes() && !in_pairs) return wide::motions_to_one(poses, 0, result);
 #endif
   for (int first = 0; first < MotionsToOne::count; first += narrow::lane_count)
     narrow::motions_to_one(poses, first, result);

@@ -10,10 +10,10 @@ namespace egocal::detail {
 
 /// The value that would be at `place` if the values (no NaN, no negative zero) were sorted: what
 /// std::nth_element finds at about a third of its cost, for values in random order mislead the processor at
-/// every second branch, and here there are none. room: for twice as many numbers as there are values, which may
-/// be the first of it. place < values.size().
+/// every second branch, and here there are none. room: for twice as many numbers as there are values, which
+/// may be the first of it. place < values.size().
 inline double selected(std::span<const double> values, std::size_t place, std::span<double> room) {
-  constexpr std::size_t few = 8;  // the library's own way is as fast
+  constexpr std::size_t few = 8;   // the library's own way is as fast
   constexpr int most_rounds = 40;  // a limit on time: thousands of values take a dozen
   const double* from = values.data();
   std::size_t count = values.size();
