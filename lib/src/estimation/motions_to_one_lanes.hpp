@@ -103,6 +103,19 @@ struct Quaternions {
   to.w[2] = b.z + a.z;
 }
 
+[[gnu::always_inline]] inline void keep(const Lanes& value, double* to) {
+  __builtin_memcpy(to, &value, sizeof value);
+}
+
+[[gnu::always_inline]] inline void keep_difference(const Difference& difference, int first,
+                                                   std::array<double, MotionsToOne::count>* to) {
+  keep(difference.s, to[0].data() + first);
+  for (int i = 0; i < 3; ++i) {
+    keep(difference.u[i], to[1 + i].data() + first);
+    keep(difference.w[i], to[4 + i].data() + first);
+  }
+}
+
 /// The motions of the lanes from `first` on.
 inline void motions_to_one(const PosesOfMotions& poses, int first, MotionsToOne& result) {
   bool* const plain = result.plain.data() + first;
@@ -118,6 +131,8 @@ inline void motions_to_one(const PosesOfMotions& poses, int first, MotionsToOne&
   Difference real, dual;
   set_difference(a, b, real);
   set_difference(a_dual, b_dual, dual);
+  keep_difference(real, first, result.differences.data());
+  keep_difference(dual, first, result.differences.data() + 7);
   Lanes numbers[36];
   set_all(dual, real, numbers);
   for (int column = 0; column < 8; ++column)
