@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions from several instants to one, a motion in each lane of a vector: the operations of
 // detail::motions_between() and MotionSquare in the same order, hence the same bits. Included once for each
-// processor, see problem/square_numbers.hpp. The namespace defines Lanes, lane_count, root() and store().
+// processor, see problem/square_numbers.hpp. The namespace defines Lanes, lane_count, root(), gather() and store().
 
 using Number = Lanes;
 #include "problem/square_numbers.hpp"
@@ -13,12 +13,7 @@ struct Quaternions {
 
 /// poses: of each lane, 4 numbers each.
 [[gnu::always_inline]] inline void load(const double* const* poses, Quaternions& to) {
-  for (int lane = 0; lane < lane_count; ++lane) {
-    to.w[lane] = poses[lane][0];
-    to.x[lane] = poses[lane][1];
-    to.y[lane] = poses[lane][2];
-    to.z[lane] = poses[lane][3];
-  }
+  gather(poses, to.w, to.x, to.y, to.z);
 }
 
 [[gnu::always_inline]] inline void load_all(const double* pose, Quaternions& to) {

@@ -13,7 +13,7 @@ namespace {
 
 /// Finite, within egocal::limits, the rotation near unit length.
 bool plausible(const StampedPose& pose) {
-  return pose.pose.vec().allFinite() && plausible_norm(pose.pose.real.norm()) &&
+  return pose.pose.real.allFinite() && pose.pose.dual.allFinite() && plausible_norm(pose.pose.real.norm()) &&
          plausible_relative_time(pose.time_us) && plausible_distance(translation_length(pose.pose));
 }
 

@@ -17,9 +17,16 @@ constexpr double nugget = 1e-6;         ///< poses of nearly one time would have
 
 using Values = std::array<double, most>;
 
-double median_of(Values values, std::size_t count) {
-  const auto at = [&values](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(values.begin(), at(count / 2), at(count));
+/// The value at count / 2 if they were sorted. Of so few it is the one that as many are smaller than.
+double median_of(const Values& values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t smaller = 0, equal = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      smaller += values[k] < values[i] ? 1 : 0;
+      equal += values[k] == values[i] ? 1 : 0;
+    }
+    if (smaller <= count / 2 && count / 2 < smaller + equal) return values[i];
+  }
   return values[count / 2];
 }
 
