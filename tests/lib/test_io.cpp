@@ -76,7 +76,7 @@ TEST_F(Io, ReadsTheSameNumbersWhateverIsBetweenThem) {
       EXPECT_EQ(found[i].pose.vec(), expected[i].pose.vec()) << row;
     }
   }
-  for (const std::string wrong : {"inf", "nan", "1e999", "1x", "x", "0x1", "1,5"})
+  for (const std::string wrong : {"inf", "nan", "1e999", "1x", "x", "0x1"})
     expect_error("10.5 " + plain + "\n11.5 1 " + wrong + " 3 0 0 0 1\n", "(ty)");
 }
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions from several instants to one, a motion in each lane of a vector: the operations of
 // detail::motions_between() and MotionSquare in the same order, hence the same bits. Included once for each
-// processor, see problem/square_numbers.hpp. The namespace defines Lanes, lane_count, root(), gather() and store().
+// processor, see problem/square_numbers.hpp. The namespace defines Lanes, lane_count, root(), gather() and
+// store().
 
 using Number = Lanes;
 #include "problem/square_numbers.hpp"

@@ -31,8 +31,7 @@ double order_statistic(std::span<const double> values, std::size_t place, const 
     within += from_low & to_high;
     below += 1 - from_low;
   }
-  if (place >= below && place - below < within)
-    return selected({kept.data(), within}, place - below, kept);
+  if (place >= below && place - below < within) return selected({kept.data(), within}, place - below, kept);
   return selected(values, place, kept);
 }
 
