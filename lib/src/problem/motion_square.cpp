@@ -10,13 +10,13 @@ namespace egocal::detail {
 
 namespace {
 
-/// To each of the sums, eta times the entries.
+/// Adds eta times the entries.
 [[gnu::always_inline]] inline void add_entries(const double* __restrict entries, double eta,
                                                double* __restrict to) {
   for (std::size_t k = 0; k < 64; ++k) to[k] += eta * entries[k];
 }
 
-/// What SquareWeights say, then the same to each of the sums.
+/// Weighs the entries once and adds them to each of the sums.
 [[gnu::always_inline]] inline void add_weighted_entries(const double* __restrict entries,
                                                         const SquareWeights& weights,
                                                         std::span<Matrix8d* const> sums) {
