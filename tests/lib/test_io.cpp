@@ -62,6 +62,24 @@ TEST_F(Io, ReadsTum) {
   EXPECT_LT((pose.rotation.coeffs() - Eigen::Vector4d(-0.5, -0.5, -0.5, 0.5)).norm(), 1e-14);  // x y z w
 }
 
+TEST_F(Io, ReadsTheSameNumbersWhateverIsBetweenThem) {
+  const std::string plain = "0.042966448121465314 -2.5e-3 3 0.5 0.5 0.5 -0.5";
+  const Trajectory expected = read_trajectory(file("a.tum", "10.5 " + plain + "\n11.5 " + plain + "\n"));
+  for (const std::string row : {"\t0.042966448121465314\t-2.5e-3\t3\t0.5\t0.5\t0.5\t-0.5",
+                                "  0.042966448121465314   -2.5e-3 3 .5 .5 .5 -.5  ",
+                                " +0.042966448121465314 -2.5e-3 +3 0.5 0.5 0.5 -0.5",
+                                " 0.042966448121465314 -2.5e-3\t3 0.5 0.5 0.5 -0.5\t"}) {
+    const Trajectory found = read_trajectory(file("b.tum", "10.5" + row + "\n  11.5" + row + "\r\n"));
+    ASSERT_EQ(found.size(), expected.size()) << row;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].time_us, expected[i].time_us) << row;
+      EXPECT_EQ(found[i].pose.vec(), expected[i].pose.vec()) << row;
+    }
+  }
+  for (const std::string wrong : {"inf", "nan", "1e999", "1x", "x", "0x1"})
+    expect_error("10.5 " + plain + "\n11.5 1 " + wrong + " 3 0 0 0 1\n", "(ty)");
+}
+
 TEST_F(Io, ReadsEurocWithItsOwnOrderAndNanoseconds) {
   const Trajectory trajectory =
       read_trajectory(file("a.csv",

@@ -100,11 +100,14 @@ PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,
   const StampedPose pose = read((*keys_)[place.key], read_key);
   const std::size_t side = options.smooth_poses / 2;
   if (place.before + 1 >= side && place.before + side < others_->size()) {
-    std::array<StampedPose, SynchroniserOptions::most_smooth_poses> around;
-    for (std::size_t i = 0; i < 2 * side; ++i)
-      around[i] = read((*others_)[place.before + 1 - side + i], read_other);
-    if (const auto smooth = interpolate_smoothly(std::span(around).first(2 * side), place.part, options))
-      return {pose.pose, *smooth};
+    std::span<const StampedPose> around = std::span(*others_).subspan(place.before + 1 - side, 2 * side);
+    std::array<StampedPose, SynchroniserOptions::most_smooth_poses> other_reading;
+    if (!as_given(read_other)) {
+      std::transform(around.begin(), around.end(), other_reading.begin(),
+                     [&](const StampedPose& given) { return read(given, read_other); });
+      around = std::span(other_reading).first(2 * side);
+    }
+    if (const auto smooth = interpolate_smoothly(around, place.part, options)) return {pose.pose, *smooth};
   }
   const StampedPose from = read((*others_)[place.before], read_other),
                     to = read((*others_)[place.before + 1], read_other);
@@ -134,6 +137,21 @@ Instants Instants::through(std::size_t smooth_poses) const {
   return other;
 }
 
+void Instants::fetch(std::size_t i) const {
+  const auto fetch_poses = [](const Trajectory& poses, std::size_t from, std::size_t to) {
+    constexpr std::size_t line = 64;  // bytes that come at once
+    const auto* const begin = reinterpret_cast<const char*>(&poses[from]);
+    const std::size_t size = (to - from) * sizeof(StampedPose);
+    for (std::size_t byte = 0; byte < size; byte += line) __builtin_prefetch(begin + byte);
+  };
+  if (i >= places_.size()) return;
+  const Place& place = places_[i];
+  fetch_poses(*keys_, place.key, place.key + 1);
+  const std::size_t side = interpolation_.smooth_poses / 2;
+  fetch_poses(*others_, place.before + 1 - std::min<std::size_t>(side, place.before + 1),
+              std::min(place.before + 1 + side, others_->size()));
+}
+
 MotionEnds::MotionEnds(const Instants& instants, const PoseReading& read_a, const PoseReading& read_b,
                        std::size_t steps, std::size_t each)
     : instants_(&instants),
@@ -141,6 +159,11 @@ MotionEnds::MotionEnds(const Instants& instants, const PoseReading& read_a, cons
       read_b_(read_b),
       each_(each),
       known_(steps % each == 0 ? steps / each + 1 : 0) {}
+
+void MotionEnds::fetch_next(std::size_t i, std::size_t k) const {
+  if (known_.empty()) instants_->fetch(i + each_);
+  instants_->fetch(k + each_);
+}
 
 PosePair MotionEnds::at(std::size_t i) {
   if (known_.empty()) return instants_->at(i, read_a_, read_b_);
@@ -189,6 +212,7 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
   for (std::size_t i = 0; i + steps < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > options.most_stretched * stride * instants.period) continue;
+    ends.fetch_next(i, k);
     const PosePair from = ends.at(i), to = ends.at(k);
     Motion motion = motion_from(conjugate(from.a) * to.a, conjugate(from.b) * to.b);
     if (std::max(motion.angle_a, motion.angle_b) > options.most_rotation) continue;

@@ -67,6 +67,9 @@ class Instants {
   bool b_slower() const { return b_slower_; }
   /// The same instants, interpolated through another number of poses (SynchroniserOptions::smooth_poses).
   Instants through(std::size_t smooth_poses) const;
+  /// Has the memory of what at() needs brought near: a long drive does not fit into the processor's caches.
+  /// Nothing where there is no such instant.
+  void fetch(std::size_t i) const;
 
  private:
   friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
@@ -101,6 +104,8 @@ class MotionEnds {
              std::size_t steps, std::size_t each);
   /// Poses at instant i, in the order of the motions.
   PosePair at(std::size_t i);
+  /// Has the poses of the motion after the one from instant i to k brought near.
+  void fetch_next(std::size_t i, std::size_t k) const;
 
  private:
   struct Known {

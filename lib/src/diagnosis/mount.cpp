@@ -31,6 +31,7 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
   for (std::size_t i = 0; i + steps < instants.size(); i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k) - instants.time(i) > longest) continue;
+    ends.fetch_next(i, k);
     const PosePair from = ends.at(i), to = ends.at(k);
     MotionPair pair{canonical_sign(normalized(conjugate(from.a) * to.a)),
                     canonical_sign(normalized(conjugate(from.b) * to.b)),

@@ -29,12 +29,12 @@ QuaternionVector dual_part(const QuaternionVector& r, const Eigen::Vector3d& t) 
           0.5 * (0.0 * r[3] + t[0] * r[2] - t[1] * r[1] + t[2] * r[0])};
 }
 
-bool as_given(const detail::PoseReading& reading) {
+}  // namespace
+
+bool detail::as_given(const PoseReading& reading) {
   return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && !reading.conjugate &&
          reading.scale == 1 && reading.axes == Eigen::Matrix3d::Identity();
 }
-
-}  // namespace
 
 DualQuaternion detail::reread(const DualQuaternion& given, const PoseReading& reading) {
   if (as_given(reading)) return given;

@@ -13,6 +13,9 @@ struct PoseReading : Reading {
   bool conjugate = false;           ///< the rotation is that of the inverse pose
 };
 
+/// Whether it changes nothing: poses are what their file says.
+bool as_given(const PoseReading& reading);
+
 /// The pose that `given` is under this reading; a unit dual quaternion again.
 DualQuaternion reread(const DualQuaternion& given, const PoseReading& reading);
 

@@ -4,36 +4,53 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "egocal/solvers/global.hpp"
+#include "statistics/select.hpp"
 
 namespace egocal {
 
 namespace {
 
-std::ptrdiff_t place(const std::vector<double>& values, double part) {
-  return static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+std::size_t place(std::size_t count, double part) {
+  return static_cast<std::size_t>(part * static_cast<double>(count - 1));
 }
 
-double quantile(std::vector<double>& values, double part) {
-  const auto at = values.begin() + place(values, part);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+/// Numbers that are not set yet.
+class Room {
+ public:
+  explicit Room(std::size_t size) : numbers_(std::make_unique_for_overwrite<double[]>(size)), size_(size) {}
+  std::span<double> numbers() const { return {numbers_.get(), size_}; }
+
+ private:
+  std::unique_ptr<double[]> numbers_;
+  std::size_t size_;
+};
+
+double quantile(std::span<const double> values, double part) {
+  const Room room(2 * values.size());
+  return detail::selected(values, place(values.size(), part), room.numbers());
 }
 
 struct Quartiles {
   double low = 0, median = 0, high = 0;
 
-  explicit Quartiles(std::vector<double>& values) {
-    const auto first = values.begin() + place(values, 0.25), second = values.begin() + place(values, 0.5),
-               third = values.begin() + place(values, 0.75);
-    std::nth_element(values.begin(), second, values.end());
-    median = *second;
-    // each of the others is on one side of the median
-    if (first != second) std::nth_element(values.begin(), first, second);
-    if (third != second) std::nth_element(second + 1, third, values.end());
-    low = *first;
-    high = *third;
+  explicit Quartiles(std::span<const double> values) {
+    const std::size_t count = values.size(), first = place(count, 0.25), third = place(count, 0.75);
+    const Room halves(2 * count), room_to_select(2 * count);
+    const std::span<double> room = room_to_select.numbers();
+    median = detail::selected(values, place(count, 0.5), room);
+    double *const below = halves.numbers().data(), *const above = below + count;
+    std::size_t smaller = 0, larger = 0;
+    for (const double value : values) {  // without a branch that the processor could guess wrongly
+      below[smaller] = above[larger] = value;
+      smaller += static_cast<unsigned>(value < median);
+      larger += static_cast<unsigned>(value > median);
+    }
+    low = first < smaller ? detail::selected({below, smaller}, first, room) : median;
+    const std::size_t until_median = count - larger;
+    high = third < until_median ? median : detail::selected({above, larger}, third - until_median, room);
   }
 };
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "problem/wide_lanes.hpp"
+
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif
@@ -48,6 +50,16 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 #endif
 }
 
+/// The four numbers of each lane.
+[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
+  for (int lane = 0; lane < lane_count; ++lane) {
+    w[lane] = from[lane][0];
+    x[lane] = from[lane][1];
+    y[lane] = from[lane][2];
+    z[lane] = from[lane][3];
+  }
+}
+
 /// Number k of each lane's row to its place `at` + k.
 [[gnu::always_inline]] inline void store(const Lanes* const* rows, double* const* to, int at) {
   for (int lane = 0; lane < lane_count; ++lane)
@@ -57,14 +69,6 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 #include "estimation/motions_to_one_lanes.hpp"
 
 }  // namespace narrow
-
-// GCC and clang compile functions for other processors than the rest of a file. AVX2 brings no fused
-// multiply-add: the bits are those of the pairs.
-#ifdef __x86_64__
-#ifdef __GNUC__
-#define EGOCAL_WIDE_LANES
-#endif
-#endif
 
 #ifdef EGOCAL_WIDE_LANES
 #ifdef __clang__
@@ -81,6 +85,17 @@ constexpr int lane_count = 4;  // numbers in 32 bytes
 
 [[gnu::always_inline]] inline Lanes root(const Lanes& x) {
   return _mm256_sqrt_pd(x);
+}
+
+[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
+  const __m256d row_0 = _mm256_loadu_pd(from[0]), row_1 = _mm256_loadu_pd(from[1]),
+                row_2 = _mm256_loadu_pd(from[2]), row_3 = _mm256_loadu_pd(from[3]);
+  const __m256d low_01 = _mm256_unpacklo_pd(row_0, row_1), high_01 = _mm256_unpackhi_pd(row_0, row_1),
+                low_23 = _mm256_unpacklo_pd(row_2, row_3), high_23 = _mm256_unpackhi_pd(row_2, row_3);
+  w = _mm256_permute2f128_pd(low_01, low_23, 0x20);
+  x = _mm256_permute2f128_pd(high_01, high_23, 0x20);
+  y = _mm256_permute2f128_pd(low_01, low_23, 0x31);
+  z = _mm256_permute2f128_pd(high_01, high_23, 0x31);
 }
 
 [[gnu::always_inline]] inline void store(const Lanes* const* rows, double* const* to, int at) {
@@ -120,8 +135,7 @@ void set_motions_to_one(const std::array<const Instant*, MotionsToOne::count>& f
   }
   for (std::size_t i = 0; i < from.size(); ++i) poses.squares[i] = result.squares[i].entries();
 #ifdef EGOCAL_WIDE_LANES
-  static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
-  if (is_wide && !in_pairs) return wide::motions_to_one(poses, 0, result);
+  if (has_wide_lanes() && !in_pairs) return wide::motions_to_one(poses, 0, result);
 #endif
   for (int first = 0; first < MotionsToOne::count; first += narrow::lane_count)
     narrow::motions_to_one(poses, first, result);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions from several instants to one, a motion in each lane of a vector: the operations of
 // detail::motions_between() and MotionSquare in the same order, hence the same bits. Included once for each
-// processor, see problem/square_numbers.hpp. The namespace defines Lanes, lane_count, root() and store().
+// processor, see problem/square_numbers.hpp. The namespace defines Lanes, lane_count, root(), gather() and
+// store().
 
 using Number = Lanes;
 #include "problem/square_numbers.hpp"
@@ -13,12 +14,7 @@ struct Quaternions {
 
 /// poses: of each lane, 4 numbers each.
 [[gnu::always_inline]] inline void load(const double* const* poses, Quaternions& to) {
-  for (int lane = 0; lane < lane_count; ++lane) {
-    to.w[lane] = poses[lane][0];
-    to.x[lane] = poses[lane][1];
-    to.y[lane] = poses[lane][2];
-    to.z[lane] = poses[lane][3];
-  }
+  gather(poses, to.w, to.x, to.y, to.z);
 }
 
 [[gnu::always_inline]] inline void load_all(const double* pose, Quaternions& to) {
@@ -103,6 +99,19 @@ struct Quaternions {
   to.w[2] = b.z + a.z;
 }
 
+[[gnu::always_inline]] inline void keep(const Lanes& value, double* to) {
+  __builtin_memcpy(to, &value, sizeof value);
+}
+
+[[gnu::always_inline]] inline void keep_difference(const Difference& difference, int first,
+                                                   std::array<double, MotionsToOne::count>* to) {
+  keep(difference.s, to[0].data() + first);
+  for (int i = 0; i < 3; ++i) {
+    keep(difference.u[i], to[1 + i].data() + first);
+    keep(difference.w[i], to[4 + i].data() + first);
+  }
+}
+
 /// The motions of the lanes from `first` on.
 inline void motions_to_one(const PosesOfMotions& poses, int first, MotionsToOne& result) {
   bool* const plain = result.plain.data() + first;
@@ -118,6 +127,8 @@ inline void motions_to_one(const PosesOfMotions& poses, int first, MotionsToOne&
   Difference real, dual;
   set_difference(a, b, real);
   set_difference(a_dual, b_dual, dual);
+  keep_difference(real, first, result.differences.data());
+  keep_difference(dual, first, result.differences.data() + 7);
   Lanes numbers[36];
   set_all(dual, real, numbers);
   for (int column = 0; column < 8; ++column)

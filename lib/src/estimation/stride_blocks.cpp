@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "estimation/block_of.hpp"
 #include "problem/motion_square.hpp"
 
 namespace egocal {
@@ -44,7 +45,7 @@ void add(std::vector<Statistics>& sums, std::size_t blocks, std::size_t block, c
 
 /// Blocks between the ends of a motion of `stride` steps, at least.
 std::size_t offset(int stride, std::uint64_t block_length) {
-  return static_cast<std::size_t>(static_cast<std::uint64_t>(stride) / block_length);
+  return detail::block_of(static_cast<std::uint64_t>(stride), block_length);
 }
 
 }  // namespace
@@ -52,6 +53,10 @@ std::size_t offset(int stride, std::uint64_t block_length) {
 void add_weighted(Statistics& sum, const StrideCell& cell, double rotation, double translation) {
   add_weighted_motions(sum, cell.motions, rotation, translation);
   add_weighted_rotations(sum, cell.rotations, rotation, translation);
+}
+
+std::size_t StrideBlocks::block_of(std::uint64_t index) const {
+  return detail::block_of(index, state_.block_length);
 }
 
 StrideBlocks::StrideBlocks(const std::vector<int>& strides) {

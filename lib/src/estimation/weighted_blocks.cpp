@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/estimation/weighted_blocks.hpp"
 
+#include <array>
+
 #include "egocal/estimation/stride_blocks.hpp"
+#include "estimation/block_of.hpp"
 #include "problem/motion_square.hpp"
 
 namespace egocal {
@@ -12,7 +15,7 @@ bool WeightedBlocks::has_room(std::uint64_t index) const {
 }
 
 void WeightedBlocks::add_instant(std::uint64_t index) {
-  const auto block = static_cast<std::size_t>(index / state_.block_length);
+  const std::size_t block = detail::block_of(index, state_.block_length);
   while (state_.blocks.size() <= block) {
     state_.blocks.emplace_back();
     state_.left_out.push_back(0);
@@ -23,20 +26,17 @@ void WeightedBlocks::add_instant(std::uint64_t index) {
 void WeightedBlocks::add(std::uint64_t first_index, std::uint64_t last_index,
                          const detail::MotionSquare& square, MotionWeights weights, bool rotation_only) {
   if (!(weights.rotation > 0) && !(weights.translation > 0)) return;
-  const auto first = static_cast<std::size_t>(first_index / state_.block_length);
-  const auto last = static_cast<std::size_t>(last_index / state_.block_length);
+  const std::size_t first = detail::block_of(first_index, state_.block_length),
+                    last = detail::block_of(last_index, state_.block_length);
   if (state_.left_out[first] != 0 || state_.left_out[last] != 0) return;
   const double translation = weights.certainty * weights.translation;
-  const detail::MotionSquare motion =
-      square.weighted(weights.certainty * weights.rotation, translation, rotation_only);
-  const auto add = [&](Statistics& sum) {
-    motion.add_to(sum.dual_rows);
-    sum.weight += translation;
-  };
-  add(state_.blocks[first]);
-  if (first == last) return;
-  add(state_.blocks[last]);
-  add(state_.shared);
+  const detail::SquareWeights of_square{weights.certainty * weights.rotation, translation, rotation_only};
+  Statistics &begin = state_.blocks[first], &end = state_.blocks[last];
+  begin.weight += translation;
+  if (first == last) return square.add_weighted_to(std::array{&begin.dual_rows}, of_square);
+  end.weight += translation;
+  state_.shared.weight += translation;
+  square.add_weighted_to(std::array{&begin.dual_rows, &end.dual_rows, &state_.shared.dual_rows}, of_square);
 }
 
 void WeightedBlocks::fill(Problem& problem) const {

@@ -3,13 +3,16 @@
 #include "egocal/pairing/accumulator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <utility>
 
+#include "estimation/motions_to_one.hpp"
 #include "pairing/choice_schedule.hpp"
 #include "pairing/motions_between.hpp"
+#include "robust/disagreements.hpp"
 
 namespace egocal {
 
@@ -24,7 +27,10 @@ Accumulator::Accumulator(const PairingOptions& options, const EstimationOptions&
 
 Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state,
                          const EstimationOptions& tuning)
-    : options_(options), tuning_(tuning), state_(std::move(state)) {
+    : options_(options),
+      tuning_(tuning),
+      least_scalar_(std::cos(0.5 * options.accumulator.most_rotation)),
+      state_(std::move(state)) {
   if (state_.sums) sums_.emplace(options_, tuning_.sums, *std::exchange(state_.sums, std::nullopt));
   if (options_.mode == Mode::planar) {
     G_a_ = plane_frame(options_.plane_a);
@@ -65,28 +71,9 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   const auto longest = static_cast<std::size_t>(state_.strides.back().stride);
   while (state_.instants.size() > longest + 1) state_.instants.pop_front();
 
-  std::vector<MotionPair> pairs;
   const Problem problem = empty_problem();
   bool doubtful = false;
-  for (AccumulatorState::PerStride& entry : state_.strides) {
-    const auto steps = static_cast<std::size_t>(entry.stride);
-    if (state_.instants.size() <= steps) continue;
-    const bool chosen = entry.stride == state_.choice.stride;
-    Rejections not_counted;
-    const std::optional<MotionPair> pair =
-        motion(state_.instants[state_.instants.size() - 1 - steps], instant, entry.stride,
-               chosen ? state_.rejections : not_counted);
-    if (!pair) continue;
-    if (options_.robust)
-      entry.statistics.add(*pair, problem, entry.stride, tuning_.robust);
-    else
-      entry.statistics.add_unjudged(*pair);
-    if (!chosen) continue;
-    pairs.push_back(*pair);
-    doubtful = entry.statistics.disagreed();
-    if (options_.robust && entry.statistics.look_is_due())
-      entry.statistics.look(problem, entry.stride, tuning_.robust);
-  }
+  std::vector<MotionPair> pairs = add_motions(instant, problem, doubtful);
   if (options_.robust && !(options_.stride && options_.balance)) {
     // A look for outliers costs as much as a hundred poses: those that the choice needs are spread over the
     // poses before it, one stride each.
@@ -117,17 +104,97 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   return pairs;
 }
 
+/// The motions of all strides that end at the newest instant. Returns that of the chosen stride; doubtful: it
+/// contradicts the others.
+std::vector<MotionPair> Accumulator::add_motions(const Instant& instant, const Problem& problem,
+                                                 bool& doubtful) {
+  std::vector<MotionPair> pairs;
+  const auto is_chosen = [&](const AccumulatorState::PerStride& entry) {
+    return entry.stride == state_.choice.stride;
+  };
+  const auto look_at_chosen = [&](AccumulatorState::PerStride& entry, const MotionPair& pair) {
+    pairs.push_back(pair);
+    doubtful = entry.statistics.disagreed();
+    if (options_.robust && entry.statistics.look_is_due())
+      entry.statistics.look(problem, entry.stride, tuning_.robust);
+  };
+  Rejections not_counted;
+  const auto rejections = [&](const AccumulatorState::PerStride& entry) -> Rejections& {
+    return is_chosen(entry) ? state_.rejections : not_counted;
+  };
+  const auto add_one = [&](AccumulatorState::PerStride& entry, const Instant& from) {
+    const std::optional<MotionPair> pair = motion(from, instant, entry.stride, rejections(entry));
+    if (!pair) return;
+    if (options_.robust)
+      entry.statistics.add(*pair, problem, entry.stride, tuning_.robust);
+    else
+      entry.statistics.add_unjudged(*pair);
+    if (is_chosen(entry)) look_at_chosen(entry, *pair);
+  };
+  // a few at a time: most agree with the others, and their squares are all that is needed
+  constexpr std::size_t at_once = detail::MotionsToOne::count;
+  const Agreement none;
+  std::array<AccumulatorState::PerStride*, at_once> entries;
+  std::array<const Instant*, at_once> begins;
+  std::array<const Agreement*, at_once> agreements;
+  detail::MotionsToOne motions;
+  std::size_t waiting = 0;
+  const auto add_waiting = [&] {
+    if (waiting == 0) return;
+    for (std::size_t k = 0; k < at_once; ++k) {
+      if (k >= waiting) begins[k] = begins[0];
+      const bool is_judged = k < waiting && entries[k]->statistics.agreement();
+      agreements[k] = is_judged ? &*entries[k]->statistics.agreement() : &none;
+    }
+    detail::set_motions_to_one(begins, instant, motions);
+    const auto disagreements =
+        detail::disagreements(motions, agreements, problem.balance, tuning_.robust.consensus);
+    for (std::size_t k = 0; k < waiting; ++k) {
+      AccumulatorState::PerStride& entry = *entries[k];
+      const bool disagrees = agreements[k] != &none && disagreements[k] > 1;
+      if (!motions.plain[k] || disagrees || motions.least_scalar[k] < least_scalar_) {
+        add_one(entry, *begins[k]);
+        continue;
+      }
+      entry.statistics.add_agreeing(motions.squares[k]);
+      if (!is_chosen(entry)) continue;
+      const detail::MotionsOfBoth both = detail::motions_between(*begins[k], instant);
+      look_at_chosen(entry, {both.a, both.b, begins[k]->time_us, instant.time_us, 1});
+    }
+    waiting = 0;
+  };
+  const bool several = options_.robust && options_.mode == Mode::spatial && state_.strides.size() > 2;
+  for (AccumulatorState::PerStride& entry : state_.strides) {
+    const auto steps = static_cast<std::size_t>(entry.stride);
+    if (state_.instants.size() <= steps) continue;
+    const Instant& from = state_.instants[state_.instants.size() - 1 - steps];
+    if (!several) {
+      add_one(entry, from);
+    } else if (joined(from, instant, entry.stride, rejections(entry))) {
+      entries[waiting] = &entry;
+      begins[waiting] = &from;
+      if (++waiting == at_once) add_waiting();
+    }
+  }
+  add_waiting();
+  return pairs;
+}
+
+/// Whether there is a motion between the two.
+bool Accumulator::joined(const Instant& from, const Instant& to, int stride, Rejections& rejections) const {
+  if (from.chain != to.chain) return false;
+  const double longest_us = options_.accumulator.stretch * stride * static_cast<double>(state_.period_us);
+  if (static_cast<double>(to.time_us - from.time_us) <= longest_us) return true;
+  rejections.add(Rejection::gap);
+  return false;
+}
+
 std::optional<MotionPair> Accumulator::motion(const Instant& from, const Instant& to, int stride,
                                               Rejections& rejections) {
-  if (from.chain != to.chain) return std::nullopt;
-  const double longest_us = options_.accumulator.stretch * stride * static_cast<double>(state_.period_us);
-  if (static_cast<double>(to.time_us - from.time_us) > longest_us) {
-    rejections.add(Rejection::gap);
-    return std::nullopt;
-  }
+  if (!joined(from, to, stride, rejections)) return std::nullopt;
   const detail::MotionsOfBoth motions = detail::motions_between(from, to);
   MotionPair pair{motions.a, motions.b, from.time_us, to.time_us, 1};
-  if (std::min(pair.a.real[0], pair.b.real[0]) < std::cos(0.5 * options_.accumulator.most_rotation)) {
+  if (std::min(pair.a.real[0], pair.b.real[0]) < least_scalar_) {
     rejections.add(Rejection::too_much_rotation);
     return std::nullopt;
   }

@@ -13,7 +13,7 @@ namespace {
 
 /// Finite, within egocal::limits, the rotation near unit length.
 bool plausible(const StampedPose& pose) {
-  return pose.pose.vec().allFinite() && plausible_norm(pose.pose.real.norm()) &&
+  return pose.pose.real.allFinite() && pose.pose.dual.allFinite() && plausible_norm(pose.pose.real.norm()) &&
          plausible_relative_time(pose.time_us) && plausible_distance(translation_length(pose.pose));
 }
 
@@ -84,9 +84,12 @@ void MotionPairing::take(const std::vector<Instant>& instants, std::vector<Motio
       screened.accepted = {instant};
     if (screened.replaces) accumulator_.restart();
     for (const Instant& accepted : screened.accepted) {
-      const std::vector<MotionPair> more = accumulator_.add(accepted);
+      std::vector<MotionPair> more = accumulator_.add(accepted);
       // pairs of instants that come a second time were handed out already
-      if (!screened.replaces || accepted.time_us == instant.time_us)
+      if (screened.replaces && accepted.time_us != instant.time_us) continue;
+      if (pairs.empty())
+        pairs = std::move(more);
+      else
         pairs.insert(pairs.end(), more.begin(), more.end());
     }
   }

@@ -17,9 +17,16 @@ constexpr double nugget = 1e-6;         ///< poses of nearly one time would have
 
 using Values = std::array<double, most>;
 
-double median_of(Values values, std::size_t count) {
-  const auto at = [&values](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(values.begin(), at(count / 2), at(count));
+/// The value at count / 2 if they were sorted. Of so few it is the one that as many are smaller than.
+double median_of(const Values& values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t smaller = 0, equal = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      smaller += values[k] < values[i] ? 1 : 0;
+      equal += values[k] == values[i] ? 1 : 0;
+    }
+    if (smaller <= count / 2 && count / 2 < smaller + equal) return values[i];
+  }
   return values[count / 2];
 }
 
@@ -43,47 +50,54 @@ std::optional<Values> places_of(std::span<const StampedPose> poses, double part,
 }
 
 /// Weights of the values at n places for the value at 0: the first n of [K F; F' 0]^-1 [k; f], which add up
-/// to one. K is positive definite and F has full rank, so L D L' of the whole needs no exchange of rows.
-Values kriging_weights(const Values& places, std::size_t n, double correlation_length) {
+/// to one. K is positive definite and F has full rank, so L D L' of the whole needs no exchange of rows. What
+/// is known of a column is taken off all that follows at once: the numbers of a column do not wait for each
+/// other. n comes as a constant where it can, which makes the loops short.
+[[gnu::always_inline]] inline Values kriging_weights_of(const Values& places, std::size_t n,
+                                                        double correlation_length) {
   constexpr std::size_t largest = most + polynomials;
   const std::size_t size = n + polynomials;
   const double half = 0.5 * static_cast<double>(n);
   const double falls = -0.5 / (correlation_length * correlation_length);
   const auto correlation = [falls](double distance) { return std::exp(falls * distance * distance); };
-  double L[largest][largest], D[largest], inverse[largest], x[largest];
+  double L[largest][largest];  // column by column
+  double D[largest], x[largest], inverse[largest], scaled[largest];
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < i; ++k) L[i][k] = correlation(places[i] - places[k]);
+    for (std::size_t k = 0; k < i; ++k) L[k][i] = correlation(places[i] - places[k]);
     D[i] = 1 + nugget;
     x[i] = correlation(places[i]);
     double power = 1;
-    for (std::size_t p = n; p < size; ++p, power *= places[i] / half) L[p][i] = power;
+    for (std::size_t p = n; p < size; ++p, power *= places[i] / half) L[i][p] = power;
   }
   for (std::size_t p = n; p < size; ++p) {
-    for (std::size_t k = n; k < p; ++k) L[p][k] = 0;
+    for (std::size_t k = n; k < p; ++k) L[k][p] = 0;
     D[p] = 0;
     x[p] = p == n ? 1 : 0;
   }
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < i; ++k) {  // L D
-      double sum = L[i][k];
-      for (std::size_t j = 0; j < k; ++j) sum -= L[i][j] * L[k][j];
-      L[i][k] = sum;
+  for (std::size_t j = 0; j < size; ++j) {
+    inverse[j] = 1 / D[j];
+    for (std::size_t i = j + 1; i < size; ++i) {
+      scaled[i] = L[j][i];
+      L[j][i] = scaled[i] * inverse[j];
+      D[i] -= scaled[i] * L[j][i];
+      x[i] -= L[j][i] * x[j];
     }
-    for (std::size_t k = 0; k < i; ++k) {
-      const double scaled = L[i][k];
-      L[i][k] = scaled * inverse[k];
-      D[i] -= scaled * L[i][k];
-      x[i] -= L[i][k] * x[k];
-    }
-    inverse[i] = 1 / D[i];
+    for (std::size_t k = j + 1; k < size; ++k)
+      for (std::size_t i = k + 1; i < size; ++i) L[k][i] -= scaled[i] * L[j][k];
   }
   for (std::size_t i = size; i-- > 0;) {
     x[i] *= inverse[i];
-    for (std::size_t k = i + 1; k < size; ++k) x[i] -= L[k][i] * x[k];
+    for (std::size_t k = i + 1; k < size; ++k) x[i] -= L[i][k] * x[k];
   }
   Values weights{};
   std::copy_n(x, n, weights.begin());
   return weights;
+}
+
+Values kriging_weights(const Values& places, std::size_t n, double correlation_length) {
+  constexpr std::size_t usual = SynchroniserOptions{}.smooth_poses;
+  return n == usual ? kriging_weights_of(places, usual, correlation_length)
+                    : kriging_weights_of(places, n, correlation_length);
 }
 
 /// A pose as seen from the one before the instant: twice the vector part of the rotation, which is its angle

@@ -6,6 +6,8 @@
 #include <array>
 #include <optional>
 
+#include "problem/motion_square.hpp"
+
 namespace egocal {
 
 namespace {
@@ -31,7 +33,8 @@ std::vector<Block> merged(const std::vector<Block>& blocks) {
 
 }  // namespace
 
-void BlockStatistics::add(const MotionPair& pair, bool outlier) {
+/// Of the verdict, with room for one more motion.
+Statistics& BlockStatistics::newest(bool outlier) {
   const auto newest = [&] {
     return std::find_if(state_.blocks.rbegin(), state_.blocks.rend(),
                         [&](const Block& block) { return block.outlier == outlier; });
@@ -44,7 +47,18 @@ void BlockStatistics::add(const MotionPair& pair, bool outlier) {
     state_.pairs_per_block *= 2;
   }
   if (full(newest())) state_.blocks.push_back({{}, outlier});
-  newest()->statistics.add(pair);
+  return newest()->statistics;
+}
+
+void BlockStatistics::add(const MotionPair& pair, bool outlier) {
+  newest(outlier).add(pair);
+}
+
+void BlockStatistics::add(const detail::MotionSquare& motion) {
+  Statistics& statistics = newest(false);
+  motion.add_to(statistics.dual_rows);
+  statistics.weight += 1;
+  ++statistics.count;
 }
 
 void BlockStatistics::leave_out(const std::vector<bool>& verdicts) {

@@ -60,22 +60,6 @@ detail::MotionSquare::MotionSquare(const DualQuaternion& a, const DualQuaternion
   }
 }
 
-void detail::MotionSquare::add_to(Matrix8d& sum, double eta) const {
-  double* const to = sum.data();
-  for (std::size_t k = 0; k < 64; ++k) to[k] += eta * entries_[k];
-}
-
-detail::MotionSquare detail::MotionSquare::weighted(double rotation, double translation,
-                                                    bool rotation_only) const {
-  const double all = rotation_only ? 0.0 : translation;
-  MotionSquare result;
-  for (std::size_t k = 0; k < 64; ++k) result.entries_[k] = all * entries_[k];
-  for (std::size_t j = 0; j < 4; ++j)
-    for (std::size_t i = 0; i < 4; ++i)
-      result.entries_[8 * j + i] += rotation * entries_[8 * (j + 4) + i + 4];
-  return result;
-}
-
 void Statistics::add(const DualQuaternion& a, const DualQuaternion& b, double eta) {
   std::array<double, detail::square_places.size()> numbers;
   set_numbers(a, b, numbers.data());

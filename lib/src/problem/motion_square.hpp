@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "egocal/problem/cost.hpp"
 
@@ -47,6 +48,13 @@ inline constexpr std::array<std::array<int, 2>, 36> square_places = {
      {0, 6}, {0, 7}, {1, 4}, {2, 4}, {3, 4}, {1, 5}, {2, 6}, {3, 7}, {2, 7}, {3, 6}, {3, 5}, {1, 7},
      {1, 6}, {2, 5}, {4, 4}, {4, 5}, {4, 6}, {4, 7}, {5, 5}, {6, 6}, {7, 7}, {5, 6}, {5, 7}, {6, 7}}};
 
+/// What is added of a square: translation times it, and rotation times its lower right block (the rotation
+/// part D) in the upper left one. rotation_only: the latter alone.
+struct SquareWeights {
+  double rotation = 0, translation = 0;
+  bool rotation_only = false;
+};
+
 /// M_d'M_d over the dual rows M_d = [E_d E_r] of one motion pair (14), as a matrix: of its 64 entries only 36
 /// differ, but whole columns are added faster than numbers with two places each. Computed once, added to
 /// several sums.
@@ -56,11 +64,11 @@ class MotionSquare {
   /// For the signs of a and b that make their scalars >= 0.
   MotionSquare(const DualQuaternion& a, const DualQuaternion& b);
 
-  /// Adds it, multiplied by eta.
-  void add_to(Matrix8d& sum, double eta = 1) const;
-  /// translation times this, and rotation times its lower right block (the rotation part D) added to the
-  /// upper left one. rotation_only: the latter alone.
-  MotionSquare weighted(double rotation, double translation, bool rotation_only) const;
+  /// Adds it, multiplied by eta. in_pairs: as on processors without wide vectors, for tests.
+  void add_to(Matrix8d& sum, double eta = 1, bool in_pairs = false) const;
+  /// Adds it, weighted, to each of the sums.
+  void add_weighted_to(std::span<Matrix8d* const> sums, const SquareWeights& weights,
+                       bool in_pairs = false) const;
   /// The 64 entries, column by column.
   double* entries() { return entries_.data(); }
 

@@ -13,12 +13,6 @@ namespace egocal {
 
 namespace {
 
-/// Of the excess of a part over the typical residual.
-double limit(std::uint64_t motions, const ConsensusOptions& options) {
-  return options.limit_of_many +
-         (options.limit_of_one - options.limit_of_many) / static_cast<double>(motions);
-}
-
 /// Mean squared size of a part's motions in the metric of the cost (16): what a wrong extrinsic of the same
 /// scale costs.
 double squared_size(const Matrix8d& Q) {
@@ -61,8 +55,8 @@ class Search {
       : options_(options), mode_(problem.mode), overlap_(overlap) {
     for (const Statistics& part : statistics) {
       const Matrix8d Q = cost_matrix(part, problem.balance);
-      parts_.push_back(
-          {Q, part.weight, static_cast<double>(part.count), squared_size(Q), limit(part.count, options)});
+      parts_.push_back({Q, part.weight, static_cast<double>(part.count), squared_size(Q),
+                        detail::excess_limit(part.count, options)});
       all_ += part.weight * parts_.back().size;
     }
   }
@@ -344,10 +338,15 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   return search.consensus(std::move(best), scale, std::move(factors));
 }
 
+double detail::excess_limit(std::uint64_t motions, const ConsensusOptions& options) {
+  return options.limit_of_many +
+         (options.limit_of_one - options.limit_of_many) / static_cast<double>(motions);
+}
+
 double detail::residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale,
                               const ConsensusOptions& options) {
   const double size = squared_size(cost_matrix(part, balance));
-  return limit(part.count, options) *
+  return detail::excess_limit(part.count, options) *
          std::max(scale.absolute, size * std::max(scale.relative, options.least_relative));
 }
 
@@ -359,9 +358,13 @@ double detail::disagreement(const DualQuaternion& a, const DualQuaternion& b, co
   const double size = balance.translation * dual.squared_size() + balance.rotation * rotation;
   if (!(size > 0)) return 0;
   const DualQuaternion& q = agreement.q;
-  const double residual = balance.translation * (dual.times(q.real) + real.times(q.dual)).squaredNorm() +
-                          balance.rotation * real.times(q.real).squaredNorm();
-  return excess(residual, size, agreement.scale, options) / limit(1, options);
+  // summed in the order of disagreements()
+  const auto squared_norm = [](const QuaternionVector& x) {
+    return (x[0] * x[0] + x[2] * x[2]) + (x[1] * x[1] + x[3] * x[3]);
+  };
+  const double residual = balance.translation * squared_norm(dual.times(q.real) + real.times(q.dual)) +
+                          balance.rotation * squared_norm(real.times(q.real));
+  return excess(residual, size, agreement.scale, options) / excess_limit(1, options);
 }
 
 double disagreement(const Statistics& part, const Balance& balance, const Agreement& agreement,
@@ -370,7 +373,7 @@ double disagreement(const Statistics& part, const Balance& balance, const Agreem
   const double size = squared_size(Q);
   if (!(size > 0)) return 0;
   return excess(std::max(0.0, cost(Q, agreement.q)), size, agreement.scale, options) /
-         limit(part.count, options);
+         detail::excess_limit(part.count, options);
 }
 
 }  // namespace egocal

@@ -10,6 +10,9 @@ namespace egocal::detail {
 double residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale,
                       const ConsensusOptions& options = {});
 
+/// Of the excess of a part of so many motions over the typical residual: above it the part disagrees.
+double excess_limit(std::uint64_t motions, const ConsensusOptions& options);
+
 /// disagreement() of a single motion.
 double disagreement(const DualQuaternion& a, const DualQuaternion& b, const Balance& balance,
                     const Agreement& agreement, const ConsensusOptions& options);

@@ -24,6 +24,12 @@ void RobustStatistics::add_unjudged(const MotionPair& pair) {
   state_.blocks.add(pair);
 }
 
+void RobustStatistics::add_agreeing(const detail::MotionSquare& motion) {
+  ++state_.given;
+  state_.blocks.add(motion);
+  state_.in_a_row = 0;
+}
+
 void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int overlap,
                            const RobustOptions& options) {
   ++state_.given;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <vector>
+#include <memory>
 
-#include "statistics/median.hpp"
+#include "statistics/select.hpp"
 
 namespace egocal::detail {
 
@@ -20,7 +20,9 @@ constexpr std::size_t sample_size = 32, few = 128, margin = 5;
 }  // namespace
 
 double order_statistic(std::span<const double> values, std::size_t place, const Expected& expected) {
-  std::vector<double> kept(values.size());
+  const std::size_t room = 2 * values.size();
+  const auto numbers = std::make_unique_for_overwrite<double[]>(room);
+  const std::span<double> kept(numbers.get(), room);
   const auto [low, high] = expected;
   std::size_t below = 0, within = 0;
   for (const double value : values) {  // without a branch that the processor could guess wrongly
@@ -29,12 +31,8 @@ double order_statistic(std::span<const double> values, std::size_t place, const 
     within += from_low & to_high;
     below += 1 - from_low;
   }
-  if (place >= below && place - below < within) {
-    kept.resize(within);
-    return order_statistic_in_place(kept, place - below);
-  }
-  std::copy(values.begin(), values.end(), kept.begin());
-  return order_statistic_in_place(kept, place);
+  if (place >= below && place - below < within) return selected({kept.data(), within}, place - below, kept);
+  return selected(values, place, kept);
 }
 
 double order_statistic(std::span<const double> values, std::size_t place) {

@@ -75,9 +75,7 @@ class StrideBlocks {
   const State& state() const { return state_; }
 
  private:
-  std::size_t block_of(std::uint64_t index) const {
-    return static_cast<std::size_t>(index / state_.block_length);
-  }
+  std::size_t block_of(std::uint64_t index) const;
   void merge();
 
   State state_;

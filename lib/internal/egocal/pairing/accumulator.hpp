@@ -80,6 +80,8 @@ class Accumulator {
   Problem empty_problem() const;
   Problem plain_problem() const;
   const AccumulatorState::PerStride* chosen() const;
+  std::vector<MotionPair> add_motions(const Instant& instant, const Problem& problem, bool& doubtful);
+  bool joined(const Instant& from, const Instant& to, int stride, Rejections& rejections) const;
   std::optional<MotionPair> motion(const Instant& from, const Instant& to, int stride,
                                    Rejections& rejections);
   std::uint64_t choice_delay() const;
@@ -87,6 +89,7 @@ class Accumulator {
 
   PairingOptions options_;
   EstimationOptions tuning_;
+  double least_scalar_;       ///< of a rotation that is not too large: cosine of half its angle
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
   AccumulatorState state_;    ///< except for the sums
   std::optional<StrideSums> sums_;

@@ -9,6 +9,10 @@
 
 namespace egocal {
 
+namespace detail {
+class MotionSquare;
+}
+
 /// Statistics in consecutive blocks of equal length, bounded however long the drive: when max_blocks are
 /// full, neighbours are merged and blocks become twice as long. Blocks can be rejected, as contradicting the
 /// others; those merge among themselves, so that nothing is lost and a verdict can be revised.
@@ -33,6 +37,8 @@ class BlockStatistics {
 
   /// To the newest block of that verdict.
   void add(const MotionPair& pair, bool outlier = false);
+  /// A motion of weight one, to the newest block that is no outlier.
+  void add(const detail::MotionSquare& motion);
   /// One verdict a block.
   void leave_out(const std::vector<bool>& verdicts);
 
@@ -42,6 +48,8 @@ class BlockStatistics {
   const State& state() const { return state_; }
 
  private:
+  Statistics& newest(bool outlier);
+
   State state_;
 };
 

@@ -46,10 +46,14 @@ class RobustStatistics {
   /// problem: mode, planes and balance in force. overlap: the stride, see find_consensus().
   void add(const MotionPair& pair, const Problem& problem, int overlap = 1,
            const RobustOptions& options = {});
+  /// Takes in one that was found not to disagree, by the agreement in force.
+  void add_agreeing(const detail::MotionSquare& motion);
   /// Takes it in whatever the others say.
   void add_unjudged(const MotionPair& pair);
   /// Looks for the consensus now.
   void look(const Problem& problem, int overlap = 1, const RobustOptions& options = {});
+  /// What motions are judged by; empty while nothing is agreed on.
+  const std::optional<Agreement>& agreement() const { return state_.agreement; }
   /// The newest pair contradicts the others.
   bool disagreed() const { return state_.in_a_row > 0; }
   /// The drive has grown by an eighth since the last look.

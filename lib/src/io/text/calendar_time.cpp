@@ -66,6 +66,7 @@ std::optional<std::int64_t> calendar_time_us(std::string_view text) {
   Parts parts{text};
   const int years = parts.number(4);
   parts.mark('-');
+  if (!parts.ok) return {};  // mostly seconds
   const int months = parts.number(2);
   parts.mark('-');
   const int days_of_month = parts.number(2);

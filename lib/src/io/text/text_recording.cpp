@@ -3,7 +3,9 @@
 #include "io/text/text_recording.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "egocal/error.hpp"
@@ -28,7 +30,10 @@ bool is_data(std::string_view line) {
 
 /// The rows of the file, one at a time.
 struct TextRecording::Rows {
-  Rows(ByteSource& source, const TextLayout& text_layout) : lines(source), layout(text_layout) {}
+  Rows(ByteSource& source, const TextLayout& text_layout) : lines(source), layout(text_layout) {
+    if (layout.matrix && layout.times) stamp = 0;
+    if (!layout.matrix && layout.columns.has(Quantity::time)) stamp = layout.columns[Quantity::time].index;
+  }
 
   bool next() {
     std::string_view line;
@@ -39,7 +44,10 @@ struct TextRecording::Rows {
         std::replace(points.begin(), points.end(), ',', '.');
         line = points;
       }
-      split(line, layout.separator, fields);
+      if (layout.separator != ' ' || !split_numbers(line)) {
+        numbers.clear();
+        split(line, layout.separator, fields);
+      }
       width = layout.separator == ' '
                   ? fields.size()
                   : static_cast<std::size_t>(std::count(line.begin(), line.end(), layout.separator)) + 1;
@@ -49,9 +57,44 @@ struct TextRecording::Rows {
     return false;
   }
 
+  /// split() at blanks of a row of numbers, which are read on the way: a field ends where its number does.
+  /// False where one is none.
+  bool split_numbers(std::string_view line) {
+    fields.clear();
+    numbers.clear();
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    while (true) {
+      while (at != end && *at == ' ') ++at;
+      if (at == end) return true;
+      const char* const begin = at;
+      double number = 0;
+      if (fields.size() == stamp) {
+        while (at != end && *at != ' ' && *at != '\t' && *at != '\r') ++at;
+      } else {
+        const auto [behind, error] = std::from_chars(begin, end, number);
+        if (error != std::errc() || !std::isfinite(number)) return false;
+        at = behind;
+      }
+      if (at != end && *at != ' ') return false;
+      fields.emplace_back(begin, static_cast<std::size_t>(at - begin));
+      numbers.push_back(number);
+    }
+  }
+
+  /// The finite number in this field, which is there.
+  std::optional<double> number(std::size_t index) const {
+    double value = 0;
+    if (index < numbers.size() && index != stamp) return numbers[index];
+    if (!parse_number(fields[index], value) || !std::isfinite(value)) return std::nullopt;
+    return value;
+  }
+
   LineReader lines;
   const TextLayout& layout;
   std::vector<std::string_view> fields;
+  std::vector<double> numbers;   ///< of the fields; empty where they are not all numbers
+  std::size_t stamp = SIZE_MAX;  ///< field that is read as text, for a double cannot hold nanoseconds
   std::string points;
   std::size_t count = 0;  ///< rows so far
   std::size_t width = 0;  ///< fields of this row, empty ones at its end included
@@ -223,8 +266,8 @@ std::int64_t TextRecording::time_of_row(const Rows& rows) const {
 }
 
 double TextRecording::value(const Rows& rows, std::size_t index) const {
-  double number = 0;
-  if (!parse_number(rows.fields[index], number) || !std::isfinite(number)) {
+  const std::optional<double> number = rows.number(index);
+  if (!number) {
     constexpr const char* matrix[] = {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty",
                                       "r31", "r32", "r33", "tz", "0",   "0",   "0",   "1"};
     const std::string name =
@@ -237,7 +280,7 @@ double TextRecording::value(const Rows& rows, std::size_t index) const {
                          "; name the columns with --columns t,x,y,z,qx,qy,qz,qw (- for others)");
     throw_not_a_number(file_, rows.lines.number(), field, rows.fields[index]);
   }
-  return number;
+  return *number;
 }
 
 double TextRecording::value(const Rows& rows, Quantity quantity) const {
@@ -254,6 +297,7 @@ double TextRecording::angle(const Rows& rows, Quantity quantity) const {
 double TextRecording::length_scale(Quantity quantity) const {
   if (!layout_.columns.has(quantity)) return 1;
   const std::string& unit = layout_.columns[quantity].unit;
+  if (unit.empty()) return 1;
   return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1;
 }
 
