@@ -189,7 +189,7 @@ void look_at_times(const Trajectory& a, const Trajectory& b, const PairingOption
   auto clock = certain(of_clock);
   if (clock == result.findings.end())
     if (std::optional<Finding> offset =
-            small_clock_offset(part, instants, pairing.time_offset, pairing.max_gap, answered, options)) {
+            small_clock_offset(a, b, pairing, part, instants, answered, options)) {
       // the same with less certainty
       std::erase_if(result.findings, of_clock);
       clock = result.findings.insert(result.findings.begin(), *std::move(offset));

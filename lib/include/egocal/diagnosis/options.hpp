@@ -191,9 +191,10 @@ struct ClockCheckOptions {
   /// clocks do differ.
   double sigmas = 5;
   double widest = 0.1;  ///< larger offsets are found by ClockSearchOptions [s]
-  /// The corrected clock changes the answer by more than this many of its standard deviations, and of those
-  /// of the change.
-  double significant = 3;
+  /// The corrected clock changes an answer from short motions by more than this many standard deviations of
+  /// the answer, and by `significant` of its own: a first look.
+  double first_look = 1, significant = 3;
+  double matters = 2;           ///< standard deviations by which the answer itself changes, at least
   std::size_t instants = 1500;  ///< that the offset is estimated from: a limit on time
 };
 
