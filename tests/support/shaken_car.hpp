@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "measured_body.hpp"
 #include "random_motion.hpp"
 #include "simulated_drive.hpp"
 
@@ -52,37 +53,21 @@ inline Streams shaken_car(const ShakenCar& car) {
   const Shaking turn(random, 0.02, 0.12, 0.4), heave(random, 0.1, 0.8, 0.08),
       pitch(random, car.lowest, car.highest, car.size), roll(random, car.lowest, car.highest, car.size),
       slow_pitch(random, 0.1, 1, 0.015), slow_roll(random, 0.1, 1, 0.015);
-  constexpr double step = 1e-3;  // [s]
-  std::vector<Pose> body;
+  BodyPath body;
   double x = 0, y = 0;
-  for (int i = 0; i * step < car.seconds + 1; ++i) {
-    const double t = i * step, yaw = turn.at(t);
-    x += 8 * step * std::cos(yaw);
-    y += 8 * step * std::sin(yaw);
+  for (int i = 0; i * body_step < car.seconds + 1; ++i) {
+    const double t = i * body_step, yaw = turn.at(t);
+    x += 8 * body_step * std::cos(yaw);
+    y += 8 * body_step * std::sin(yaw);
     const Rotation turned = rotation_exp({0, 0, yaw}) * rotation_exp({0, pitch.at(t) + slow_pitch.at(t), 0}) *
                             rotation_exp({roll.at(t) + slow_roll.at(t), 0, 0});
     body.push_back({turned, {x, y, heave.at(t)}});
   }
-  const auto stream = [&](const Pose& mount, double rate, double phase) {
-    Trajectory poses;
-    Pose before, at;
-    for (int i = 0; phase + i / rate < car.seconds; ++i) {
-      const auto index = static_cast<std::size_t>(std::lround((phase + i / rate) / step));
-      const Pose exact = body[index] * mount;
-      if (i == 0) {
-        at = exact;
-      } else {
-        const Pose noise{rotation_exp(random.normal3(car.noise_angle)), random.normal3(car.noise_step)};
-        at = at * (inverse(before) * exact) * noise;
-      }
-      before = exact;
-      poses.push_back({static_cast<std::int64_t>(index) * 1000, to_dual_quaternion(at)});
-    }
-    return poses;
-  };
+  const Sensor a{T_vehicle_a, car.rate_a, 0, 0, car.noise_angle, car.noise_step},
+      b{T_vehicle_b, car.rate_b, car.phase_b, 0, car.noise_angle, car.noise_step};
   return {to_dual_quaternion(inverse(T_vehicle_a) * T_vehicle_b),
-          stream(T_vehicle_a, car.rate_a, 0),
-          stream(T_vehicle_b, car.rate_b, car.phase_b),
+          measured(random, body, car.seconds, a),
+          measured(random, body, car.seconds, b),
           {}};
 }
 

@@ -11,6 +11,7 @@
 
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
+#include "diagnosis/wandering_scale.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/error.hpp"
 #include "egocal/scale/estimate_scale.hpp"
@@ -169,6 +170,9 @@ std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOpti
   if (scale && std::all_of(moves.begin(), moves.end(),
                            [&](const Finding& move) { return move.improvement <= scale->improvement; }))
     return {*std::move(scale)};
+  if (explained_by_wandering_scale(evidence.given.explained.motions,
+                                   in_parts(evidence.given.explained, moves, options), moves, options))
+    return {};
   if (inverted_both && explained_by_inverting_both(evidence, moves, answered, options))
     for (Finding& move : moves) move.certain = false;
   return moves;

@@ -18,7 +18,8 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
                                       const Answered& answered, const DiagnosisOptions& options,
                                       const std::vector<Finding>& moves = {});
 
-/// Findings mount_moved as they are; or scale_change instead; or uncertain, where both streams may be
+/// Findings mount_moved as they are; or scale_change instead; or none, where a scale that wanders as those of
+/// odometries do explains the motions as well; or uncertain, where both streams may be
 /// world-to-sensor (inverted_both): no mount moves then, and one extrinsic explains the motions about as well
 /// as one for each part between the moves.
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,

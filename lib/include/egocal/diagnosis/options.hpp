@@ -166,6 +166,18 @@ struct StabilityOptions {
   std::size_t parts = 5;  ///< one is dropped at a time; fewer parts have no spread, more are as the blocks
 };
 
+/// Whether a mount that seems to move is the scale of an odometry that wanders.
+struct WanderingScaleOptions {
+  /// Largest scale over the smallest, as a logarithm: ordinary odometries differ by up to 1 %
+  /// (ScaleCheckOptions).
+  double most = 0.015;
+  std::size_t parts = 4;  ///< of the drive that have a scale each, at least
+  int rounds = 4;         ///< of scales and extrinsic in turn
+  /// Mean log ratio of the squared residuals by which the moves may fit better: they have six unknowns a
+  /// part.
+  double alike = 0.05;
+};
+
 /// How an answer changes where its motions are taken otherwise from the streams.
 struct AnswerChangeOptions {
   std::size_t motions = 300;  ///< of each length, evenly spread over the drive: 2 ms
@@ -248,6 +260,7 @@ struct DiagnosisOptions {
   ClockSearchOptions clock;
   ScaleSearchOptions scale;
   ScaleCheckOptions scale_check;
+  WanderingScaleOptions wandering_scale;
   PaceCheckOptions pace;
   HeadingOptions heading;
   PlaneCheckOptions planes;
