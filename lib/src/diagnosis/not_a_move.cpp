@@ -159,6 +159,18 @@ bool explained_by_inverting_both(const Evidence& evidence, const std::vector<Fin
   return compare(parts, both).gain > -options.gain;
 }
 
+/// No mount moves at a scale that wanders by as little as those of odometries do.
+bool moves_with_the_scale(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
+                          const std::vector<Finding>& moves, const DiagnosisOptions& options) {
+  const Trajectory &a = evidence.streams.a, &b = evidence.streams.b;
+  const std::optional<ScaleCourse> course =
+      wandering_scale(evidence.given.explained.motions, a.front().time_us, moves, options);
+  if (!course) return false;
+  const Trajectory followed = scaled(b, *course);
+  const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
+  return moved_mount(instants, answered, options).empty() && !large_move(instants, evidence.stride, options);
+}
+
 }  // namespace
 
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
@@ -170,9 +182,7 @@ std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOpti
   if (scale && std::all_of(moves.begin(), moves.end(),
                            [&](const Finding& move) { return move.improvement <= scale->improvement; }))
     return {*std::move(scale)};
-  if (explained_by_wandering_scale(evidence.given.explained.motions,
-                                   in_parts(evidence.given.explained, moves, options), moves, options))
-    return {};
+  if (moves_with_the_scale(pairing, evidence, answered, moves, options)) return {};
   if (inverted_both && explained_by_inverting_both(evidence, moves, answered, options))
     for (Finding& move : moves) move.certain = false;
   return moves;

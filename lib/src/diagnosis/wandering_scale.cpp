@@ -49,25 +49,34 @@ double scale_of(const Motions& motions, const RobustFit& fit, std::size_t first,
 
 }  // namespace
 
-bool explained_by_wandering_scale(const Motions& motions, const Explained& moved,
-                                  const std::vector<Finding>& moves, const DiagnosisOptions& options) {
+std::optional<ScaleCourse> wandering_scale(const Motions& motions, std::int64_t origin_us,
+                                           const std::vector<Finding>& moves,
+                                           const DiagnosisOptions& options) {
   const WanderingScaleOptions& tuning = options.wandering_scale;
   const std::vector<std::size_t> begins = begins_of_parts(motions, moves, tuning.parts);
-  Explained wandering{motions, robust_fit(motions, options.fit)};
+  Motions followed = motions;
+  RobustFit fit = robust_fit(motions, options.fit);
   std::vector<double> scales(begins.size() - 1, 1.0);
   for (int round = 0; round < tuning.rounds; ++round) {
     for (std::size_t part = 0; part < scales.size(); ++part) {
-      scales[part] *= scale_of(wandering.motions, wandering.fit, begins[part], begins[part + 1]);
+      scales[part] *= scale_of(followed, fit, begins[part], begins[part + 1]);
       for (std::size_t i = begins[part]; i < begins[part + 1]; ++i) {
-        wandering.motions.all[i].t_b = motions.all[i].t_b * scales[part];
-        wandering.motions.all[i].b.dual = motions.all[i].b.dual * scales[part];
+        followed.all[i].t_b = motions.all[i].t_b * scales[part];
+        followed.all[i].b.dual = motions.all[i].b.dual * scales[part];
       }
     }
-    wandering.fit = robust_fit(wandering.motions, options.fit);
+    fit = robust_fit(followed, options.fit);
   }
   const auto [smallest, largest] = std::minmax_element(scales.begin(), scales.end());
-  if (!(std::log(*largest / *smallest) < tuning.most)) return false;
-  return compare(moved, wandering).gain > -tuning.alike;
+  if (!(std::log(*largest / *smallest) < tuning.most)) return std::nullopt;
+  ScaleCourse course;
+  for (std::size_t part = 0; part < scales.size(); ++part) {
+    const auto time_us = [&](std::size_t i) {
+      return origin_us + std::llround(1e6 * motions.all[std::min(i, motions.all.size() - 1)].time);
+    };
+    course.segments.push_back({time_us(begins[part]), time_us(begins[part + 1]), scales[part], scales[part]});
+  }
+  return course;
 }
 
 }  // namespace egocal::detail

@@ -3,18 +3,22 @@
 // A scale of one stream that wanders by less than odometries do.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "diagnosis/robust_fit.hpp"
 #include "egocal/diagnosis/options.hpp"
 #include "egocal/diagnosis/verdict.hpp"
+#include "egocal/scale/scale_course.hpp"
 
 namespace egocal::detail {
 
-/// Whether one extrinsic, with a scale of b for each part of the drive that differs little from the others,
-/// explains the motions as well as moves of the mount do. The lengths of an ordinary odometry are off by some
-/// tenths of a percent for minutes, which a car's sensor that slides along its way would show as well.
-bool explained_by_wandering_scale(const Motions& motions, const Explained& moved,
-                                  const std::vector<Finding>& moves, const DiagnosisOptions& options);
+/// A scale of b for each part of the drive that suits one extrinsic best. The lengths of an ordinary odometry
+/// are off by some tenths of a percent for minutes, which on a car looks like a sensor that was moved along
+/// its way. Empty where the scales differ by more. origin_us: of the motions' times.
+std::optional<ScaleCourse> wandering_scale(const Motions& motions, std::int64_t origin_us,
+                                           const std::vector<Finding>& moves,
+                                           const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

@@ -173,9 +173,6 @@ struct WanderingScaleOptions {
   double most = 0.015;
   std::size_t parts = 4;  ///< of the drive that have a scale each, at least
   int rounds = 4;         ///< of scales and extrinsic in turn
-  /// Mean log ratio of the squared residuals by which the moves may fit better: they have six unknowns a
-  /// part.
-  double alike = 0.05;
 };
 
 /// How an answer changes where its motions are taken otherwise from the streams.
