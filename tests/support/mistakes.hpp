@@ -344,7 +344,7 @@ inline std::vector<Mistake> mistakes() {
       {"b without positions", "missing_b", [](Streams& s) { s.b = lengthened(s.b, 0); }},
       {"b without rotations", "missing_b",
        [](Streams& s) { s.b = changed(s.b, [](const Pose& pose) {
-                          return Pose{{}, pose.translation};
+                          return Pose{Rotation::Identity(), pose.translation};
                         }); }},
       {"positions of b 0.3 s late", "", [](Streams& s) { s.b = with_late_positions(s.b, 3); }},
       {"b low-passed, 1 s", "", [](Streams& s) { s.b = low_passed(s.b, 0.905); }},

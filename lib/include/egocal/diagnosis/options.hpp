@@ -183,7 +183,7 @@ struct AnswerChangeOptions {
   std::size_t parts = 10;     ///< of the drive, whose own changes show what is chance
   std::size_t least = 3;      ///< motions in a part
   /// Of a longer stream only the middle is looked at: a limit on time and memory.
-  std::size_t most_poses = 20'000;
+  std::size_t most_poses = 10'000;
 };
 
 /// Whether the interpolation of one stream changes the answer. Study: docs/method.md, "Interpolation".
@@ -203,8 +203,8 @@ struct ClockCheckOptions {
   /// The corrected clock changes an answer from short motions by more than this many standard deviations of
   /// the answer, and by `significant` of its own: a first look.
   double first_look = 1, significant = 3;
-  double matters = 2;           ///< standard deviations by which the answer itself changes, at least
-  std::size_t instants = 1500;  ///< that the offset is estimated from: a limit on time
+  double matters = 2;          ///< standard deviations by which the answer itself changes, at least
+  std::size_t instants = 600;  ///< that the offset is estimated from: a limit on time
 };
 
 /// When an answer counts as known or as wrong.
