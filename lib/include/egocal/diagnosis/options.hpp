@@ -204,7 +204,7 @@ struct ClockCheckOptions {
   /// the answer, and by `significant` of its own: a first look.
   double first_look = 1, significant = 3;
   double matters = 2;          ///< standard deviations by which the answer itself changes, at least
-  std::size_t instants = 600;  ///< that the offset is estimated from: a limit on time
+  std::size_t instants = 1000;  ///< that the offset is estimated from: a limit on time
 };
 
 /// When an answer counts as known or as wrong.
