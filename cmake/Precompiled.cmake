@@ -1,10 +1,15 @@
 # Precompiled headers: what nearly every file includes is parsed once instead of five hundred times. Off by default: they
-# hide a missing #include, ccache is faster where it is there, and GCC 12 warns of bounds inside of precompiled standard
-# headers (a false alarm that it suppresses otherwise): not for builds whose warnings are errors.
-option(EGOCAL_PRECOMPILE "Precompile Eigen, the standard library and GoogleTest for builds from scratch" OFF)
+# hide a missing #include, a change of one of our headers compiles everything again, and ccache is faster where it is there.
+# scripts/test uses them for builds from scratch without ccache. What does not compile with them is compiled without them
+# (scripts/compile-precompiled): warnings may be errors.
+option(EGOCAL_PRECOMPILE "Precompile Eigen, the standard library, our interface and GoogleTest for builds from scratch" OFF)
+if(EGOCAL_PRECOMPILE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PROJECT_SOURCE_DIR}/scripts/compile-precompiled)
+endif()
 
-set(EGOCAL_PRECOMPILED_HEADERS <Eigen/Dense> <algorithm> <array> <cmath> <deque> <functional> <map> <memory> <optional>
-                               <span> <string> <vector>)
+set(EGOCAL_PRECOMPILED_HEADERS <Eigen/Dense> <algorithm> <array> <cmath> <deque> <filesystem> <fstream> <functional>
+                               <iostream> <map> <memory> <numeric> <optional> <random> <set> <span> <sstream> <string>
+                               <vector> <egocal/egocal.hpp>)
 
 # One for all programs and one for all programs of tests; a precompiled header suits one set of flags.
 function(egocal_add_precompiled)
@@ -20,11 +25,12 @@ function(egocal_add_precompiled)
     add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
     egocal_compile_flags(${name})
     target_link_libraries(${name} PRIVATE Eigen3::Eigen)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib/include ${PROJECT_BINARY_DIR}/lib/include)
     set(headers ${EGOCAL_PRECOMPILED_HEADERS})
     if(name STREQUAL egocal_precompiled_tests)
       find_package(GTest REQUIRED)
-      target_link_libraries(${name} PRIVATE GTest::gtest)
-      list(APPEND headers <gtest/gtest.h>)
+      target_link_libraries(${name} PRIVATE GTest::gmock)
+      list(APPEND headers <gmock/gmock.h> <gtest/gtest.h>)
     endif()
     target_precompile_headers(${name} PRIVATE ${headers})
   endforeach()

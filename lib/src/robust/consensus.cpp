@@ -27,7 +27,7 @@ struct Part {
   double limit;  ///< of the excess over typical
 };
 
-struct Fit {
+struct Candidate {
   DualQuaternion q;
   std::vector<double> residuals;  ///< mean squared, per part
 };
@@ -64,7 +64,7 @@ class Search {
   /// Motion there is, in all [weight times squared size].
   double motion() const { return all_; }
 
-  Fit fit(const std::vector<double>& factors) const {
+  Candidate fit(const std::vector<double>& factors) const {
     Matrix8d Q = Matrix8d::Zero();
     double weight = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -73,13 +73,13 @@ class Search {
       weight += factors[i] * parts_[i].weight;
     }
     if (weight > 0) Q /= weight;
-    Fit fit{minimiser(Q), {}};
+    Candidate fit{minimiser(Q), {}};
     for (const Part& part : parts_) fit.residuals.push_back(std::max(0.0, cost(part.Q, fit.q)));
     return fit;
   }
 
   /// Medians over the motion, not over time: a vehicle may be at rest for most of it.
-  ResidualScale scale_of(const Fit& fit) const {
+  ResidualScale scale_of(const Candidate& fit) const {
     std::vector<std::pair<double, double>> absolute, relative;
     double weight = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -94,24 +94,24 @@ class Search {
             std::max(weighted_median(std::move(relative)), least)};
   }
 
-  double excess_of(const Fit& fit, std::size_t i, const ResidualScale& scale) const {
+  double excess_of(const Candidate& fit, std::size_t i, const ResidualScale& scale) const {
     return parts_[i].size > 0 ? excess(fit.residuals[i], parts_[i].size, scale, options_) : 0;
   }
 
-  double largest_excess(const Fit& fit, const ResidualScale& scale) const {
+  double largest_excess(const Candidate& fit, const ResidualScale& scale) const {
     double largest = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) largest = std::max(largest, excess_of(fit, i, scale));
     return largest;
   }
 
-  double truncated_cost(const Fit& fit, const ResidualScale& scale) const {
+  double truncated_cost(const Candidate& fit, const ResidualScale& scale) const {
     double sum = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i)
       sum += parts_[i].weight * std::min(1.0, excess_of(fit, i, scale) / parts_[i].limit);
     return sum;
   }
 
-  std::vector<double> agreeing(const Fit& fit, const ResidualScale& scale) const {
+  std::vector<double> agreeing(const Candidate& fit, const ResidualScale& scale) const {
     std::vector<double> factors;
     for (std::size_t i = 0; i < parts_.size(); ++i)
       factors.push_back(excess_of(fit, i, scale) <= parts_[i].limit ? 1 : 0);
@@ -125,7 +125,7 @@ class Search {
   }
 
   /// Solve over what agrees, until the same agree again.
-  Fit settled(Fit fit, const ResidualScale& scale) const {
+  Candidate settled(Candidate fit, const ResidualScale& scale) const {
     std::vector<double> factors = agreeing(fit, scale);
     for (int i = 0; i < 10 && motion_of(factors) > 0; ++i) {
       fit = this->fit(factors);
@@ -138,7 +138,7 @@ class Search {
 
   /// Graduated non-convexity (Yang et al. 2020) for the Geman-McClure loss: from the convex problem, all
   /// parts counting, to the sharp one.
-  Fit graduated(Fit fit, const ResidualScale& scale) const {
+  Candidate graduated(Candidate fit, const ResidualScale& scale) const {
     double largest = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i)
       largest = std::max(largest, excess_of(fit, i, scale) / parts_[i].limit);
@@ -155,7 +155,7 @@ class Search {
 
   /// Drops the run that would gain most by an extrinsic of its own, repeatedly, as long as one would gain far
   /// more than others do and a majority stays.
-  Fit without_dissenters(Fit fit, std::vector<double>& factors) const {
+  Candidate without_dissenters(Candidate fit, std::vector<double>& factors) const {
     const std::vector<Alone> alone = fit_alone();
     while (const std::optional<std::size_t> i = dissenter(fit, alone, factors)) {
       const double rest = motion_of(factors) - parts_[*i].weight * parts_[*i].size;
@@ -166,7 +166,7 @@ class Search {
     return fit;
   }
 
-  Consensus consensus(Fit fit, const ResidualScale& scale, std::vector<double> factors) const {
+  Consensus consensus(Candidate fit, const ResidualScale& scale, std::vector<double> factors) const {
     fit = without_dissenters(std::move(fit), factors);
     Consensus consensus{{fit.q, scale}, {}};
     for (const double factor : factors) consensus.outlier.push_back(factor == 0);
@@ -209,7 +209,7 @@ class Search {
 
   /// The run that stands out, of those that count. The gain is about that of the six numbers of an extrinsic
   /// fitted to noise: six times the noise of one motion, more where motions overlap.
-  std::optional<std::size_t> dissenter(const Fit& fit, const std::vector<Alone>& alone,
+  std::optional<std::size_t> dissenter(const Candidate& fit, const std::vector<Alone>& alone,
                                        const std::vector<double>& factors) const {
     std::vector<std::pair<double, double>> gains;
     std::size_t most = 0;
@@ -243,7 +243,7 @@ std::vector<double> only(std::size_t parts, std::size_t first, std::size_t last)
 }
 
 /// Fits of each of `pieces` contiguous pieces.
-void fit_pieces(const Search& search, std::size_t pieces, std::vector<Fit>& fits) {
+void fit_pieces(const Search& search, std::size_t pieces, std::vector<Candidate>& fits) {
   const std::size_t n = search.size();
   for (std::size_t k = 0; k < pieces; ++k)
     fits.push_back(search.fit(only(n, k * n / pieces, (k + 1) * n / pieces)));
@@ -251,7 +251,7 @@ void fit_pieces(const Search& search, std::size_t pieces, std::vector<Fit>& fits
 
 /// Fits of three sixteenths drawn together (a piece may be free of what is wrong and yet too short to show
 /// every direction), and of four parts (what is wrong may be everywhere).
-void fit_draws(const Search& search, const ConsensusOptions& options, std::vector<Fit>& fits) {
+void fit_draws(const Search& search, const ConsensusOptions& options, std::vector<Candidate>& fits) {
   const std::size_t n = search.size();
   std::uint64_t drawn = 1;
   const auto draw = [&](std::size_t below) {
@@ -286,15 +286,15 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   const Search search(problem, parts, overlap, options);
   if (!(search.motion() > 0)) return std::nullopt;
 
-  std::vector<Fit> starts;
+  std::vector<Candidate> starts;
   for (const std::size_t pieces : {1u, 2u, 4u}) fit_pieces(search, pieces, starts);
   // the tightest fit of half of the motion shows what is typical
   ResidualScale scale = search.scale_of(starts.front());
-  const auto tighten = [&](const Fit& fit) {
+  const auto tighten = [&](const Candidate& fit) {
     const ResidualScale here = search.scale_of(fit);
     if (product(here) < product(scale)) scale = here;
   };
-  for (const Fit& start : starts) tighten(start);
+  for (const Candidate& start : starts) tighten(start);
   // Mostly nothing is wrong: where the fit of the whole is good, and nowhere worse than noise explains, it is
   // all there is to find. (Gross errors of many parts make it bad for all; those of few are outliers.)
   if (scale.relative < options.good_fit &&
@@ -303,11 +303,11 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
 
   for (const std::size_t pieces : {8u, 16u}) fit_pieces(search, pieces, starts);
   fit_draws(search, options, starts);
-  for (const Fit& start : starts) tighten(start);
+  for (const Candidate& start : starts) tighten(start);
   starts.push_back(search.graduated(starts.front(), scale));
   tighten(starts.back());
 
-  Fit best = starts.front();
+  Candidate best = starts.front();
   for (int round = 0; round < 2; ++round) {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < starts.size(); ++i)
@@ -315,7 +315,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
     std::sort(order.begin(), order.end());
     double least = search.truncated_cost(best, scale);
     for (std::size_t i = 0; i < std::min(order.size(), options.most_settled); ++i) {
-      Fit here = search.settled(starts[order[i].second], scale);
+      Candidate here = search.settled(starts[order[i].second], scale);
       const double cost = search.truncated_cost(here, scale);
       if (cost < least) {
         least = cost;
