@@ -203,7 +203,7 @@ struct ClockCheckOptions {
   /// The corrected clock changes an answer from short motions by more than this many standard deviations of
   /// the answer, and by `significant` of its own: a first look.
   double first_look = 1, significant = 3;
-  double matters = 2;          ///< standard deviations by which the answer itself changes, at least
+  double matters = 2;           ///< standard deviations by which the answer itself changes, at least
   std::size_t instants = 1000;  ///< that the offset is estimated from: a limit on time
 };
 
