@@ -343,9 +343,9 @@ inline std::vector<Mistake> mistakes() {
       {"b turned aside late", "mount_moved", [=](Streams& s) { s.b = knocked(s.b, 0.8, aside); }},
       {"b without positions", "missing_b", [](Streams& s) { s.b = lengthened(s.b, 0); }},
       {"b without rotations", "missing_b",
-       [](Streams& s) { s.b = changed(s.b, [](const Pose& pose) {
-                          return Pose{Rotation::Identity(), pose.translation};
-                        }); }},
+       [](Streams& s) {
+         s.b = changed(s.b, [](const Pose& pose) { return Pose{Rotation::Identity(), pose.translation}; });
+       }},
       {"positions of b 0.3 s late", "", [](Streams& s) { s.b = with_late_positions(s.b, 3); }},
       {"b low-passed, 1 s", "", [](Streams& s) { s.b = low_passed(s.b, 0.905); }},
       {"b holds each third pose", "", [](Streams& s) { s.b = held(s.b, 3); }},
