@@ -31,6 +31,7 @@ bool likely(const AnswerChange& change, const Answered& answered, const ClockChe
 std::optional<DualQuaternion> answer_at(const Trajectory& a, const Trajectory& b, PairingOptions pairing,
                                         double offset) {
   pairing.time_offset = offset;
+  pairing.track_time_offset = false;
   const Problem problem = paired(pairing, a, b).problem();
   if (problem.blocks.empty()) return std::nullopt;
   return solve(problem, Method::dual).minimum;
