@@ -43,8 +43,12 @@ void enter(const problem_t& message) {
   for (const Statistics& block : p.blocks) {
     require(block.dual_rows.allFinite(), "decoded statistics are finite");
     require(block.dual_rows == block.dual_rows.transpose(), "and symmetric");
-    require(std::isfinite(block.weight) && block.weight > 0, "and have a weight");
+    // blocks that touch each other end with one that takes off what is in two of them
+    const bool takes_off = p.blocks.size() > 1 && &block == &p.blocks.back();
+    require(std::isfinite(block.weight) && (block.weight > 0 || takes_off), "and have a weight");
   }
+  require(p.blocks.empty() || sum_blocks(p.blocks).weight > 0,
+          "the whole of a problem has a positive weight");
   require(!p.prior || finite(*p.prior), "a decoded prior is finite");
   // names and counts are the sender's; all the rest must go out as it came in
   problem_t out = bus::to_message(p);

@@ -166,6 +166,12 @@ int main(int argc, char** argv) {
   planar.mode = 1;
   planar.plane_a[2] = planar.plane_b[2] = 1;
   write(folder / "problem", "planar", planar);
+  problem_t touching = problem();
+  touching.blocks.push_back(touching.blocks.back());
+  touching.blocks.back().weight *= -0.5;
+  for (double& entry : touching.blocks.back().q) entry *= -0.5;
+  touching.n_blocks = 3;
+  write(folder / "problem", "touching", touching);
   write(folder / "calibration", "plain", calibration());
   write(folder / "status", "plain", status());
   write(folder / "verdict", "plain", verdict());
