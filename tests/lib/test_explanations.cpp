@@ -161,6 +161,17 @@ TEST(Explanations, UnrelatedStreamsAreCalledThat) {
   EXPECT_NE(find(calibration, "unrelated"), nullptr);
 }
 
+/// On roads one extrinsic explains a part of any two drives: most of each motion is straight ahead.
+TEST(Explanations, TwoDrivesOnRoadsAreUnrelated) {
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough})
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const testing::Streams one = drive(terrain, seed), other = drive(terrain, seed + 20);
+      const Calibration calibration = calibrate(one.a, other.b);
+      EXPECT_EQ(calibration.verdict, Verdict::contradictory) << seed << ": " << calibration.reason;
+      EXPECT_NE(find(calibration, "unrelated"), nullptr) << seed << ": " << calibration.reason;
+    }
+}
+
 /// Turned axes of one stream are those of the other one up to the lever arm: one of them is named.
 TEST(Explanations, PositionsInAnotherWorldFrameAreNamed) {
   testing::Streams streams = drive(Terrain::free);

@@ -118,6 +118,19 @@ inline Trajectory half_of_another(Trajectory trajectory) {
   return trajectory;
 }
 
+/// A vehicle that took another way, at the stamps that are given.
+inline Trajectory of_another_drive(Trajectory trajectory) {
+  SimulationOptions options;
+  options.terrain = Terrain::rough;
+  options.poses = static_cast<int>(trajectory.size());
+  options.relative_noise = 0.01;
+  options.seed = 1000 + trajectory.size();
+  const Trajectory other = simulated_drive(options).b;
+  for (std::size_t i = 0; i < std::min(other.size(), trajectory.size()); ++i)
+    trajectory[i].pose = other[i].pose;
+  return trajectory;
+}
+
 /// Every pose that of its own position, but in the frame of the sensor: the position of the inverse pose.
 inline Trajectory with_inverse_positions(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) { return Pose{pose.rotation, inverse(pose).translation}; });
@@ -317,6 +330,7 @@ inline std::vector<Mistake> mistakes() {
       {"b given twice", "same_stream", [](Streams& s) { s.a = s.b; }},
       {"b frozen for a third", "frozen_b", [](Streams& s) { s.b = frozen(s.b, 0.4, 0.73); }},
       {"b half of another drive", "unrelated", [](Streams& s) { s.b = half_of_another(s.b); }},
+      {"b of another drive", "unrelated", [](Streams& s) { s.b = of_another_drive(s.b); }},
       {"b backwards", "", [](Streams& s) { s.b = backwards(s.b); }},
       {"b smoothed", "", [](Streams& s) { s.b = smoothed(s.b, 5); }},
       {"b inverted, scale 0.37", "inverted_b", [](Streams& s) { s.b = lengthened(inverted(s.b), 0.37); }},

@@ -108,6 +108,11 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(std::move(finding));
     return;
   }
+  if (misfit.best > options.unrelated_misfit && misfit.best <= options.contradictory_misfit &&
+      correlation < options.unrelated_correlation_of_part) {
+    findings.push_back(unrelated(correlation));
+    return;
+  }
   std::vector<Finding> moves = moves_or_else(moved_mount(evidence.instants, answered, options), pairing,
                                              evidence, answered, has(findings, "inverted_both"), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
