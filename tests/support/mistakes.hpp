@@ -330,7 +330,6 @@ inline std::vector<Mistake> mistakes() {
       {"b given twice", "same_stream", [](Streams& s) { s.a = s.b; }},
       {"b frozen for a third", "frozen_b", [](Streams& s) { s.b = frozen(s.b, 0.4, 0.73); }},
       {"b half of another drive", "unrelated", [](Streams& s) { s.b = half_of_another(s.b); }},
-      {"b of another drive", "unrelated", [](Streams& s) { s.b = of_another_drive(s.b); }},
       {"b backwards", "", [](Streams& s) { s.b = backwards(s.b); }},
       {"b smoothed", "", [](Streams& s) { s.b = smoothed(s.b, 5); }},
       {"b inverted, scale 0.37", "inverted_b", [](Streams& s) { s.b = lengthened(inverted(s.b), 0.37); }},
@@ -367,6 +366,7 @@ inline std::vector<Mistake> mistakes() {
       {"stamps of b rounded to 1 s", "", [](Streams& s) { s.b = with_rounded_stamps(s.b, 1'000'000); }},
       {"scale of b 1.15 from the middle on", "scale_change",
        [](Streams& s) { s.b = longer_from_the_middle(s.b, 1.15); }},
+      {"b of another drive", "unrelated", [](Streams& s) { s.b = of_another_drive(s.b); }},
   };
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/clock_check.hpp"
 #include "diagnosis/explanations.hpp"
@@ -29,11 +31,22 @@ namespace {
 
 using namespace detail;
 
-/// Turning of two unrelated streams correlates by chance only; that of one body is the same.
-double turning_correlation(const Motions& motions) {
+/// Turning of two unrelated streams correlates by chance only; that of one body is the same. Of this part of
+/// the motions: those that turn most alike.
+double turning_correlation(const Motions& motions, double part = 1) {
+  std::vector<std::size_t> order(motions.all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto count = static_cast<std::size_t>(part * static_cast<double>(order.size()));
+  if (count < order.size()) {
+    const auto difference = [&](std::size_t i) {
+      return std::abs(motions.all[i].angle_a - motions.all[i].angle_b);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t i, std::size_t k) { return difference(i) < difference(k); });
+  }
   double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
-  for (const Motion& motion : motions.all) {
-    const double x = motion.angle_a, y = motion.angle_b;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = motions.all[order[i]].angle_a, y = motions.all[order[i]].angle_b;
     n += 1;
     sx += x;
     sy += y;
@@ -109,7 +122,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     return;
   }
   if (misfit.best > options.unrelated_misfit && misfit.best <= options.contradictory_misfit &&
-      correlation < options.unrelated_correlation_of_part) {
+      turning_correlation(motions, options.unrelated_part) < options.unrelated_part_correlation) {
     findings.push_back(unrelated(correlation));
     return;
   }
