@@ -69,6 +69,19 @@ Trajectory glitched(Trajectory path, double part, std::uint64_t seed) {
   return path;
 }
 
+/// Tracking that is lost this often, and found again up to 1 m and 0.2 rad elsewhere.
+Trajectory jumping(Trajectory path, std::size_t jumps, std::uint64_t seed) {
+  testing::Random random(seed);
+  for (std::size_t k = 0; k < jumps; ++k) {
+    const auto from = 20 + static_cast<std::size_t>(random.uniform() * static_cast<double>(path.size() - 40));
+    const DualQuaternion start = path[from].pose;
+    const DualQuaternion elsewhere =
+        normalized(start * testing::random_displacement(random, 0.2, 1) * conjugate(start));
+    for (std::size_t i = from; i < path.size(); ++i) path[i].pose = normalized(elsewhere * path[i].pose);
+  }
+  return path;
+}
+
 Trajectory drifting(Trajectory path, double rate) {
   const std::int64_t begin = path.front().time_us;
   for (StampedPose& pose : path)
@@ -108,6 +121,21 @@ TEST(TimeOffset, GlitchesDoNotMoveIt) {
       EXPECT_GT(offset->correlation, 0.9) << part << " " << seed;
       EXPECT_GT(offset->inliers, 0.9 - 2 * part);
     }
+}
+
+// It was up to a minute wrong, or 0.3 s with a standard deviation of 3 ms.
+TEST(TimeOffset, LastingJumpsDoNotMoveIt) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (const std::size_t jumps : {1, 6})
+      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        Streams data = testing::simulated_drive(
+            {.terrain = terrain, .poses = 601, .rate = 10, .speed = 8, .relative_noise = 0.01, .seed = seed});
+        const auto offset = estimate_time_offset(jumping(data.a, jumps, seed),
+                                                 shifted(jumping(data.b, jumps, seed + 10), 12.34));
+        ASSERT_TRUE(offset);
+        EXPECT_NEAR(offset->seconds, -12.34, 3 * offset->stddev + 0.001) << jumps << " " << seed;
+        EXPECT_LT(offset->stddev, 0.01) << jumps << " " << seed;
+      }
 }
 
 TEST(TimeOffset, ADriftIsReportedWithItsDeviationAndCorrected) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pairing/offset/correlation.hpp"
+#include "pairing/offset/lasting_jumps.hpp"
 #include "pairing/offset/part_search.hpp"
 #include "pairing/offset/refinement.hpp"
 #include "pairing/offset/schedule.hpp"
@@ -27,6 +28,7 @@ struct TimeOffsetSearch::Impl {
   struct Stream {
     Trajectory poses;
     std::vector<Detour> detours;
+    std::vector<StepDifference> steps;
     Series angles;
   };
 
@@ -52,6 +54,7 @@ struct TimeOffsetSearch::Impl {
     // several times: of neighbouring glitches only the furthest one is found at once
     for (int round = 0; round < options.glitch_rounds; ++round)
       for (Stream* stream : {&a, &b}) schedule.add(1, [this, stream] { remove_glitches(*stream); });
+    for (Stream* stream : {&a, &b}) schedule.add(1, [this, stream] { remove_lasting_jumps(*stream); });
     schedule.add(1, [this] { sample_angles(); });
   }
 
@@ -62,6 +65,20 @@ struct TimeOffsetSearch::Impl {
     });
     schedule.add(stream.poses.size() / 4,
                  [this, &stream] { stream.poses = without_glitches(stream.poses, stream.detours, options); });
+  }
+
+  void remove_lasting_jumps(Stream& stream) {
+    if (stream.poses.size() < 4) return;
+    stream.steps.assign(stream.poses.size() - 1, {});
+    schedule.add_range(
+        stream.steps.size(),
+        [this, &stream](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i)
+            stream.steps[i] = step_difference(stream.poses, i, max_gap_us);
+        },
+        2);
+    schedule.add(stream.poses.size() / 4,
+                 [&stream] { stream.poses = without_lasting_jumps(stream.poses, stream.steps); });
   }
 
   void sample_angles() {
