@@ -121,7 +121,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(std::move(finding));
     return;
   }
-  if (misfit.best > options.unrelated_misfit && misfit.best <= options.contradictory_misfit &&
+  if (answered.seconds >= options.unrelated_least_seconds && misfit.best > options.unrelated_misfit &&
+      misfit.best <= options.contradictory_misfit &&
       turning_correlation(motions, options.unrelated_part) < options.unrelated_part_correlation) {
     findings.push_back(unrelated(correlation));
     return;

@@ -258,6 +258,9 @@ struct DiagnosisOptions {
   /// tenth of outliers and 4 degrees of noise has 0.80, and with a fifth of outliers is called unrelated
   /// (0.68).
   double unrelated_misfit = 0.15, unrelated_part_correlation = 0.78, unrelated_part = 0.8;
+  /// For the same [s]: in a shorter drive noise may be what the sensors turn by. Of 352 parts of 4 and 8 s of
+  /// right drives 20 would be called unrelated, of 340 of 15 and 25 s none.
+  double unrelated_least_seconds = 12;
   /// In all, of outliers cleared: turned by less, the noise of odometry decides [rad].
   double least_turning = 0.1;
   MotionSampleOptions motions;
