@@ -10,10 +10,10 @@
 
 namespace egocal::detail {
 
-/// Finding clock_offset, certain, where the offset differs from zero by its own standard deviation and moves
-/// the answer by more than the answer states to be uncertain. Roll, pitch and yaw of a walking machine have
-/// fixed phases: late by 2 ms, its axes seem turned by half a degree, in every part of the drive alike.
-/// The streams are paired again where that is likely. instants: of `part`.
+/// Finding clock_offset, certain, where the offset differs from zero by several of its own standard
+/// deviations and moves the answer by more than the answer states to be uncertain. Roll, pitch and yaw of a
+/// walking machine have fixed phases: late by 2 ms, its axes seem turned by half a degree, in every part of
+/// the drive alike. The streams are paired again where that is likely. instants: of `part`.
 std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory& b,
                                           const PairingOptions& pairing, const MiddlePart& part,
                                           const Instants& instants, const Answered& answered,

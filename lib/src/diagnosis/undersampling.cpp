@@ -62,8 +62,7 @@ std::optional<Finding> undersampled(const Instants& instants, const Answered& an
   finding.certain = true;
   finding.message = format(
       "The motion is too fast for the rate of %c: what is lost between its poses, at the times of %c, makes "
-      "%s "
-      "uncertain by %.2g %s (one standard deviation) rather than by %.2g.",
+      "%s uncertain by %.2g %s (one standard deviation) rather than by %.2g.",
       interpolated, other, directions[worst], unit * interpolation_stddev[worst], length ? "cm" : "deg",
       unit * answered.observability.stddev[worst]);
   finding.remedy =

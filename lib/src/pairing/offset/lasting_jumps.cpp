@@ -14,8 +14,6 @@ namespace egocal::detail {
 
 namespace {
 
-constexpr double second_us = 1e6;  // unit
-
 /// Velocities from one pose to the next one.
 struct Step {
   double seconds = 0;
@@ -24,7 +22,7 @@ struct Step {
 
 Step step_from(const Trajectory& trajectory, std::size_t i) {
   const Pose motion = to_pose(motion_between(trajectory[i].pose, trajectory[i + 1].pose));
-  const double seconds = static_cast<double>(trajectory[i + 1].time_us - trajectory[i].time_us) / second_us;
+  const double seconds = static_cast<double>(trajectory[i + 1].time_us - trajectory[i].time_us) / 1e6;
   return {seconds, rotation_log(motion.rotation) / seconds, motion.translation / seconds};
 }
 
