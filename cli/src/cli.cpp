@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <utility>
@@ -84,6 +85,37 @@ std::string advice(const CLI::App& program, int argc, char** argv) {
   }
   const std::string name = &command == &program ? "" : program.get_name() + " ";
   return "; see " + name + command.get_name() + " --help";
+}
+
+bool same_file(const std::string& one, const std::string& other) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  return fs::path(one).lexically_normal() == fs::path(other).lexically_normal() ||
+         fs::equivalent(one, other, ignored);
+}
+
+/// value: FILE, FILE:TOPIC, NAME=FILE or NAME=FILE:TOPIC.
+bool names_file(const std::string& value, const std::string& file) {
+  const std::size_t equals = value.find('=');
+  for (const std::string& text : {value, equals == std::string::npos ? "" : value.substr(equals + 1)}) {
+    if (text.empty()) continue;
+    if (same_file(text, file)) return true;
+    for (std::size_t colon = text.find(':'); colon != std::string::npos; colon = text.find(':', colon + 1))
+      if (colon > 0 && same_file(text.substr(0, colon), file)) return true;
+  }
+  return false;
+}
+
+/// A value of the command, other than that of `output`, that names the same file; empty: none.
+std::string named_again(const CLI::App& command, const CLI::Option& output, const std::string& file) {
+  if (file.empty()) return "";
+  for (const CLI::Option* option : command.get_options()) {
+    const bool one_of_some_words = option->get_type_name().find('{') != std::string::npos;
+    if (option == &output || one_of_some_words) continue;
+    for (const std::string& value : option->results())
+      if (names_file(value, file)) return value;
+  }
+  return "";
 }
 
 void write_file(const std::string& name, const std::string& text) {
@@ -251,6 +283,19 @@ template Option App::add_option(const std::string&, std::vector<double>&, const 
 template Option App::add_option(const std::string&, std::optional<int>&, const std::string&);
 template Option App::add_option(const std::string&, std::optional<double>&, const std::string&);
 template Option App::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+
+Option App::add_output(const std::string& name, std::string& file, const std::string& help) {
+  CLI::Option* option = app_->add_option(name, file, help);
+  // options are checked when all of the command line is known
+  option->check(CLI::Validator(
+      [command = app_, option](std::string& value) {
+        const std::string again = named_again(*command, *option, value);
+        return again.empty() ? std::string()
+                             : value + " is given as '" + again + "' as well: give the output another name";
+      },
+      ""));
+  return Option(option);
+}
 
 Option App::add_option_function(const std::string& name, std::function<void(const std::string&)> take,
                                 const std::string& help) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/calibrate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -76,11 +77,24 @@ std::string span_in_words(const char* label, const Trajectory& trajectory) {
   return text;
 }
 
-/// Other clocks, such as the time since the start of a log beside that since 1970.
-std::string overlap_in_words(const Trajectory& a, const Trajectory& b) {
-  if (a.empty() || b.empty() ||
-      (a.front().time_us <= b.back().time_us && b.front().time_us <= a.back().time_us))
-    return "";
+/// Streams of one drive hardly differ more in length; other units of time differ by a thousand.
+constexpr double other_unit = 100;  // limit of a hint
+
+/// Other units, or other clocks, such as the time since the start of a log beside that since 1970.
+std::string times_in_words(const Trajectory& a, const Trajectory& b) {
+  if (a.empty() || b.empty()) return "";
+  const auto lasts = [](const Trajectory& x) {
+    return static_cast<double>(x.back().time_us) - static_cast<double>(x.front().time_us);
+  };
+  const double ratio = lasts(b) / lasts(a);
+  if (lasts(a) > 0 && lasts(b) > 0 && !(ratio < other_unit && ratio > 1 / other_unit)) {
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "; %s lasts %.3g times as long: multiply its times if they are in another unit",
+                  ratio > 1 ? "b" : "a", std::max(ratio, 1 / ratio));
+    return text;
+  }
+  if (a.front().time_us <= b.back().time_us && b.front().time_us <= a.back().time_us) return "";
   return "; their times do not overlap: --time-offset auto if they are of one drive";
 }
 
@@ -169,7 +183,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
     throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
-                rejections_in_words(pairing.counts()) + overlap_in_words(a, b));
+                rejections_in_words(pairing.counts()) + times_in_words(a, b));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;

@@ -229,6 +229,44 @@ TEST_F(Commands, BadTrajectoriesAreRefused) {
   refused(good_line + "1001 0 0 0 0 0 0 0\n", ":2: quaternion: is zero");
   const std::string later = file("later.tum", "9000 0 0 0 0 0 0 1\n9001 1 0 0 0 0 0 1\n9002 2 0 0 0 0 0 1\n");
   expect_refusal(egocal("solve " + good + " " + later), 1, "their times do not overlap: --time-offset auto");
+  std::string milliseconds;
+  for (int i = 0; i < 50; ++i)
+    milliseconds += std::to_string(i) + "00.0 " + std::to_string(i) + " 0 0 0 0 0 1\n";
+  expect_refusal(egocal("solve " + good + " " + file("ms.tum", milliseconds)), 1,
+                 "b lasts 1e+03 times as long: multiply its times if they are in another unit");
+}
+
+TEST_F(Commands, AFileThatIsReadIsNeverWritten) {
+  const std::string drive = path("drive.mcap"), log = path("drive.log"), rig = path("rig.toml");
+  ASSERT_EQ(egocal("simulate --poses 50 --out " + drive).code, 0);
+  ASSERT_EQ(egocal("simulate --poses 50 --out " + log + " --rig-out " + rig).code, 0);
+  const std::string pair = drive + ":/lidar " + drive + ":/camera ", link = path("link");
+  fs::create_symlink(drive, link);
+  const auto refused = [&](const std::string& arguments, const std::string& input) {
+    SCOPED_TRACE(arguments);
+    const std::string before = read(input);
+    ASSERT_FALSE(before.empty());
+    expect_refusal(egocal(arguments), 2, ": give the output another name");
+    EXPECT_TRUE(read(input) == before);
+  };
+  refused("solve " + pair + "--out " + drive, drive);
+  refused("solve " + pair + "--format urdf --out " + link, drive);
+  refused("solve " + pair + "--out " + path("./drive.mcap"), drive);
+  refused("report " + pair + "--out " + drive, drive);
+  refused("align " + pair + "--out " + drive, drive);
+  refused("log repair " + log + " --out " + log, log);
+  refused("log export " + log + " --mcap " + log, log);
+  refused("log create " + rig + " --from lidar=" + drive + ":/lidar --from camera=" + drive +
+              ":/camera --out " + drive,
+          drive);
+  refused("export --log " + log + " --out " + log, log);
+  refused("solve --rig " + rig + " --from lidar=" + drive + ":/lidar --from camera=" + drive +
+              ":/camera --format urdf --out " + rig,
+          rig);
+  refused("simulate --out " + path("one.log") + " --rig-out " + path("one.log"), log);
+  // a word of an option may also be the name of a file
+  file("urdf", "an answer of yesterday");
+  EXPECT_EQ(egocal("solve " + pair + "--format urdf --out " + path("urdf")).code, 0);
 }
 
 TEST_F(Commands, WrongUsageIsRefusedWithTwo) {

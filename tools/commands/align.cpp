@@ -100,7 +100,7 @@ void add_align(cli::App program) {
   cli::App command = program.add_subcommand(
       "align", "lays trajectory B over A: extrinsic, transform between the worlds, B in A's frames");
   add_request_options(command, options->request);
-  command.add_option("--out", options->out, "B as a trajectory of sensor a in the world of a, as TUM");
+  command.add_output("--out", options->out, "B as a trajectory of sensor a in the world of a, as TUM");
   command.add_flag("--json", options->json, "one JSON object on standard output");
   command.callback([options, command] { run(*options, command.command_line()); });
 }

@@ -195,7 +195,7 @@ void add_export(cli::App program) {
   command.add_option("--format", options->format)
       .check(cli::Check::one_of(extrinsic_format_names()))
       .show_default();
-  command.add_option("--out", options->out, "file, written whole or not at all; standard output without it");
+  command.add_output("--out", options->out, "file, written whole or not at all; standard output without it");
   command.add_option("--timeout", options->timeout, "waits for a certified answer for at most this time [s]")
       .check(cli::Check::not_negative())
       .show_default()

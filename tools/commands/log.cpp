@@ -237,7 +237,7 @@ void add_create(cli::App log) {
   command.add_option("--from", options->from, "SENSOR=FILE or SENSOR=FILE:TOPIC, once for each sensor")
       .required();
   add_reading_options(command, options->reading);
-  command.add_option("--out", options->out, "the log").required();
+  command.add_output("--out", options->out, "the log").required();
   command.callback([options] { create(*options); });
 }
 
@@ -266,12 +266,12 @@ void add_log(cli::App program) {
   const auto out = std::make_shared<std::string>();
   cli::App repairing = log.add_subcommand("repair", "all events that can be read, as a new log");
   repairing.add_option("LOG", *file).required();
-  repairing.add_option("--out", *out, "the new log").required();
+  repairing.add_output("--out", *out, "the new log").required();
   repairing.callback([file, out] { repair(*file, *out); });
 
   cli::App exported = log.add_subcommand("export", "poses and calibrations of a log for ROS 2 and Foxglove");
   exported.add_option("LOG", *file).required();
-  exported.add_option("--mcap", *out, "the MCAP file").required();
+  exported.add_output("--mcap", *out, "the MCAP file").required();
   exported.callback([file, out] { export_mcap(*file, *out); });
 }
 

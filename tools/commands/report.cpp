@@ -70,7 +70,7 @@ void add_report(cli::App program) {
   cli::App command = program.add_subcommand(
       "report", "the answer of solve as one HTML page with pictures: print it, or hand it on");
   add_request_options(command, options->request);
-  command.add_option("--out", options->out, "the page, written whole or not at all").required();
+  command.add_output("--out", options->out, "the page, written whole or not at all").required();
   command.callback([options, command] { run(*options, command.command_line()); });
 }
 

@@ -182,8 +182,8 @@ void add_simulate(cli::App program) {
   SimulationOptions& simulation = options->simulation;
   cli::App command =
       program.add_subcommand("simulate", "a drive with known truth, as an LCM log, MCAP or TUM files");
-  command.add_option("--out", options->out, "a file .log or .mcap, or a directory for TUM files").required();
-  command.add_option("--rig-out", options->rig_out, "also writes a rig file for it");
+  command.add_output("--out", options->out, "a file .log or .mcap, or a directory for TUM files").required();
+  command.add_output("--rig-out", options->rig_out, "also writes a rig file for it");
   command
       .add_option("--terrain", options->terrain,
                   "flat (planar motion), rough (a road) or free (6 degrees of freedom)")

@@ -97,7 +97,7 @@ void add_solve(cli::App program) {
   add_rig_options(command, options->rig);
   command.add_option("--format", options->format, "writes the extrinsic for another program [yaml]")
       .check(cli::Check::one_of(extrinsic_format_names()));
-  command.add_option("--out", options->out,
+  command.add_output("--out", options->out,
                      "file for --format; without it, on standard output and nothing else");
   command.add_option("--frame-a", options->frame_a, "name of sensor a's frame in it").show_default();
   command.add_option("--frame-b", options->frame_b, "name of sensor b's frame in it").show_default();
