@@ -160,6 +160,21 @@ TEST_F(Tables, RowsOutOfOrderDoNotChangeTheUnitOfTheirTimes) {
   EXPECT_EQ(reading.trajectory.back().time_us - reading.trajectory.front().time_us, 59'000'000);
 }
 
+TEST_F(Tables, TimesSinceASensorWasSwitchedOnKeepTheirUnit) {
+  // what begins so is as long as milliseconds or microseconds since 1970 and is neither
+  for (const std::int64_t begin_s : {0, 3, 1'000, 50'000, 1'700'000, 3'000'000})
+    for (const std::int64_t second : {1'000ll, 1'000'000ll, 1'000'000'000ll}) {
+      std::string rows;
+      for (int i = 0; i < 40; ++i)
+        rows +=
+            std::to_string(begin_s * second + i * second / 20) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
+      const Trajectory poses = read(rows).trajectory;
+      ASSERT_EQ(poses.size(), 40u);
+      EXPECT_EQ(poses.front().time_us, begin_s * 1'000'000) << second << " a second";
+      EXPECT_EQ(poses.back().time_us, begin_s * 1'000'000 + 1'950'000) << second << " a second";
+    }
+}
+
 TEST_F(Tables, ALastRowThatIsCutOffIsCounted) {
   const TrajectoryReading reading = read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0");
   EXPECT_EQ(reading.trajectory.size(), 2u);

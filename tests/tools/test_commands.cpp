@@ -229,9 +229,9 @@ TEST_F(Commands, BadTrajectoriesAreRefused) {
   refused(good_line + "1001 0 0 0 0 0 0 0\n", ":2: quaternion: is zero");
   const std::string later = file("later.tum", "9000 0 0 0 0 0 0 1\n9001 1 0 0 0 0 0 1\n9002 2 0 0 0 0 0 1\n");
   expect_refusal(egocal("solve " + good + " " + later), 1, "their times do not overlap: --time-offset auto");
-  std::string milliseconds;
+  std::string milliseconds = "time[s],x,y,z,qx,qy,qz,qw\n";
   for (int i = 0; i < 50; ++i)
-    milliseconds += std::to_string(i) + "00.0 " + std::to_string(i) + " 0 0 0 0 0 1\n";
+    milliseconds += std::to_string(100 * i) + "," + std::to_string(i) + ",0,0,0,0,0,1\n";
   expect_refusal(egocal("solve " + good + " " + file("ms.tum", milliseconds)), 1,
                  "b lasts 1e+03 times as long: multiply its times if they are in another unit");
 }

@@ -282,26 +282,27 @@ constexpr UnitName units[] = {{TimeUnit::seconds, "seconds", 1},
                               {TimeUnit::nanoseconds, "nanoseconds", 1e-9}};
 
 const UnitName& unit_by_size(std::vector<double> times) {
-  constexpr double latest = 4.1e9;  // [s], the year 2100
-  double largest = 0;
-  for (const double time : times) largest = std::max(largest, std::abs(time));
-  for (const UnitName& unit : units)
-    if (unit.in_seconds < 1 && largest * unit.in_seconds * 1e3 > latest &&
-        largest * unit.in_seconds <= latest)
-      return unit;
+  constexpr double earliest = 3e8, latest = 2.5e9;  // limits of dates [s]: 1979, before GPS time, and 2049
+  // limit [s]: no sensor that is worth calibrating sends a pose every ten seconds and less often
+  constexpr double longest_step = 10;
   // rows may be out of order: the steps are those of the times in order
   std::sort(times.begin(), times.end());
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
-  if (steps.empty()) return units[0];
-  const double step = median(std::move(steps));
-  // times that begin near zero: no sensor that is worth calibrating sends a pose every ten seconds and less
-  // often; the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the likely one
-  if (!(step >= 10)) return units[0];
+  const double typical_step = steps.empty() ? 0 : median(steps);
+  // nanoseconds since a phone was switched on may look like milliseconds since 1970, but for their steps
+  const double largest = times.empty() ? 0 : std::max(std::abs(times.front()), std::abs(times.back()));
+  for (const UnitName& unit : units)
+    if (largest * unit.in_seconds >= earliest && largest * unit.in_seconds <= latest &&
+        typical_step * unit.in_seconds < longest_step)
+      return unit;
+  // any other time: the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the
+  // likely one
+  if (!(typical_step >= longest_step)) return units[0];
   const UnitName* best = &units[0];
   for (const UnitName& unit : units)
-    if (std::abs(std::log(step * unit.in_seconds / 0.06)) <
-        std::abs(std::log(step * best->in_seconds / 0.06)))
+    if (std::abs(std::log(typical_step * unit.in_seconds / 0.06)) <
+        std::abs(std::log(typical_step * best->in_seconds / 0.06)))
       best = &unit;
   return *best;
 }
