@@ -4,11 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "completion.hpp"
@@ -147,6 +150,16 @@ std::optional<int> write_description(const CLI::App& app, const std::vector<std:
   write_file(folder + "_" + program.path, zsh_completion(program));
   write_file(folder + program.path + ".fish", fish_completion(program));
   return 0;
+}
+
+/// What was printed has arrived. Throws std::runtime_error otherwise: a full disk, a closed output.
+void finish_output() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  const int reason = errno;
+  std::clearerr(stdout);
+  throw std::runtime_error("standard output: cannot be written" +
+                           (reason == 0 ? "" : ": " + std::generic_category().message(reason)));
 }
 
 void print_error(const std::string& name, const std::string& message) {
@@ -357,6 +370,8 @@ void App::footer(const std::string& text) {
 Program::Program(const std::string& name, const std::string& help, const std::string& version)
     : App(nullptr), owned_(std::make_unique<CLI::App>(help, name)) {
   app_ = owned_.get();
+  // a limit on the size of files is an error of the write, with its line, not a death
+  std::signal(SIGXFSZ, SIG_IGN);
   if (!version.empty()) app_->set_version_flag("--version", name + " " + version);
 }
 
@@ -373,15 +388,19 @@ std::optional<int> Program::parse(int argc, char** argv) {
   try {
     if (const std::optional<int> written = write_description(*app_, arguments)) return written;
     std::reverse(arguments.begin(), arguments.end());
-    app_->parse(arguments);
-    return std::nullopt;
-  } catch (const CLI::Success& success) {
-    return app_->exit(success);
+    std::optional<int> code;
+    try {
+      app_->parse(arguments);
+    } catch (const Exit& exit) {
+      code = exit.code;
+    } catch (const CLI::Success& success) {
+      code = app_->exit(success);
+    }
+    finish_output();
+    return code;
   } catch (const CLI::ParseError& error) {
     print_error(name, error.what() + advice(*app_, argc, argv));
     return 2;
-  } catch (const Exit& exit) {
-    return exit.code;
   } catch (const UsageError& error) {
     print_error(name, error.what());
     return 2;

@@ -269,6 +269,45 @@ TEST_F(Commands, AFileThatIsReadIsNeverWritten) {
   EXPECT_EQ(egocal("solve " + pair + "--format urdf --out " + path("urdf")).code, 0);
 }
 
+TEST_F(Commands, OutputThatCannotBeWrittenIsAFailure) {
+  const std::string drive = path("drive.mcap"), report = path("report.html");
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + drive).code, 0);
+  const std::string pair = " " + drive + ":/lidar " + drive + ":/camera";
+  const auto with_output = [&](const std::string& arguments, const std::string& before,
+                               const std::string& output) {
+    const std::string command =
+        before + egocal::paths::bin_dir() + "/egocal " + arguments + output + " 2>" + path("err");
+    const int status = std::system(command.c_str());
+    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read(path("err"))};
+  };
+  for (const char* command : {"solve", "check", "align", "info"}) {
+    SCOPED_TRACE(command);
+    const std::string arguments = command + (command == std::string("info") ? " " + drive : pair);
+    expect_refusal(with_output(arguments, "", " >/dev/full"), 1,
+                   "standard output: cannot be written: No space");
+    expect_refusal(with_output(arguments, "", " >&-"), 1, "standard output: cannot be written");
+  }
+  // a limit on the size of files
+  expect_refusal(with_output("report" + pair + " --out " + report, "ulimit -f 8; ", " >/dev/null"), 1,
+                 "report.html: ");
+  std::size_t left = 0;
+  for (const auto& entry : fs::directory_iterator(path("")))
+    left += entry.path().filename().string().rfind("report", 0) == 0 ? 1 : 0;
+  EXPECT_EQ(left, 0u);
+}
+
+TEST_F(Commands, AClockThatIsRightToTensOfMicrosecondsIsRight) {
+  // without noise the motions fit better at one that is off by less than the estimate's standard deviation
+  const std::string drive = path("drive.mcap");
+  for (const char* seed : {"3", "4", "5", "6"}) {
+    ASSERT_EQ(
+        egocal(std::string("simulate --terrain free --poses 300 --seed ") + seed + " --out " + drive).code,
+        0);
+    const json found = solved(drive + ":/lidar " + drive + ":/camera --time-offset auto");
+    EXPECT_EQ(found["verdict"], "good") << found["findings"];
+  }
+}
+
 TEST_F(Commands, WrongUsageIsRefusedWithTwo) {
   const std::string good = file("good.tum", good_line);
   for (const char* arguments :

@@ -203,6 +203,18 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   return result;
 }
 
+/// What two clocks differ by at most, in a drive from `begin` to `end` [s].
+double largest_difference(const ClockModel& one, const ClockModel& other, double begin, double end) {
+  double largest = 0;
+  for (const double time : {begin, end}) {
+    const auto at = [time](const ClockModel& clock) {
+      return clock.offset + clock.rate * (time - clock.middle);
+    };
+    largest = std::max(largest, std::abs(at(one) - at(other)));
+  }
+  return largest;
+}
+
 /// Clock offset, and drift if that explains more, on top of an explanation.
 std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation& best,
                                     const DiagnosisOptions& options) {
@@ -216,8 +228,11 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
       std::clamp<std::size_t>(evidence.instants.size() / options.clock.instants, 1,
                               std::max<std::size_t>(1, static_cast<std::size_t>(evidence.stride) / 8));
   std::vector<Explanation> result;
+  const double length = 1e-6 * static_cast<double>(streams.a.back().time_us - streams.a.front().time_us);
   const auto take = [&](const char* code, const std::optional<ClockFit>& fit, const Explained& against) {
-    if (!fit || !number_explains(compare(against, fit->explained), options)) return;
+    if (!fit || largest_difference(fit->clock, evidence.clock, 0, length) < options.clock.least ||
+        !number_explains(compare(against, fit->explained), options))
+      return;
     Explanation here = best;
     here.code = code;
     here.clock = fit->clock;

@@ -41,6 +41,10 @@ struct ClockSearchOptions {
   double widest = 60;        ///< offsets up to this are looked for [s],
   double widest_part = 0.5;  ///< and up to this part of the drive: the streams must share the other half
   std::size_t pieces = 6;    ///< of the drive, whose own offsets show the rate
+  /// Offsets below this are not named for fitting better [s]: motions without noise fit better at a clock
+  /// that is right to 0.05 ms, and stamps of sensors are not defined better. What such an offset changes of
+  /// an answer is for ClockCheckOptions to decide. A test: AClockThatIsRightToTensOfMicrosecondsIsRight.
+  double least = 2e-4;
   double most_rate = 0.02;  ///< a clock that is wrong by more is not believed [s/s]; crystals are within 1e-4
 };
 
