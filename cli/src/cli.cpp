@@ -297,8 +297,9 @@ template Option App::add_option(const std::string&, std::optional<int>&, const s
 template Option App::add_option(const std::string&, std::optional<double>&, const std::string&);
 template Option App::add_option(const std::string&, std::optional<std::string>&, const std::string&);
 
-Option App::add_output(const std::string& name, std::string& file, const std::string& help) {
+Option App::add_output(const std::string& name, std::string& file, const std::string& help, bool in_place) {
   CLI::Option* option = app_->add_option(name, file, help);
+  if (in_place) return Option(option);
   // options are checked when all of the command line is known
   option->check(CLI::Validator(
       [command = app_, option](std::string& value) {

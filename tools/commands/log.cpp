@@ -266,7 +266,7 @@ void add_log(cli::App program) {
   const auto out = std::make_shared<std::string>();
   cli::App repairing = log.add_subcommand("repair", "all events that can be read, as a new log");
   repairing.add_option("LOG", *file).required();
-  repairing.add_output("--out", *out, "the new log").required();
+  repairing.add_output("--out", *out, "the new log; LOG itself: repaired in place", true).required();
   repairing.callback([file, out] { repair(*file, *out); });
 
   cli::App exported = log.add_subcommand("export", "poses and calibrations of a log for ROS 2 and Foxglove");
