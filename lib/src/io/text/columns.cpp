@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <iterator>
 #include <optional>
 
 namespace egocal::detail {
@@ -33,19 +34,35 @@ struct ColumnName {
   }
 };
 
+bool is_known_unit(std::string_view unit) {
+  constexpr Dimension all[] = {Dimension::time,  Dimension::length,  Dimension::angle,
+                               Dimension::speed, Dimension::turning, Dimension::number};
+  return std::any_of(std::begin(all), std::end(all),
+                     [&](Dimension dimension) { return in_si(dimension, unit).has_value(); });
+}
+
+/// "[0]", "[m]", "(map) [m]": an index, and the unit that is known, else the last of the others.
+void read_brackets(std::string_view text, ColumnName& name) {
+  while (true) {
+    const std::size_t begin = text.find_first_of("[(");
+    if (begin == std::string_view::npos) return;
+    const std::size_t end = std::min(text.find_first_of("])", begin), text.size());
+    std::string unit;
+    for (const char c : text.substr(begin + 1, end - begin - 1))
+      if (c != ' ') unit += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (unit.size() == 1 && unit[0] >= '0' && unit[0] <= '9')
+      name.index = unit[0] - '0';
+    else if (!unit.empty() && !is_known_unit(name.unit))
+      name.unit = unit;
+    text.remove_prefix(end);
+  }
+}
+
 ColumnName parse(std::string_view text) {
   ColumnName name;
-  const std::size_t bracket = text.find_first_of("[(");
-  if (bracket != std::string_view::npos) {
-    const std::size_t end = text.find_first_of("])", bracket);
-    for (const char c : text.substr(bracket + 1, end == std::string_view::npos ? end : end - bracket - 1))
-      if (c != ' ') name.unit += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    text = text.substr(0, bracket);
-    if (name.unit.size() == 1 && name.unit[0] >= '0' && name.unit[0] <= '9') {
-      name.index = name.unit[0] - '0';
-      name.unit.clear();
-    }
-  }
+  const std::size_t bracket = std::min(text.find_first_of("[("), text.size());
+  read_brackets(text.substr(bracket), name);
+  text = text.substr(0, bracket);
   std::string word;
   const auto finish = [&] {
     if (!word.empty()) name.words.push_back(word);
@@ -59,10 +76,16 @@ ColumnName parse(std::string_view text) {
       finish();
   }
   finish();
-  if (name.unit.empty() && name.words.size() > 1 &&
-      is_one_of(name.words.back(), {"s", "ms", "us", "ns", "deg", "rad", "m", "cm", "mm", "degrees"})) {
+  if (name.unit.empty() && name.words.size() > 1 && is_unit_word(name.words.back())) {
     name.unit = name.words.back();
     name.words.pop_back();
+    // "wz_rad_s"
+    const std::string per_second = name.words.back() + "/s";
+    if (name.unit == "s" && name.words.size() > 1 &&
+        (in_si(Dimension::speed, per_second) || in_si(Dimension::turning, per_second))) {
+      name.unit = per_second;
+      name.words.pop_back();
+    }
   }
   for (const std::string& w : name.words) name.joined += w;
   return name;
@@ -173,6 +196,16 @@ Meaning meaning_of(const ColumnName& name) {
   return meaning_of_time(name);
 }
 
+ColumnMap::Column column_of(Quantity quantity, std::size_t index, const std::string& unit) {
+  const Dimension dimension = dimension_of(quantity);
+  ColumnMap::Column column{index, unit};
+  if (dimension == Dimension::time && states_a_clock(unit)) column.unit.clear();
+  column.in_si = in_si(dimension, column.unit);
+  // "yaw_rate_deg"
+  if (dimension == Dimension::turning && !column.in_si) column.in_si = in_si(Dimension::angle, column.unit);
+  return column;
+}
+
 }  // namespace
 
 std::string_view to_string(Quantity quantity) {
@@ -207,30 +240,55 @@ std::size_t ColumnMap::width() const {
   return width;
 }
 
+Dimension dimension_of(Quantity quantity) {
+  if (quantity <= Quantity::nanoseconds) return Dimension::time;
+  if (quantity <= Quantity::z || quantity == Quantity::height) return Dimension::length;
+  if (quantity <= Quantity::qz) return Dimension::number;
+  if (quantity <= Quantity::longitude) return Dimension::angle;
+  return quantity <= Quantity::vz ? Dimension::speed : Dimension::turning;
+}
+
+bool same_name(std::string_view one, std::string_view other) {
+  const ColumnName a = parse(one), b = parse(other);
+  return a.words == b.words && a.index == b.index;
+}
+
 ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
   ColumnMap map;
   std::array<int, quantities> rank{};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const ColumnName parsed = parse(names[i]);
     const Meaning meaning = meaning_of(parsed);
+    if (meaning.rank == 0) continue;
     int& best = rank[static_cast<std::size_t>(meaning.quantity)];
+    std::optional<ColumnMap::Column>& column = map.of[static_cast<std::size_t>(meaning.quantity)];
+    if (meaning.rank == best && !column->rival) column->rival = i;
     if (meaning.rank <= best) continue;
     best = meaning.rank;
-    map.set(meaning.quantity, i, parsed.unit);
+    column = column_of(meaning.quantity, i, parsed.unit);
   }
   // poses are better than velocities, which are integrated
   if (map.has_pose())
     for (const Quantity quantity :
          {Quantity::vx, Quantity::vy, Quantity::vz, Quantity::wx, Quantity::wy, Quantity::wz})
       map.of[static_cast<std::size_t>(quantity)].reset();
+  // what is given twice is read from the one that needs no conversion
+  if (map.has_quaternion())
+    for (const Quantity quantity : {Quantity::roll, Quantity::pitch, Quantity::yaw, Quantity::heading})
+      map.of[static_cast<std::size_t>(quantity)].reset();
+  if (map.has_position())
+    for (const Quantity quantity : {Quantity::latitude, Quantity::longitude})
+      map.of[static_cast<std::size_t>(quantity)].reset();
   // "easting, northing, altitude"
   if (map.has(Quantity::x) && map.has(Quantity::y) && !map.has(Quantity::z) && map.has(Quantity::height))
     map.of[static_cast<std::size_t>(Quantity::z)] = map[Quantity::height];
   // one column of seconds or nanoseconds alone is the time
   const bool seconds = map.has(Quantity::seconds), rest = map.has(Quantity::nanoseconds);
-  if (seconds != rest && !map.has(Quantity::time))
-    map.set(Quantity::time, map[seconds ? Quantity::seconds : Quantity::nanoseconds].index,
-            seconds ? "s" : "ns");
+  if (seconds != rest && !map.has(Quantity::time)) {
+    const ColumnMap::Column& only = map[seconds ? Quantity::seconds : Quantity::nanoseconds];
+    const std::string unit = !only.unit.empty() ? only.unit : seconds ? "s" : "ns";
+    map.of[static_cast<std::size_t>(Quantity::time)] = column_of(Quantity::time, only.index, unit);
+  }
   if (seconds != rest || map.has(Quantity::time)) {
     map.of[static_cast<std::size_t>(Quantity::seconds)].reset();
     map.of[static_cast<std::size_t>(Quantity::nanoseconds)].reset();

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/text/units.hpp"
+
 namespace egocal::detail {
 
 /// What a column of a table can mean.
@@ -39,21 +41,22 @@ enum class Quantity {
   count_
 };
 inline constexpr std::size_t quantities = static_cast<std::size_t>(Quantity::count_);
+Dimension dimension_of(Quantity quantity);
 std::string_view to_string(Quantity quantity);
 
 /// Which column holds which quantity, and in which unit where a header states it.
 struct ColumnMap {
   struct Column {
     std::size_t index = 0;
-    std::string unit;  ///< as in brackets behind the name; empty: not given
+    std::string unit{};                  ///< as in brackets behind the name; empty: not given
+    std::optional<double> in_si{};       ///< of that unit; nothing: not given, or not known
+    std::optional<std::size_t> rival{};  ///< a later column that may be the same quantity
   };
   std::array<std::optional<Column>, quantities> of;
 
   bool has(Quantity quantity) const { return of[static_cast<std::size_t>(quantity)].has_value(); }
   const Column& operator[](Quantity quantity) const { return *of[static_cast<std::size_t>(quantity)]; }
-  void set(Quantity quantity, std::size_t index, std::string unit = {}) {
-    of[static_cast<std::size_t>(quantity)] = Column{index, std::move(unit)};
-  }
+  void set(Quantity quantity, std::size_t index) { of[static_cast<std::size_t>(quantity)] = Column{index}; }
 
   bool has_position() const;
   bool has_geodetic() const { return has(Quantity::latitude) && has(Quantity::longitude); }
@@ -74,5 +77,8 @@ struct ColumnMap {
 /// Finds the quantities by the names that people use: "t", "timestamp [ns]", "field.pose.pose.position.x",
 /// "p_RS_R_x [m]", "q_w", "Yaw (deg)", "Latitude", ... Columns of other names are not used.
 ColumnMap columns_from_names(const std::vector<std::string_view>& names);
+
+/// Whether two columns have one name, whatever their units.
+bool same_name(std::string_view one, std::string_view other);
 
 }  // namespace egocal::detail

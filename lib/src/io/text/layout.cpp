@@ -118,11 +118,52 @@ bool is_header(std::string_view line, char separator) {
          2 * words > static_cast<std::ptrdiff_t>(fields.size());
 }
 
-void name_columns(TextLayout& layout, std::string_view header) {
+/// The header's names, of which those of a quantity become columns.
+std::vector<std::string_view> name_columns(TextLayout& layout, std::string_view header) {
   std::vector<std::string_view> names;
   split(header, layout.separator, names);
   layout.columns = columns_from_names(names);
   layout.names.assign(names.begin(), names.end());
+  return names;
+}
+
+/// Refuses a unit that is not known, and a name that two columns share. line: of the header; 0: the names are
+/// those of --columns.
+void check_columns(const std::vector<std::string_view>& names, const ColumnMap& columns,
+                   const std::string& file, long line) {
+  const auto refused = [&](std::size_t index, const std::string& problem) {
+    const std::string name(names[index].substr(0, 100));
+    return error_at(
+        file, line,
+        line > 0 ? "column " + std::to_string(index + 1) + " (" + name + ")" : "--columns: '" + name + "'",
+        problem);
+  };
+  for (std::size_t i = 0; i < quantities; ++i) {
+    if (!columns.of[i]) continue;
+    const ColumnMap::Column& column = *columns.of[i];
+    for (std::size_t k = column.index + 1; k < names.size(); ++k)
+      if (same_name(names[k], names[column.index]))
+        throw refused(k,
+                      "is the name of column " + std::to_string(column.index + 1) + " as well; " +
+                          (line > 0 ? "name the one that counts with --columns t,x,y,z,qx,qy,qz,qw, others -"
+                                    : "a column that does not count is -"));
+    if (column.unit.empty() || column.in_si) continue;
+    const Dimension dimension = dimension_of(static_cast<Quantity>(i));
+    throw refused(column.index, "the unit '" + column.unit.substr(0, 40) + "' is not known; expected " +
+                                    known_units(dimension) + ": convert the column" +
+                                    (line > 0 ? ", or name the columns with --columns" : ""));
+  }
+}
+
+/// Columns of another part of a table may have the same meaning, such as those of a second robot.
+void note_rivals(TextLayout& layout) {
+  std::string text;
+  for (std::size_t i = static_cast<std::size_t>(Quantity::x); i < quantities; ++i)
+    if (layout.columns.of[i] && layout.columns.of[i]->rival)
+      text += (text.empty() ? "" : ", ") + layout.names[layout.columns.of[i]->index] + " (not " +
+              layout.names[*layout.columns.of[i]->rival] + ")";
+  if (!text.empty())
+    layout.notes.push_back("the first of similar columns are taken: " + text + "; --columns names others");
 }
 
 /// The columns of a format without a header.
@@ -208,17 +249,20 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
   if (!options.columns.empty()) {
     TextLayout named;
     named.separator = ',';
-    name_columns(named, options.columns);
+    const std::vector<std::string_view> names = name_columns(named, options.columns);
     if (!named.columns.complete())
       throw error_at(file, 0, "--columns", named.columns.missing() + " among '" + options.columns + "'");
+    check_columns(names, named.columns, file, 0);
     layout.columns = named.columns;
     layout.names = named.names;
   } else if (header) {
-    name_columns(layout, sniffed.data.front().text);
+    const std::vector<std::string_view> names = name_columns(layout, sniffed.data.front().text);
     if (!layout.columns.complete())
       throw error_at(file, layout.header_line, "",
                      "the header names " + layout.columns.missing() +
                          "; name the columns with --columns t,x,y,z,qx,qy,qz,qw");
+    check_columns(names, layout.columns, file, layout.header_line);
+    note_rivals(layout);
   } else {
     // a header in a comment is taken where it makes sense
     std::vector<std::string_view> row;
@@ -226,9 +270,11 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
     for (const Line& comment : sniffed.comments) {
       TextLayout named;
       named.separator = layout.separator;
-      name_columns(named, std::string_view(comment.text).substr(comment.text.find_first_of("#%") + 1));
+      const std::vector<std::string_view> names =
+          name_columns(named, std::string_view(comment.text).substr(comment.text.find_first_of("#%") + 1));
       if (!named.columns.complete() || !named.columns.has_time() || named.names.size() != row.size())
         continue;
+      check_columns(names, named.columns, file, comment.number);
       layout.columns = named.columns;
       layout.names = named.names;
     }
@@ -307,14 +353,6 @@ const UnitName& unit_by_size(std::vector<double> times) {
   return *best;
 }
 
-const UnitName* unit_by_name(const std::string& name) {
-  if (name == "s" || name == "sec" || name == "seconds") return &units[0];
-  if (name == "ms") return &units[1];
-  if (name == "us") return &units[2];
-  if (name == "ns") return &units[3];
-  return nullptr;
-}
-
 void set_time_unit(TextLayout& layout, const Sniffed& sniffed) {
   if (layout.columns.has(Quantity::seconds) && !layout.matrix) return;
   const std::size_t column = layout.matrix ? 0 : layout.columns[Quantity::time].index;
@@ -325,11 +363,11 @@ void set_time_unit(TextLayout& layout, const Sniffed& sniffed) {
     layout.times = !layout.index;
     if (layout.index) return;
   }
-  const std::string given = layout.matrix ? "" : layout.columns[Quantity::time].unit;
-  if (const UnitName* unit = unit_by_name(given)) {
-    layout.unit = unit->unit;
-    return;
-  }
+  for (const UnitName& unit : units)
+    if (!layout.matrix && layout.columns[Quantity::time].in_si == unit.in_seconds) {
+      layout.unit = unit.unit;
+      return;
+    }
   const UnitName& unit = unit_by_size(times);
   layout.unit = unit.unit;
   const bool usual = layout.format == "EuRoC csv" ? unit.unit == TimeUnit::nanoseconds : unit.in_seconds == 1;

@@ -20,6 +20,7 @@ namespace egocal::detail {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
+constexpr double metres_a_degree = 111e3;  // of latitude, roughly: directions need no more
 
 bool is_data(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
@@ -139,27 +140,87 @@ void TextRecording::read_times() {
   if (times_.empty()) throw error_at(file, 0, "", "holds no data");
 }
 
-/// Angles above a turn are degrees. All of the file counts: a drive may begin straight.
+/// All of the file counts: a drive may begin straight.
 void TextRecording::find_angle_unit() {
-  constexpr Quantity angles[] = {Quantity::roll, Quantity::pitch, Quantity::yaw, Quantity::heading,
-                                 Quantity::wx,   Quantity::wy,    Quantity::wz};
-  std::vector<std::size_t> unknown;
-  for (const Quantity quantity : angles)
-    if (layout_.columns.has(quantity) && layout_.columns[quantity].unit.empty())
-      unknown.push_back(layout_.columns[quantity].index);
-  if (unknown.empty() || layout_.columns.has_quaternion()) return;
-  double largest = 0;
+  using enum Quantity;
+  if (layout_.columns.has_quaternion()) return;
+  std::vector<Quantity> unknown;
+  std::optional<Quantity> named;
+  for (const Quantity quantity : {roll, pitch, yaw, heading, wx, wy, wz}) {
+    if (!layout_.columns.has(quantity)) continue;
+    const std::optional<double>& in_si = layout_.columns[quantity].in_si;
+    if (!in_si) unknown.push_back(quantity);
+    if (in_si && named && layout_.columns[*named].in_si != in_si) throw unit_of_angles_needed(unknown);
+    if (in_si) named = quantity;
+  }
+  if (unknown.empty()) return;
+  if (named) {
+    angle_in_si_ = *layout_.columns[*named].in_si;
+    layout_.notes.push_back("the other angles are taken in the unit of " +
+                            layout_.names[layout_.columns[*named].index]);
+    return;
+  }
+  const AngleUnit::Decision decision = unit_by_rows(unknown).decide();
+  if (!decision.degrees) throw unit_of_angles_needed(unknown);
+  if (*decision.degrees) angle_in_si_ = degree;
+  layout_.notes.push_back(std::string("angles are taken as ") + (*decision.degrees ? "degrees" : "radians") +
+                          ", " + decision.reason);
+}
+
+/// What the rows tell about the unit of these angles.
+AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
+  using enum Quantity;
+  const ColumnMap& columns = layout_.columns;
+  AngleUnit unit;
   Rows rows(*source_, layout_);
-  while (rows.next())
-    for (const std::size_t index : unknown) {
-      double value = 0;
-      if (index < rows.fields.size() && parse_number(rows.fields[index], value) && std::isfinite(value))
-        largest = std::max(largest, std::abs(value));
+  while (rows.next()) {
+    const auto number = [&](Quantity quantity) -> std::optional<double> {
+      if (!columns.has(quantity) || columns[quantity].index >= rows.fields.size()) return std::nullopt;
+      return rows.number(columns[quantity].index);
+    };
+    // reading refuses rows that cannot be read; here they tell nothing
+    std::optional<Eigen::Vector2d> position;
+    if (const auto east = number(x), north = number(y); east && north)
+      position = Eigen::Vector2d(*east, *north) * columns[x].in_si.value_or(1);
+    else if (const auto at = number(latitude), along = number(longitude); at && along)
+      position = Eigen::Vector2d(*along * std::cos(*at * degree), *at) * metres_a_degree;
+    for (const Quantity quantity : angles) {
+      const std::optional<double> angle = number(quantity);
+      if (!angle) continue;
+      if (quantity == yaw || quantity == heading)
+        unit.add(seconds_of_row(rows), position, *angle);
+      else
+        unit.add_other(*angle);
     }
+  }
   source_->rewind();
-  degrees_ = largest > 2 * std::numbers::pi + 0.1;
-  layout_.notes.push_back(std::string("angles are taken as ") + (degrees_ ? "degrees" : "radians") +
-                          ", by their size");
+  return unit;
+}
+
+/// Of a row that may be unreadable, then 0.
+double TextRecording::seconds_of_row(const Rows& rows) const {
+  if (rows.fields.size() < layout_.fields) return 0;
+  try {
+    return 1e-6 * static_cast<double>(time_of_row(rows));
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
+Error TextRecording::unit_of_angles_needed(const std::vector<Quantity>& angles) const {
+  std::string names;
+  for (std::size_t i = 0; i < layout_.names.size(); ++i) {
+    std::string name = layout_.names[i];
+    for (const Quantity quantity : angles)
+      if (layout_.columns[quantity].index == i) name += "[rad]";
+    names += (names.empty() ? "" : ",") + name;
+  }
+  constexpr std::size_t longest = 200;  // limit of what people read
+  if (names.size() > longest) names = "t,x,y,z,roll[rad],pitch[rad],yaw[rad]";
+  return error_at(file_, layout_.header_line, layout_.names[layout_.columns[angles.back()].index],
+                  "cannot tell whether its angles are degrees or radians whose turns are summed; name the "
+                  "unit, [rad] or [deg]: --columns '" +
+                      names + "'");
 }
 
 void TextRecording::read(const std::string& topic, const TakePose& take) {
@@ -283,22 +344,14 @@ double TextRecording::value(const Rows& rows, std::size_t index) const {
   return *number;
 }
 
-double TextRecording::value(const Rows& rows, Quantity quantity) const {
-  return layout_.columns.has(quantity) ? value(rows, layout_.columns[quantity].index) : 0;
+double TextRecording::value(const Rows& rows, Quantity quantity, double in_si) const {
+  if (!layout_.columns.has(quantity)) return 0;
+  const ColumnMap::Column& column = layout_.columns[quantity];
+  return value(rows, column.index) * column.in_si.value_or(in_si);
 }
 
 double TextRecording::angle(const Rows& rows, Quantity quantity) const {
-  if (!layout_.columns.has(quantity)) return 0;
-  const std::string& unit = layout_.columns[quantity].unit;
-  const bool in_degrees = unit.empty() ? degrees_ : unit.rfind("deg", 0) == 0 || unit == "\xc2\xb0";
-  return value(rows, quantity) * (in_degrees ? degree : 1);
-}
-
-double TextRecording::length_scale(Quantity quantity) const {
-  if (!layout_.columns.has(quantity)) return 1;
-  const std::string& unit = layout_.columns[quantity].unit;
-  if (unit.empty()) return 1;
-  return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1;
+  return value(rows, quantity, angle_in_si_);
 }
 
 DualQuaternion TextRecording::pose_of_matrix(const Rows& rows) const {
@@ -328,8 +381,8 @@ DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {
   const ColumnMap& columns = layout_.columns;
   const long line = rows.lines.number();
   Eigen::Vector4d q;
-  Eigen::Vector3d t{value(rows, x) * length_scale(x), value(rows, y) * length_scale(y),
-                    value(rows, z) * length_scale(z)};  // braces: the first bad field is reported
+  Eigen::Vector3d t{value(rows, x), value(rows, y),
+                    value(rows, z)};  // braces: the first bad field is reported
   if (columns.has_quaternion()) {
     q = {value(rows, qw), value(rows, qx), value(rows, qy), value(rows, qz)};
   } else {
@@ -340,8 +393,8 @@ DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {
     q = {R.w(), R.x(), R.y(), R.z()};
   }
   if (columns.has_geodetic() && !columns.has_position()) {
-    const GeodeticPosition place{value(rows, latitude) * degree, value(rows, longitude) * degree,
-                                 value(rows, height) * length_scale(height)};
+    const GeodeticPosition place{value(rows, latitude, degree), value(rows, longitude, degree),
+                                 value(rows, height)};
     if (!(std::abs(place.latitude) <= std::numbers::pi / 2 &&
           std::abs(place.longitude) <= 2 * std::numbers::pi))
       throw error_at(file_, line, "latitude, longitude", "expected at most 90 and 360 degrees");

@@ -8,9 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "egocal/error.hpp"
 #include "egocal/io/recording.hpp"
 #include "egocal/io/twist_integrator.hpp"
 #include "io/bytes/byte_source.hpp"
+#include "io/text/angle_unit.hpp"
 #include "io/text/layout.hpp"
 
 namespace egocal::detail {
@@ -29,22 +31,25 @@ class TextRecording : public Recording {
   struct Rows;
   void read_times();
   void find_angle_unit();
+  AngleUnit unit_by_rows(const std::vector<Quantity>& angles);
+  double seconds_of_row(const Rows& rows) const;
+  Error unit_of_angles_needed(const std::vector<Quantity>& angles) const;
   std::optional<StampedPose> pose_of_row(const Rows& rows);
   std::int64_t time_of_row(const Rows& rows) const;
   DualQuaternion pose_of_matrix(const Rows& rows) const;
   DualQuaternion pose_of_columns(const Rows& rows);
   std::optional<DualQuaternion> pose_of_twist(const Rows& rows, std::int64_t time_us);
   double value(const Rows& rows, std::size_t index) const;
-  double value(const Rows& rows, Quantity quantity) const;
+  /// In m, rad, m/s; in_si: of a unit that is not given.
+  double value(const Rows& rows, Quantity quantity, double in_si = 1) const;
   double angle(const Rows& rows, Quantity quantity) const;
-  double length_scale(Quantity quantity) const;
 
   std::unique_ptr<ByteSource> source_;
   ReadOptions options_;
   TextLayout layout_;
   std::vector<std::int64_t> times_;  ///< of the file of times
   double rate_ = 10;                 ///< of rows without times [Hz]
-  bool degrees_ = false;             ///< angles without a unit
+  double angle_in_si_ = 1;           ///< of angles without a unit
   bool read_before_ = false;
   TwistIntegrator integrator_;          ///< of a table with velocities
   std::optional<Pose> T_earth_origin_;  ///< local frame of the first geodetic position
