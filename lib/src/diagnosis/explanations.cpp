@@ -262,7 +262,10 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
   const Heading as_inverted = heading(both.explained.motions);
   const bool noise_says_given = comparison.ratio < 1 / options.decisive && comparison.gain < -decisive_loss;
   if (forward(as_given, options.heading) && !forward(as_inverted, options.heading)) return std::nullopt;
-  const bool trace = forward(as_inverted, options.heading) && scattered(as_given, options.heading);
+  // a body that tumbles has no direction of travel, but may seem to under the wrong reading: far from the
+  // origin its inverse goes along an arc
+  const bool trace = forward(as_inverted, options.heading) && scattered(as_given, options.heading) &&
+                     longer_way(evidence.given.explained.motions, both.explained.motions);
   if (!trace && noise_says_given) return std::nullopt;
   Finding finding = finding_of(both, comparison, trace);
   finding.improvement = comparison.ratio;

@@ -3,8 +3,40 @@
 #include "diagnosis/forward.hpp"
 
 #include <algorithm>
+#include <vector>
+
+#include "diagnosis/stillest_point.hpp"
 
 namespace egocal::detail {
+
+namespace {
+
+Eigen::Matrix3d rotation_of(const DualQuaternion& motion) {
+  return Eigen::Quaterniond(motion.real[0], motion.real[1], motion.real[2], motion.real[3])
+      .toRotationMatrix();
+}
+
+double sum_of_lengths(const std::vector<Eigen::Vector3d>& vectors) {
+  double sum = 0;
+  for (const Eigen::Vector3d& vector : vectors) sum += vector.norm();
+  return sum;
+}
+
+/// Way of the point of each body that goes the shortest one [m].
+struct Ways {
+  double a = 0, b = 0;
+};
+
+Ways of_stillest_points(const Motions& motions) {
+  std::vector<BodyMotion> a, b;
+  for (const Motion& motion : motions.all) {
+    a.push_back({motion.R_a, motion.t_a});
+    b.push_back({rotation_of(motion.b), motion.t_b});
+  }
+  return {sum_of_lengths(at_stillest_point(a)), sum_of_lengths(at_stillest_point(b))};
+}
+
+}  // namespace
 
 Heading heading(const Motions& motions) {
   Heading result;
@@ -24,6 +56,8 @@ Heading heading(const Motions& motions) {
     }
     result.turned += motion.angle_a;
   }
+  result.way_a = length_a;
+  result.way_b = length_b;
   if (length_a > 0) result.concentration_a = sum_a.norm() / length_a;
   if (length_b > 0) result.concentration_b = sum_b.norm() / length_b;
   return result;
@@ -36,6 +70,13 @@ bool forward(const Heading& heading, const HeadingOptions& options) {
 
 bool scattered(const Heading& heading, const HeadingOptions& options) {
   return std::max(heading.concentration_a, heading.concentration_b) < options.seldom;
+}
+
+bool longer_way(const Motions& x, const Motions& y) {
+  const Heading sensors_x = heading(x), sensors_y = heading(y);
+  if (!(sensors_x.way_a > sensors_y.way_a && sensors_x.way_b > sensors_y.way_b)) return false;
+  const Ways points_x = of_stillest_points(x), points_y = of_stillest_points(y);
+  return points_x.a > points_y.a && points_x.b > points_y.b;
 }
 
 }  // namespace egocal::detail
