@@ -44,7 +44,8 @@ std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
   return text;
 }
 
-StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::int64_t mono_us) {
+StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::int64_t mono_us,
+                   const std::string& why_silent) {
   const Sensor& sensor = stream.sensor;
   const std::string begin = sensor.name + ": " + printable(sensor.channel, 63) + ", ";
   const bool silent = !stream.heard || mono_us - stream.heard->last_mono_us > watch.options().silent_us;
@@ -54,6 +55,7 @@ StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::in
         stream.heard
             ? "silent for " + std::to_string((mono_us - stream.heard->last_mono_us) / 1'000'000) + " s"
             : std::string("nothing received");
+    if (stream.heard && !why_silent.empty()) return {Severity::good, begin + text + ": " + why_silent};
     return {Severity::bad, begin + text + "; " +
                                (instead.empty() ? "no other channel carries anything (expected " +
                                                       expected_type(sensor) + ")"
@@ -71,10 +73,11 @@ StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::in
 
 }  // namespace
 
-std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono_us) {
+std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono_us,
+                                     const std::string& why_silent) {
   std::vector<StreamLine> lines;
   for (const SensorStream& stream : watch.sensors()) {
-    lines.push_back(line_of(stream, watch, mono_us));
+    lines.push_back(line_of(stream, watch, mono_us, why_silent));
     if (!stream.heard) continue;
     for (const Refusal& refusal : stream.heard->refusals)
       lines.push_back({Severity::warning,

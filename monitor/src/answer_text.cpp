@@ -116,7 +116,11 @@ Label verdict_of(const PairState& pair, Charset charset) {
   if (!pair.verdict) return {"not judged yet", Style::dim};
   const Verdict verdict = pair.verdict->diagnosis.verdict;
   // what came since may contradict it; what is contradictory stays that
+  if (verdict <= Verdict::incomplete && pair.old > 0) return {"? old answer", Style::warning};
   if (verdict <= Verdict::incomplete && pair.verdict->old > 0) return {"? old verdict", Style::warning};
+  // a monitor that came when pairing was gone already
+  if (verdict <= Verdict::incomplete && !pair.counted_solver()->verified)
+    return {"? not verified", Style::warning};
   // the verdict is about the optimum; what is not proven to be the optimum does not share it
   if (verdict <= Verdict::incomplete && answer->status != 0) return {"? not proven", Style::warning};
   return {std::string(mark_of(verdict, s)) + " " + std::string(to_string(verdict)), style_of(verdict)};
@@ -141,6 +145,13 @@ std::string goal_text(const Diagnosis& diagnosis) {
 }
 
 Label advice_of(const PairState& pair) {
+  if (pair.old > 0)
+    return {(pairing_is_silent(pair) ? "pairing is silent for " + age(pair.old)
+                                     : "no solver answers what came in the last " + age(pair.old)) +
+                (pair.verdict ? ". Before: " + std::string(to_string(pair.verdict->diagnosis.verdict)) +
+                                    ". " + pair.verdict->diagnosis.reason
+                              : ""),
+            Style::warning};
   if (!pair.verdict) return {"", Style::dim};
   const Diagnosis& diagnosis = pair.verdict->diagnosis;
   if (pair.verdict->old > 0)

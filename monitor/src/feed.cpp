@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "feed.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace egocal::monitor {
@@ -57,7 +58,22 @@ void Feed::watch_streams() {
     loop_.subscribe_bytes(stream.sensor.channel, hear, queue_capacity);
   loop_.subscribe_others(hear, [this] { return streams_.misses_any(loop_.mono_us()); });
   loop_.every(std::chrono::milliseconds(500),
-              [this] { model_.set_streams(bus::stream_lines(streams_, loop_.mono_us())); });
+              [this] { model_.set_streams(bus::stream_lines(streams_, loop_.mono_us(), why_silent())); });
+}
+
+/// Where a log is played, its sensors send when the player does, and that waits for pairing.
+std::string Feed::why_silent() const {
+  const ProcessState* player = nullptr;
+  for (const ProcessState& process : model_.processes())
+    if (process.status.role == bus::role_name(Role::player) &&
+        (!player || player->at.mono_us < process.at.mono_us))
+      player = &process;
+  if (!loop_.network_error().empty()) return "the network is away";
+  if (!player) return {};
+  if (player->state == bus::State::ended) return "the player has ended";
+  if (player->state == bus::State::paused) return "the player is paused";
+  const bool waits = std::any_of(model_.pairs().begin(), model_.pairs().end(), pairing_is_silent);
+  return player->alive && waits ? "the player waits for pairing, which is silent" : "";
 }
 
 void Feed::watch(const std::vector<int>& fds) {

@@ -42,6 +42,7 @@ class Feed {
 
  private:
   void watch_streams();
+  std::string why_silent() const;
 
   Model& model_;
   Delivery delivery_;

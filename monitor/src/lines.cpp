@@ -223,6 +223,7 @@ json pair_json(const Model& model, const PairState& pair) {
         pair.problem.time_offset_stddev < 0 ? json(nullptr) : real(pair.problem.time_offset_stddev);
   }
   p["paused"] = pair_is_paused(model, pair);
+  p["answer_old"] = pair.old > 0;
   p["pairing_silent"] = pairing_is_silent(pair);
   p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
   verdict_into(p, pair);

@@ -117,6 +117,8 @@ void Model::begin_session(PairState& pair, std::int64_t session) {
   pair.scale.reset();
   pair.solvers.clear();
   pair.behind_in_a_row = 0;
+  pair.unanswered_mono_us.reset();
+  pair.old = 0;
   pair.counted = -1;
   pair.shown = {};
   pair.only_fast_since.reset();
@@ -180,6 +182,7 @@ void Model::on_problem(const problem_t& message, Now now) {
   kept.host = bounded(message.host);
   if (pair->verdict && message.seq > pair->verdict->seq && !pair->verdict->behind_mono_us)
     pair->verdict->behind_mono_us = now.mono_us;
+  note_unanswered(*pair, now);
   kept.n_blocks = 0;
   kept.blocks = {};  // verified by now, and too large to keep with every copy of the model
   if (chosen_anew)
@@ -286,6 +289,7 @@ void Model::count_answer(PairState& pair, Now now) {
       best = static_cast<int>(i);
   pair.counted = best;
   pair.shown = best >= 0 ? shown_of(pair, *pair.answer()) : Shown{};
+  note_unanswered(pair, now);
   watch_certificate(pair, now);
 }
 
@@ -408,6 +412,7 @@ void Model::tick(Now now) {
            "the stream is silent: no new motion for " + rounded(options_.stream_timeout, 0) + " s", now);
     }
     watch_age_of_verdict(pair, now);
+    watch_age_of_answer(pair, now);
     // a solver is missed only where there is something to solve, and only after it has had time to
     if (!pair.has_problem || pair.silent || pair_is_paused(*this, pair)) pair.idle_mono_us = now.mono_us;
     for (SolverTrack& track : pair.solvers) {

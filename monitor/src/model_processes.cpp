@@ -64,9 +64,13 @@ void Model::on_status(const status_t& message, Now now) {
   now_ = now;
   ++messages_;
   const std::string name = bounded(message.name), host = bounded(message.host);
+  // several people may watch
+  const bool is_monitor = message.role == bus::role_name(Role::monitor);
   ProcessState* process = nullptr;
   for (ProcessState& candidate : processes_)
-    if (candidate.status.name == name && candidate.status.host == host) process = &candidate;
+    if (candidate.status.name == name && candidate.status.host == host &&
+        (!is_monitor || candidate.status.pid == message.pid))
+      process = &candidate;
   const std::string state_text = bounded(message.state), error = bounded(message.last_error);
   const std::optional<bus::State> state = bus::state_from_name(message.state);
   if (!process) {

@@ -124,7 +124,10 @@ void carry_out(const Action& action, const Model& model, ViewState& view, Source
     try {
       const std::string file = free_file_name(action.a, action.b, action.format);
       write_whole_file(file, extrinsic_text(*extrinsic, action.format));
-      view.notice = "wrote " + file + (extrinsic->certified ? "" : " (not certified)");
+      view.notice = "wrote " + file +
+                    (pair->old > 0          ? " (an old answer: not to be used)"
+                     : extrinsic->certified ? ""
+                                            : " (not certified)");
     } catch (const Error& error) {
       view.notice = error.what();
     }
@@ -208,6 +211,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
       drawn = mono;
       changed = false;
       view.height = terminal->height();
+      view.network_error = source.network_error();
       Canvas canvas(terminal->width(), view.height);
       draw(canvas, still ? *still : model, view);
       terminal->show(canvas);
@@ -252,6 +256,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
   if (!options.size.empty()) {
     ViewState view = first_view(options, source);
     view.charset = charset;
+    view.network_error = source.network_error();
     int width = 0, height = 0;
     parse_size(options.size, width, height);
     Canvas canvas(width, height);

@@ -57,9 +57,9 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
     std::size_t good = 0, certified = 0, gone = 0, paused = 0;
     for (const PairState& p : model.pairs()) paused += pair_is_paused(model, p);
     for (const PairState& p : model.pairs()) certified += p.answer() && p.answer()->status == 0;
-    for (const PairState& p : model.pairs())
-      good += p.answer() && p.answer()->status == 0 && p.verdict &&
-              p.verdict->diagnosis.verdict == Verdict::good && p.verdict->old == 0;
+    for (const PairState& p : model.pairs()) good += is_good(p);
+    const auto old = std::count_if(model.pairs().begin(), model.pairs().end(),
+                                   [](const PairState& p) { return p.old > 0; });
     for (const ProcessState& p : model.processes()) gone += !p.alive && p.state != bus::State::ended;
     x = pane.text(x, 0, std::to_string(good) + " of " + std::to_string(model.pairs().size()) + " good",
                   good == model.pairs().size() && good ? Style::good : Style::normal) +
@@ -69,10 +69,12 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
         std::count_if(model.pairs().begin(), model.pairs().end(), [](const PairState& p) {
           return p.verdict && p.verdict->diagnosis.verdict == Verdict::contradictory;
         });
+    if (!view.network_error.empty() && item("NO NETWORK", Style::bad)) x += 2;
     if (contradictory > 0 && item(std::to_string(contradictory) + " contradictory", Style::bad)) x += 2;
+    if (old > 0 && item(std::to_string(old) + " old", Style::warning)) x += 2;
     if (pane.width() >= 50)
       x = pane.text(x, 0, std::to_string(certified) + " proven optimal",
-                    certified == model.pairs().size() && certified ? Style::good : Style::normal) +
+                    certified == model.pairs().size() && certified && !old ? Style::good : Style::normal) +
           2;
     if (gone) x = pane.text(x, 0, std::to_string(gone) + " gone", Style::bad) + 2;
     if (paused)
@@ -237,6 +239,7 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
     extrinsic.verdict = to_string(pair.verdict->diagnosis.verdict);
     extrinsic.usable = pair.verdict->diagnosis.verdict != Verdict::contradictory;
   }
+  if (pair.old > 0) extrinsic.usable = false;
   extrinsic.stddev.emplace();
   std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());
   return extrinsic;

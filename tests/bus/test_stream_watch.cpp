@@ -63,6 +63,12 @@ TEST_F(Watch, ASilentSensorComesWithWhatIsHeardInstead) {
   EXPECT_THAT(said(11'000'000), HasSubstr("camera: ODOMETRY_CAMERA, nothing received; received instead: "
                                           "ODOMETRY_CAM (egocal.odometry_t, 33 Hz), IMAGES (unknown type)"));
   EXPECT_THAT(said(20'000'000), HasSubstr("lidar: ODOMETRY_LIDAR, silent for 9 s; no other channel"));
+  const std::vector<StreamLine> paused = stream_lines(watch, 20'000'000, "the player is paused");
+  ASSERT_EQ(paused.size(), 2u);
+  EXPECT_EQ(paused[0].text, "lidar: ODOMETRY_LIDAR, silent for 9 s: the player is paused");
+  EXPECT_EQ(paused[0].severity, StreamLine::Severity::good);
+  EXPECT_THAT(paused[1].text, HasSubstr("nothing received")) << "it never came, whatever the player does";
+  EXPECT_EQ(paused[1].severity, StreamLine::Severity::bad);
 }
 
 TEST_F(Watch, EveryFaultComesWithItsCureAndIsReportedOnce) {

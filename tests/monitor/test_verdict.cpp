@@ -171,8 +171,9 @@ TEST_F(VerdictShown, AnOldOneIsNotCalledGood) {
     model.tick(at(0.1 * (step - 100)));
   };
   judge(clean());
+  model.on_problem(problem, at(100));
   model.tick(at(100));
-  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("✓ good")) << "nothing came since";
+  EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("✓ good")) << "nothing new came since";
   for (int step = 1101; step < 1200; ++step) drive_to(step);
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("✓ good"));
   for (int step = 1200; step < 1300; ++step) drive_to(step);

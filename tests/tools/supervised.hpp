@@ -116,6 +116,7 @@ class Supervision : public ::testing::Test {
     pid = fork();
     if (pid != 0) return;
     if (!std::freopen(path("said").c_str(), "a", stderr)) _exit(99);
+    std::setvbuf(stderr, nullptr, _IONBF, 0);  // as standard error is
     int code = 98;
     try {
       code = tools::supervise(programs, options);

@@ -14,8 +14,8 @@
 #include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "pair_messages.hpp"
 #include "support/paths.hpp"
-#include "support/random_motion.hpp"
 #include "support/scale_problem.hpp"
 
 namespace egocal::tools {
@@ -24,54 +24,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const PairName pair_name{"left", "right"};
-constexpr std::int64_t begin_us = 1'700'000'000'000'000;
-
-class AnswersTest : public ::testing::Test {
- protected:
-  AnswersTest() : random(5), T(testing::random_extrinsic(random)) {
-    folder = std::filesystem::temp_directory_path() / ("egocal_answers_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
-  }
-  ~AnswersTest() override { std::filesystem::remove_all(folder); }
-
-  problem_t problem(std::int64_t seq, std::int64_t session = begin_us, std::uint64_t pairs = 60) {
-    Problem problem;
-    Statistics statistics;
-    for (const MotionPair& pair : testing::random_pairs(T, {.pairs = pairs, .noise = 0.01}, random))
-      statistics.add(pair.a, pair.b);
-    problem.blocks = {statistics};
-    problem_t message = bus::to_message(problem);
-    message.utime = session + 100'000 * seq;
-    message.session = session;
-    message.seq = seq;
-    message.sensor_a = pair_name.first;
-    message.sensor_b = pair_name.second;
-    return message;
-  }
-  static calibration_t answer(const problem_t& to) {
-    calibration_t message = bus::to_message(solve(*bus::to_problem(to).value, Method::dual), to);
-    message.solver = "egocal-global";
-    return message;
-  }
-  /// Moved by this much, and honest about it.
-  static calibration_t poor_answer(const problem_t& to, double metres) {
-    const Problem problem = *bus::to_problem(to).value;
-    Answer poor = solve(problem, Method::dual);
-    Pose pose = to_pose(poor.T_a_b);
-    pose.translation.x() += metres;
-    poor.T_a_b = to_dual_quaternion(pose);
-    poor.certificate = bus::verify_answer(problem, poor.T_a_b);
-    calibration_t message = bus::to_message(poor, to);
-    message.solver = "egocal-fast";
-    return message;
-  }
-
-  testing::Random random;
-  DualQuaternion T;
-  std::filesystem::path folder;
-};
 
 TEST_F(AnswersTest, TheCertifiedOneCountsInWhateverOrderTheyAreHeard) {
   const problem_t to = problem(10);
@@ -236,20 +188,6 @@ TEST_F(AnswersTest, OfALogIsTheSessionThatRanAtItsEnd) {
   EXPECT_TRUE(best->certified());
 }
 
-verdict_t verdict(Verdict what, std::int64_t session, std::int64_t seq) {
-  Diagnosis diagnosis;
-  diagnosis.verdict = what;
-  diagnosis.reason = "the lengths differ";
-  verdict_t message = bus::to_message(diagnosis, {DualQuaternion{}, begin_us, begin_us, 0});
-  message.utime = session + 100'000 * seq;
-  message.session = session;
-  message.seq = seq;
-  message.sensor_a = pair_name.first;
-  message.sensor_b = pair_name.second;
-  message.sender = "egocal-diagnosis";
-  return message;
-}
-
 // A mount may have moved since then.
 TEST_F(AnswersTest, AVerdictOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
   Answers answers;
@@ -270,6 +208,24 @@ TEST_F(AnswersTest, AVerdictOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
   EXPECT_NEAR(answers.seconds_not_judged(pair_name).value_or(-1), 2, 1e-9);
   answers.hear(verdict(Verdict::contradictory, begin_us, 30));
   EXPECT_TRUE(answers.judged_to_the_end(pair_name));
+}
+
+// The solvers hang, or were started with another rig.
+TEST_F(AnswersTest, OneOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
+  Answers answers;
+  EXPECT_TRUE(answers.answered_to_the_end(pair_name)) << "there is nothing to answer";
+  const problem_t first = problem(10);
+  answers.hear(first);
+  EXPECT_FALSE(answers.answered_to_the_end(pair_name));
+  EXPECT_NEAR(answers.seconds_not_answered(pair_name), 1, 1e-9);
+  answers.hear(answer(first));
+  EXPECT_TRUE(answers.answered_to_the_end(pair_name));
+  EXPECT_EQ(answers.seconds_not_answered(pair_name), 0);
+  answers.hear(problem(40));
+  EXPECT_FALSE(answers.answered_to_the_end(pair_name));
+  EXPECT_NEAR(answers.seconds_not_answered(pair_name), 3, 1e-9);
+  answers.hear(problem(20, begin_us + 60'000'000));
+  EXPECT_NEAR(answers.seconds_not_answered(pair_name), 2, 1e-9) << "all of the new session";
 }
 
 // egocal solve prints the cure of what is possible as well.

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Processes that fail, hang, or are ended: the supervisor with small scripts.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 #include <utmp.h>
 
@@ -14,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -181,7 +184,7 @@ TEST_F(Supervision, AnswersAreAwaitedAfterALogWhileTheyCome) {
   options.awaited = [left = 5]() mutable { return left > 0 ? left-- : 0; };
   start({waiting("one"), player});
   EXPECT_EQ(ended(), 0);
-  EXPECT_THAT(read(path("said")), HasSubstr("still to be judged: 5"));
+  EXPECT_THAT(read(path("said")), HasSubstr("still awaited: 5"));
 
   std::filesystem::remove(path("said"));
   options.awaited = [] { return 1; };
@@ -198,6 +201,141 @@ TEST_F(Supervision, AClosedMonitorWaitsForNoAnswers) {
   options.awaited = [] { return 1; };
   start({waiting("one"), player, monitor});
   EXPECT_EQ(ended(), 0);
+}
+
+/// The newest process of this name is silent, all others were heard just now.
+std::function<std::optional<std::chrono::milliseconds>(pid_t)> silent(const std::string& pids,
+                                                                      int processes) {
+  return [=](pid_t pid) -> std::optional<std::chrono::milliseconds> {
+    const auto all = lines(pids);
+    const bool it = static_cast<int>(all.size()) <= processes && !all.empty() && std::stoi(all.back()) == pid;
+    return it ? 10s : 10ms;
+  };
+}
+
+TEST_F(Supervision, WhatHangsIsContinuedAndThenKilled) {
+  options.hangs = 5300ms;  // 0.3 s after it was reported
+  options.silence = silent(path("hanging.pids"), 1);
+  start({waiting("one"), waiting("hanging"),
+         script("stopped",
+                "echo $$ >>$F/stopped.pids; kill -STOP $$; "
+                "echo >>$F/continued; exec sleep 100")});
+  const pid_t hanging = process("hanging");
+  EXPECT_TRUE(runs(process("hanging", 2)));
+  EXPECT_FALSE(runs(hanging));
+  EXPECT_FALSE(std::filesystem::exists(path("continued"))) << "it was heard";
+  kill(process("stopped"), SIGKILL);
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+  EXPECT_EQ(lines(path("one.pids")).size(), 1u);
+  EXPECT_THAT(read(path("said")), HasSubstr("hanging is silent for 10.0 s: it hangs or was stopped"));
+  EXPECT_THAT(read(path("said")), HasSubstr("hanging still hangs and is killed"));
+  EXPECT_THAT(read(path("said")), HasSubstr("hanging ended (killed by signal 9)"));
+}
+
+TEST_F(Supervision, WhatWasStoppedIsContinued) {
+  options.silence = silent(path("stopped.pids"), 1);
+  start({waiting("one"), script("stopped",
+                                "echo $$ >>$F/stopped.pids; kill -STOP $$; echo >>$F/continued; "
+                                "exec sleep 100")});
+  EXPECT_TRUE(until([&] { return std::filesystem::exists(path("continued")); }));
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+}
+
+// The network is away, or the machine slept.
+TEST_F(Supervision, WhereNobodyIsHeardNobodyIsKilled) {
+  options.hangs = options.silent;
+  options.silence = [](pid_t) { return std::optional<std::chrono::milliseconds>(1h); };
+  start({waiting("one"), waiting("two")});
+  process("one");
+  std::this_thread::sleep_for(3s);
+  EXPECT_EQ(lines(path("one.pids")).size(), 1u);
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+  EXPECT_EQ(read(path("said")), "");
+}
+
+TEST_F(Supervision, LinesOfOthersAreReported) {
+  int ends[2];
+  ASSERT_EQ(pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0);
+  options.lines = ends[0];
+  start({waiting("one")});
+  process("one");
+  ASSERT_EQ(write(ends[1], "first\nsec", 9), 9);
+  EXPECT_TRUE(until([&] { return lines(path("said")).size() == 1; }));
+  ASSERT_EQ(write(ends[1], "ond\n", 4), 4);
+  EXPECT_TRUE(until([&] { return lines(path("said")).size() == 2; }));
+  EXPECT_EQ(lines(path("said")), (std::vector<std::string>{"egocal up: first", "egocal up: second"}));
+  close(ends[1]);
+  close(ends[0]);
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+}
+
+bool echoes(int terminal) {
+  struct termios modes {};
+  return tcgetattr(terminal, &modes) == 0 && (modes.c_lflag & ECHO) != 0;
+}
+
+TEST_F(Supervision, AKilledMonitorLeavesTheTerminalAsItWas) {
+  int master = -1;
+  Program monitor =
+      script("monitor", "echo $$ >>$F/monitor.pids; stty raw -echo; echo >>$F/raw; exec sleep 100");
+  monitor.foreground = true;
+  pid = forkpty(&master, nullptr, nullptr, nullptr);
+  if (pid == 0) _exit(tools::supervise({monitor}, options));
+  const pid_t first = process("monitor");
+  ASSERT_TRUE(until([&] { return lines(path("raw")).size() == 1; }));
+  ASSERT_FALSE(echoes(master));
+  kill(first, SIGKILL);
+  const pid_t second = process("monitor", 2);
+  ASSERT_TRUE(until([&] { return lines(path("raw")).size() == 2; }));
+  kill(second, SIGKILL);
+  EXPECT_TRUE(until([&] { return echoes(master); }));
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+  EXPECT_TRUE(echoes(master));
+  close(master);
+}
+
+// Whatever its speed, the program in front has stopped once when the shell goes on, and it is continued with
+// us.
+TEST_F(Supervision, CtrlZWaitsUntilTheTerminalIsGivenBack) {
+  int master = -1;
+  Program slow = script("slow",
+                        "trap 'sleep 0.3; echo >>$F/given_back; kill -STOP $$; echo >>$F/continued' TSTP\n"
+                        "echo $$ >>$F/slow.pids\nwhile :; do :; done");
+  slow.foreground = true;
+  // a shell between us, as a process group without one cannot be stopped
+  const pid_t shell = forkpty(&master, nullptr, nullptr, nullptr);
+  if (shell == 0) {
+    const pid_t job = fork();
+    if (job == 0) {
+      setpgid(0, 0);
+      signal(SIGTTOU, SIG_IGN);
+      tcsetpgrp(STDIN_FILENO, getpid());
+      signal(SIGTTOU, SIG_DFL);
+      _exit(tools::supervise({slow}, options));
+    }
+    for (int state = 0; waitpid(job, &state, WUNTRACED) == job;) {
+      if (!WIFSTOPPED(state)) _exit(WIFEXITED(state) ? WEXITSTATUS(state) : 1);
+      std::ofstream(path("stopped"), std::ios::app) << std::filesystem::exists(path("given_back")) << "\n";
+      kill(-job, SIGCONT);  // fg
+    }
+    _exit(1);
+  }
+  process("slow");
+  for (std::size_t i = 1; i <= 2; ++i) {
+    std::this_thread::sleep_for(300ms);  // nobody presses it before the job runs again
+    ASSERT_EQ(write(master, "\x1a", 1), 1);
+    ASSERT_TRUE(until([&] { return lines(path("continued")).size() == i; }, 5s)) << i;
+    EXPECT_EQ(lines(path("stopped")), std::vector<std::string>(i, "1"));
+  }
+  ASSERT_EQ(write(master, "\x03", 1), 1);
+  int state = 0;
+  EXPECT_TRUE(until([&] { return waitpid(shell, &state, WNOHANG) == shell; }));
+  close(master);
 }
 
 TEST_F(Supervision, OutputsAreKeptApartAndBounded) {

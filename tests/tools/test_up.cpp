@@ -165,6 +165,33 @@ TEST_F(Up, APageThatContradictsEndsWithThreeWhateverTheProcessesSaid) {
   EXPECT_THAT(read(path("said")), HasSubstr("report-lidar-camera.html: contradictory: The mounting changed"));
 }
 
+// Here by solvers that were started with another rig; one that hangs leaves the same.
+TEST_F(Up, AnAnswerWithoutTheEndOfTheLogIsNotOneOfTheLog) {
+  ChildProcess egocal = up({"--log", log, "--speed", "4"});
+  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
+  std::this_thread::sleep_for(3s);
+  const std::string text = read(rig);
+  std::string renamed = text;
+  for (std::size_t at = 0; (at = renamed.find("\"camera\"", at)) != std::string::npos;) renamed[at + 1] = 'k';
+  std::ofstream(rig) << renamed;
+  for (const char* name : {"egocal-fast", "egocal-global"}) kill(child(egocal.pid(), name), SIGKILL);
+  EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
+  const std::string said = read(path("said"));
+  EXPECT_THAT(said, HasSubstr("lidar -> camera: no solver answers the motions of the last 5 s"));
+  EXPECT_THAT(said, HasSubstr("lidar -> camera: old answer, the last "));
+  EXPECT_THAT(said, HasSubstr("are not in it (no solver answered them). Before: good: "));
+}
+
+TEST_F(Up, AProcessThatWasStoppedIsContinuedAndNothingIsLost) {
+  ChildProcess egocal = up({"--log", log, "--speed", "10"});
+  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
+  std::this_thread::sleep_for(2s);
+  kill(child(egocal.pid(), "egocal-pairing"), SIGSTOP);
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing is silent for "));
+  EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven), 400 motion pairs"));
+}
+
 TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
   ChildProcess egocal = up({});
   const pid_t self = egocal.pid();

@@ -171,6 +171,24 @@ std::optional<double> Answers::seconds_not_judged(const PairName& pair) const {
   return 1e-6 * static_cast<double>(std::max<std::int64_t>(0, newest->second.utime - known->utime));
 }
 
+bool Answers::answered_to_the_end(const PairName& pair) const {
+  const auto newest = newest_.find(pair);
+  if (newest == newest_.end()) return true;
+  const Best* const answer = best(pair);
+  return answer && answer->message.session == newest->second.session &&
+         answer->message.seq >= newest->second.seq;
+}
+
+double Answers::seconds_not_answered(const PairName& pair) const {
+  if (answered_to_the_end(pair)) return 0;
+  const Newest& newest = newest_.at(pair);
+  const Best* const answer = best(pair);
+  const bool same_session = answer && answer->message.session == newest.session;
+  // a session is named by the time at which it began
+  const std::int64_t from = same_session ? answer->message.utime : newest.session;
+  return 1e-6 * static_cast<double>(std::max<std::int64_t>(0, newest.utime - from));
+}
+
 bool unusable(const Diagnosis& diagnosis) {
   return diagnosis.verdict == Verdict::contradictory || (diagnosis.goal && !diagnosis.goal->reached);
 }

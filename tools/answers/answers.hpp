@@ -51,6 +51,10 @@ class Answers {
   bool judged_to_the_end(const PairName& pair) const;
   /// How much of the drive came after what that verdict is about [s]; nothing: there is no verdict.
   std::optional<double> seconds_not_judged(const PairName& pair) const;
+  /// The answer that counts is one to the newest problem that was heard; also where none was heard.
+  bool answered_to_the_end(const PairName& pair) const;
+  /// How much of the drive came after what that answer knows [s]; 0 where it knows all of it.
+  double seconds_not_answered(const PairName& pair) const;
   /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
   /// The scale of one of the pair's sensors is to be found, and none that was verified is known of the

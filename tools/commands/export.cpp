@@ -64,7 +64,7 @@ Found recorded(const Options& options) {
 
 /// Solvers send their newest answer, and pairing its problem, again every second. What is certified for a
 /// problem on the bus cannot be outdone but by newer problems; anything less is waited with until the end.
-Found live(const Options& options) {
+Found heard(const Options& options) {
   const bus::Rig rig = bus::read_rig(options.rig);
   std::vector<PairName> pairs;
   for (const bus::PairConfig& pair : rig.pairs) pairs.emplace_back(pair.a, pair.b);
@@ -99,7 +99,8 @@ Found live(const Options& options) {
   const auto done = [&] {
     const bool waits = judged_here || std::chrono::steady_clock::now() < heard_all;
     return std::all_of(found.pairs.begin(), found.pairs.end(), [&](const PairName& pair) {
-      return found.answers.certified(pair) && (!waits || found.answers.diagnosis(pair));
+      return found.answers.certified(pair) && found.answers.answered_to_the_end(pair) &&
+             (!waits || found.answers.diagnosis(pair));
     });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
@@ -107,22 +108,32 @@ Found live(const Options& options) {
   return found;
 }
 
+/// Live an answer counts where its problem is sent: pairing repeats it once a second, and solvers repeat
+/// their answer for hours when pairing hangs or is gone. Of a log it is what it was.
+bool is_current(const PairName& pair, const Answers& answers, bool live) {
+  return !live || (answers.best(pair)->checked.standing == bus::Standing::verified &&
+                   answers.seconds_not_answered(pair) <= longest_not_judged);
+}
+
 /// Of a pair that has an answer; warns of what is missing for it to be certified.
-NamedExtrinsic named(const PairName& pair, const Answers& answers) {
+NamedExtrinsic named(const PairName& pair, const Answers& answers, bool live) {
   const Answers::Best& best = *answers.best(pair);
   const Diagnosis* const diagnosis = answers.diagnosis(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Answer& answer = best.checked.answer;
   if (best.checked.standing == bus::Standing::unverified)
-    fmt::print(stderr,
-               "egocal: warning: {}: this answer could not be verified: its problem was not received\n",
-               text(pair));
+    fmt::print(
+        stderr, "egocal: warning: {}: this answer could not be verified: its problem was not received{}\n",
+        text(pair), live ? ", so pairing is silent and the answer may be old; it is marked unusable" : "");
   else if (!best.certified())
     fmt::print(stderr, "egocal: warning: {}: this answer is not certified\n", text(pair));
   if (answers.lacks_scale(pair))
     fmt::print(stderr,
                "egocal: warning: {}: the scale of this answer could not be verified: it was not received\n",
                text(pair));
+  if (const double rest = answers.seconds_not_answered(pair); rest > longest_not_judged)
+    fmt::print(stderr, "egocal: warning: {}: the last {:.0f} s of the drive are not in this answer\n",
+               text(pair), rest);
   if (const double rest = answers.seconds_not_judged(pair).value_or(0); rest > longest_not_judged)
     fmt::print(stderr, "egocal: warning: {}: the last {:.0f} s of the drive are not judged\n", text(pair),
                rest);
@@ -134,7 +145,8 @@ NamedExtrinsic named(const PairName& pair, const Answers& answers) {
                            answers.certified(pair),
                            best.message.pairs,
                            answer.observability.stddev};
-  extrinsic.usable = !diagnosis || diagnosis->verdict != Verdict::contradictory;
+  extrinsic.usable =
+      is_current(pair, answers, live) && (!diagnosis || diagnosis->verdict != Verdict::contradictory);
   if (diagnosis) extrinsic.verdict = to_string(diagnosis->verdict);
   if (scale)
     extrinsic.scale = NamedScale{scale->sensor, scale->solution.scale, scale->solution.stddev,
@@ -156,7 +168,8 @@ std::string text_of(const std::vector<NamedExtrinsic>& extrinsics, const Options
 
 void run(const Options& options) {
   if (options.log.empty() == options.rig.empty()) throw UsageError("export: expected either --log or --rig");
-  const Found found = options.log.empty() ? live(options) : recorded(options);
+  const bool live = options.log.empty();
+  const Found found = live ? heard(options) : recorded(options);
   for (const auto& [reason, count] : found.answers.refused())
     fmt::print(stderr, "egocal: warning: {} answers were refused: {}\n", count, reason);
   std::vector<NamedExtrinsic> extrinsics;
@@ -164,8 +177,8 @@ void run(const Options& options) {
   for (const PairName& pair : found.pairs)
     if (found.answers.best(pair)) {
       const Diagnosis* diagnosis = found.answers.diagnosis(pair);
-      refused = refused || (diagnosis && unusable(*diagnosis));
-      extrinsics.push_back(named(pair, found.answers));
+      refused = refused || (diagnosis && unusable(*diagnosis)) || !is_current(pair, found.answers, live);
+      extrinsics.push_back(named(pair, found.answers, live));
     } else if (options.all)
       fmt::print(stderr, "egocal: warning: there is no answer for the pair {}\n", text(pair));
     else

@@ -150,11 +150,10 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  std::optional<AnswerListener> listener;
-  if (!options.log.empty()) {
-    listener.emplace(rig, url);
-    supervisor.awaited = [&listener] { return listener->not_judged(); };
-  }
+  BusWatch watch(rig, url, options.log);
+  supervisor.silence = [&watch](pid_t pid) { return watch.silence(pid); };
+  supervisor.lines = watch.lines();
+  if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };
   const int code = supervise(programs, supervisor);
   if (code == 0 && passing) passing->discard();
   if (code != 0) {
@@ -163,8 +162,8 @@ void run(const Options& options) {
                  passing->file());
     throw cli::Exit{1};
   }
-  if (!listener) return;
-  const Outcome outcome = listener->outcome();
+  if (options.log.empty()) return;
+  const Outcome outcome = watch.outcome();
   if (!outcome.answered)
     throw Error("up: nothing was calibrated: no solver answered; see " +
                 (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));

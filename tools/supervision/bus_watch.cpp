@@ -10,21 +10,25 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <map>
 #include <new>
 #include <utility>
-#include <vector>
 
 #include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/process.hpp"
 #include "egocal/error.hpp"
 
 namespace egocal::tools {
+
+using std::chrono::milliseconds;
 
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time) {
   bus::Loop loop(url, {.handle_signals = false, .require_network = false});
@@ -43,67 +47,14 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 
 namespace {
 
-/// A verdict that does not know the end of the drive states that first.
-std::string judgement_of(const PairName& pair, const Answers& answers) {
-  const Diagnosis* const diagnosis = answers.diagnosis(pair);
-  if (!diagnosis) return "not judged";
-  const double rest = answers.seconds_not_judged(pair).value_or(0);
-  const bool to_the_end = answers.judged_to_the_end(pair) || rest == 0;
-  return (to_the_end ? "" : fmt::format("the last {:.1f} s are not judged; before: ", rest)) +
-         verdict_line(*diagnosis);
-}
+/// A solver answers within milliseconds, and one that was killed is back within a second.
+constexpr milliseconds answered_within{5000};
+/// Of our processes and of others on this host: a limit on memory.
+constexpr std::size_t most_processes = 32;
 
-/// Of a pair that has an answer.
-std::string line_of(const PairName& pair, const Answers& answers) {
-  const Answers::Best& best = *answers.best(pair);
-  const bus::CheckedScale* const scale = answers.scale(pair);
-  const Pose T = to_pose(best.checked.answer.T_a_b);
-  const Eigen::Quaterniond& q = T.rotation;
-  std::string text = fmt::format(
-      "{} -> {}: {}\n  {}, {} motion pairs; "
-      "translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} {:.5f} {:.5f} {:.5f}\n",
-      pair.first, pair.second, judgement_of(pair, answers),
-      answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
-      T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
-  if (scale)
-    text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
-                        scale->solution.stddev,
-                        scale->verified && scale->solution.certified ? "optimal (proven)" : "not proven");
-  if (answers.lacks_scale(pair))
-    text += "  the scale could not be verified: this answer holds at a scale that is not known\n";
-  return text;
-}
-
-/// What the motions cannot rule out, once for all pairs of which it holds.
-std::string possible_of_all(const bus::Rig& rig, const Answers& answers) {
-  std::map<std::string, std::vector<std::string>> pairs_of;
-  for (const bus::PairConfig& config : rig.pairs)
-    if (const Diagnosis* const diagnosis = answers.diagnosis({config.a, config.b}))
-      for (const std::string& line : possible_lines(*diagnosis))
-        pairs_of[line].push_back(config.a + " -> " + config.b);
-  std::string text;
-  for (const auto& [line, pairs] : pairs_of)
-    text += fmt::format("possible, {}: {}\n",
-                        pairs.size() == 1 ? pairs[0] : fmt::format("{} pairs", pairs.size()), line);
-  return text;
-}
-
-/// What the parent reads: a character each for answered and unusable, then the text.
-std::string report(const bus::Rig& rig, const Answers& answers) {
-  Outcome outcome;
-  for (const bus::PairConfig& config : rig.pairs) {
-    const PairName pair{config.a, config.b};
-    if (!answers.best(pair)) {
-      outcome.text += fmt::format("{} -> {}: no answer\n", pair.first, pair.second);
-      continue;
-    }
-    const Diagnosis* diagnosis = answers.diagnosis(pair);
-    outcome.answered = true;
-    outcome.unusable = outcome.unusable || (diagnosis && unusable(*diagnosis));
-    outcome.text += line_of(pair, answers);
-  }
-  outcome.text += possible_of_all(rig, answers);
-  return std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text;
+std::int64_t mono_ms() {
+  return std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 void write_all(int out, const std::string& text) {
@@ -114,46 +65,113 @@ void write_all(int out, const std::string& text) {
   }
 }
 
-int not_judged(const bus::Rig& rig, const Answers& answers) {
-  return static_cast<int>(
-      std::count_if(rig.pairs.begin(), rig.pairs.end(), [&](const bus::PairConfig& config) {
-        const PairName pair{config.a, config.b};
-        return answers.best(pair) && !answers.judged_to_the_end(pair);
-      }));
-}
+}  // namespace
 
-[[noreturn]] void listen(const bus::Rig& rig, const std::string& url, int out,
-                         std::atomic<int>& not_judged_count) {
-  try {
-    bus::Loop loop(url, {.require_network = false});
-    Answers answers;
-    answers.expect_scales(rig);
-    const auto hear = [&](const auto& message, const bus::Arrival&) { answers.hear(message); };
-    for (const bus::PairConfig& pair : rig.pairs) {
-      loop.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b), hear);
-      loop.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b), hear);
-      loop.subscribe<verdict_t>(bus::verdict_channel(pair.a, pair.b), hear);
-      loop.subscribe<scale_problem_t>(bus::scale_problem_channel(pair.a, pair.b), hear);
-      loop.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b), hear);
+struct BusWatch::Shared {
+  struct Process {
+    std::atomic<pid_t> pid{-1};
+    std::atomic<std::int64_t> heard_ms{0};
+  };
+  std::atomic<int> awaited{0};
+  std::array<Process, most_processes> processes;
+
+  void heard(pid_t pid, std::int64_t now_ms) {
+    auto entry = std::find_if(processes.begin(), processes.end(),
+                              [pid](const Process& process) { return process.pid == pid; });
+    if (entry == processes.end()) {
+      entry = std::min_element(processes.begin(), processes.end(),
+                               [](const Process& x, const Process& y) { return x.heard_ms < y.heard_ms; });
+      entry->pid = -1;
     }
-    loop.every(std::chrono::milliseconds(100), [&] { not_judged_count = not_judged(rig, answers); });
-    loop.run();
-    write_all(out, report(rig, answers));
-  } catch (const std::exception&) {
-    // nothing was received, then
+    entry->heard_ms = now_ms;
+    entry->pid = pid;
   }
-  _exit(0);
-}
+};
+
+namespace {
+
+/// What the listening process knows.
+class Listening {
+ public:
+  Listening(const bus::Rig& rig, const std::string& url) : rig_(rig), loop_(url, {.require_network = false}) {
+    answers_.expect_scales(rig);
+    const auto hear = [this](const auto& message, const bus::Arrival&) { answers_.hear(message); };
+    for (const bus::PairConfig& pair : rig.pairs) {
+      loop_.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b), hear);
+      loop_.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b), hear);
+      loop_.subscribe<verdict_t>(bus::verdict_channel(pair.a, pair.b), hear);
+      loop_.subscribe<scale_problem_t>(bus::scale_problem_channel(pair.a, pair.b), hear);
+      loop_.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b), hear);
+    }
+  }
+  bus::Loop& loop() { return loop_; }
+  Outcome outcome(const std::string& log) const {
+    return outcome_of(rig_, answers_, log_extent(log, rig_), read_until_);
+  }
+
+  void hear(const status_t& status) {
+    if (status.role == bus::role_name(bus::Role::pairing) &&
+        status.state != bus::state_name(bus::State::waiting))
+      for (const acknowledgement_t& entry : status.acknowledgements)
+        if (read_until_.size() < most_channels || read_until_.contains(entry.channel))
+          read_until_[entry.channel] = entry.utime;
+  }
+
+  int awaited() const {
+    return static_cast<int>(
+        std::count_if(rig_.pairs.begin(), rig_.pairs.end(), [&](const bus::PairConfig& config) {
+          const PairName pair{config.a, config.b};
+          return answers_.best(pair) &&
+                 !(answers_.judged_to_the_end(pair) && answers_.answered_to_the_end(pair));
+        }));
+  }
+
+  /// Lines about pairs that have not been answered for a while, and are again.
+  std::string news(std::int64_t now_ms) {
+    std::string text;
+    for (const bus::PairConfig& config : rig_.pairs) {
+      const PairName pair{config.a, config.b};
+      const Answers::Best* const best = answers_.best(pair);
+      const Key key = best ? Key{best->message.session, best->message.seq} : Key{-1, -1};
+      Unanswered& of = unanswered_[pair];
+      if (answers_.answered_to_the_end(pair) || key != of.key) {
+        if (of.reported) text += fmt::format("{} -> {}: a solver answers again\n", pair.first, pair.second);
+        of = {key, now_ms, false};
+      } else if (!of.reported && now_ms - of.since_ms > answered_within.count()) {
+        of.reported = true;
+        text += fmt::format("{} -> {}: no solver answers the motions of the last {} s\n", pair.first,
+                            pair.second, answered_within.count() / 1000);
+      }
+    }
+    return text;
+  }
+
+ private:
+  static constexpr std::size_t most_channels = 1000;  // a limit on memory
+  using Key = std::pair<std::int64_t, std::int64_t>;  // session and number of an answer
+  struct Unanswered {
+    Key key{-1, -1};
+    std::int64_t since_ms = 0;
+    bool reported = false;
+  };
+
+  const bus::Rig& rig_;
+  bus::Loop loop_;
+  Answers answers_;
+  ReadUntil read_until_;
+  std::map<PairName, Unanswered> unanswered_;
+};
 
 }  // namespace
 
-AnswerListener::AnswerListener(const bus::Rig& rig, const std::string& url) {
-  void* const shared =
-      mmap(nullptr, sizeof *not_judged_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) throw Error(std::string("mmap: ") + std::strerror(errno));
-  not_judged_ = new (shared) std::atomic<int>(0);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Error(std::string("pipe: ") + std::strerror(errno));
+BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log) {
+  void* const memory =
+      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) throw Error(std::string("mmap: ") + std::strerror(errno));
+  shared_ = new (memory) Shared;
+  int ends[2], line_ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0 || pipe2(line_ends, O_CLOEXEC | O_NONBLOCK) != 0)
+    throw Error(std::string("pipe: ") + std::strerror(errno));
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) {
@@ -161,22 +179,58 @@ AnswerListener::AnswerListener(const bus::Rig& rig, const std::string& url) {
     if (getppid() != parent) _exit(0);
     setpgid(0, 0);  // a Ctrl-C is not for it
     close(ends[0]);
-    listen(rig, url, ends[1], *not_judged_);
+    close(line_ends[0]);
+    try {
+      Listening listening(rig, url);
+      bus::Loop& loop = listening.loop();
+      loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+        listening.hear(status);
+        if (status.host == loop.host()) shared_->heard(status.pid, mono_ms());
+      });
+      loop.every(milliseconds(100), [&] {
+        shared_->awaited = listening.awaited();
+        // one that nobody reads is dropped
+        write_all(line_ends[1], listening.news(mono_ms()));
+      });
+      loop.run();
+      if (!log.empty()) {
+        const Outcome outcome = listening.outcome(log);
+        write_all(ends[1],
+                  std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
+      }
+    } catch (const std::exception&) {
+      // nothing was received, then
+    }
+    _exit(0);
   }
   close(ends[1]);
+  close(line_ends[1]);
   pipe_ = ends[0];
+  lines_ = line_ends[0];
   if (pid_ > 0) return;
   close(pipe_);
+  close(lines_);
   throw Error(std::string("fork: ") + std::strerror(errno));
 }
 
-AnswerListener::~AnswerListener() {
+BusWatch::~BusWatch() {
   end();
   close(pipe_);
-  munmap(not_judged_, sizeof *not_judged_);
+  close(lines_);
+  munmap(shared_, sizeof(Shared));
 }
 
-void AnswerListener::end() {
+std::optional<milliseconds> BusWatch::silence(pid_t pid) const {
+  for (const Shared::Process& process : shared_->processes)
+    if (process.pid == pid) return milliseconds(std::max<std::int64_t>(0, mono_ms() - process.heard_ms));
+  return std::nullopt;
+}
+
+int BusWatch::awaited() const {
+  return shared_->awaited;
+}
+
+void BusWatch::end() {
   if (pid_ < 0) return;
   kill(pid_, SIGTERM);
   // what it still writes must not block it
@@ -188,7 +242,7 @@ void AnswerListener::end() {
   }
 }
 
-Outcome AnswerListener::outcome() {
+Outcome BusWatch::outcome() {
   kill(pid_, SIGTERM);
   std::string text;
   char part[4096];

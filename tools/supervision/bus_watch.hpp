@@ -4,45 +4,45 @@
 
 #include <sys/types.h>
 
-#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
 
 #include "egocal/bus/rig.hpp"
+#include "supervision/outcome.hpp"
 
 namespace egocal::tools {
 
 /// A pairing process that is alive on the bus within this time, as text: "egocal-pairing (pid 7 on car)".
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
 
-/// What was calibrated while somebody watched.
-struct Outcome {
-  bool answered = false;  ///< any solver, for any pair
-  bool unusable = false;  ///< some pair's motions contradict each other, or miss the goal
-  std::string text;       ///< of each pair verdict, proof and transform, or that there is no answer
-};
-
-/// Listens to the answers and verdicts of a rig while this object exists: a process of its own, so that the
-/// supervisor has no threads. Ends with us.
-class AnswerListener {
+/// Listens to the processes, answers and verdicts of a rig while this object exists: a process of its own, so
+/// that the supervisor has no threads. Ends with us.
+class BusWatch {
  public:
-  AnswerListener(const bus::Rig& rig, const std::string& url);
-  ~AnswerListener();
-  AnswerListener(const AnswerListener&) = delete;
-  AnswerListener& operator=(const AnswerListener&) = delete;
+  /// Of a bus on which this log is played; empty: none is.
+  BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log);
+  ~BusWatch();
+  BusWatch(const BusWatch&) = delete;
+  BusWatch& operator=(const BusWatch&) = delete;
 
-  /// Answers whose newest verdict is not about the newest motions: those of a drive's end still come.
-  int not_judged() const { return *not_judged_; }
-  /// Stops listening. Once.
+  /// How long ago the status of a process on this host was received; nothing: never.
+  std::optional<std::chrono::milliseconds> silence(pid_t pid) const;
+  /// Pairs whose newest answer or verdict is not about the newest motions: those of a drive's end still come.
+  int awaited() const;
+  /// Readable, without blocking: lines of text about pairs that no solver answers, and that are answered
+  /// again.
+  int lines() const { return lines_; }
+  /// Stops listening and reads the log for what is missing in the answers. Once.
   Outcome outcome();
 
  private:
+  struct Shared;
   void end();
 
   pid_t pid_ = -1;
-  int pipe_ = -1;
-  std::atomic<int>* not_judged_ = nullptr;  ///< in memory that both processes share
+  int pipe_ = -1, lines_ = -1;
+  Shared* shared_ = nullptr;  ///< memory of both processes
 };
 
 }  // namespace egocal::tools

@@ -8,6 +8,7 @@
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "egocal/error.hpp"
 #include "supervision/output_file.hpp"
@@ -29,6 +31,8 @@ using std::chrono::milliseconds;
 
 /// Between two questions for what is still awaited: people do not see it, and it costs nothing.
 constexpr milliseconds look_again{100};
+/// A foreground program has given the terminal back by then.
+constexpr milliseconds gives_back{1000};
 
 struct Child {
   Program program;
@@ -39,6 +43,7 @@ struct Child {
   bool finished = false;     ///< ended as it should
   std::string reported{};    ///< how it ended when that was reported last,
   Clock::time_point reported_at{};
+  std::optional<Clock::time_point> silent_since{};  ///< while others are heard; reported
 };
 
 /// In the child, between fork and exec: only what is safe there.
@@ -104,6 +109,20 @@ class Messages {
   std::string last_line_;
 };
 
+/// The modes of the terminal as they were before programs that change them.
+class TerminalModes {
+ public:
+  TerminalModes() { known_ = tcgetattr(STDIN_FILENO, &modes_) == 0; }
+  /// Not of a terminal that is another job's now.
+  void restore() const {
+    if (known_ && tcgetpgrp(STDIN_FILENO) == getpgrp()) tcsetattr(STDIN_FILENO, TCSADRAIN, &modes_);
+  }
+
+ private:
+  struct termios modes_ {};
+  bool known_ = false;
+};
+
 class Supervisor {
  public:
   Supervisor(const std::vector<Program>& programs, const SupervisorOptions& options) : options_(options) {
@@ -111,6 +130,11 @@ class Supervisor {
     sigset_t mask;
     sigemptyset(&mask);
     for (const int signal : {SIGINT, SIGTERM, SIGCHLD, SIGHUP}) sigaddset(&mask, signal);
+    if (std::any_of(programs.begin(), programs.end(),
+                    [](const Program& program) { return program.foreground; })) {
+      terminal_.emplace();
+      sigaddset(&mask, SIGTSTP);
+    }
     sigprocmask(SIG_BLOCK, &mask, &old_mask_);
     signals_ = signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
     if (signals_ < 0) throw Error(std::string("signalfd: ") + std::strerror(errno));
@@ -143,8 +167,40 @@ class Supervisor {
       for (Child& child : children_)
         if (child.pid < 0 && !child.finished && now >= child.start_at) start(child);
       if (end_at_ && now >= *end_at_ && !waits_for_answers(now)) end_all(SIGTERM, false);
+      if (options_.silence) watch_silence(now);
     }
     wait();
+  }
+
+  /// Silence is counted only while another process is heard: a network that is away is nobody's fault, nor is
+  /// a machine that slept.
+  void watch_silence(Clock::time_point now) {
+    const auto silent = [this](const Child& child) {
+      return child.pid > 0 ? options_.silence(child.pid) : std::nullopt;
+    };
+    const bool any_heard = std::any_of(children_.begin(), children_.end(), [&](const Child& child) {
+      return silent(child).value_or(options_.silent) < options_.silent;
+    });
+    for (Child& child : children_) {
+      if (child.program.foreground) continue;
+      const std::optional<milliseconds> since = silent(child);
+      if (!any_heard || !since || *since < options_.silent) {
+        if (child.silent_since && since && *since < options_.silent)
+          messages_.report(fmt::format("{} is heard again", child.program.name));
+        child.silent_since.reset();
+      } else if (!child.silent_since) {
+        child.silent_since = now;
+        messages_.report(
+            fmt::format("{} is silent for {:.1f} s: it hangs or was stopped; it is continued, and "
+                        "killed where that does not help",
+                        child.program.name, 1e-3 * static_cast<double>(since->count())));
+        kill(child.pid, SIGCONT);
+      } else if (now - *child.silent_since > options_.hangs - options_.silent) {
+        messages_.report(fmt::format("{} still hangs and is killed", child.program.name));
+        kill(child.pid, SIGKILL);
+        child.silent_since.reset();
+      }
+    }
   }
 
   /// After a log's end. What does not come any more is not waited for.
@@ -153,7 +209,8 @@ class Supervisor {
     if (awaited == 0) return false;
     if (!awaited_ || awaited < *awaited_) {
       if (!awaited_)
-        messages_.report(fmt::format("the log has ended; answers that are still to be judged: {}", awaited));
+        messages_.report(
+            fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
       awaited_ = awaited;
       fell_at_ = now;
     }
@@ -207,16 +264,55 @@ class Supervisor {
         if (child.pid < 0 && !child.finished) until = std::min(until, child.start_at);
     }
     const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now()).count();
-    pollfd waiting{signals_, POLLIN, 0};
-    poll(&waiting, 1, static_cast<int>(std::clamp<long long>(left + 1, 0, 1000)));
+    pollfd waiting[] = {{signals_, POLLIN, 0}, {lines_, POLLIN, 0}};
+    poll(waiting, std::size(waiting), static_cast<int>(std::clamp<long long>(left + 1, 0, 1000)));
+    if (waiting[1].revents != 0) report_lines();
     signalfd_siginfo info;
     while (read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info))
-      if (info.ssi_signo != SIGCHLD && !ending_) {
+      if (info.ssi_signo == SIGTSTP) {
+        suspend(info.ssi_code == SI_KERNEL);
+      } else if (info.ssi_signo != SIGCHLD && !ending_) {
         // a key of the terminal has reached those in the foreground already
         const bool by_key = info.ssi_code == SI_KERNEL && info.ssi_signo == SIGINT;
         end_all(info.ssi_signo == SIGINT ? SIGINT : SIGTERM, by_key);
       }
     reap();
+  }
+
+  void report_lines() {
+    char part[4096];
+    const ssize_t n = read(lines_, part, sizeof part);
+    if (n > 0) {
+      said_.append(part, static_cast<std::size_t>(n));
+      for (std::size_t end = said_.find('\n'); end != std::string::npos; end = said_.find('\n')) {
+        messages_.report(said_.substr(0, end));
+        said_.erase(0, end + 1);
+      }
+    } else if (n == 0 || errno != EAGAIN) {
+      lines_ = -1;  // who wrote them is gone
+    }
+  }
+
+  /// A shell takes the terminal when we have stopped: the program that has it must have given it back by
+  /// then, or it would be stopped a second time when it does.
+  void suspend(bool by_key) {
+    for (const Child& child : children_) {
+      if (!child.program.foreground || child.pid <= 0) continue;
+      if (!by_key) kill(child.pid, SIGTSTP);
+      siginfo_t stopped{};
+      const Clock::time_point end = Clock::now() + gives_back;
+      while (waitid(P_PID, static_cast<id_t>(child.pid), &stopped, WSTOPPED | WNOHANG) == 0 &&
+             stopped.si_pid == 0 && Clock::now() < end)
+        std::this_thread::sleep_for(milliseconds(5));
+    }
+    sigset_t stop;
+    sigemptyset(&stop);
+    sigaddset(&stop, SIGTSTP);
+    raise(SIGTSTP);
+    sigprocmask(SIG_UNBLOCK, &stop, nullptr);  // stops here, until SIGCONT
+    sigprocmask(SIG_BLOCK, &stop, nullptr);
+    for (const Child& child : children_)
+      if (child.program.foreground && child.pid > 0) kill(child.pid, SIGCONT);
   }
 
   void reap() {
@@ -226,6 +322,8 @@ class Supervisor {
           std::find_if(children_.begin(), children_.end(), [pid](const Child& c) { return c.pid == pid; });
       if (child == children_.end()) continue;
       child->pid = -1;
+      child->silent_since.reset();
+      if (child->program.foreground) terminal_->restore();
       if (!ending_) ended(*child, status);
     }
   }
@@ -300,6 +398,9 @@ class Supervisor {
   sigset_t old_mask_{};
   int signals_ = -1;
   Messages messages_{options_};
+  std::optional<TerminalModes> terminal_;  ///< where a program has the terminal
+  int lines_ = options_.lines;
+  std::string said_;  ///< the beginning of a line
   std::optional<Clock::time_point> end_at_;
   bool wanted_at_once_ = false;  ///< the user has closed the monitor
   std::optional<int> awaited_;   ///< the fewest so far,

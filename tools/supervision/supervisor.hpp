@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,17 +24,26 @@ struct SupervisorOptions {
   /// How many answers are still awaited then; while this number falls within each `stall`, it is waited.
   std::function<int()> awaited{};
   std::chrono::milliseconds stall{5000};
+  /// How long ago a process was heard on the bus; nothing: never. A process that is silent while another one
+  /// is heard hangs, or somebody has stopped it: it is reported and continued (SIGCONT) after `silent`,
+  /// killed and started again after `hangs`. Foreground programs are left alone, and so is a process that was
+  /// never heard.
+  std::function<std::optional<std::chrono::milliseconds>(pid_t)> silence{};
+  std::chrono::milliseconds silent{5000}, hangs{20'000};
+  int lines = -1;  ///< lines from this file descriptor are reported as well; it does not block. -1: none
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
 
 /// Starts all, restarts what ends, with growing pauses and without a limit, passes SIGINT and
-/// SIGTERM on (SIGHUP as SIGTERM), ends all together. Only wrong usage (exit code 2) and a program that
-/// cannot be executed, and a foreground program that fails, end all, where that comes before it has once
-/// started well: no restart helps there. A Ctrl-C reaches each process once: only foreground programs share
-/// our terminal's process group. Whatever happens to us, SIGKILL included, the others get SIGTERM. Returns 0
-/// when they ended because they should, 1 when something could not be started (reported on standard error).
-/// Throws Error where an output file cannot be written at the first start; nothing is left running then.
-/// Later the output of a process whose file cannot be written goes to /dev/null.
+/// SIGTERM on (SIGHUP as SIGTERM), ends all together. With a foreground program SIGTSTP stops us when that
+/// has given the terminal back, and the terminal's modes are what they were when it is gone, however it
+/// ended. Only wrong usage (exit code 2) and a program that cannot be executed, and a foreground program that
+/// fails, end all, where that comes before it has once started well: no restart helps there. A Ctrl-C reaches
+/// each process once: only foreground programs share our terminal's process group. Whatever happens to us,
+/// SIGKILL included, the others get SIGTERM. Returns 0 when they ended because they should, 1 when something
+/// could not be started (reported on standard error). Throws Error where an output file cannot be written at
+/// the first start; nothing is left running then. Later the output of a process whose file cannot be written
+/// goes to /dev/null.
 int supervise(const std::vector<Program>& programs, const SupervisorOptions& options);
 
 }  // namespace egocal::tools

@@ -38,6 +38,9 @@ struct ModelOptions {
   /// A verdict is old where motions have come for this time since, and this more for each pair [s]: the
   /// diagnosis judges one pair after another, each in less than 0.1 s of its 4 % of a core.
   double judged_within = 10, judged_within_per_pair = 3;
+  /// An answer is old where problems have come for this time that it does not know [s]. A solver answers
+  /// within milliseconds; one that was killed is back within a second.
+  double answered_within = 5;
   double max_gap = 0.5;  ///< [s] of measured time between two problems; more is reported as a gap
   // Study of these: tests/monitor/test_model.cpp.
   /// A certificate, a fallback or a pause must have lasted this long before its end is an event [s]: solvers
@@ -109,6 +112,12 @@ struct PairState {
   std::vector<SolverTrack> solvers;
   std::optional<calibration_t> previous;  ///< the answer that counted when the last session ended
   int behind_in_a_row = 0;                ///< newest problems that are older than the answer that counts
+  /// Since when there are problems that the answer that counts does not know; empty: it knows the newest.
+  std::optional<std::int64_t> unanswered_mono_us{};
+  std::int64_t unanswered_seq = -1;  ///< that answer's
+  /// The answer that counts is not one of the present [s]: for so long no solver has answered what came
+  /// since, or nothing has come from pairing.
+  double old = 0;
   int counted = -1;  ///< the solver whose answer counts (egocal::outranks); -1: no answer yet
   Shown shown;
   /// Measured time [s since the session began] from which on only the fast solver ran; empty while the global
@@ -198,6 +207,8 @@ class Model {
   void watch_certificate(PairState& pair, Now now);
   void watch_verdict(const PairState& pair, const PairVerdict& verdict, Now now);
   void watch_age_of_verdict(PairState& pair, Now now);
+  void note_unanswered(PairState& pair, Now now);
+  void watch_age_of_answer(PairState& pair, Now now);
   void watch_loops(Now now);
 
   ModelOptions options_;
@@ -218,6 +229,8 @@ bool pair_is_paused(const Model& model, const PairState& pair);
 /// There are answers, and the pairing process whose problems they answer sends nothing: it hangs or is gone.
 /// It repeats its problems once a second.
 bool pairing_is_silent(const PairState& pair);
+/// The answer is verified and proven, its verdict is good, and both are of the present.
+bool is_good(const PairState& pair);
 /// "lidar -> camera", for events and lines.
 std::string pair_name(const std::string& a, const std::string& b);
 /// An answer made plain, with its error against the pair's truth, else against its nominal value.

@@ -21,12 +21,13 @@ struct ViewState {
   int selected = 0;     ///< pair
   double window_s = 0;  ///< time shown by the curves up to now; 0: all
   bool logarithmic = true;
-  bool frozen = false;  ///< the view is frozen, the calibration continues
-  int scroll = 0;       ///< events: lines up from the newest
-  int height = 24;      ///< of the screen: how far the events can be scrolled
-  std::string notice;   ///< one line for the bottom: the outcome of the last key
-  std::string source;   ///< where the messages come from
-  bool live = true;     ///< false: a log; there is no process to send commands to
+  bool frozen = false;          ///< the view is frozen, the calibration continues
+  int scroll = 0;               ///< events: lines up from the newest
+  int height = 24;              ///< of the screen: how far the events can be scrolled
+  std::string notice;           ///< one line for the bottom: the outcome of the last key
+  std::string source;           ///< where the messages come from
+  std::string network_error{};  ///< why nothing comes from there; empty: the network is there
+  bool live = true;             ///< false: a log; there is no process to send commands to
   Charset charset = Charset::ascii;
   int utc_offset_s = 0;
 };

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// An old answer never looks like a current one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "egocal/monitor/lines.hpp"
+#include "egocal/monitor/view.hpp"
+#include "scene.hpp"
+
+namespace egocal::monitor {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class AnswerAge : public testing::Test {
+ protected:
+  AnswerAge() { view.charset = Charset::unicode; }
+  static Now at(double seconds) {
+    const auto us = static_cast<std::int64_t>(1e6 * seconds);
+    return {1'000'000'000 + us, 1'600'000'100'000'000 + us};
+  }
+  /// Ten problems a second, each answered and judged where there is somebody to do it.
+  void drive(double from, double to, bool solver, bool pairing = true) {
+    for (int i = 0; from + 0.1 * i < to; ++i) {
+      const Now now = at(from + 0.1 * i);
+      if (pairing) {
+        problem = test::problem_at("lidar", "camera", ++step, 10);
+        model.on_problem(problem, now);
+      }
+      if (solver) model.on_calibration(test::calibration_at(problem, false), now);
+      if (solver && pairing) judge(now);
+      model.tick(now);
+    }
+  }
+  void judge(Now now) {
+    Diagnosis diagnosis;
+    diagnosis.verdict = Verdict::good;
+    diagnosis.reason = "The motions agree.";
+    verdict_t message =
+        bus::to_message(diagnosis, {DualQuaternion{}, test::begin_utime, test::begin_utime + 1'000'000, 100});
+    message.utime = problem.utime;
+    message.session = problem.session;
+    message.seq = problem.seq;
+    message.sensor_a = "lidar";
+    message.sensor_b = "camera";
+    message.sender = "egocal-diagnosis";
+    const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
+    ASSERT_TRUE(received) << received.reason;
+    model.on_verdict(message, *received.value, now);
+  }
+  std::string shown(Screen screen) {
+    view.screen = screen;
+    Canvas canvas(110, 42);
+    draw(canvas, model, view);
+    return canvas.to_text();
+  }
+  void expect_old(const std::string& why) {
+    for (const Screen screen : {Screen::overview, Screen::detail}) {
+      EXPECT_THAT(shown(screen), HasSubstr("? old answer"));
+      EXPECT_THAT(shown(screen), Not(HasSubstr("✓ good")));
+      EXPECT_THAT(shown(screen), HasSubstr(why));
+    }
+    EXPECT_THAT(shown(Screen::overview), HasSubstr("0 of 1 good  1 old"));
+    EXPECT_THAT(pair_lines(model, Charset::ascii), HasSubstr("lidar -> camera: ? old answer: " + why));
+    EXPECT_EQ(nlohmann::json::parse(json_line(model))["pairs"][0]["answer_old"], true);
+    const std::optional<NamedExtrinsic> exported = extrinsic_of(model.pairs()[0]);
+    ASSERT_TRUE(exported);
+    EXPECT_FALSE(exported->usable);
+  }
+  void expect_good() {
+    EXPECT_THAT(shown(Screen::overview), HasSubstr("✓ good"));
+    EXPECT_THAT(shown(Screen::overview), HasSubstr("1 of 1 good  1 proven"));
+    EXPECT_EQ(nlohmann::json::parse(json_line(model))["pairs"][0]["answer_old"], false);
+    EXPECT_TRUE(extrinsic_of(model.pairs()[0])->usable);
+  }
+
+  Model model;
+  ViewState view;
+  problem_t problem;
+  int step = 100;
+};
+
+TEST_F(AnswerAge, SolversThatHangLeaveAnOldOne) {
+  drive(0, 10, true);
+  expect_good();
+  drive(10, 13, false);
+  expect_good();
+  drive(13, 40, false);
+  expect_old("no solver answers what came in the last 30");
+  EXPECT_EQ(
+      std::count_if(model.events().begin(), model.events().end(),
+                    [](const Event& e) { return e.text.find("the answer is old") != std::string::npos; }),
+      1);
+  drive(40, 41, true);
+  expect_good();
+}
+
+TEST_F(AnswerAge, ASolverThatSkipsProblemsFollows) {
+  for (int i = 0; i < 20; ++i) {
+    drive(2.0 * i, 2.0 * i + 1.9, false);
+    drive(2.0 * i + 1.9, 2.0 * i + 2, true);
+    EXPECT_THAT(shown(Screen::overview), Not(HasSubstr("old answer")));
+  }
+}
+
+// Its solvers repeat their answer once a second.
+TEST_F(AnswerAge, APairingThatHangsLeavesAnOldOne) {
+  drive(0, 10, true);
+  drive(10, 40, true, false);
+  expect_old("pairing is silent for 30");
+  drive(40, 41, true);
+  expect_good();
+}
+
+TEST_F(AnswerAge, AMonitorThatCameLaterKnowsNoProblemAndVerifiesNothing) {
+  problem = test::problem_at("lidar", "camera", 100, 10);
+  model.on_calibration(test::calibration_at(problem, false), at(0), false);
+  judge(at(0));
+  model.tick(at(0.5));
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("? not verified"));
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("0 of 1 good"));
+}
+
+TEST_F(AnswerAge, WithoutANetworkTheHeaderSaysSo) {
+  drive(0, 1, true);
+  view.network_error = "no route";
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("NO NETWORK"));
+}
+
+// Several people may watch.
+TEST_F(AnswerAge, ASecondMonitorIsNoRestart) {
+  status_t first{}, second{};
+  first.name = second.name = "egocal-monitor";
+  first.role = second.role = "monitor";
+  first.state = second.state = "running";
+  first.pid = 7;
+  second.pid = 8;
+  first.run = 1;
+  second.run = 2;
+  for (int i = 0; i < 3; ++i) {
+    model.on_status(first, at(i));
+    model.on_status(second, at(i + 0.5));
+  }
+  EXPECT_EQ(model.processes().size(), 2u);
+  for (const Event& event : model.events()) EXPECT_THAT(event.text, HasSubstr("process is there"));
+}
+
+}  // namespace
+}  // namespace egocal::monitor

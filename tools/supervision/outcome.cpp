@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "supervision/outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "egocal/bus/convert.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// Streams do not begin and end together, and pairing waits for a neighbour to interpolate: less than this is
+/// not missed [s].
+constexpr double least_missing = 1;
+
+double seconds(std::int64_t us) {
+  return 1e-6 * static_cast<double>(us);
+}
+
+/// The log's end after what pairing has read, on the channel that has more of it [s].
+double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& extent,
+                const ReadUntil& read_until) {
+  double most = 0;
+  for (const std::string& name : {pair.first, pair.second}) {
+    const auto stream = extent.sensors.find(name);
+    const auto until = read_until.find(bus::sensor(rig, name).channel);
+    if (stream != extent.sensors.end() && until != read_until.end())
+      most = std::max(most, seconds(stream->second.last_us - until->second));
+  }
+  return most > least_missing ? most : 0;
+}
+
+/// The log's begin before the answer's session, which begins with a pose of either sensor, in that one's
+/// time [s]. Of clocks that differ the nearer one is it.
+double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session) {
+  std::optional<double> least;
+  for (const std::string& name : {pair.first, pair.second})
+    if (const auto stream = extent.sensors.find(name); stream != extent.sensors.end())
+      if (const double late = seconds(session - stream->second.first_us); late >= 0)
+        least = std::min(least.value_or(late), late);
+  return least.value_or(0) > least_missing ? *least : 0;
+}
+
+/// A verdict that does not know the end of the drive states that first.
+std::string judgement_of(const PairName& pair, const Answers& answers) {
+  const Diagnosis* const diagnosis = answers.diagnosis(pair);
+  if (!diagnosis) return "not judged";
+  const double rest = answers.seconds_not_judged(pair).value_or(0);
+  const bool to_the_end = answers.judged_to_the_end(pair) || rest == 0;
+  return (to_the_end ? "" : fmt::format("the last {:.1f} s are not judged; before: ", rest)) +
+         verdict_line(*diagnosis);
+}
+
+/// Empty: the answer knows the end of the log.
+std::string missing_end(const PairName& pair, const Answers& answers, double unread) {
+  const double unanswered = answers.seconds_not_answered(pair);
+  if (answers.answered_to_the_end(pair) && unread == 0) return {};
+  return fmt::format(
+      "old answer, the last {:.1f} s of the log are not in it ({}). Before: ", unanswered + unread,
+      answers.answered_to_the_end(pair) ? "pairing did not read them" : "no solver answered them");
+}
+
+/// Of a pair that has an answer.
+std::string line_of(const PairName& pair, const Answers& answers, const std::string& first,
+                    double not_in_session) {
+  const Answers::Best& best = *answers.best(pair);
+  const bus::CheckedScale* const scale = answers.scale(pair);
+  const Pose T = to_pose(best.checked.answer.T_a_b);
+  const Eigen::Quaterniond& q = T.rotation;
+  std::string text = fmt::format(
+      "{} -> {}: {}\n  {}, {} motion pairs; "
+      "translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} {:.5f} {:.5f} {:.5f}\n",
+      pair.first, pair.second, first + judgement_of(pair, answers),
+      answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
+      T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
+  if (not_in_session > 0)
+    text += fmt::format(
+        "  the first {:.1f} s of the log are not in this answer: its statistics begin after them\n",
+        not_in_session);
+  if (scale)
+    text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
+                        scale->solution.stddev,
+                        scale->verified && scale->solution.certified ? "optimal (proven)" : "not proven");
+  if (answers.lacks_scale(pair))
+    text += "  the scale could not be verified: this answer holds at a scale that is not known\n";
+  return text;
+}
+
+/// What the motions cannot rule out, once for all pairs of which it holds.
+std::string possible_of_all(const bus::Rig& rig, const Answers& answers) {
+  std::map<std::string, std::vector<std::string>> pairs_of;
+  for (const bus::PairConfig& config : rig.pairs)
+    if (const Diagnosis* const diagnosis = answers.diagnosis({config.a, config.b}))
+      for (const std::string& line : possible_lines(*diagnosis))
+        pairs_of[line].push_back(config.a + " -> " + config.b);
+  std::string text;
+  for (const auto& [line, pairs] : pairs_of)
+    text += fmt::format("possible, {}: {}\n",
+                        pairs.size() == 1 ? pairs[0] : fmt::format("{} pairs", pairs.size()), line);
+  return text;
+}
+
+std::string damage_of(const LogExtent& extent) {
+  if (!extent.damage.any()) return {};
+  const std::uint64_t events = std::max(extent.damage.lost_events, extent.damage.regions);
+  return fmt::format(
+      "the log is damaged: about {} of its events could not be read and are in no answer; see "
+      "egocal log check\n",
+      std::max<std::uint64_t>(events, 1));
+}
+
+}  // namespace
+
+Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent& extent,
+                   const ReadUntil& read_until) {
+  Outcome outcome;
+  for (const bus::PairConfig& config : rig.pairs) {
+    const PairName pair{config.a, config.b};
+    const Answers::Best* const best = answers.best(pair);
+    if (!best) {
+      outcome.text += fmt::format("{} -> {}: no answer\n", pair.first, pair.second);
+      continue;
+    }
+    const Diagnosis* const diagnosis = answers.diagnosis(pair);
+    const std::string missing = missing_end(pair, answers, not_read(rig, pair, extent, read_until));
+    outcome.answered = true;
+    outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis));
+    outcome.text += line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session));
+  }
+  outcome.text += possible_of_all(rig, answers) + damage_of(extent);
+  return outcome;
+}
+
+}  // namespace egocal::tools

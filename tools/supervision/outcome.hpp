@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "answers/answers.hpp"
+#include "egocal/bus/rig.hpp"
+#include "supervision/log_extent.hpp"
+
+namespace egocal::tools {
+
+/// What was calibrated while somebody watched.
+struct Outcome {
+  bool answered = false;  ///< any solver, for any pair
+  bool unusable =
+      false;         ///< some pair's motions contradict each other, miss the goal, or are not in its answer
+  std::string text;  ///< of each pair verdict, proof and transform, or that there is no answer
+};
+
+/// How far pairing has read each channel, by its acknowledgements [us, the sensor's time].
+using ReadUntil = std::map<std::string, std::int64_t>;
+
+/// At the end of a log. An answer without the log's end is not one of the log, whatever its verdict: it is
+/// unusable. One that begins late is usable, and what is missing is named, as is damage of the log.
+Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent& extent,
+                   const ReadUntil& read_until);
+
+}  // namespace egocal::tools
