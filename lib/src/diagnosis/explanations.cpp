@@ -10,6 +10,7 @@
 #include "diagnosis/axes.hpp"
 #include "diagnosis/forward.hpp"
 #include "diagnosis/scale.hpp"
+#include "diagnosis/without_lever_arms.hpp"
 #include "diagnosis/wording.hpp"
 
 namespace egocal::detail {
@@ -59,10 +60,14 @@ Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& o
   return result;
 }
 
-/// Clearly better by the stated test, as far as so few blocks can show it.
+/// Better by so many standard deviations, as far as so few blocks can show it.
+bool better(const Comparison& comparison, double least_log_ratio, double sigmas) {
+  return comparison.sigmas >= std::min(sigmas, 0.95 * comparison.most) && comparison.gain >= least_log_ratio;
+}
+
+/// Clearly better by the stated test.
 bool better(const Comparison& comparison, double least_log_ratio, const DiagnosisOptions& options) {
-  const double needed = std::min(options.sigmas, 0.95 * comparison.most);
-  return comparison.sigmas >= needed && comparison.gain >= least_log_ratio;
+  return better(comparison, least_log_ratio, options.sigmas);
 }
 
 /// One number more explains a little of any noise: it must be clear beyond what few blocks can show, or gain
@@ -136,6 +141,16 @@ struct BestReading {
   std::optional<Explanation> twin;  ///< fits as well
 };
 
+/// Whether the motions show that the scale of b is not one. Where both sensors turn about one point any scale
+/// has a lever arm that fits, and the best one only balances the noise of both.
+bool shows_scale(const Evidence& evidence, const Ranked& reading, const DiagnosisOptions& options) {
+  const std::size_t independent = evidence.instants.size() / static_cast<std::size_t>(evidence.stride);
+  const std::optional<double> stddev =
+      stddev_of_log_scale(reading.as_is.explained.motions, {reading.scaled.scale, reading.scaled.explained},
+                          independent, options.scale_check);
+  return stddev && std::abs(std::log(reading.scaled.scale)) > options.scale_check.sigmas * *stddev;
+}
+
 /// The best single reading; as given unless another one is clearly better.
 BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options) {
   Ranked best{evidence.given, evidence.scaled};
@@ -155,7 +170,8 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   if (twin && forward(heading(best.scaled.explained.motions), options.heading) &&
       !forward(heading(twin->explained.motions), options.heading))
     twin.reset();
-  if (number_explains(compare(best.as_is.explained, best.scaled.explained), options))
+  if (number_explains(compare(best.as_is.explained, best.scaled.explained), options) &&
+      shows_scale(evidence, best, options))
     return {best.scaled, twin};
   return {best.as_is, twin};
 }
@@ -175,6 +191,13 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
 /// those of the other one turned likewise: where both fit better, both are named.
 BestReading best_axes(const Evidence& evidence, const BestReading& given, const DiagnosisOptions& options) {
   std::optional<Explanation> exchanged, turned, turned_other;
+  std::optional<Explained> given_points;
+  const double length = evidence.given.explained.motions.translation;
+  const auto but_for_lever_arms = [&](const Explanation& here) {
+    if (!given_points) given_points = without_lever_arms(evidence.given.explained, length);
+    return better(compare(*given_points, without_lever_arms(here.explained, length)), options.least_gain,
+                  LeverArmOptions{}.sigmas);
+  };
   const auto fits_better = [](const std::optional<Explanation>& x, const Explanation& y) {
     return !x || compare(x->explained, y.explained).gain > 0;
   };
@@ -185,7 +208,9 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
       const bool in_b = wrong == Side::b;
       const Explanation here = explained(evidence, in_b ? "axes_b" : "axes_a", in_b ? PoseReading{} : reading,
                                          in_b ? reading : PoseReading{}, options);
-      if (!better(compare(given.best.explained, here.explained), options.least_gain, options)) continue;
+      if (!better(compare(given.best.explained, here.explained), options.least_gain, options) ||
+          !but_for_lever_arms(here))
+        continue;
       std::optional<Explanation>& best = is_permutation(reading.axes) ? exchanged : turned_here;
       if (fits_better(best, here)) best = here;
     }

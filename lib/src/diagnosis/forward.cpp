@@ -11,11 +11,6 @@ namespace egocal::detail {
 
 namespace {
 
-Eigen::Matrix3d rotation_of(const DualQuaternion& motion) {
-  return Eigen::Quaterniond(motion.real[0], motion.real[1], motion.real[2], motion.real[3])
-      .toRotationMatrix();
-}
-
 double sum_of_lengths(const std::vector<Eigen::Vector3d>& vectors) {
   double sum = 0;
   for (const Eigen::Vector3d& vector : vectors) sum += vector.norm();

@@ -3,8 +3,14 @@
 #include "diagnosis/stillest_point.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 namespace egocal::detail {
+
+Eigen::Matrix3d rotation_of(const DualQuaternion& motion) {
+  return Eigen::Quaterniond(motion.real[0], motion.real[1], motion.real[2], motion.real[3])
+      .toRotationMatrix();
+}
 
 /// The sum of lengths is least by reweighted least squares, each motion by the inverse of its length: a jump
 /// hardly changes it.

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "egocal/geometry/dual_quaternion.hpp"
+
 namespace egocal::detail {
 
 /// One motion of a body, in its own frame.
@@ -13,6 +15,8 @@ struct BodyMotion {
   Eigen::Matrix3d R;
   Eigen::Vector3d t;
 };
+
+Eigen::Matrix3d rotation_of(const DualQuaternion& motion);
 
 /// How the point of the body that goes the shortest way in all is displaced in each motion. A point at c is
 /// displaced by t + (R - 1) c.
