@@ -14,81 +14,14 @@
 #include <system_error>
 #include <utility>
 
+#include "advice.hpp"
 #include "completion.hpp"
 #include "manual.hpp"
+#include "values.hpp"
 
 namespace egocal::cli {
 
 namespace {
-
-/// Insertions, deletions and exchanges that make one word of the other (Levenshtein).
-std::size_t edit_distance(const std::string& from, const std::string& to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t exchanged = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({exchanged, row[j] + 1, row[j - 1] + 1}));
-    }
-  }
-  return row.back();
-}
-
-/// The name of the given ones that a mistyped word most likely meant; empty where none is close.
-std::string closest(const std::string& word, const std::vector<std::string>& names) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& name : names) {
-    const std::size_t distance = edit_distance(word, name);
-    if (distance >= best_distance) continue;
-    best = name;
-    best_distance = distance;
-  }
-  return best;
-}
-
-std::vector<std::string> subcommand_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  return names;
-}
-
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_single_name();
-    if (!option->get_positional()) names.push_back("--" + name);
-  }
-  return names;
-}
-
-/// "egocal solve --topic x" was given: the command at which parsing ended.
-const CLI::App& innermost(const CLI::App& app) {
-  const CLI::App* at = &app;
-  while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
-  return *at;
-}
-
-/// What the user may have meant, as the end of an error's line.
-std::string advice(const CLI::App& program, int argc, char** argv) {
-  const CLI::App& command = innermost(program);
-  const std::vector<std::string> options = option_names(command), commands = subcommand_names(command);
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
-    if (word == "--topic" || word == "--topics")
-      return "; a topic is written behind its file: recording.bag:/odom";
-    const bool is_option = word.rfind("--", 0) == 0;
-    const auto& names = is_option ? options : commands;
-    if (names.empty() || std::find(names.begin(), names.end(), word) != names.end()) continue;
-    if (!is_option && word == command.get_name()) continue;
-    const std::string meant = closest(word, names);
-    if (!meant.empty()) return "; did you mean " + meant + "?";
-    if (!is_option) break;
-  }
-  const std::string name = &command == &program ? "" : program.get_name() + " ";
-  return "; see " + name + command.get_name() + " --help";
-}
 
 bool same_file(const std::string& one, const std::string& other) {
   namespace fs = std::filesystem;
@@ -119,6 +52,14 @@ std::string named_again(const CLI::App& command, const CLI::Option& output, cons
       if (names_file(value, file)) return value;
   }
   return "";
+}
+
+/// CLI11 takes the next argument for the value of `--goal=`.
+void refuse_empty_values(const std::vector<std::string>& arguments) {
+  for (const std::string& word : arguments)
+    if (word.rfind("--", 0) == 0 && word.size() > 3 && word.find('=') == word.size() - 1)
+      throw UsageError(word.substr(0, word.size() - 1) +
+                       ": expected a value behind '='; is a variable of the shell not set?");
 }
 
 void write_file(const std::string& name, const std::string& text) {
@@ -172,86 +113,8 @@ void print_error(const std::string& name, const std::string& message) {
 
 }  // namespace
 
-Check Check::one_of(std::vector<std::string> values) {
-  Check check;
-  check.kind_ = Kind::one_of;
-  check.values_ = std::move(values);
-  return check;
-}
-
-Check Check::range(double least, double most) {
-  Check check;
-  check.least_ = least;
-  check.most_ = most;
-  return check;
-}
-
-Check Check::not_negative() {
-  Check check;
-  check.kind_ = Kind::not_negative;
-  return check;
-}
-
-Check Check::above_zero(double most) {
-  Check check;
-  check.kind_ = Kind::above_zero;
-  check.most_ = most;
-  return check;
-}
-
-Check Check::existing_file() {
-  Check check;
-  check.kind_ = Kind::existing_file;
-  return check;
-}
-
 Option& Option::required() {
   option_->required();
-  return *this;
-}
-
-Option& Option::check(const Check& check) {
-  // NaN is in no range, and infinity is no amount
-  const auto number = [](const std::string& text) {
-    double value = 0;
-    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    return good ? value : std::numeric_limits<double>::quiet_NaN();
-  };
-  switch (check.kind_) {
-    case Check::Kind::one_of:
-      option_->check(CLI::IsMember(check.values_));
-      break;
-    case Check::Kind::range:
-      option_->check(CLI::Range(check.least_, check.most_));
-      option_->check(CLI::Validator(
-          [number](std::string& text) {
-            return std::isnan(number(text)) ? "expected a number, got '" + text + "'" : std::string();
-          },
-          ""));
-      break;
-    case Check::Kind::not_negative:
-      option_->check(CLI::Validator(
-          [number](std::string& text) {
-            const bool good = number(text) >= 0;
-            return good ? std::string() : "expected a number from 0 up, got '" + text + "'";
-          },
-          "NUMBER >= 0"));
-      break;
-    case Check::Kind::above_zero:
-      option_->check(CLI::Validator(
-          [number, most = check.most_](std::string& text) {
-            const double value = number(text);
-            if (value > 0 && value <= most) return std::string();
-            char limit[32];
-            std::snprintf(limit, sizeof limit, "%.0f", most);
-            return std::string("expected a number above 0, at most ") + limit + ", got '" + text + "'";
-          },
-          "NUMBER > 0"));
-      break;
-    case Check::Kind::existing_file:
-      option_->check(CLI::ExistingFile);
-      break;
-  }
   return *this;
 }
 
@@ -282,7 +145,9 @@ Option& Option::comma_separated() {
 
 template <class Value>
 Option App::add_option(const std::string& name, Value& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help));
+  CLI::Option* option = app_->add_option(name, value, help);
+  check_type<Value>(*option);
+  return Option(option);
 }
 template Option App::add_option(const std::string&, std::string&, const std::string&);
 template Option App::add_option(const std::string&, bool&, const std::string&);
@@ -299,6 +164,13 @@ template Option App::add_option(const std::string&, std::optional<std::string>&,
 
 Option App::add_output(const std::string& name, std::string& file, const std::string& help, bool in_place) {
   CLI::Option* option = app_->add_option(name, file, help);
+  check_type<std::string>(*option);
+  option->check(CLI::Validator(
+      [](std::string& value) {
+        return value == "-" ? "'-' is not taken for standard output: expected the name of a file"
+                            : std::string();
+      },
+      ""));
   if (in_place) return Option(option);
   // options are checked when all of the command line is known
   option->check(CLI::Validator(
@@ -313,7 +185,9 @@ Option App::add_output(const std::string& name, std::string& file, const std::st
 
 Option App::add_option_function(const std::string& name, std::function<void(const std::string&)> take,
                                 const std::string& help) {
-  return Option(app_->add_option_function<std::string>(name, std::move(take), help));
+  CLI::Option* option = app_->add_option_function<std::string>(name, std::move(take), help);
+  check_type<std::string>(*option);
+  return Option(option);
 }
 
 Option App::add_flag(const std::string& name, bool& value, const std::string& help) {
@@ -388,6 +262,8 @@ std::optional<int> Program::parse(int argc, char** argv) {
   }
   try {
     if (const std::optional<int> written = write_description(*app_, arguments)) return written;
+    if (const std::string wrong = wrong_command(*app_, arguments); !wrong.empty()) throw UsageError(wrong);
+    refuse_empty_values(arguments);
     std::reverse(arguments.begin(), arguments.end());
     std::optional<int> code;
     try {
@@ -400,7 +276,7 @@ std::optional<int> Program::parse(int argc, char** argv) {
     finish_output();
     return code;
   } catch (const CLI::ParseError& error) {
-    print_error(name, error.what() + advice(*app_, argc, argv));
+    print_error(name, in_words(error, *app_));
     return 2;
   } catch (const UsageError& error) {
     print_error(name, error.what());

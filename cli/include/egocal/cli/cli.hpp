@@ -36,7 +36,7 @@ class Check {
   static Check one_of(std::vector<std::string> values);
   static Check range(double least, double most);  ///< inclusive
   static Check not_negative();
-  static Check above_zero(double most);
+  static Check above_zero(double most, double least = 0);
   static Check existing_file();
 
  private:
@@ -68,12 +68,13 @@ class Option {
 class App {
  public:
   /// Value: std::string, bool, int, unsigned, std::uint64_t, std::int64_t, double, a std::vector of strings
-  /// or of doubles, or a std::optional of int, double or string. name: "--long" or "POSITIONAL".
+  /// or of doubles, or a std::optional of int, double or string. name: "--long" or "POSITIONAL". An empty
+  /// text is no value of any of them.
   template <class Value>
   Option add_option(const std::string& name, Value& value, const std::string& help = "");
   /// The name of a file that the command writes. Refused where another value of the command line names that
   /// file (also as FILE:TOPIC and NAME=FILE): what the command reads is never replaced. in_place: it may be,
-  /// for a command that mends the file it reads and writes it whole or not at all.
+  /// for a command that mends the file it reads and writes it whole or not at all. "-" is no file.
   Option add_output(const std::string& name, std::string& file, const std::string& help,
                     bool in_place = false);
   /// The function is called with the text of the option.
