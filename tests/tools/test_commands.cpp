@@ -2,84 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The real program on real files: what it prints, what it refuses and how.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "commands.hpp"
 #include "egocal/io/pairs_file.hpp"
-#include "support/paths.hpp"
 #include "support/random_motion.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using egocal::test::Commands;
+using egocal::test::good_line;
+using egocal::test::Outcome;
+using egocal::test::tum;
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-class Commands : public ::testing::Test {
- protected:
-  Commands() : directory_(fs::temp_directory_path() / ("egocal_commands_" + std::to_string(getpid()))) {
-    fs::create_directories(directory_);
-  }
-  ~Commands() override { fs::remove_all(directory_); }
-
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-  std::string file(const std::string& name, const std::string& content) const {
-    std::ofstream(directory_ / name, std::ios::binary) << content;
-    return path(name);
-  }
-  static std::string read(const std::string& name) {
-    std::ifstream stream(name, std::ios::binary);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-  Outcome program(const std::string& name, const std::string& arguments) const {
-    const std::string command =
-        egocal::paths::bin_dir() + "/" + name + " " + arguments + " >" + path("out") + " 2>" + path("err");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("out")), read(path("err"))};
-  }
-  Outcome egocal(const std::string& arguments) const { return program("egocal", arguments); }
-  json solved(const std::string& arguments) const {
-    const Outcome run = egocal("solve --json " + arguments);
-    EXPECT_EQ(run.code, 0) << run.err;
-    return json::parse(run.out);
-  }
-  /// One line that says it, nothing on standard output.
-  static void expect_refusal(const Outcome& run, int code, const std::string& part) {
-    EXPECT_EQ(run.code, code) << run.err;
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_THAT(run.err, HasSubstr(part));
-  }
-
- private:
-  fs::path directory_;
-};
-
-std::string tum(int poses, const std::function<std::string(int)>& pose) {
-  std::string text;
-  for (int i = 0; i < poses; ++i) text += std::to_string(1000 + 0.1 * i) + " " + pose(i) + "\n";
-  return text;
-}
-
-const std::string good_line = "1000.0 0 0 0 0 0 0 1\n";
 
 /// Small motions, a fifth of them damaged by many times their size, in a file without times.
 TEST_F(Commands, MotionPairsFromAFileAreJudgedToo) {
@@ -236,67 +173,6 @@ TEST_F(Commands, BadTrajectoriesAreRefused) {
                  "b lasts 1e+03 times as long: multiply its times if they are in another unit");
 }
 
-TEST_F(Commands, AFileThatIsReadIsNeverWritten) {
-  const std::string drive = path("drive.mcap"), log = path("drive.log"), rig = path("rig.toml");
-  ASSERT_EQ(egocal("simulate --poses 50 --out " + drive).code, 0);
-  ASSERT_EQ(egocal("simulate --poses 50 --out " + log + " --rig-out " + rig).code, 0);
-  const std::string pair = drive + ":/lidar " + drive + ":/camera ", link = path("link");
-  fs::create_symlink(drive, link);
-  const auto refused = [&](const std::string& arguments, const std::string& input) {
-    SCOPED_TRACE(arguments);
-    const std::string before = read(input);
-    ASSERT_FALSE(before.empty());
-    expect_refusal(egocal(arguments), 2, ": give the output another name");
-    EXPECT_TRUE(read(input) == before);
-  };
-  refused("solve " + pair + "--out " + drive, drive);
-  refused("solve " + pair + "--format urdf --out " + link, drive);
-  refused("solve " + pair + "--out " + path("./drive.mcap"), drive);
-  refused("report " + pair + "--out " + drive, drive);
-  refused("align " + pair + "--out " + drive, drive);
-  refused("log export " + log + " --mcap " + log, log);
-  refused("log create " + rig + " --from lidar=" + drive + ":/lidar --from camera=" + drive +
-              ":/camera --out " + drive,
-          drive);
-  refused("export --log " + log + " --out " + log, log);
-  refused("solve --rig " + rig + " --from lidar=" + drive + ":/lidar --from camera=" + drive +
-              ":/camera --format urdf --out " + rig,
-          rig);
-  refused("simulate --out " + path("one.log") + " --rig-out " + path("one.log"), log);
-  // a repair in place is what was asked for
-  EXPECT_EQ(egocal("log repair " + log + " --out " + log).code, 0);
-  // a word of an option may also be the name of a file
-  file("urdf", "an answer of yesterday");
-  EXPECT_EQ(egocal("solve " + pair + "--format urdf --out " + path("urdf")).code, 0);
-}
-
-TEST_F(Commands, OutputThatCannotBeWrittenIsAFailure) {
-  const std::string drive = path("drive.mcap"), report = path("report.html");
-  ASSERT_EQ(egocal("simulate --poses 60 --out " + drive).code, 0);
-  const std::string pair = " " + drive + ":/lidar " + drive + ":/camera";
-  const auto with_output = [&](const std::string& arguments, const std::string& before,
-                               const std::string& output) {
-    const std::string command =
-        before + egocal::paths::bin_dir() + "/egocal " + arguments + output + " 2>" + path("err");
-    const int status = std::system(command.c_str());
-    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read(path("err"))};
-  };
-  for (const char* command : {"solve", "check", "align", "info"}) {
-    SCOPED_TRACE(command);
-    const std::string arguments = command + (command == std::string("info") ? " " + drive : pair);
-    expect_refusal(with_output(arguments, "", " >/dev/full"), 1,
-                   "standard output: cannot be written: No space");
-    expect_refusal(with_output(arguments, "", " >&-"), 1, "standard output: cannot be written");
-  }
-  // a limit on the size of files
-  expect_refusal(with_output("report" + pair + " --out " + report, "ulimit -f 8; ", " >/dev/null"), 1,
-                 "report.html: ");
-  std::size_t left = 0;
-  for (const auto& entry : fs::directory_iterator(path("")))
-    left += entry.path().filename().string().rfind("report", 0) == 0 ? 1 : 0;
-  EXPECT_EQ(left, 0u);
-}
-
 TEST_F(Commands, AClockThatIsRightToTensOfMicrosecondsIsRight) {
   // without noise the motions fit better at one that is off by less than the estimate's standard deviation
   const std::string drive = path("drive.mcap");
@@ -321,69 +197,6 @@ TEST_F(Commands, WrongUsageIsRefusedWithTwo) {
     EXPECT_EQ(program(name, "--help").code, 0) << name;
     EXPECT_THAT(program(name, "--version").out, HasSubstr("egocal")) << name;
   }
-}
-
-// The one that lost was dropped silently
-TEST_F(Commands, OutputsThatContradictEachOtherAreRefused) {
-  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
-  const std::string solve = "solve " + path("d/lidar.tum") + " " + path("d/camera.tum") + " --json --format ";
-  expect_refusal(egocal(solve + "yaml"), 2, "--format: takes the place of --json");
-  expect_refusal(egocal(solve + "yaml --rig " + path("none.toml")), 2, "--format: takes the place of --json");
-  const Outcome both = egocal(solve + "yaml --out " + path("mount.yaml"));
-  EXPECT_TRUE(json::parse(both.out)["certified"]);
-  EXPECT_THAT(read(path("mount.yaml")), HasSubstr("translation"));
-  expect_refusal(egocal("up none.toml --monitor --follow"), 2, " excludes --");
-  expect_refusal(egocal("compare --json --csv"), 2, " excludes --");
-  expect_refusal(egocal("compare --csv --latex"), 2, " excludes --");
-  expect_refusal(program("egocal-monitor", "--once --json --size 100x30"), 2, " excludes --");
-  expect_refusal(program("egocal-monitor", "--once --follow"), 2, " excludes --");
-}
-
-TEST_F(Commands, ValuesOutOfRangeAreRefusedWhetherTheyAreUsedOrNot) {
-  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
-  const std::string drive = " " + path("d/lidar.tum") + " " + path("d/camera.tum") + " ";
-  for (const char* rate : {"0", "-3", "nan", "inf", "1e7", "x"}) {
-    for (const std::string& command : {"solve" + drive, "check" + drive, "report --out r.html" + drive,
-                                       "align" + drive, "info " + path("d/lidar.tum") + " "})
-      expect_refusal(egocal(command + "--rate " + rate), 2,
-                     "--rate: expected a number above 0, at most 1000000, got");
-  }
-  for (const char* arguments :
-       {"compare --noise nan", "compare a b --time-offset nan", "compare --poses 0",
-        "experiment noise --levels nan", "experiment noise --levels 0.1,-1",
-        "experiment noise --roughness -1", "experiment online --frames 0",
-        "experiment online --t-no-fail nan", "export --rig r --timeout inf", "listen --seconds inf",
-        "listen --seconds nan", "up rig.toml --log l --speed nan", "solve a b --max-gap 0"})
-    expect_refusal(egocal(arguments), 2, "egocal: ");
-}
-
-TEST_F(Commands, OptionsWithoutAnEffectAreRefusedOrNamed) {
-  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
-  const std::string drive = " " + path("d/lidar.tum") + " " + path("d/camera.tum") + " ";
-  const Outcome rate = egocal("solve" + drive + "--rate 5");
-  EXPECT_EQ(rate.code, 0);
-  EXPECT_THAT(rate.err, HasSubstr("lidar.tum: --rate is not used: the poses have times"));
-  EXPECT_THAT(egocal("info " + path("d/lidar.tum") + " --rate 5").out, HasSubstr("--rate is not used"));
-  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d.mcap")).code, 0);
-  const std::string bag = " " + path("d.mcap") + ":/lidar " + path("d.mcap") + ":/camera ";
-  const Outcome of_bag = egocal("solve" + bag + "--times none --columns t,x --rate 5");
-  for (const char* option : {"--times is not", "--columns is not", "--rate is not"})
-    EXPECT_THAT(of_bag.err, HasSubstr(option));
-  EXPECT_EQ(egocal("solve" + bag).err, "");
-  for (const char* arguments :
-       {"solve --pairs p --rate 5", "solve --pairs p --stride 2", "solve --pairs p --time-offset 1",
-        "solve --pairs p --max-gap 2", "solve --log l A B --columns t,x", "check --log l A B --rate 5",
-        "solve a b c --samples", "solve a b --samples --max-gap 2", "solve a b --frame-a x",
-        "solve a b c --frame-b x --json", "solve --log l A B C --rate 5"})
-    expect_refusal(egocal(arguments), 2, "go");
-  for (const char* arguments :
-       {"compare a b --poses 10", "compare a b --noise 0.1", "compare a b --terrain flat",
-        "compare a b --seed 2", "compare --times-a t", "compare --stride 2", "compare --time-offset 1",
-        "export --log l --timeout 1", "export --log l --lcm-url u", "up rig.toml --speed 2",
-        "simulate --out never --terrain flat --roughness 1",
-        "simulate --out never --terrain free --speed-variation 0.1", "simulate --out never --type pose"})
-    expect_refusal(egocal(arguments), 2, "egocal: ");
-  EXPECT_FALSE(fs::exists("never"));
 }
 
 TEST_F(Commands, BadLogsAndRigsAreRefused) {
@@ -413,18 +226,6 @@ TEST_F(Commands, BadLogsAndRigsAreRefused) {
   EXPECT_GT(solved("--log " + cut + " ODOMETRY_LIDAR ODOMETRY_CAMERA --stride 1")["pairs"], 150);
   ASSERT_EQ(egocal("log repair " + cut + " --out " + path("repaired.log")).code, 0);
   EXPECT_EQ(egocal("log check " + path("repaired.log")).code, 0);
-}
-
-TEST_F(Commands, NothingHalfWrittenIsLeft) {
-  expect_refusal(egocal("simulate --out " + path("no/such/place.log")), 1, "cannot be written");
-  ASSERT_EQ(egocal("simulate --out " + path("d.log") + " --rig-out " + path("d.toml") + " --poses 20").code,
-            0);
-  const std::string bad = file("bad.tum", good_line + "1001 0 0\n");
-  expect_refusal(egocal("log create " + path("d.toml") + " --from lidar=" + bad + " --from camera=" + bad +
-                        " --out " + path("never.log")),
-                 1, "bad.tum:2");
-  EXPECT_FALSE(fs::exists(path("never.log")));
-  EXPECT_FALSE(fs::exists(path("never.log.part")));
 }
 
 TEST_F(Commands, RealDrivesGiveWhatTheyShould) {

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Values of the real program's options: what is refused, by which name and with which cure.
+#include "commands.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using egocal::test::Commands;
+using egocal::test::Outcome;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+TEST_F(Commands, ValuesOutOfRangeAreRefusedWhetherTheyAreUsedOrNot) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  const std::string drive = " " + path("d/lidar.tum") + " " + path("d/camera.tum") + " ";
+  for (const char* rate : {"0", "-3", "nan", "inf", "1e7", "x"}) {
+    for (const std::string& command : {"solve" + drive, "check" + drive, "report --out r.html" + drive,
+                                       "align" + drive, "info " + path("d/lidar.tum") + " "})
+      expect_refusal(egocal(command + "--rate " + rate), 2,
+                     "--rate: expected a number above 0, at most 1000000, got");
+  }
+  for (const char* arguments :
+       {"compare --noise nan", "compare a b --time-offset nan", "compare --poses 0",
+        "experiment noise --levels nan", "experiment noise --levels 0.1,-1",
+        "experiment noise --roughness -1", "experiment online --frames 0",
+        "experiment online --t-no-fail nan", "export --rig r --timeout inf", "listen --seconds inf",
+        "listen --seconds nan", "up rig.toml --log l --speed nan", "solve a b --max-gap 0"})
+    expect_refusal(egocal(arguments), 2, "egocal: ");
+}
+
+TEST_F(Commands, OptionsWithoutAnEffectAreRefusedOrNamed) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  const std::string drive = " " + path("d/lidar.tum") + " " + path("d/camera.tum") + " ";
+  const Outcome rate = egocal("solve" + drive + "--rate 5");
+  EXPECT_EQ(rate.code, 0);
+  EXPECT_THAT(rate.err, HasSubstr("lidar.tum: --rate is not used: the poses have times"));
+  EXPECT_THAT(egocal("info " + path("d/lidar.tum") + " --rate 5").out, HasSubstr("--rate is not used"));
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d.mcap")).code, 0);
+  const std::string bag = " " + path("d.mcap") + ":/lidar " + path("d.mcap") + ":/camera ";
+  const Outcome of_bag = egocal("solve" + bag + "--times none --columns t,x --rate 5");
+  for (const char* option : {"--times is not", "--columns is not", "--rate is not"})
+    EXPECT_THAT(of_bag.err, HasSubstr(option));
+  EXPECT_EQ(egocal("solve" + bag).err, "");
+  for (const char* arguments :
+       {"solve --pairs p --rate 5", "solve --pairs p --stride 2", "solve --pairs p --time-offset 1",
+        "solve --pairs p --max-gap 2", "solve --log l A B --columns t,x", "check --log l A B --rate 5",
+        "solve a b c --samples", "solve a b --samples --max-gap 2", "solve a b --frame-a x",
+        "solve a b c --frame-b x --json", "solve --log l A B C --rate 5"})
+    expect_refusal(egocal(arguments), 2, "go");
+  for (const char* arguments :
+       {"compare a b --poses 10", "compare a b --noise 0.1", "compare a b --terrain flat",
+        "compare a b --seed 2", "compare --times-a t", "compare --stride 2", "compare --time-offset 1",
+        "export --log l --timeout 1", "export --log l --lcm-url u", "up rig.toml --speed 2",
+        "simulate --out never --terrain flat --roughness 1",
+        "simulate --out never --terrain free --speed-variation 0.1", "simulate --out never --type pose"})
+    expect_refusal(egocal(arguments), 2, "egocal: ");
+  EXPECT_FALSE(fs::exists("never"));
+}
+
+TEST_F(Commands, NumbersAreNumbersOfThePeopleWhoTypeThem) {
+  const std::string simulate = "simulate --out " + path("never") + " ";
+  expect_refusal(egocal(simulate + "--seed -1"), 2, "--seed: expected a whole number from 0 up, got '-1'");
+  expect_refusal(egocal(simulate + "--poses 010"), 2, "--poses: expected a whole number, got '010'");
+  expect_refusal(egocal(simulate + "--poses 1e3"), 2, "--poses: expected a whole number, got '1e3'");
+  expect_refusal(egocal(simulate + "--poses 99999999999"), 2, "of at most 2147483647, got '99999999999'");
+  expect_refusal(egocal(simulate + "--poses 1"), 2, "--poses: expected 2 to 10000000, got '1'");
+  expect_refusal(egocal(simulate + "--rate 5Hz"), 2, "--rate: expected a number, got '5Hz'");
+  expect_refusal(egocal(simulate + "--terrain rugh"), 2,
+                 "--terrain: expected flat, rough or free, got 'rugh'; did you mean rough?");
+  expect_refusal(egocal("experiment noise --levels 0.1,x"), 2, "--levels: expected a number, got 'x'");
+  EXPECT_FALSE(fs::exists(path("never")));
+}
+
+// "$GOAL" of a shell in which GOAL is not set: there was no goal, without a word
+TEST_F(Commands, AnEmptyValueIsNoValue) {
+  for (const char* arguments :
+       {"solve a b --goal ''", "solve a b --truth ''", "solve '' b", "solve a b --stride ''",
+        "solve --rig r --from ''", "info ''", "log create r --from a=b --out ''", "compare --truth ''",
+        "simulate --out ''", "listen --lcm-url ''"})
+    expect_refusal(egocal(arguments), 2, "expected a value, got ''; is a variable of the shell not set?");
+  expect_refusal(egocal("solve a b --goal= --json"), 2, "--goal: expected a value behind '='");
+  expect_refusal(program("egocal-monitor", "--once --rig ''"), 2, "--rig: expected a value");
+  expect_refusal(program("egocal-pairing", "--rig ''"), 2, "--rig: expected a value");
+}
+
+TEST_F(Commands, WhatIsMistypedIsNamedWithItsCommand) {
+  expect_refusal(egocal("log foo"), 2,
+                 "'foo' is no command of egocal log; expected create, info, check, repair");
+  expect_refusal(egocal("lgo info x"), 2, "'lgo' is no command of egocal; did you mean log?");
+  expect_refusal(egocal("so"), 2, "'so' is no command of egocal; expected solve,");  // no word of two letters
+  expect_refusal(egocal("log"), 2, "egocal log: expected a command: create, info, check, repair or export");
+  expect_refusal(egocal("log export"), 2, "LOG is required; see egocal log export --help");
+  expect_refusal(egocal("experiment noise x"), 2,
+                 "'x' is one argument too many; see egocal experiment noise --help");
+  expect_refusal(egocal("solve a b --mthod x"), 2,
+                 "--mthod is no option of egocal solve; did you mean --method?");
+  expect_refusal(egocal("solve a b -x"), 2, "-x is no option of egocal solve; see egocal solve --help");
+  expect_refusal(egocal("--versoin"), 2, "--versoin is no option of egocal; did you mean --version?");
+  expect_refusal(egocal("solve a b --stride"), 2, "--stride: expected a value; see egocal solve --help");
+  expect_refusal(egocal("solve a b --goal 1 --goal 2"), 2, "--goal: is given more than once");
+  expect_refusal(egocal("solve a b --planar=maybe"), 2, "--planar: cannot be understood: 'maybe'");
+  // the hint is about what is wrong, not about another word
+  const Outcome both = egocal("solve a b --goal '' --mthod x");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, ::testing::Not(HasSubstr("did you mean")));
+}
+
+TEST_F(Commands, RangesNameTheirOption) {
+  const std::string solve = "solve a b ";
+  for (const auto& [arguments, said] :
+       {std::pair{"--weights 1e300:1", "--weights: expected R:T with R from 0 to 1e12"},
+        {"--weights 1:1e300", "--weights: expected R:T with"},
+        {"--max-gap 1e-9", "--max-gap: expected 0.001 to 3600, got '1e-9'"},
+        {"--max-gap 1e5", "--max-gap: expected 0.001 to 3600, got '1e5'"},
+        {"--stride 20000", "--stride: expected 1 to 10000, got '20000'"},
+        {"--time-offset 2e9", "--time-offset: expected -1000000000 to 1000000000, got '2e9'"},
+        {"--scale 0", "--scale: expected 1e-09 to 1000000000, got '0'"},
+        {"--rate 1e-300", "--rate: expected at least 0.001, got '1e-300'"},
+        {"--nominal 0,0,1e300,1,0,0,0", "--nominal: expected X,Y,Z within 1e9 m"},
+        {"--truth 0,0,1e300,1,0,0,0", "--truth: expected X,Y,Z within 1e9 m"},
+        {"--planar --plane-a 0,0,1,1e300 --plane-b 0,0,1,0",
+         "--plane-a: expected NX,NY,NZ,D with D within 1e9 m"},
+        {"--goal 200deg,1cm", "--goal: expected at most 180deg"},
+        {"--out -", "--out: '-' is not taken for standard output: expected the name of a file"},
+        {"--frame-a x --frame-b x --json", "--frame-a, --frame-b: expected two names, got 'x' for both"},
+        {"--frame-a 'my lidar' --json", "--frame-a: expected up to 100 letters, digits and _ - . /"}})
+    expect_refusal(egocal(solve + arguments), 2, said);
+  EXPECT_FALSE(fs::exists("-"));
+  expect_refusal(egocal("compare --truth 0,0,0,1,0,0,0"), 2, "--truth requires A");  // it has its own
+  expect_refusal(egocal("experiment noise --out -"), 2, "--out: '-' is not taken for standard output");
+}
+
+TEST_F(Commands, ADriveIsSimulatedAsItWasAskedForOrNotAtAll) {
+  const std::string out = path("o");
+  const std::string at = "=0,0,0,1,0,0,0 ";
+  for (const auto& [arguments, said] :
+       {std::pair{"--sensor a" + at + "--sensor a" + at, "--sensor: a and a would both send on ODOMETRY_A"},
+        {"--sensor cam" + at + "--sensor Cam" + at, "--sensor: cam and Cam would both send on ODOMETRY_CAM"},
+        {"--sensor a=0,0,1e300,1,0,0,0 --sensor b" + at, "--sensor: expected X,Y,Z within"},
+        {std::string("--rate 0"), "--rate: expected 0.001 to 100000, got '0'"},
+        {"--speed 1e300", "--speed: expected -1000 to 1000, got '1e300'"},
+        {"--roughness -1", "--roughness: expected 0 to 1000, got '-1'"},
+        {"--noise-rotation nan", "--noise-rotation: expected a number, got 'nan'"},
+        {"--poses 101 --bump lidar=10.1:1,0,0,0,0,0",
+         "--bump: expected a time within the drive, 0 to 10 s, got '10.1'"},
+        {"--jump lidar=-1:1,0,0,0,0,0", "--jump: expected a time within the drive"},
+        {"--creep lidar=5:3:1,0,0,0,0,0", "--creep: expected 5 to"},
+        {"--bump lidar=5:1e300,0,0,0,0,0", "--bump: expected -1000 to 1000, got '1e300'"},
+        {"--phase lidar=1000", "--phase: expected 0 to 100, got '1000'"},
+        {"--drop lidar=1", "--drop: expected 0 to 0.999, got '1'"},
+        {"--scale lidar=2 --scale lidar=3", "--scale: is given twice for one sensor"},
+        {"--rig-out " + out + "/lidar.tum", "lidar.tum is a file of --out: expected another name"},
+        {"--rig-out " + out + "/./truth_lidar_camera.txt", "is a file of --out: expected another name"}})
+    expect_refusal(egocal("simulate --out " + out + " " + arguments), 2, said);
+  // no partial output
+  for (const std::string& name : {out, path("o.log"), path("o.mcap")}) {
+    expect_refusal(egocal("simulate --poses 20 --out " + name + " --rig-out " + path("nodir/x")), 1,
+                   "nodir/x: cannot be written: No such file or directory");
+    EXPECT_FALSE(fs::exists(name)) << name;
+  }
+  expect_refusal(egocal("simulate --poses 3 --drop lidar=0.999 --out " + out), 1,
+                 "sensor 1 has no pose left");
+  expect_refusal(egocal("simulate --poses 10000000 --rate 0.001 --out " + out), 1, "at most 1e9 m");
+  EXPECT_EQ(egocal("simulate --poses 20 --out " + out + " --rig-out " + out + "/rig.toml").code, 0);
+  EXPECT_TRUE(fs::exists(out + "/rig.toml"));
+}
+
+TEST_F(Commands, ASensorIsGivenOnce) {
+  const std::string rig = path("rig.toml");
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d") + " --rig-out " + rig).code, 0);
+  const std::string lidar = path("d/lidar.tum"), twice = " --from lidar=" + lidar + " --from lidar=" + lidar;
+  expect_refusal(egocal("solve --rig " + rig + twice), 2,
+                 "--from: the sensor lidar is given twice; another drive");
+  expect_refusal(egocal("log create " + rig + twice + " --out " + path("x.log")), 2,
+                 "--from: the sensor lidar is given twice");
+  EXPECT_FALSE(fs::exists(path("x.log")));
+  expect_refusal(egocal("solve --rig " + rig + " --from lidar= --from camera=" + lidar), 2,
+                 "--from: expected NAME=FILE, got 'lidar='");
+}
+
+// It was ignored without a word
+TEST_F(Commands, ADriveWithoutMotionsIsNamed) {
+  ASSERT_EQ(egocal("simulate --poses 200 --noise 0.001 --out " + path("d")).code, 0);
+  const std::string a = path("d/lidar.tum"), b = path("d/camera.tum");
+  std::string later = read(b);
+  for (std::size_t at = 0; (at = later.find("\n17", at)) != std::string::npos;) later[at + 1] = '2';
+  const std::string c = file("later.tum", later);
+  const std::string said = "--append: " + a + ", " + c + ": no motion pairs in this drive; a: 200 poses from";
+  expect_refusal(egocal("solve " + a + " " + b + " --append " + a + " " + c), 1, said);
+  expect_refusal(egocal("solve " + a + " " + b + " " + b + " --append " + a + " " + c + " " + b), 1, said);
+  expect_refusal(egocal("solve " + a + " " + c + " --append " + a + " " + b), 1,
+                 "later.tum: no motion pairs in this drive");
+  EXPECT_EQ(egocal("solve " + a + " " + b + " --append " + a + " " + b).code, 0);
+}
+
+TEST_F(Commands, TheCureOfAnOptionIsToLeaveItOut) {
+  ASSERT_EQ(egocal("simulate --poses 300 --noise 0.01 --out " + path("d")).code, 0);
+  const auto cures = [&](const std::string& options) {
+    const Outcome run = egocal("solve --json " + path("d/lidar.tum") + " " + path("d/camera.tum") + options);
+    EXPECT_EQ(run.code, 3) << run.err;
+    std::string all;
+    const json found = json::parse(run.out);
+    for (const json& finding : found["findings"]) all += finding["remedy"].get<std::string>() + "\n";
+    return all + found["reason"].get<std::string>();
+  };
+  EXPECT_THAT(cures(" --invert-a"), HasSubstr("leave out --invert-a"));
+  EXPECT_THAT(cures(" --invert-b"), HasSubstr("leave out --invert-b"));
+  EXPECT_THAT(cures(" --invert-a --invert-b"), HasSubstr("leave out --invert-a and --invert-b"));
+  EXPECT_THAT(cures(" --invert-a --invert-b"), HasSubstr("are sensor-to-world already"));
+  EXPECT_THAT(cures(" --scale 2"), HasSubstr("leave out --scale\n"));
+  EXPECT_THAT(cures(" --scale-b 3"), HasSubstr("leave out --scale-b\n"));
+}
+
+TEST_F(Commands, CheckNamesTheOptionsThatItDoesNotUse) {
+  ASSERT_EQ(egocal("simulate --poses 200 --out " + path("d")).code, 0);
+  EXPECT_THAT(egocal("check " + path("d/lidar.tum") + " " + path("d/camera.tum") + " --rate 5").err,
+              HasSubstr("lidar.tum: --rate is not used: the poses have times"));
+}
+}  // namespace
