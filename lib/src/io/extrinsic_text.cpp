@@ -46,6 +46,10 @@ std::vector<std::string> extrinsic_format_names() {
   return names;
 }
 
+bool is_frame_name(const std::string& name) {
+  return detail::frame_name(name) == name;
+}
+
 std::string extrinsic_text(const NamedExtrinsic& extrinsic, ExtrinsicFormat format) {
   const detail::ExtrinsicWords words(extrinsic);
   for (const Writer& writer : writers)

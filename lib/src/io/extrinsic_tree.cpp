@@ -80,6 +80,16 @@ std::string json_tree(const ExtrinsicTree& tree) {
   return text + "]\n}\n";
 }
 
+/// Names that differ only in characters that no format holds would become one frame.
+void refuse_equal_names(const std::vector<NamedExtrinsic>& pairs) {
+  std::map<std::string, std::string> names;
+  for (const NamedExtrinsic& pair : pairs)
+    for (const std::string& name : {pair.parent, pair.child})
+      if (const auto& known = *names.try_emplace(detail::frame_name(name), name).first; known.second != name)
+        throw Error("'" + known.second + "' and '" + name + "' would both be the frame " + known.first +
+                    ": rename one");
+}
+
 }  // namespace
 
 ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std::string& root) {
@@ -116,6 +126,7 @@ ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std
 }
 
 std::string extrinsic_tree_text(const ExtrinsicTree& tree, ExtrinsicFormat format) {
+  refuse_equal_names(tree.edges);
   if (format == ExtrinsicFormat::urdf) return robot_text(tree);
   if (format == ExtrinsicFormat::ros_launch) return launch_text(tree);
   if (format == ExtrinsicFormat::json) return json_tree(tree);

@@ -2,12 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "egocal/limits.hpp"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace egocal::detail {
+
+/// Of poses that have no times [Hz]: limits, within which the times of a billion rows can be told apart and
+/// do not overflow.
+inline constexpr Range rates_of_poses{1e-3, 1e6};
 
 /// One line of a text file that holds data: comments (#) and empty lines are not among them.
 struct Line {

@@ -49,9 +49,13 @@ std::optional<ExtrinsicFormat> extrinsic_format_from_name(std::string_view name)
 /// All of them, in the order above.
 std::vector<std::string> extrinsic_format_names();
 
+/// Whether every format can hold a frame of this name as it is: up to 100 letters, digits and _ - . / of
+/// ASCII. In other names each other character is written as _.
+bool is_frame_name(const std::string& name);
+
 /// The whole text of a file; every format names parent, child, direction and quaternion order. Numbers read
 /// back as exactly the same doubles. Throws Error where a value is not finite: a sensor mounted at NaN would
-/// be worse than none.
+/// be worse than none; and where parent and child are written alike.
 std::string extrinsic_text(const NamedExtrinsic& extrinsic, ExtrinsicFormat format);
 
 }  // namespace egocal

@@ -10,7 +10,7 @@ std::string autoware_text(const ExtrinsicWords& words) {
   std::string text = "# sensors_calibration.yaml: " + words.direction +
                      "; metres, radians, R = Rz(yaw) Ry(pitch) Rx(roll)\n# " + "quaternion w x y z: [" +
                      joined(wxyz(words.T.rotation), ", ") + "]; " + words.verdict + "\n";
-  text += words.a + ":\n  " + words.b + ":\n";
+  text += yaml_word(words.a) + ":\n  " + yaml_word(words.b) + ":\n";
   constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   for (int i = 0; i < 6; ++i)
     text += std::string("    ") + names[i] + ": " + exact(i < 3 ? t[i] : angles[i - 3]) + "\n";

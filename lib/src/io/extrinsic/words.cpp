@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/extrinsic/words.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
 #include "egocal/error.hpp"
 #include "io/number_text.hpp"
 
@@ -11,6 +15,10 @@ ExtrinsicWords::ExtrinsicWords(const NamedExtrinsic& named)
     : extrinsic(named), T(named.T_parent_child), a(frame_name(named.parent)), b(frame_name(named.child)) {
   if (!T.translation.allFinite() || !T.rotation.coeffs().allFinite())
     throw Error("no extrinsic of " + b + " in " + a + " to write: its values are not finite");
+  if (a == b)
+    throw Error("no extrinsic to write: parent and child have the same name " + a +
+                (named.parent == named.child ? std::string()
+                                             : ", of '" + named.parent + "' and '" + named.child + "'"));
   direction = "pose of " + b + " in " + a + ": p_" + a + " = R * p_" + b + " + t";
   verdict = std::string(named.usable ? "" : "DO NOT USE, the motions contradict each other; ") +
             (named.certified ? "certified globally optimal" : "not certified") + ", from " +
@@ -63,6 +71,16 @@ std::string frame_name(const std::string& name) {
     if (safe.size() == 100) break;
   }
   return safe.empty() ? "unnamed" : safe;
+}
+
+std::string yaml_word(const std::string& name) {
+  constexpr std::string_view special[] = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"};
+  std::string lower = name;
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const bool letter =
+      !lower.empty() && ((lower[0] >= 'a' && lower[0] <= 'z') || lower[0] == '_' || lower[0] == '/');
+  const bool plain = letter && std::find(std::begin(special), std::end(special), lower) == std::end(special);
+  return plain ? name : "\"" + name + "\"";
 }
 
 }  // namespace egocal::detail

@@ -9,7 +9,7 @@ namespace egocal::detail {
 std::string yaml_text(const ExtrinsicWords& words) {
   const Pose& T = words.T;
   std::string text = "# " + words.direction + "\n# metres, radians, quaternion order w x y z\n";
-  text += "parent: " + words.a + "\nchild: " + words.b + "\n";
+  text += "parent: " + yaml_word(words.a) + "\nchild: " + yaml_word(words.b) + "\n";
   text += "translation: [" + joined(T.translation, ", ") + "]\n";
   text += "rotation_wxyz: [" + joined(wxyz(T.rotation), ", ") + "]\n";
   text += "roll_pitch_yaw: [" + joined(roll_pitch_yaw(T.rotation), ", ") + "]\n";
@@ -25,7 +25,7 @@ std::string yaml_text(const ExtrinsicWords& words) {
   if (words.extrinsic.scale) {
     const NamedScale& scale = *words.extrinsic.scale;
     text += "scale:  # lengths of this sensor, multiplied by the value, are metres\n";
-    text += "  sensor: " + frame_name(scale.sensor) + "\n  value: " + exact(scale.value) + "\n";
+    text += "  sensor: " + yaml_word(frame_name(scale.sensor)) + "\n  value: " + exact(scale.value) + "\n";
     text += "  stddev: " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : std::string(".inf")) + "\n";
     text += std::string("  certified: ") + (scale.certified ? "true" : "false") + "\n";
   }

@@ -64,8 +64,8 @@ ColmapImages::ColmapImages(std::unique_ptr<ByteSource> source, const ReadOptions
   if (!options.times_file.empty())
     throw error_at(file_, 0, "--times",
                    "the images of COLMAP have times in their names, or numbers of frames at --rate");
-  if (options.rate != 0 && !(options.rate > 0 && options.rate <= 1e6))
-    throw error_at(file_, 0, "--rate", "expected more than 0 and at most 1e6 Hz");
+  if (options.rate != 0 && !rates_of_poses.contains(options.rate))
+    throw error_at(file_, 0, "--rate", "expected 0.001 to 1e6 Hz");
   rate_given_ = options.rate > 0;
   if (rate_given_) rate_ = options.rate;
 }

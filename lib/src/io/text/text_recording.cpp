@@ -110,8 +110,8 @@ TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions opt
                      "a file of times belongs to KITTI poses (12 fields a line), this is not one");
     read_times();
   }
-  if (options_.rate != 0 && !(options_.rate > 0 && options_.rate <= 1e6))
-    throw error_at(file_, 0, "--rate", "expected more than 0 and at most 1e6 Hz");
+  if (options_.rate != 0 && !rates_of_poses.contains(options_.rate))
+    throw error_at(file_, 0, "--rate", "expected 0.001 to 1e6 Hz");
   if (options_.rate > 0) rate_ = options_.rate;
   find_angle_unit();
   if (layout_.columns.has(Quantity::heading) && !layout_.columns.has_quaternion() &&
