@@ -4,10 +4,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
+#include <cstdio>
 #include <numbers>
-#include <string_view>
-#include <utility>
 
 #include "egocal/error.hpp"
 
@@ -36,6 +34,14 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
   return values;
 }
 
+double number_in(const std::string& option, const std::string& text, const Range& range) {
+  const double value = numbers(option, text, 1)[0];
+  if (range.contains(value)) return value;
+  char limits[64];
+  std::snprintf(limits, sizeof limits, "%.10g to %.10g", range.least, range.most);
+  throw UsageError(option + ": expected " + limits + ", got '" + text + "'");
+}
+
 double number(const std::string& option, const std::string& text) {
   return numbers(option, text, 1)[0];
 }
@@ -46,11 +52,16 @@ Pose pose(const std::string& option, const std::string& text) {
   if (std::abs(rotation.norm() - 1) > 0.01)
     throw UsageError(option + ": expected a quaternion QW,QX,QY,QZ of length 1, got length " +
                      std::to_string(rotation.norm()));
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!plausible_distance(v[i]))
+      throw UsageError(option + ": expected X,Y,Z within 1e9 m, got '" + text + "'");
   return {rotation.normalized(), {v[0], v[1], v[2]}};
 }
 
 GroundPlane plane(const std::string& option, const std::string& text) {
   const std::vector<double> v = numbers(option, text, 4);
+  if (!plausible_distance(v[3]))
+    throw UsageError(option + ": expected NX,NY,NZ,D with D within 1e9 m, got '" + text + "'");
   try {
     return validated({{v[0], v[1], v[2]}, v[3]});
   } catch (const Error& error) {
@@ -60,14 +71,17 @@ GroundPlane plane(const std::string& option, const std::string& text) {
 
 Balance balance(const std::string& option, const std::string& text) {
   const std::vector<double> v = numbers(option, text, 2, ':');
-  if (!(v[0] >= 0) || !(v[1] > 0))
-    throw UsageError(option + ": expected R:T with R >= 0 and T > 0, got '" + text + "'");
+  if (!limits::rotation_weight.contains(v[0]) || !limits::translation_weight.contains(v[1]) || v[1] == 0)
+    throw UsageError(option + ": expected R:T with R from 0 to 1e12 and T above 0, up to 1e12, got '" + text +
+                     "'");
   return {v[0], v[1]};
 }
 
 GoalOptions goal(const std::string& option, const std::string& text) {
   const std::optional<GoalOptions> goal = goal_from_text(text);
   if (!goal) throw UsageError(option + ": expected two accuracies as 0.1deg,2cm, got '" + text + "'");
+  if (goal->rotation > std::numbers::pi || !plausible_distance(goal->translation))
+    throw UsageError(option + ": expected at most 180deg and 1e9m, got '" + text + "'");
   return *goal;
 }
 

@@ -10,6 +10,7 @@
 #include "egocal/cli/cli.hpp"
 #include "egocal/diagnosis/verdict.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "egocal/limits.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/problem/problem.hpp"
 
@@ -21,6 +22,8 @@ using cli::UsageError;
 std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
                             char separator = ',');
 double number(const std::string& option, const std::string& text);
+/// The same within a range.
+double number_in(const std::string& option, const std::string& text, const Range& range);
 /// X,Y,Z,QW,QX,QY,QZ.
 Pose pose(const std::string& option, const std::string& text);
 /// NX,NY,NZ,D: normal . x = D, the unit normal up.

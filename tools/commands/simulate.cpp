@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
@@ -126,22 +127,99 @@ void write_mcap(const std::string& file, const std::vector<MountedSensor>& senso
   mcap.close();
 }
 
+std::string trajectory_file(const std::string& directory, const MountedSensor& sensor) {
+  return directory + "/" + sensor.name + ".tum";
+}
+
+std::string truth_file(const std::string& directory, const MountedSensor& a, const MountedSensor& b) {
+  return directory + "/truth_" + a.name + "_" + b.name + ".txt";
+}
+
 void write_directory(const std::string& directory, const std::vector<MountedSensor>& sensors,
                      const std::vector<Trajectory>& trajectories) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw error_at(directory, 0, "", "cannot be made: " + error.message());
   for (std::size_t k = 0; k < sensors.size(); ++k) {
-    write_tum(directory + "/" + sensors[k].name + ".tum", trajectories[k]);
+    write_tum(trajectory_file(directory, sensors[k]), trajectories[k]);
     if (k == 0) continue;
     const Pose T = inverse(sensors[0].T_vehicle_sensor) * sensors[k].T_vehicle_sensor;
     write_whole_file(
-        directory + "/truth_" + sensors[0].name + "_" + sensors[k].name + ".txt",
+        truth_file(directory, sensors[0], sensors[k]),
         fmt::format("# tx ty tz qw qx qy qz, pose of {} in {}\n{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} "
                     "{:.17g} {:.17g}\n",
                     sensors[k].name, sensors[0].name, T.translation.x(), T.translation.y(), T.translation.z(),
                     T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()));
   }
+}
+
+/// Refuses what would be two streams of one name.
+std::vector<MountedSensor> understood(const std::vector<std::string>& texts) {
+  std::vector<MountedSensor> sensors;
+  for (const std::string& text : texts) {
+    MountedSensor sensor = mounted(text);
+    for (const MountedSensor& other : sensors)
+      if (other.channel == sensor.channel)
+        throw UsageError("--sensor: " + other.name + " and " + sensor.name + " would both send on " +
+                         sensor.channel + ": expected different names");
+    sensors.push_back(std::move(sensor));
+  }
+  if (sensors.size() < 2) throw UsageError("--sensor: expected at least two");
+  return sensors;
+}
+
+/// The rig file takes its name when the drive is written, and is known to be writable before.
+class RigOutput {
+ public:
+  RigOutput(const std::string& file, const std::string& text) : file_(file), text_(text) {
+    std::error_code none;
+    const std::filesystem::file_status there = std::filesystem::status(file, none);
+    const bool device = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
+                        !std::filesystem::is_directory(there);
+    if (file.empty() || device) return;
+    whole_.emplace(file);
+    whole_->write(text);
+  }
+  void commit() {
+    if (whole_)
+      whole_->commit();
+    else if (!file_.empty())
+      write_whole_file(file_, text_);
+  }
+
+ private:
+  std::string file_, text_;
+  std::optional<WholeFile> whole_;
+};
+
+/// A folder that goes where nothing is written into it, if it was not there before.
+class NewDirectory {
+ public:
+  explicit NewDirectory(const std::string& directory) : directory_(directory) {
+    if (directory.empty()) return;
+    std::error_code error;
+    made_ = std::filesystem::create_directories(directory, error);
+    if (error) throw error_at(directory, 0, "", "cannot be made: " + error.message());
+  }
+  ~NewDirectory() {
+    std::error_code not_empty;
+    if (made_) std::filesystem::remove(directory_, not_empty);
+  }
+  NewDirectory(const NewDirectory&) = delete;
+  NewDirectory& operator=(const NewDirectory&) = delete;
+
+ private:
+  std::string directory_;
+  bool made_ = false;
+};
+
+/// The rig file must not take the name of a file of the drive.
+void refuse_same_name(const Options& options, const std::vector<MountedSensor>& sensors) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path rig = fs::weakly_canonical(options.rig_out, none);
+  for (std::size_t k = 0; k < sensors.size(); ++k)
+    for (const std::string& file :
+         {trajectory_file(options.out, sensors[k]), truth_file(options.out, sensors[0], sensors[k])})
+      if (fs::weakly_canonical(file, none) == rig)
+        throw UsageError("--rig-out: " + options.rig_out + " is a file of --out: expected another name");
 }
 
 void run(Options options, const cli::App& command) {
@@ -152,9 +230,7 @@ void run(Options options, const cli::App& command) {
   const std::string extension = std::filesystem::path(options.out).extension();
   if (command.given("--type") && extension != ".log" && options.rig_out.empty())
     throw UsageError("--type: is that of the messages of a .log or of --rig-out");
-  std::vector<MountedSensor> sensors;
-  for (const std::string& text : options.sensors) sensors.push_back(mounted(text));
-  if (sensors.size() < 2) throw UsageError("--sensor: expected at least two");
+  const std::vector<MountedSensor> sensors = understood(options.sensors);
   SimulationOptions& simulation = options.simulation;
   simulation.terrain = options.terrain == "flat"   ? Terrain::flat
                        : options.terrain == "free" ? Terrain::free
@@ -164,15 +240,19 @@ void run(Options options, const cli::App& command) {
   std::vector<std::string> names;
   names.reserve(sensors.size());
   for (const MountedSensor& sensor : sensors) names.push_back(sensor.name);
-  simulation.faults = understood(options.faults, names);
+  simulation.faults = understood(options.faults, names, (simulation.poses - 1) / simulation.rate);
+  const bool directory = extension != ".mcap" && extension != ".log";
+  if (directory && !options.rig_out.empty()) refuse_same_name(options, sensors);
   const std::vector<Trajectory> trajectories = simulate(simulation);
+  const NewDirectory made(directory ? options.out : std::string());
+  RigOutput rig(options.rig_out, rig_text(sensors, options.type));
   if (extension == ".mcap")
     write_mcap(options.out, sensors, trajectories, simulation);
   else if (extension == ".log")
     write_log(options.out, sensors, trajectories, simulation, options.type);
   else
     write_directory(options.out, sensors, trajectories);
-  if (!options.rig_out.empty()) write_whole_file(options.rig_out, rig_text(sensors, options.type));
+  rig.commit();
 }
 
 }  // namespace
@@ -196,20 +276,19 @@ void add_simulate(cli::App program) {
   command.add_option("--poses", simulation.poses, "of each sensor")
       .check(cli::Check::range(2, 10'000'000))
       .show_default();
-  command.add_option("--rate", simulation.rate, "poses a second [Hz]").show_default();
-  command.add_option("--speed", simulation.speed, "[m/s]").show_default();
-  command
-      .add_option("--speed-variation", simulation.speed_variation,
-                  "of the speed on the ground, as a part of it")
-      .show_default();
-  command.add_option("--roughness", simulation.roughness, "amplitude of the road's surface [m]")
-      .show_default();
-  command.add_option("--noise", simulation.relative_noise, "of each motion, as a part of the mean one")
-      .show_default();
-  command.add_option("--noise-of-motion", simulation.noise_of_motion, "and as a part of each motion itself")
-      .show_default();
-  command.add_option("--noise-rotation", simulation.noise_rotation, "added to it [rad]").show_default();
-  command.add_option("--noise-translation", simulation.noise_translation, "added to it [m]").show_default();
+  // ranges as simulation.cpp has them
+  const auto number = [&](const char* name, double& value, const char* help, double least, double most) {
+    command.add_option(name, value, help).check(cli::Check::range(least, most)).show_default();
+  };
+  number("--rate", simulation.rate, "poses a second [Hz]", 1e-3, 1e5);
+  number("--speed", simulation.speed, "[m/s]", -1e3, 1e3);
+  number("--speed-variation", simulation.speed_variation, "of the speed on the ground, as a part of it", 0,
+         10);
+  number("--roughness", simulation.roughness, "amplitude of the road's surface [m]", 0, 1e3);
+  number("--noise", simulation.relative_noise, "of each motion, as a part of the mean one", 0, 1e3);
+  number("--noise-of-motion", simulation.noise_of_motion, "and as a part of each motion itself", 0, 1e3);
+  number("--noise-rotation", simulation.noise_rotation, "added to it [rad]", 0, 1e3);
+  number("--noise-translation", simulation.noise_translation, "added to it [m]", 0, 1e3);
   command.add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
   command.add_flag("--heavy-tails", simulation.heavy_tails, "noise with rare large errors (Student, 3)");
   add_fault_options(command, options->faults);

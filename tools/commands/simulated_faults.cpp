@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/simulated_faults.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 
@@ -44,8 +46,9 @@ Pose change(const char* option, const std::string& text) {
   const std::vector<std::string> numbers = parts(text, ',');
   if (numbers.size() != 6)
     throw UsageError(std::string(option) + ": expected DX,DY,DZ,ROLL,PITCH,YAW [m, deg], got '" + text + "'");
+  constexpr Range metres{-1e3, 1e3}, degrees{-360, 360};  // limits of a mount
   double value[6];
-  for (std::size_t i = 0; i < 6; ++i) value[i] = number(option, numbers[i]);
+  for (std::size_t i = 0; i < 6; ++i) value[i] = number_in(option, numbers[i], i < 3 ? metres : degrees);
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
   const Eigen::Quaterniond rotation = AngleAxisd(radians * value[5], Vector3d::UnitZ()) *
@@ -61,6 +64,15 @@ std::vector<std::string> timed(const char* option, const std::string& text, std:
   if (result.size() != count)
     throw UsageError(std::string(option) + ": expected NAME=" + expected + ", got '" + text + "'");
   return result;
+}
+
+/// A time within the drive [s].
+double time_in(const char* option, const std::string& text, const Range& drive) {
+  const double time = number(option, text);
+  if (!drive.contains(time))
+    throw UsageError(
+        fmt::format("{}: expected a time within the drive, 0 to {:g} s, got '{}'", option, drive.most, text));
+  return time;
 }
 
 }  // namespace
@@ -83,35 +95,46 @@ void add_fault_options(cli::App command, FaultTexts& texts) {
   add("--jump", texts.jumps, "NAME=TIME:DX,DY,DZ,ROLL,PITCH,YAW: its odometry jumps, the mount stays");
 }
 
-std::vector<SensorFaults> understood(const FaultTexts& texts, const std::vector<std::string>& names) {
+std::vector<SensorFaults> understood(const FaultTexts& texts, const std::vector<std::string>& names,
+                                     double duration) {
   std::vector<SensorFaults> faults(names.size());
   const auto set = [&](const char* option, const std::vector<std::string>& values,
-                       double SensorFaults::*field) {
-    for_each(option, values, names, faults,
-             [&](SensorFaults& sensor, const std::string& text) { sensor.*field = number(option, text); });
+                       double SensorFaults::*field, const Range& range) {
+    std::vector<const SensorFaults*> given;
+    for_each(option, values, names, faults, [&](SensorFaults& sensor, const std::string& text) {
+      if (std::find(given.begin(), given.end(), &sensor) != given.end())
+        throw UsageError(std::string(option) + ": is given twice for one sensor, the second time as '" +
+                         text + "'");
+      given.push_back(&sensor);
+      sensor.*field = number_in(option, text, range);
+    });
   };
-  set("--sensor-rate", texts.rates, &SensorFaults::rate);
-  set("--phase", texts.phases, &SensorFaults::phase);
-  set("--scale", texts.scales, &SensorFaults::scale);
-  set("--scale-drift", texts.scale_drifts, &SensorFaults::scale_drift);
-  set("--clock-offset", texts.clock_offsets, &SensorFaults::clock_offset);
-  set("--clock-drift", texts.clock_drifts, &SensorFaults::clock_drift);
-  set("--drop", texts.dropped, &SensorFaults::dropped);
-  set("--outliers", texts.outliers, &SensorFaults::outliers);
-  set("--noise-factor", texts.noise_factors, &SensorFaults::noise_factor);
-  for_each("--bump", texts.bumps, names, faults, [](SensorFaults& sensor, const std::string& text) {
+  // ranges as simulation.cpp has them
+  set("--sensor-rate", texts.rates, &SensorFaults::rate, {1e-3, 1e5});
+  set("--phase", texts.phases, &SensorFaults::phase, {0, duration});
+  set("--scale", texts.scales, &SensorFaults::scale, {1e-6, 1e6});
+  set("--scale-drift", texts.scale_drifts, &SensorFaults::scale_drift, {-1, 1});
+  set("--clock-offset", texts.clock_offsets, &SensorFaults::clock_offset, {-1e6, 1e6});
+  set("--clock-drift", texts.clock_drifts, &SensorFaults::clock_drift, {-0.1, 0.1});
+  set("--drop", texts.dropped, &SensorFaults::dropped, {0, 0.999});
+  set("--outliers", texts.outliers, &SensorFaults::outliers, {0, 1});
+  set("--noise-factor", texts.noise_factors, &SensorFaults::noise_factor, {0, 1e6});
+  const Range within{0, duration};
+  for_each("--bump", texts.bumps, names, faults, [&](SensorFaults& sensor, const std::string& text) {
     const auto part = timed("--bump", text, 2, "TIME:DX,DY,DZ,ROLL,PITCH,YAW");
-    const double time = number("--bump", part[0]);
+    const double time = time_in("--bump", part[0], within);
     sensor.mount_changes.push_back({time, time, change("--bump", part[1])});
   });
-  for_each("--creep", texts.creeps, names, faults, [](SensorFaults& sensor, const std::string& text) {
+  for_each("--creep", texts.creeps, names, faults, [&](SensorFaults& sensor, const std::string& text) {
     const auto part = timed("--creep", text, 3, "BEGIN:END:DX,DY,DZ,ROLL,PITCH,YAW");
-    sensor.mount_changes.push_back(
-        {number("--creep", part[0]), number("--creep", part[1]), change("--creep", part[2])});
+    const double begin = time_in("--creep", part[0], within);
+    // it may still be on its way at the end
+    const double end = number_in("--creep", part[1], {begin, 1e9});
+    sensor.mount_changes.push_back({begin, end, change("--creep", part[2])});
   });
-  for_each("--jump", texts.jumps, names, faults, [](SensorFaults& sensor, const std::string& text) {
+  for_each("--jump", texts.jumps, names, faults, [&](SensorFaults& sensor, const std::string& text) {
     const auto part = timed("--jump", text, 2, "TIME:DX,DY,DZ,ROLL,PITCH,YAW");
-    sensor.jumps.push_back({number("--jump", part[0]), change("--jump", part[1])});
+    sensor.jumps.push_back({time_in("--jump", part[0], within), change("--jump", part[1])});
   });
   return faults;
 }

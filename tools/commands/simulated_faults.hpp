@@ -18,7 +18,9 @@ struct FaultTexts {
 
 void add_fault_options(cli::App command, FaultTexts& texts);
 
-/// Per sensor, in the order of the names. Throws UsageError for an unknown name or a value that is no number.
-std::vector<SensorFaults> understood(const FaultTexts& texts, const std::vector<std::string>& names);
+/// Per sensor, in the order of the names. duration: of the drive [s], within which things happen. Throws
+/// UsageError for an unknown name, a value that is no number or out of range, or one that is given twice.
+std::vector<SensorFaults> understood(const FaultTexts& texts, const std::vector<std::string>& names,
+                                     double duration);
 
 }  // namespace egocal::tools

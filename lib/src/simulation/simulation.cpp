@@ -10,6 +10,7 @@
 #include <string>
 
 #include "egocal/error.hpp"
+#include "egocal/limits.hpp"
 #include "simulation/random.hpp"
 #include "simulation/sensor.hpp"
 
@@ -107,16 +108,21 @@ std::vector<Pose> free_path(const SimulationOptions& options, const std::vector<
   return poses;
 }
 
+constexpr double most_poses = 1e7;  // a limit of memory: 640 MB a sensor
+
 void check(const SimulationOptions& options) {
   const auto expect = [](bool good, const char* what) {
     if (!good) throw Error(std::string("simulation: ") + what);
   };
   expect(options.poses >= 2, "expected at least 2 poses");
-  expect(options.rate > 0 && options.rate <= 1e5, "expected a rate between 0 and 100000 Hz");
-  expect(std::isfinite(options.speed), "expected a finite speed");
-  expect(options.speed_variation >= 0 && std::isfinite(options.speed_variation),
-         "expected a variation of the speed of at least 0");
-  expect(options.roughness >= 0 && std::isfinite(options.roughness), "expected a roughness of at least 0");
+  expect(options.rate >= 1e-3 && options.rate <= 1e5, "expected a rate from 0.001 to 100000 Hz");
+  expect(std::abs(options.speed) <= 1e3, "expected a speed within 1000 m/s");
+  expect(options.speed_variation >= 0 && options.speed_variation <= 10,
+         "expected a variation of the speed from 0 to 10");
+  expect(options.roughness >= 0 && options.roughness <= 1e3, "expected a roughness from 0 to 1000 m");
+  const double duration = (options.poses - 1) / options.rate;
+  expect(std::abs(options.speed) * (1 + options.speed_variation) * duration <= limits::largest_distance,
+         "expected a drive of at most 1e9 m: fewer poses, a higher rate or a lower speed");
   expect(options.relative_noise >= 0 && options.noise_of_motion >= 0 && options.noise_rotation >= 0 &&
              options.noise_translation >= 0 &&
              std::isfinite(options.relative_noise + options.noise_of_motion + options.noise_rotation +
@@ -125,8 +131,10 @@ void check(const SimulationOptions& options) {
   expect(!options.T_vehicle_sensor.empty(), "expected at least one sensor");
   expect(options.faults.size() <= options.T_vehicle_sensor.size(), "expected no more faults than sensors");
   for (const SensorFaults& faults : options.faults) {
-    expect(faults.rate >= 0 && faults.rate <= 1e5, "expected a sensor's rate between 0 and 100000 Hz");
-    expect(faults.phase >= 0 && std::isfinite(faults.phase), "expected a phase of at least 0");
+    expect(faults.rate == 0 || (faults.rate >= 1e-3 && faults.rate <= 1e5),
+           "expected a sensor's rate from 0.001 to 100000 Hz");
+    expect(faults.rate * duration <= most_poses, "expected a sensor's rate with at most 10000000 poses");
+    expect(faults.phase >= 0 && faults.phase <= duration, "expected a phase within the drive");
     expect(faults.scale > 0 && std::isfinite(faults.scale), "expected a scale above 0");
     expect(std::abs(faults.scale_drift) <= 1, "expected a scale drift within 1 per second");
     expect(std::abs(faults.clock_offset) <= 1e6, "expected a clock offset within 1000000 s");
@@ -152,8 +160,12 @@ std::vector<Trajectory> simulate(const SimulationOptions& options) {
   path.poses = options.terrain == Terrain::free ? free_path(options, path.times, random)
                                                 : ground_path(options, path.times, random);
   std::vector<Trajectory> trajectories;
-  for (std::size_t k = 0; k < options.T_vehicle_sensor.size(); ++k)
+  for (std::size_t k = 0; k < options.T_vehicle_sensor.size(); ++k) {
     trajectories.push_back(detail::drive_sensor(options, path, k, random));
+    if (trajectories.back().empty())
+      throw Error("simulation: sensor " + std::to_string(k + 1) +
+                  " has no pose left: fewer dropped ones, or more of them");
+  }
   return trajectories;
 }
 
