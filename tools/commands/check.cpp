@@ -35,7 +35,9 @@ void run(const Options& options, const std::string& command_line) {
   request.source = options.source;
   request.source.reading_a = options.reading.of_a();
   request.source.reading_b = options.reading.of_b();
-  const Calibration calibration = calibrate_offline(request).calibration;
+  const SolveResult result = calibrate_offline(request);
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
+  const Calibration& calibration = result.calibration;
   if (options.json) {
     nlohmann::ordered_json json = trust_json(calibration);
     append_json(json, provenance_json(command_line));

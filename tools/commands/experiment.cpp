@@ -74,7 +74,7 @@ void add_noise(cli::App experiment) {
   command.add_flag("--mixed", options->noise.mixed,
                    "a number of pairs is a sample of the whole drive, not its beginning");
   command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
-  command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
+  command.add_output("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
     const std::vector<NoisePoint> points = noise_experiment(options->noise, Progress{});
     finish(points, options->out, "noise");
@@ -108,7 +108,7 @@ void add_online(cli::App experiment) {
   command.add_option("--global", options->global, "dual or sdp")
       .show_default()
       .check(cli::Check::one_of({"dual", "sdp"}));
-  command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
+  command.add_output("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
     const DataSet data = load(options->source);
     OnlineOptions online;
@@ -133,7 +133,7 @@ void add_globality(cli::App experiment) {
   command.add_option("--directions", options->globality.directions, "of each amount")
       .show_default()
       .check(cli::Check::range(1, 100000));
-  command.add_option("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
+  command.add_output("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
     finish(globality_experiment(load(options->source), options->globality), options->out, "globality");
   });
@@ -147,7 +147,7 @@ void add_paper(cli::App experiment) {
       "--data", options->data,
       "folder with kitti_05, kitti_07, kitti_ground_planes (docs/paper.md); without it: simulated drives");
   command
-      .add_option("--out", options->out,
+      .add_output("--out", options->out,
                   "folder for the page, the figures and their numbers; an interrupted run continues")
       .required();
   command.add_flag("--paper", options->full, "Fig. 4 at the paper's size: 224,448 optimisations");

@@ -42,8 +42,13 @@ void create(const CreateOptions& options) {
   for (std::size_t k = 0; k < options.from.size(); ++k) {
     const std::string& text = options.from[k];
     const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw UsageError("--from: expected SENSOR=FILE, got '" + text + "'");
-    const bus::Sensor& sensor = bus::sensor(rig, text.substr(0, equals));
+    if (equals == std::string::npos || equals + 1 == text.size())
+      throw UsageError("--from: expected SENSOR=FILE, got '" + text + "'");
+    const std::string name = text.substr(0, equals);
+    for (std::size_t other = 0; other < k; ++other)
+      if (options.from[other].rfind(name + "=", 0) == 0)
+        throw UsageError("--from: the sensor " + name + " is given twice");
+    const bus::Sensor& sensor = bus::sensor(rig, name);
     TrajectoryReading read = read_any_trajectory(text.substr(equals + 1), options.reading);
     for (const std::string& note : read.notes)
       fmt::print(stderr, "egocal: {}: {}\n", text.substr(equals + 1), note);

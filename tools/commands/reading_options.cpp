@@ -39,7 +39,7 @@ void add_reading_options(cli::App command, ReadOptions& options) {
   command.add_option("--columns", options.columns,
                      "names of the columns of tables: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
   command.add_option("--rate", options.rate, "of poses without times [Hz; 10]")
-      .check(cli::Check::above_zero(1e6));
+      .check(cli::Check::above_zero(1e6, 1e-3));
 }
 
 void add_reading_options(cli::App command, ReadingOptions& options) {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <tuple>
 
 #include "arguments.hpp"
@@ -26,9 +25,8 @@ void read_scale(const char* option, const std::string& text, Side side, Calibrat
   calibration.scale_side = side;
   calibration.estimate_scale = text == "auto";
   if (calibration.estimate_scale) return;
-  calibration.scale = number(option, text);
-  if (!(calibration.scale >= 1e-9 && calibration.scale <= 1e9))
-    throw UsageError(std::string(option) + ": expected auto or a factor above 0, got '" + text + "'");
+  constexpr Range factors{1e-9, 1e9};  // limits: nanometres and millions of kilometres
+  calibration.scale = number_in(option, text, factors);
 }
 
 /// Sets of still poses know no time, no stride and no ground.
@@ -103,19 +101,16 @@ SolveRequest understood(const RequestOptions& options) {
     result.calibration.pairing.balance = balance("--weights", options.weights);
   }
   if (!options.stride.empty() && options.stride != "auto") {
-    const double stride = number("--stride", options.stride);
-    if (stride < 1 || stride > 100000 || stride != static_cast<int>(stride))
-      throw UsageError("--stride: expected auto or a whole number from 1 to 100000, got '" + options.stride +
-                       "'");
+    const double stride = number_in("--stride", options.stride, limits::stride);
+    if (stride != static_cast<int>(stride))
+      throw UsageError("--stride: expected auto or a whole number, got '" + options.stride + "'");
     result.calibration.pairing.stride = static_cast<int>(stride);
   }
   if (options.time_offset == "auto")
     result.calibration.estimate_time_offset = true;
   else if (!options.time_offset.empty())
-    result.calibration.pairing.time_offset = number("--time-offset", options.time_offset);
-  if (std::abs(result.calibration.pairing.time_offset) > 1e10)
-    throw UsageError("--time-offset: out of range");
-  if (!(options.max_gap > 0) || options.max_gap > 1e6) throw UsageError("--max-gap: expected more than 0 s");
+    result.calibration.pairing.time_offset =
+        number_in("--time-offset", options.time_offset, limits::time_offset);
   result.calibration.pairing.max_gap = options.max_gap;
   result.calibration.read_a = reading(options.invert_a, options.order_a);
   result.calibration.read_b = reading(options.invert_b, options.order_b);
@@ -159,6 +154,7 @@ void add_request_options(cli::App command, RequestOptions& options) {
       .show_default();
   command.add_option("--time-offset", options.time_offset, "added to the times of B: seconds or auto [0]");
   command.add_option("--max-gap", options.max_gap, "poses further apart are not interpolated between [s]")
+      .check(cli::Check::range(limits::max_gap.least, limits::max_gap.most))
       .show_default();
   for (const auto& [stream, invert, order] : {std::tuple{"a", &options.invert_a, &options.order_a},
                                               std::tuple{"b", &options.invert_b, &options.order_b}}) {

@@ -68,6 +68,13 @@ void run(const Options& options, const std::string& command_line) {
     throw cli::UsageError("--frame-a, --frame-b: go with two sensors; those of a rig have names");
   if (named && !options.json && options.format.empty() && options.out.empty())
     throw cli::UsageError("--frame-a, --frame-b: go with --format, --out or --json");
+  for (const auto& [option, name] :
+       {std::pair{"--frame-a", &options.frame_a}, std::pair{"--frame-b", &options.frame_b}})
+    if (!is_frame_name(*name))
+      throw cli::UsageError(std::string(option) + ": expected up to 100 letters, digits and _ - . /, got '" +
+                            *name + "'");
+  if (options.frame_a == options.frame_b)
+    throw cli::UsageError("--frame-a, --frame-b: expected two names, got '" + options.frame_a + "' for both");
   if (is_rig(options.rig))
     return solve_rig_command(options.request, options.rig,
                              {options.json, options.format, options.out, command_line});

@@ -82,6 +82,10 @@ RigRequest rig_request(const RequestOptions& typed, const RigOptionsTyped& rig) 
 }
 
 void write_tree(const RigReport& report, const RigOutput& output) {
+  for (const std::string& name : report.names)
+    if (!is_frame_name(name))
+      fmt::print(stderr, "egocal: the name '{}' is written with _ for what is no letter, digit or _ - . /\n",
+                 name);
   const std::string text = extrinsic_tree_text(
       rig_tree(report), *extrinsic_format_from_name(output.format.empty() ? "yaml" : output.format));
   if (output.out.empty())

@@ -20,8 +20,9 @@ void add_source_options(cli::App command, Source& source) {
   const auto text = [&](const char* name, const char* help, auto&& take) {
     return command.add_option_function(name, std::forward<decltype(take)>(take), help);
   };
-  text("--truth", "X,Y,Z,QW,QX,QY,QZ: pose of sensor b in sensor a [m]",
-       [&source](const std::string& value) { source.truth = pose("--truth", value); });
+  text("--truth", "X,Y,Z,QW,QX,QY,QZ: pose of sensor b in sensor a [m]", [&source](const std::string& value) {
+    source.truth = pose("--truth", value);
+  }).needs(a);  // that of the simulated drive is known
   cli::Option plane_a =
       text("--plane-a", "NX,NY,NZ,D: the ground seen from sensor a, n . x = D, n up [m]",
            [&source](const std::string& value) { source.plane_a = plane("--plane-a", value); });
@@ -36,11 +37,11 @@ void add_source_options(cli::App command, Source& source) {
        });
   command.add_option("--stride", source.stride, "steps of the slower stream in one motion")
       .show_default()
-      .check(cli::Check::range(1, 1000000))
+      .check(cli::Check::range(limits::stride.least, limits::stride.most))
       .needs(a);
   command.add_option("--time-offset", source.time_offset, "added to the stamps of B [s]")
       .show_default()
-      .check(cli::Check::range(-1e9, 1e9))
+      .check(cli::Check::range(limits::time_offset.least, limits::time_offset.most))
       .needs(a);
   command.add_option("--poses", source.poses, "of the simulated drive")
       .show_default()

@@ -2,14 +2,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
+#include "egocal/pairing/options.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal::tools {
 
-/// Appends another drive of the same sensors, one trajectory each, an hour after the end of what is there: no
-/// motion spans such a gap, so each drive may have an odometry frame of its own.
-void append_drive(const std::vector<Trajectory*>& sensors, std::vector<Trajectory> drive);
+/// Several drives of the same sensors, one after the other in one trajectory a sensor.
+class Drives {
+ public:
+  /// sensors: the first drive, read from these names. They must exist as long as this object.
+  Drives(std::vector<Trajectory*> sensors, std::vector<std::string> names);
+
+  /// Appends another drive, one trajectory a sensor, an hour after the end of what is there: no motion spans
+  /// such a gap, so each drive may have an odometry frame of its own.
+  void append(std::vector<Trajectory> drive, std::vector<std::string> names);
+
+  /// Throws Error where a drive gives two sensors no motion pair: it would be ignored without a word. a, b:
+  /// the sensors' streams as they are paired, with as many poses as were read.
+  void require_motions(std::size_t sensor_a, std::size_t sensor_b, const Trajectory& a, const Trajectory& b,
+                       PairingOptions pairing) const;
+
+ private:
+  struct Drive {
+    std::vector<std::string> names, spans;
+    std::vector<std::size_t> begin;  ///< index of the first pose of each sensor
+  };
+  void note(std::vector<std::string> names, const std::vector<const Trajectory*>& drive,
+            std::vector<std::size_t> begin);
+  Trajectory part(const Trajectory& stream, std::size_t drive, std::size_t sensor) const;
+
+  std::vector<Trajectory*> sensors_;
+  std::vector<Drive> drives_;
+};
 
 }  // namespace egocal::tools

@@ -18,6 +18,7 @@
 #include "egocal/solvers/sqp.hpp"
 #include "offline/append.hpp"
 #include "offline/log_trajectory.hpp"
+#include "offline/remedies.hpp"
 #include "offline/samples.hpp"
 #include "offline/trajectory_source.hpp"
 
@@ -37,17 +38,19 @@ StreamSpan span_of(const Trajectory& trajectory) {
           1e-6 * static_cast<double>(trajectory.back().time_us)};
 }
 
+Trajectory read_noting(const std::string& name, const ReadOptions& options,
+                       std::vector<std::string>& warnings) {
+  TrajectoryReading reading = read_any_trajectory(name, options);
+  for (const std::string& note : reading.notes) warnings.push_back(name + ": " + note);
+  return std::move(reading.trajectory);
+}
+
 Motions read_motions(const MotionSource& source) {
   if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
   if (source.log.empty()) {
     Motions motions;
-    const auto read = [&](const std::string& name, const ReadOptions& options) {
-      TrajectoryReading reading = read_any_trajectory(name, options);
-      for (const std::string& note : reading.notes) motions.warnings.push_back(name + ": " + note);
-      return std::move(reading.trajectory);
-    };
-    motions.a = read(source.a, source.reading_a);
-    motions.b = read(source.b, source.reading_b);
+    motions.a = read_noting(source.a, source.reading_a, motions.warnings);
+    motions.b = read_noting(source.b, source.reading_b, motions.warnings);
     return motions;
   }
   LogTrajectory a = read_log_trajectory(source.log, source.a);
@@ -59,17 +62,21 @@ Motions read_motions(const MotionSource& source) {
 }
 
 /// Further drives, each after the ones before it.
-void append_drives(const SolveRequest& request, Motions& motions) {
-  if (request.append.empty()) return;
+Drives append_drives(const SolveRequest& request, Motions& motions) {
+  Drives drives({&motions.a, &motions.b}, {request.source.a, request.source.b});
+  if (request.append.empty()) return drives;
   if (!request.source.pairs.empty()) throw UsageError("--append: goes with two trajectories");
   if (request.append.size() % 2 != 0) throw UsageError("--append: expected a file for A and one for B");
   // columns and rate are those of the first drive; a file of times belongs to one drive
   ReadOptions a = request.source.reading_a, b = request.source.reading_b;
   a.times_file.clear();
   b.times_file.clear();
-  for (std::size_t i = 0; i < request.append.size(); i += 2)
-    append_drive({&motions.a, &motions.b}, {read_any_trajectory(request.append[i], a).trajectory,
-                                            read_any_trajectory(request.append[i + 1], b).trajectory});
+  for (std::size_t i = 0; i < request.append.size(); i += 2) {
+    const std::string &name_a = request.append[i], &name_b = request.append[i + 1];
+    drives.append({read_noting(name_a, a, motions.warnings), read_noting(name_b, b, motions.warnings)},
+                  {name_a, name_b});
+  }
+  return drives;
 }
 
 Calibration calibrate_motions(const MotionSource& source, const Motions& motions,
@@ -134,17 +141,31 @@ Motions as_solved(Motions motions, const CalibrationOptions& options, const Solv
   return motions;
 }
 
+/// How as_solved() motions were paired, and b on the clock of a.
+struct Paired {
+  PairingOptions options;
+  Trajectory b;
+};
+
+Paired as_paired(const Motions& motions, const CalibrationOptions& options, const Calibration& calibration) {
+  Paired paired{options.pairing, motions.b};
+  const std::optional<TimeOffset>& offset = calibration.time_offset;
+  if (offset)
+    paired.b = on_clock_of_a(*offset, motions.b);
+  else
+    paired.options.time_offset = calibration.time_offset_applied;
+  paired.options.stride = calibration.choice.stride;
+  paired.options.balance = calibration.choice.balance;
+  return paired;
+}
+
 /// The motion pairs of the stride and the weights that were chosen, from the beginning of the drive. motions:
 /// as_solved().
 std::vector<MotionPair> pairs_of(const Motions& motions, const CalibrationOptions& options,
                                  const Calibration& calibration) {
   if (!motions.pairs.empty()) return motions.pairs;
-  PairingOptions pairing = options.pairing;
-  if (!calibration.time_offset) pairing.time_offset = calibration.time_offset_applied;
-  pairing.stride = calibration.choice.stride;
-  pairing.balance = calibration.choice.balance;
-  const std::optional<TimeOffset>& offset = calibration.time_offset;
-  return pair_motions(pairing, motions.a, offset ? on_clock_of_a(*offset, motions.b) : motions.b).pairs;
+  const Paired paired = as_paired(motions, options, calibration);
+  return pair_motions(paired.options, motions.a, paired.b).pairs;
 }
 
 /// Puts the answer of one of the paper's baselines in the place of ours. They minimise other things: our
@@ -198,11 +219,12 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   CalibrationOptions options = request.calibration;
   options.method = method.value_or(Method::dual);
   Motions motions = read_motions(request.source);
-  append_drives(request, motions);
+  const Drives drives = append_drives(request, motions);
   SolveResult result;
   result.warnings = motions.warnings;
   if (request.samples) {
     answer_samples(request, motions.a, motions.b, result);
+    word_for_options(options, result.calibration);
     result.solve_us = time_of_method(Method::dual, result.calibration.problem);
     return result;
   }
@@ -210,8 +232,14 @@ SolveResult calibrate_offline(const SolveRequest& request) {
     result.warnings.push_back("these look like still poses of an arm rather than streams: try --samples");
   result.calibration = calibrate_motions(request.source, motions, options);
   follow_scale(motions, options, result);
+  word_for_options(options, result.calibration);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);
+  if (!request.append.empty()) {
+    const Motions solved = as_solved(motions, options, result);
+    const Paired paired = as_paired(solved, options, result.calibration);
+    drives.require_motions(0, 1, solved.a, paired.b, paired.options);
+  }
   if (request.keep_motions || !method) {
     motions = as_solved(std::move(motions), options, result);
     result.pairs = pairs_of(motions, options, result.calibration);

@@ -33,8 +33,13 @@ void take_from_rig(RigRequest& request, std::vector<GroundPlane>& planes) {
   };
   for (const std::string& text : request.from) {
     const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw UsageError("--from: expected NAME=FILE, got '" + text + "'");
-    take(bus::sensor(rig, text.substr(0, equals)), text.substr(equals + 1));
+    if (equals == std::string::npos || equals + 1 == text.size())
+      throw UsageError("--from: expected NAME=FILE, got '" + text + "'");
+    const std::string name = text.substr(0, equals);
+    if (std::find(request.names.begin(), request.names.end(), name) != request.names.end())
+      throw UsageError("--from: the sensor " + name +
+                       " is given twice; another drive of all sensors goes with --append");
+    take(bus::sensor(rig, name), text.substr(equals + 1));
   }
   if (!request.log.empty())
     for (const bus::Sensor& sensor : rig.sensors) take(sensor, sensor.channel);
@@ -51,6 +56,7 @@ Trajectory read_one(const std::string& name, const RigRequest& request, RigRepor
   return std::move(reading.trajectory);
 }
 
+/// The sensors' first drive.
 std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
   std::vector<Trajectory> trajectories;
   for (const std::string& source : request.sources) {
@@ -62,18 +68,25 @@ std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
     if (!channel.not_used.empty()) report.warnings.push_back(channel.not_used);
     trajectories.push_back(std::move(channel.poses));
   }
+  return trajectories;
+}
+
+/// Further drives, each after the ones before it.
+Drives append_drives(const RigRequest& request, std::vector<Trajectory>& trajectories, RigReport& report) {
   if (request.append.size() % trajectories.size() != 0)
     throw UsageError("--append: expected one file for each sensor");
   std::vector<Trajectory*> sensors;
   sensors.reserve(trajectories.size());
   for (Trajectory& trajectory : trajectories) sensors.push_back(&trajectory);
+  Drives drives(sensors, request.sources);
   for (std::size_t i = 0; i < request.append.size(); i += trajectories.size()) {
+    const auto begin = request.append.begin() + static_cast<std::ptrdiff_t>(i);
+    std::vector<std::string> names(begin, begin + static_cast<std::ptrdiff_t>(trajectories.size()));
     std::vector<Trajectory> drive;
-    for (std::size_t k = 0; k < trajectories.size(); ++k)
-      drive.push_back(read_one(request.append[i + k], request, report));
-    append_drive(sensors, std::move(drive));
+    for (const std::string& name : names) drive.push_back(read_one(name, request, report));
+    drives.append(std::move(drive), std::move(names));
   }
-  return trajectories;
+  return drives;
 }
 
 /// All sensors on the clock of the first one. The offsets that were added [s].
@@ -152,9 +165,13 @@ RigReport calibrate_rig(const RigRequest& given) {
   report.names = request.names;
   report.sources = request.sources;
   std::vector<Trajectory> trajectories = read(request, report);
+  const Drives drives = append_drives(request, trajectories, report);
   const std::vector<double> offsets = synchronise(trajectories, request);
   const Choice common = common_choice(trajectories, request, planes);
   calibrate_pairs(trajectories, request, planes, offsets, common, report);
+  for (std::size_t a = 0; a < trajectories.size(); ++a)
+    for (std::size_t b = a + 1; b < trajectories.size(); ++b)
+      drives.require_motions(a, b, trajectories[a], trajectories[b], pairing_of(request, planes, a, b));
 
   RigMotionsOptions options;
   options.stride = common.stride;

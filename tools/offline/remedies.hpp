@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/calibrate.hpp"
+
+namespace egocal::tools {
+
+/// The findings speak of the streams as they were paired. Where that is by an option, the cure is to leave it
+/// out, not to give it a second time: rewords findings and the reason of the verdict.
+void word_for_options(const CalibrationOptions& options, Calibration& calibration);
+
+}  // namespace egocal::tools
