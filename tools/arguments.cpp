@@ -14,9 +14,9 @@ namespace egocal::tools {
 std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
                             char separator) {
   const auto wrong = [&] {
-    return UsageError(option + ": expected " + std::to_string(count) +
-                      (count == 1 ? " number" : " numbers separated by '") +
-                      (count == 1 ? "" : std::string(1, separator) + "'") + ", got '" + text + "'");
+    const std::string expected =
+        count == 1 ? "a number" : std::to_string(count) + " numbers separated by '" + separator + "'";
+    return UsageError(option + ": expected " + expected + ", got '" + text + "'");
   };
   std::vector<double> values;
   const char* at = text.data();
@@ -70,10 +70,13 @@ GroundPlane plane(const std::string& option, const std::string& text) {
 }
 
 Balance balance(const std::string& option, const std::string& text) {
+  const auto wrong = [&](const char* expected) {
+    return UsageError(option + ": expected " + expected + ", got '" + text + "'");
+  };
+  if (text.find(':') == std::string::npos) throw wrong("equal, or R:T of rotation and translation");
   const std::vector<double> v = numbers(option, text, 2, ':');
   if (!limits::rotation_weight.contains(v[0]) || !limits::translation_weight.contains(v[1]) || v[1] == 0)
-    throw UsageError(option + ": expected R:T with R from 0 to 1e12 and T above 0, up to 1e12, got '" + text +
-                     "'");
+    throw wrong("R:T with R from 0 to 1e12 and T above 0, up to 1e12");
   return {v[0], v[1]};
 }
 

@@ -11,6 +11,12 @@
 
 namespace egocal::cli {
 
+namespace {
+
+constexpr const char* any_number_name = "number";
+
+}  // namespace
+
 std::optional<double> finite_number(const std::string& text) {
   const char* const end = text.data() + text.size();
   const char* const begin = text.data() + (text.rfind('+', 0) == 0 ? 1 : 0);
@@ -47,7 +53,7 @@ CLI::Validator any_number() {
       [](std::string& text) {
         return finite_number(text) ? std::string() : "expected a number, got '" + text + "'";
       },
-      "");
+      "", any_number_name);
 }
 
 Check Check::one_of(std::vector<std::string> values) {
@@ -85,8 +91,13 @@ Check Check::existing_file() {
 }
 
 Option& Option::check(const Check& check) {
-  // what is no finite number is in no range
+  // what is no finite number is in no range, whose message says more
   const auto add = [this](auto good, const std::string& expected, const std::string& description) {
+    try {
+      option_->get_validator(any_number_name)->active(false);
+    } catch (const CLI::OptionNotFound&) {
+      // of whole numbers, whose own check says more
+    }
     option_->check(CLI::Validator(
         [good, expected](std::string& text) {
           const std::optional<double> value = finite_number(text);
@@ -112,8 +123,7 @@ Option& Option::check(const Check& check) {
     case Check::Kind::range: {
       const double least = check.least_, most = check.most_;
       add([least, most](double value) { return value >= least && value <= most; },
-          shortest(least) + " to " + shortest(most),
-          "NUMBER in [" + shortest(least) + " - " + shortest(most) + "]");
+          shortest(least) + " to " + shortest(most), "[" + shortest(least) + " to " + shortest(most) + "]");
       break;
     }
     case Check::Kind::not_negative:

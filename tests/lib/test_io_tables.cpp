@@ -147,7 +147,7 @@ TEST_F(Tables, RowsOutOfOrderAreSortedAndCounted) {
   EXPECT_EQ(reading.duplicates, 1u);
   EXPECT_EQ(to_pose(reading.trajectory[2].pose).translation.x(), 3);
   EXPECT_THAT(reading.notes,
-              ElementsAre(HasSubstr("1 poses were out of order"), HasSubstr("the first of each")));
+              ElementsAre(HasSubstr("1 pose was out of order"), HasSubstr("the first of each")));
 }
 
 /// Neighbouring rows are 23 s and more apart, as milliseconds might be; the times in order are 1 s apart.

@@ -66,10 +66,10 @@ TEST_F(Commands, NumbersAreNumbersOfThePeopleWhoTypeThem) {
   expect_refusal(egocal(simulate + "--poses 1e3"), 2, "--poses: expected a whole number, got '1e3'");
   expect_refusal(egocal(simulate + "--poses 99999999999"), 2, "of at most 2147483647, got '99999999999'");
   expect_refusal(egocal(simulate + "--poses 1"), 2, "--poses: expected 2 to 10000000, got '1'");
-  expect_refusal(egocal(simulate + "--rate 5Hz"), 2, "--rate: expected a number, got '5Hz'");
+  expect_refusal(egocal(simulate + "--rate 5Hz"), 2, "--rate: expected 0.001 to 100000, got '5Hz'");
   expect_refusal(egocal(simulate + "--terrain rugh"), 2,
                  "--terrain: expected flat, rough or free, got 'rugh'; did you mean rough?");
-  expect_refusal(egocal("experiment noise --levels 0.1,x"), 2, "--levels: expected a number, got 'x'");
+  expect_refusal(egocal("experiment noise --levels 0.1,x"), 2, "--levels: expected 0 to 10, got 'x'");
   EXPECT_FALSE(fs::exists(path("never")));
 }
 
@@ -112,6 +112,8 @@ TEST_F(Commands, RangesNameTheirOption) {
   for (const auto& [arguments, said] :
        {std::pair{"--weights 1e300:1", "--weights: expected R:T with R from 0 to 1e12"},
         {"--weights 1:1e300", "--weights: expected R:T with"},
+        {"--weights 1", "--weights: expected equal, or R:T of rotation and translation, got '1'"},
+        {"--stride 0x10", "--stride: expected a number, got '0x10'"},
         {"--max-gap 1e-9", "--max-gap: expected 0.001 to 3600, got '1e-9'"},
         {"--max-gap 1e5", "--max-gap: expected 0.001 to 3600, got '1e5'"},
         {"--stride 20000", "--stride: expected 1 to 10000, got '20000'"},
@@ -142,7 +144,7 @@ TEST_F(Commands, ADriveIsSimulatedAsItWasAskedForOrNotAtAll) {
         {std::string("--rate 0"), "--rate: expected 0.001 to 100000, got '0'"},
         {"--speed 1e300", "--speed: expected -1000 to 1000, got '1e300'"},
         {"--roughness -1", "--roughness: expected 0 to 1000, got '-1'"},
-        {"--noise-rotation nan", "--noise-rotation: expected a number, got 'nan'"},
+        {"--noise-rotation nan", "--noise-rotation: expected 0 to 1000, got 'nan'"},
         {"--poses 101 --bump lidar=10.1:1,0,0,0,0,0",
          "--bump: expected a time within the drive, 0 to 10 s, got '10.1'"},
         {"--jump lidar=-1:1,0,0,0,0,0", "--jump: expected a time within the drive"},
@@ -151,9 +153,12 @@ TEST_F(Commands, ADriveIsSimulatedAsItWasAskedForOrNotAtAll) {
         {"--phase lidar=1000", "--phase: expected 0 to 100, got '1000'"},
         {"--drop lidar=1", "--drop: expected 0 to 0.999, got '1'"},
         {"--scale lidar=2 --scale lidar=3", "--scale: is given twice for one sensor"},
+        {"--out " + path("drive.bag"), "--out: is given more than once"},
         {"--rig-out " + out + "/lidar.tum", "lidar.tum is a file of --out: expected another name"},
         {"--rig-out " + out + "/./truth_lidar_camera.txt", "is a file of --out: expected another name"}})
     expect_refusal(egocal("simulate --out " + out + " " + arguments), 2, said);
+  expect_refusal(egocal("simulate --out " + path("drive.bag")), 2,
+                 "--out: expected a file .log or .mcap, or a");
   // no partial output
   for (const std::string& name : {out, path("o.log"), path("o.mcap")}) {
     expect_refusal(egocal("simulate --poses 20 --out " + name + " --rig-out " + path("nodir/x")), 1,

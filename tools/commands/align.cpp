@@ -8,6 +8,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
+#include "counted.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "offline/provenance.hpp"
@@ -64,8 +65,9 @@ std::string as_text(const SolveRequest& request, const Calibration& calibration,
     text += fmt::format("scale         {:.6g} times the lengths of {}\n", calibration.scale_applied,
                         request.calibration.scale_side == Side::a ? "a" : "b");
   constexpr double degrees = 180 / std::numbers::pi;
-  text += fmt::format("agreement     {} poses compared, RMS {:.4f} m, {:.4f} deg\n", alignment.compared,
-                      alignment.rms_translation, alignment.rms_rotation * degrees);
+  text += fmt::format("agreement     {} compared, RMS {:.4f} m, {:.4f} deg\n",
+                      counted(alignment.compared, "pose"), alignment.rms_translation,
+                      alignment.rms_rotation * degrees);
   return text;
 }
 
@@ -86,8 +88,8 @@ void run(const Options& options, const std::string& command_line) {
   } else {
     fmt::print("{}", as_text(request, calibration, alignment));
     if (!options.out.empty())
-      fmt::print("written       {}: b as a trajectory of sensor a in the world of a, {} poses (TUM)\n",
-                 options.out, alignment.b_as_a.size());
+      fmt::print("written       {}: b as a trajectory of sensor a in the world of a, {} (TUM)\n", options.out,
+                 counted(alignment.b_as_a.size(), "pose"));
   }
   if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
     throw cli::Exit{3};

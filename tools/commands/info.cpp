@@ -9,6 +9,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
+#include "counted.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/stream_summary.hpp"
@@ -121,7 +122,7 @@ void print_json(const Options& options, const Contents& contents, const std::str
 void print_row(const Row& row) {
   const auto& [stream, summary] = row;
   const std::string name = stream.name.empty() ? "(the only stream)" : bus::printable(stream.name, 60);
-  fmt::print("\n{}  {}, {} messages{}\n", name, bus::printable(stream.type, 60), stream.messages,
+  fmt::print("\n{}  {}, {}{}\n", name, bus::printable(stream.type, 60), counted(stream.messages, "message"),
              stream.fixed ? ", static" : "");
   if (!stream.poses || stream.fixed) return;
   if (summary.poses == 0) {
@@ -148,8 +149,8 @@ void print_row(const Row& row) {
 void run(const Options& options, const std::string& command_line) {
   const Contents contents = read_contents(options);
   if (options.json) return print_json(options, contents, command_line);
-  fmt::print("{}: {}, {} stream{}\n", bus::printable(options.name), contents.format, contents.rows.size(),
-             contents.rows.size() == 1 ? "" : "s");
+  fmt::print("{}: {}, {}\n", bus::printable(options.name), contents.format,
+             counted(contents.rows.size(), "stream"));
   for (const std::string& note : contents.notes) fmt::print("note: {}\n", note);
   if (contents.losses.any()) fmt::print("lost: {}\n", losses_in_words(contents.losses));
   for (const Row& row : contents.rows) print_row(row);

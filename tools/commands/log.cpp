@@ -10,6 +10,7 @@
 #include "arguments.hpp"
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
+#include "counted.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
@@ -231,7 +232,7 @@ void export_mcap(const std::string& file, const std::string& out) {
   }
   if (poses + transforms == 0) throw error_at(file, 0, "", "holds neither poses nor calibrations");
   mcap.close();
-  fmt::print("{}: {} poses, {} calibrations{}; {}\n", out, poses, transforms,
+  fmt::print("{}: {}, {}{}; {}\n", out, counted(poses, "pose"), counted(transforms, "calibration"),
              refused > 0 ? fmt::format(", {} refused", refused) : "", damage_text(log.damage()));
 }
 

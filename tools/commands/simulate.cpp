@@ -230,6 +230,11 @@ void run(Options options, const cli::App& command) {
   const std::string extension = std::filesystem::path(options.out).extension();
   if (command.given("--type") && extension != ".log" && options.rig_out.empty())
     throw UsageError("--type: is that of the messages of a .log or of --rig-out");
+  // a name of a file that would become one of a folder
+  for (const char* other : {".bag", ".db3", ".tum", ".txt", ".csv", ".toml", ".json", ".yaml"})
+    if (extension == other)
+      throw UsageError("--out: expected a file .log or .mcap, or a folder for TUM files, got '" +
+                       options.out + "'");
   const std::vector<MountedSensor> sensors = understood(options.sensors);
   SimulationOptions& simulation = options.simulation;
   simulation.terrain = options.terrain == "flat"   ? Terrain::flat

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "counted.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -19,7 +20,7 @@ namespace {
 
 std::string span_text(const Trajectory& trajectory) {
   if (trajectory.empty()) return "no poses";
-  return fmt::format("{} poses from {:.3f} to {:.3f} s", trajectory.size(),
+  return fmt::format("{} from {:.3f} to {:.3f} s", counted(trajectory.size(), "pose"),
                      1e-6 * static_cast<double>(trajectory.front().time_us),
                      1e-6 * static_cast<double>(trajectory.back().time_us));
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "counted.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "offline/samples.hpp"
 #include "offline/trust_report.hpp"
@@ -229,8 +230,8 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
                         calibration.outliers->undecided);
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
     if (stream)
-      text += fmt::format("stream {}      {} poses from {:.3f} to {:.3f} s\n", label, stream->poses,
-                          stream->first, stream->last);
+      text += fmt::format("stream {}      {} from {:.3f} to {:.3f} s\n", label,
+                          counted(stream->poses, "pose"), stream->first, stream->last);
   std::vector<std::string> pairing;
   if (result.a)
     pairing.push_back(fmt::format("{} instants synchronised", result.calibration.counts.synchronised));

@@ -143,10 +143,12 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
   reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
   if (reading.out_of_order > 0)
     reading.notes.push_back(std::to_string(reading.out_of_order) +
-                            " poses were out of order: sorted by time");
+                            (reading.out_of_order == 1 ? " pose was" : " poses were") +
+                            " out of order: sorted by time");
   if (reading.duplicates > 0)
     reading.notes.push_back(std::to_string(reading.duplicates) +
-                            " poses have the time of another one: the first of each is kept");
+                            (reading.duplicates == 1 ? " pose has" : " poses have") +
+                            " the time of another one: the first of each is kept");
   if (reading.losses.any()) reading.notes.push_back(losses_in_words(reading.losses));
   return reading;
 }
