@@ -81,6 +81,18 @@ Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) 
   return finding;
 }
 
+Finding turning_in_noise(double correlation) {
+  Finding finding;
+  finding.code = "too_little_motion";
+  finding.certain = true;
+  finding.message = format(
+      "The streams travel alike but do not turn alike (correlation %.2f): the drive turns by less than the "
+      "noise of the rotations.",
+      correlation);
+  finding.remedy = "Record a drive with sharper turns in different directions, or improve the rotations.";
+  return finding;
+}
+
 Finding unexplained(const UnexplainedPart& part) {
   Finding finding;
   finding.code = "unrelated";
@@ -99,9 +111,9 @@ bool has(const std::vector<Finding>& findings, std::string_view code) {
                      [code](const Finding& one) { return one.code == code; });
 }
 
-/// What is left where no reading, scale or clock explains the motions.
+/// What is left where no reading, scale or clock explains the motions. misfit: by what is no noise.
 void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
-                  const Misfit& misfit, const Fit& fit, const DiagnosisOptions& options,
+                  const Fit& fit, const DiagnosisOptions& options, Misfit& misfit,
                   std::vector<Finding>& findings) {
   const Motions& motions = evidence.given.explained.motions;
   double turned = 0;
@@ -113,6 +125,15 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     return;
   }
   const double correlation = turning_correlation(motions);
+  const bool one_drive = travel_together(motions);
+  if (one_drive && misfit.best > options.doubtful_misfit &&
+      correlation < options.unrelated_part_correlation &&
+      fit.translation_relative_median < options.unrelated_misfit) {
+    findings.push_back(turning_in_noise(correlation));
+    // what the rotations leave is noise: the translations alone can contradict the answer
+    misfit.at_answer = misfit.median = fit.translation_relative_median;
+    return;
+  }
   if (misfit.best > options.contradictory_misfit && correlation < options.unrelated_correlation) {
     findings.push_back(unrelated(correlation));
     return;
@@ -122,7 +143,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     return;
   }
   if (answered.seconds >= options.unrelated_least_seconds && misfit.best > options.unrelated_misfit &&
-      misfit.best <= options.contradictory_misfit &&
+      misfit.best <= options.contradictory_misfit && !one_drive &&
       turning_correlation(motions, options.unrelated_part) < options.unrelated_part_correlation) {
     findings.push_back(unrelated(correlation));
     return;
@@ -255,13 +276,12 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
     for (Finding& finding :
          check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
       result.findings.push_back(std::move(finding));
-  const Misfit misfit{detail::misfit(motions, at_answer),
-                      detail::misfit(motions, evidence.given.explained.fit),
-                      median_misfit(motions, at_answer)};
+  Misfit misfit{detail::misfit(motions, at_answer), detail::misfit(motions, evidence.given.explained.fit),
+                median_misfit(motions, at_answer)};
   const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
                          std::any_of(result.findings.begin(), result.findings.end(),
                                      [&](const Finding& one) { return explains(one, options); });
-  if (!explained) look_further(pairing, evidence, answered, misfit, result.fit, options, result.findings);
+  if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);
   name_wrong_scale(evidence, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))

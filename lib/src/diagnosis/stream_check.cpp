@@ -228,6 +228,25 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
   return findings;
 }
 
+bool travel_together(const Motions& motions, const StreamCheckOptions& options) {
+  std::vector<double> of_a, of_b, ratios;
+  for (const Motion& motion : motions.all) {
+    const double a = motion.t_a.norm(), b = motion.t_b.norm();
+    if (!(a > 0 && b > 0)) continue;
+    of_a.push_back(std::log(a));
+    of_b.push_back(std::log(b));
+    ratios.push_back(std::log(b / a));
+  }
+  if (ratios.size() < options.least) return false;
+  const auto scatter = [](const std::vector<double>& values) {
+    const double middle = median(values);
+    std::vector<double> deviations;
+    for (const double value : values) deviations.push_back(std::abs(value - middle));
+    return median(std::move(deviations));
+  };
+  return scatter(ratios) < options.lengths_agree * std::min(scatter(of_a), scatter(of_b));
+}
+
 std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOptions& options) {
   std::vector<Window> windows = windows_of(motions, options.windows);
   std::erase_if(windows, [&](const Window& window) {

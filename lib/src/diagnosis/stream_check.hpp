@@ -22,6 +22,11 @@ struct StreamCheckOptions {
   /// of a tenth of every motion stays below 0.2 in the study, unlike drives are above 0.3.
   double agree = 0.25, disagree = 0.15;
   double step = 4;             ///< least ratio, of these parts and of the angles, to windows that agree
+  /// Lengths of the motions agree where their ratio scatters by less than this part of the lengths themselves
+  /// (median deviations of the logarithms): an odometry measures how far it travels well where it hardly
+  /// turns. 5,313 pairs of unrelated drives, of 14 simulated kinds and real ones, are above 0.29; sensors of
+  /// one train in noise that hides its curves are at 0.01 to 0.2.
+  double lengths_agree = 0.25;
   double least_turning = 0.3;  ///< of the typical motion; a window that turns less says nothing
   double flat = 1e-6;          ///< of the longest extent: a coordinate that changes by less never changes
   double least_tilt = 0.0175;  ///< of a stream with a flat coordinate: a degree [rad]; level ground is within
@@ -36,6 +41,10 @@ struct StreamCheckOptions {
 /// samples.
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
                                    const StreamCheckOptions& options = {});
+
+/// Both streams travel alike, by more than chance: they are of one drive, whatever their rotations say. Where
+/// the speed does not change this cannot be known.
+bool travel_together(const Motions& motions, const StreamCheckOptions& options = {});
 
 /// unrelated, with the time from which on: part of the drive does not turn together, the rest does.
 std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOptions& options = {});

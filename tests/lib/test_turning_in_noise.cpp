@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A train on a line with wide curves, whose odometries turn by noise: right streams, of one drive.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../support/findings.hpp"
+#include "../support/turning_bodies.hpp"
+#include "egocal/calibrate.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::find;
+
+/// Two sensors on one train, or each on its own. rotation_noise: of each step of 0.05 s [rad].
+testing::Streams trains(std::uint64_t seed, double rotation_noise, bool one) {
+  const auto streams = [&](std::uint64_t of_drive) {
+    testing::Random random(of_drive);
+    const testing::Shaking speed(random, 0.02, 0.05, 2.5), yaw_rate(random, 0.02, 0.05, 0.01);
+    testing::BodyPath body;
+    Pose pose;
+    for (int i = 0; i * testing::body_step < 71; ++i) {
+      const double t = i * testing::body_step;
+      body.push_back(pose);
+      pose = pose * Pose{rotation_exp({0, 0, testing::body_step * yaw_rate.at(t)}),
+                         {testing::body_step * (15 + speed.at(t)), 0, 0}};
+    }
+    const auto sensor = [&](const Pose& mount) {
+      return testing::Sensor{mount, 20, 0, 0, rotation_noise, 0.005};
+    };
+    const Pose T_a{rotation_exp(random.normal3(1)), random.normal3(1)},
+        T_b{rotation_exp(random.normal3(1)), random.normal3(1)};
+    return testing::Streams{to_dual_quaternion(inverse(T_a) * T_b),
+                            testing::measured(random, body, 70, sensor(T_a)),
+                            testing::measured(random, body, 70, sensor(T_b)),
+                            {}};
+  };
+  testing::Streams result = streams(seed);
+  if (!one) result.b = streams(seed + 1000).b;
+  return result;
+}
+
+TEST(TurningInNoise, IsTooLittleMotionAndNotAnotherDrive) {
+  int named = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const testing::Streams streams = trains(seed, 0.006, true);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(find(calibration, "unrelated"), nullptr) << seed << ": " << calibration.reason;
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << seed << ": " << calibration.reason;
+    named += find(calibration, "too_little_motion") != nullptr;
+  }
+  EXPECT_GE(named, 8);
+}
+
+TEST(TurningInNoise, OfTwoTrainsIsNotOfOne) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const testing::Streams streams = trains(seed, 0.006, false);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory) << seed << ": " << calibration.reason;
+    EXPECT_NE(find(calibration, "unrelated"), nullptr) << seed << ": " << calibration.reason;
+  }
+}
+
+}  // namespace
+}  // namespace egocal
