@@ -87,6 +87,34 @@ TEST(ExtrinsicText, KalibrHasTheInverse) {
   EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::kalibr), HasSubstr("-1"));
 }
 
+TEST(ExtrinsicText, NamesOfFramesStayNamesInYaml) {
+  NamedExtrinsic extrinsic = example();
+  for (const char* word :
+       {"yes", "No", "null", "TRUE", "off", "y", "1.0", "12", "1e5", "-", ".inf", "0x1f", "2026-11-24"}) {
+    extrinsic.parent = word;
+    const std::string quoted = "\"" + std::string(word) + "\"";
+    EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::yaml), HasSubstr("\nparent: " + quoted + "\n"));
+    EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::autoware), HasSubstr("\n" + quoted + ":\n"));
+  }
+  for (const char* word : {"lidar", "yes_1", "base_link", "/odom", "n1", "e5"}) {
+    extrinsic.parent = word;
+    EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::yaml),
+                HasSubstr("\nparent: " + std::string(word) + "\n"));
+  }
+}
+
+TEST(ExtrinsicText, ParentAndChildAreTwoFrames) {
+  NamedExtrinsic extrinsic = example();
+  extrinsic.child = extrinsic.parent;
+  for (const ExtrinsicFormat format : formats) EXPECT_THROW(extrinsic_text(extrinsic, format), Error);
+  extrinsic.parent = "front lidar";
+  extrinsic.child = "front_lidar";
+  EXPECT_THROW(extrinsic_text(extrinsic, ExtrinsicFormat::urdf), Error);
+  EXPECT_TRUE(is_frame_name("drive/front-lidar_1.2"));
+  for (const char* name : {"", "my lidar", "a:b", "caf\xc3\xa9", "a\nb"})
+    EXPECT_FALSE(is_frame_name(name)) << name;
+}
+
 TEST(ExtrinsicText, NobodyMountsASensorAtNan) {
   NamedExtrinsic extrinsic = example();
   extrinsic.T_parent_child.translation.y() = std::numeric_limits<double>::quiet_NaN();

@@ -108,5 +108,17 @@ TEST(ExtrinsicTree, IsWrittenAsOneRobotOneLaunchFileOneList) {
   EXPECT_THROW(extrinsic_tree_text(tree, ExtrinsicFormat::matrix), Error);
 }
 
+TEST(ExtrinsicTree, TwoSensorsAreNotOneFrame) {
+  NamedExtrinsic front = pair("lidar", "front", 0.01), rear = pair("lidar", "rear", 0.01);
+  front.child = "drive.mcap:/camera";
+  rear.child = "drive.mcap_/camera";
+  try {
+    extrinsic_tree_text(extrinsic_tree({front, rear}), ExtrinsicFormat::urdf);
+    ADD_FAILURE() << "both became one";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("would both be the frame drive.mcap_/camera: rename one"));
+  }
+}
+
 }  // namespace
 }  // namespace egocal

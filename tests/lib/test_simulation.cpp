@@ -179,9 +179,21 @@ TEST(Simulation, ValuesOutOfRangeAreRefused) {
   refused([](SensorFaults& faults) { faults.rate = -1; });
   refused([](SensorFaults& faults) { faults.clock_drift = 1; });
   refused([](SensorFaults& faults) { faults.noise_factor = std::nan(""); });
-  SimulationOptions options = two_sensors();
-  options.faults.resize(3);
-  EXPECT_THROW(simulate(options), Error);
+  refused([](SensorFaults& faults) { faults.phase = 1e6; });
+  refused([](SensorFaults& faults) { faults.rate = 1e-300; });
+  const auto refused_drive = [](auto change) {
+    SimulationOptions options = two_sensors();
+    change(options);
+    EXPECT_THROW(simulate(options), Error);
+  };
+  refused_drive([](SimulationOptions& options) { options.faults.resize(3); });
+  refused_drive([](SimulationOptions& options) { options.rate = 1e-300; });
+  refused_drive([](SimulationOptions& options) { options.speed = 1e300; });
+  refused_drive([](SimulationOptions& options) { options.roughness = 1e300; });
+  // a drive of ten million kilometres, a sensor without a pose
+  refused_drive(
+      [](SimulationOptions& options) { options.rate = 0.001, options.speed = 1000, options.poses = 10001; });
+  refused_drive([](SimulationOptions& options) { options.poses = 2, options.faults[0].dropped = 0.9999; });
 }
 
 }  // namespace
