@@ -17,6 +17,7 @@ namespace egocal {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -122,12 +123,17 @@ TEST_F(Units, AColumnIsNamedOnce) {
   const std::string row = "0,0,0,0,0\n1,1,0,0,0\n";
   EXPECT_THAT(refusal("t,x,x,y,yaw[rad]\n" + row),
               HasSubstr("table.csv:1: column 3 (x): is the name of column 2 as well; name the one"));
-  EXPECT_THAT(refusal("t,x[m],X_mm,y,yaw[rad]\n" + row), HasSubstr("is the name of column 2 as well"));
+  EXPECT_THAT(refusal("t,x[m],X_m,y,yaw[rad]\n" + row), HasSubstr("is the name of column 2 as well"));
+  // the same in another unit is no contradiction
+  EXPECT_THAT(read("t,x,y,yaw_deg,yaw_rad\n0,0,0,90,1.5708\n").notes,
+              Contains(HasSubstr("yaw_deg (not yaw_rad)")));
   EXPECT_THAT(refusal(row, "t,x,y,y,yaw[rad]"),
               HasSubstr("--columns: 'y': is the name of column 3 as well; a"));
   // names of columns that are not read may come again
   EXPECT_EQ(read("t,x,y,yaw[rad],status,status\n0,0,0,0,1,1\n1,1,0,0,1,1\n").trajectory.size(), 2u);
   EXPECT_EQ(read("0,9,1,2,9,0\n1,9,1,2,9,0\n", "t,-,x,y,-,yaw[rad]").trajectory.size(), 2u);
+  EXPECT_THAT(read("0,9,1,2,9,0\n", "t,odo,x,y,-,yaw[rad]").notes,
+              ElementsAre(HasSubstr("--columns: 'odo' (-")));
   EXPECT_THAT(read("t,car.x,car.y,yaw[rad],van.x,van.y\n0,1,1,0,2,2\n").notes,
               Contains(HasSubstr("car.x (not van.x), car.y (not van.y)")));
 }

@@ -250,7 +250,7 @@ Dimension dimension_of(Quantity quantity) {
 
 bool same_name(std::string_view one, std::string_view other) {
   const ColumnName a = parse(one), b = parse(other);
-  return a.words == b.words && a.index == b.index;
+  return a.words == b.words && a.index == b.index && a.unit == b.unit;
 }
 
 ColumnMap columns_from_names(const std::vector<std::string_view>& names) {

@@ -78,7 +78,7 @@ struct ColumnMap {
 /// "p_RS_R_x [m]", "q_w", "Yaw (deg)", "Latitude", ... Columns of other names are not used.
 ColumnMap columns_from_names(const std::vector<std::string_view>& names);
 
-/// Whether two columns have one name, whatever their units.
+/// Whether two columns have one name and unit, whatever the letters and brackets.
 bool same_name(std::string_view one, std::string_view other);
 
 }  // namespace egocal::detail

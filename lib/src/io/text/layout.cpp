@@ -166,6 +166,20 @@ void note_rivals(TextLayout& layout) {
     layout.notes.push_back("the first of similar columns are taken: " + text + "; --columns names others");
 }
 
+/// A name of --columns that is no quantity may be a mistyped one.
+void note_unread(TextLayout& layout) {
+  std::string text;
+  for (std::size_t k = 0; k < layout.names.size(); ++k) {
+    const auto reads = [&](const std::optional<ColumnMap::Column>& column) {
+      return column && column->index == k;
+    };
+    if (layout.names[k].empty() || layout.names[k] == "-") continue;
+    if (std::none_of(layout.columns.of.begin(), layout.columns.of.end(), reads))
+      text += (text.empty() ? "" : ", ") + quoted(layout.names[k]);
+  }
+  if (!text.empty()) layout.notes.push_back("not read of --columns: " + text + " (- for what is not needed)");
+}
+
 /// The columns of a format without a header.
 void set_columns(TextLayout& layout, std::initializer_list<std::pair<const char*, Quantity>> columns) {
   std::size_t index = 0;
@@ -255,6 +269,7 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
     check_columns(names, named.columns, file, 0);
     layout.columns = named.columns;
     layout.names = named.names;
+    note_unread(layout);
   } else if (header) {
     const std::vector<std::string_view> names = name_columns(layout, sniffed.data.front().text);
     if (!layout.columns.complete())
