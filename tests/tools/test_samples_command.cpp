@@ -71,8 +71,7 @@ class SamplesCommand : public ::testing::Test {
 TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
   for (const bool to_hand : {false, true}) {
     const testing::SimulatedSamples drawn = write(to_hand);
-    const Result result =
-        solve(std::string("--samples --json ") + (to_hand ? "--eye-to-hand" : "--eye-in-hand"));
+    const Result result = solve(to_hand ? "--samples --json --eye-to-hand" : "--samples --json --eye-in-hand");
     ASSERT_EQ(result.code, 0) << result.error;
     const nlohmann::json json = nlohmann::json::parse(result.out);
     EXPECT_EQ(json["verdict"], "good") << json["reason"];
@@ -83,6 +82,15 @@ TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
     EXPECT_LT(furthest(json["samples"]["target"]["translation"], Y.translation), 5e-3);
     EXPECT_LT(json["samples"]["spread_mm"]["median"].get<double>(), 3);
   }
+}
+
+TEST_F(SamplesCommand, TheCureOfEyeToHandIsToLeaveItOut) {
+  write(false);
+  const Result result = solve("--samples --json --eye-to-hand");
+  std::string cures;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  for (const auto& finding : json["findings"]) cures += finding["remedy"].get<std::string>() + "\n";
+  EXPECT_NE(cures.find("Leave out --eye-to-hand."), std::string::npos) << result.out;
 }
 
 TEST_F(SamplesCommand, IsOfferedWhereFilesLookLikeSamples) {
