@@ -82,7 +82,10 @@ Balance balance(const std::string& option, const std::string& text) {
 
 GoalOptions goal(const std::string& option, const std::string& text) {
   const std::optional<GoalOptions> goal = goal_from_text(text);
-  if (!goal) throw UsageError(option + ": expected two accuracies as 0.1deg,2cm, got '" + text + "'");
+  if (!goal)
+    throw UsageError(option +
+                     ": expected two accuracies above 0 as 0.1deg,2cm (deg or rad; mm, cm or m), got '" +
+                     text + "'");
   if (goal->rotation > std::numbers::pi || !plausible_distance(goal->translation))
     throw UsageError(option + ": expected at most 180deg and 1e9m, got '" + text + "'");
   return *goal;

@@ -204,6 +204,10 @@ TEST_F(Commands, BadLogsAndRigsAreRefused) {
             0);
   expect_refusal(egocal("solve --log " + path("d.log") + " ODOMETRY_LIDAR OTHER"), 1,
                  "OTHER: no such channel in the log; there are: ODOMETRY_CAMERA, ODOMETRY_LIDAR");
+  expect_refusal(
+      egocal("info " + path("d.log") + ":OTHER"), 1,
+      "OTHER: no pose under this name; topics with poses: ODOMETRY_LIDAR (egocal.odometry_t, 200), ");
+  expect_refusal(egocal("compare " + path("d.log") + " " + path("d.log")), 1, "d.log: is an LCM log");
   expect_refusal(egocal("solve --log " + file("text.log", "this is no log at all") + " A B"), 1,
                  "is not an LCM log");
   expect_refusal(egocal("log info " + path("none.log")), 1, "none.log: cannot be opened");

@@ -71,8 +71,9 @@ void run(const Options& options, const std::string& command_line) {
   for (const auto& [option, name] :
        {std::pair{"--frame-a", &options.frame_a}, std::pair{"--frame-b", &options.frame_b}})
     if (!is_frame_name(*name))
-      throw cli::UsageError(std::string(option) + ": expected up to 100 letters, digits and _ - . /, got '" +
-                            *name + "'");
+      throw cli::UsageError(std::string(option) +
+                            ": expected up to 100 letters, digits and _ - . /, no - first, got '" + *name +
+                            "'");
   if (options.frame_a == options.frame_b)
     throw cli::UsageError("--frame-a, --frame-b: expected two names, got '" + options.frame_a + "' for both");
   if (is_rig(options.rig))

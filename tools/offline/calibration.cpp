@@ -224,7 +224,10 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   result.warnings = motions.warnings;
   if (request.samples) {
     answer_samples(request, motions.a, motions.b, result);
-    word_for_options(options, result.calibration);
+    if (request.samples->eye_to_hand)
+      word_for_eye_to_hand(result.calibration);
+    else
+      word_for_options(options, result.calibration);
     result.solve_us = time_of_method(Method::dual, result.calibration.problem);
     return result;
   }

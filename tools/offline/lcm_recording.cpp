@@ -41,7 +41,13 @@ void LcmRecording::read(const std::string& topic, const TakePose& take) {
   while (const auto event = log.next()) {
     const std::size_t index = stream_of(event->channel);
     ++streams_[index].messages;
-    if (!topic.empty() && event->channel != topic) continue;
+    if (!topic.empty() && event->channel != topic) {
+      // its first message tells what it holds, for people who look for the right name
+      if (streams_[index].messages > 1) continue;
+      streams_[index].type = decode_lcm_pose(event->data).type;
+      streams_[index].poses = !streams_[index].type.empty();
+      continue;
+    }
     const LcmPose message = with_integrated_pose(decode_lcm_pose(event->data), integrators[index]);
     if (message.type.empty()) continue;
     streams_[index].type = message.type;

@@ -76,4 +76,16 @@ void word_for_options(const CalibrationOptions& options, Calibration& calibratio
   }
 }
 
+void word_for_eye_to_hand(Calibration& calibration) {
+  for (Finding& finding : calibration.findings) {
+    if (finding.code != "inverted_a") continue;
+    const std::string message = finding.message;
+    replace(finding.message, "With the poses of a inverted", "Without --eye-to-hand");
+    replace(finding.message, "they are base-to-hand, or the camera stands beside the arm and sees the hand",
+            "the camera is on the hand, or the poses of a are base-to-hand");
+    finding.remedy = "Leave out --eye-to-hand.";
+    if (calibration.reason == message) calibration.reason = finding.message;
+  }
+}
+
 }  // namespace egocal::tools

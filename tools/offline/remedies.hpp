@@ -9,5 +9,7 @@ namespace egocal::tools {
 /// The findings speak of the streams as they were paired. Where that is by an option, the cure is to leave it
 /// out, not to give it a second time: rewords findings and the reason of the verdict.
 void word_for_options(const CalibrationOptions& options, Calibration& calibration);
+/// The same for still poses with --eye-to-hand.
+void word_for_eye_to_hand(Calibration& calibration);
 
 }  // namespace egocal::tools

@@ -50,7 +50,7 @@ std::optional<ExtrinsicFormat> extrinsic_format_from_name(std::string_view name)
 std::vector<std::string> extrinsic_format_names();
 
 /// Whether every format can hold a frame of this name as it is: up to 100 letters, digits and _ - . / of
-/// ASCII. In other names each other character is written as _.
+/// ASCII, no - first. In other names each other character is written as _.
 bool is_frame_name(const std::string& name);
 
 /// The whole text of a file; every format names parent, child, direction and quaternion order. Numbers read

@@ -67,7 +67,8 @@ std::string frame_name(const std::string& name) {
   for (const char c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                        c == '_' || c == '-' || c == '.' || c == '/';
-    safe += plain ? c : '_';
+    // programs take a name that begins with - for an option
+    safe += plain && !(c == '-' && safe.empty()) ? c : '_';
     if (safe.size() == 100) break;
   }
   return safe.empty() ? "unnamed" : safe;

@@ -37,7 +37,8 @@ Eigen::Vector4d xyzw(const Eigen::Quaterniond& q);
 Eigen::Matrix<double, 9, 1> rotation_rows(const Eigen::Quaterniond& q);
 /// Four lines "- [r, r, r, t]".
 std::string matrix_rows(const Pose& T, const std::string& indent);
-/// Letters, digits and _ - . / of a frame's name; nothing in it may end a quote, a comment or a line.
+/// Letters, digits and _ - . / of a frame's name, no - first; nothing in it may end a quote, a comment or a
+/// line.
 std::string frame_name(const std::string& name);
 /// Such a name as a word of YAML 1.1, in quotes where it would be a truth value, nothing or a number.
 std::string yaml_word(const std::string& name);

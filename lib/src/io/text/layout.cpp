@@ -44,6 +44,10 @@ constexpr BinaryKind binary_kinds[] = {
     {"\x89HDF", "is an HDF5 file: write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw"},
     {"PAR1", "is a Parquet file: write it as csv"},
     {"ARROW1", "is a Feather file: write it as csv"},
+    {"\xed\xa1\xda\x01",
+     "is an LCM log, which only solve, check, info, align, report and log read: egocal log export writes it "
+     "as "
+     "MCAP"},
     {"ULog", "is a log of PX4: ulog2csv writes its topics as csv"},
     {"\xfd"
      "7zXZ",
