@@ -127,6 +127,10 @@ TEST_F(Commands, RangesNameTheirOption) {
         {"--goal 200deg,1cm", "--goal: expected at most 180deg"},
         {"--out -", "--out: '-' is not taken for standard output: expected the name of a file"},
         {"--frame-a x --frame-b x --json", "--frame-a, --frame-b: expected two names, got 'x' for both"},
+        {"--frame-a --x --frame-b y --json",
+         "--frame-a: expected up to 100 letters, digits and _ - . /, no - first"},
+        {"--goal 1deg,2km",
+         "--goal: expected two accuracies above 0 as 0.1deg,2cm (deg or rad; mm, cm or m)"},
         {"--frame-a 'my lidar' --json", "--frame-a: expected up to 100 letters, digits and _ - . /"}})
     expect_refusal(egocal(solve + arguments), 2, said);
   EXPECT_FALSE(fs::exists("-"));
@@ -194,7 +198,9 @@ TEST_F(Commands, ADriveWithoutMotionsIsNamed) {
   const std::string c = file("later.tum", later);
   const std::string said = "--append: " + a + ", " + c + ": no motion pairs in this drive; a: 200 poses from";
   expect_refusal(egocal("solve " + a + " " + b + " --append " + a + " " + c), 1, said);
-  expect_refusal(egocal("solve " + a + " " + b + " " + b + " --append " + a + " " + c + " " + b), 1, said);
+  const std::string d = file("copy.tum", read(b));
+  expect_refusal(egocal("solve " + a + " " + b + " " + d + " --append " + a + " " + c + " " + b), 1, said);
+  expect_refusal(egocal("solve " + a + " " + b + " " + b), 2, "camera.tum is given twice");
   expect_refusal(egocal("solve " + a + " " + c + " --append " + a + " " + b), 1,
                  "later.tum: no motion pairs in this drive");
   EXPECT_EQ(egocal("solve " + a + " " + b + " --append " + a + " " + b).code, 0);

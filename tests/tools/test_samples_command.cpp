@@ -46,11 +46,11 @@ class SamplesCommand : public ::testing::Test {
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(error)};
   }
-  /// Twelve samples, one of them wrong; the eye's stamps a little late. to_hand: the camera beside the arm.
-  testing::SimulatedSamples write(bool to_hand) {
+  /// Samples, one of them wrong; the eye's stamps a little late. to_hand: the camera beside the arm.
+  testing::SimulatedSamples write(bool to_hand, std::size_t samples = 12) {
     testing::Random random(4);
     testing::ArmSamples what;
-    what.samples = 12;
+    what.samples = samples;
     what.wrong = 1;
     testing::SimulatedSamples drawn = testing::simulate_arm(what, random);
     Trajectory hand, eye;
@@ -71,7 +71,8 @@ class SamplesCommand : public ::testing::Test {
 TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
   for (const bool to_hand : {false, true}) {
     const testing::SimulatedSamples drawn = write(to_hand);
-    const Result result = solve(to_hand ? "--samples --json --eye-to-hand" : "--samples --json --eye-in-hand");
+    const Result result =
+        solve(to_hand ? "--samples --json --eye-to-hand" : "--samples --json --eye-in-hand");
     ASSERT_EQ(result.code, 0) << result.error;
     const nlohmann::json json = nlohmann::json::parse(result.out);
     EXPECT_EQ(json["verdict"], "good") << json["reason"];
@@ -85,7 +86,7 @@ TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
 }
 
 TEST_F(SamplesCommand, TheCureOfEyeToHandIsToLeaveItOut) {
-  write(false);
+  write(false, 60);
   const Result result = solve("--samples --json --eye-to-hand");
   std::string cures;
   const nlohmann::json json = nlohmann::json::parse(result.out);
