@@ -231,12 +231,8 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
 /// What two clocks differ by at most, in a drive from `begin` to `end` [s].
 double largest_difference(const ClockModel& one, const ClockModel& other, double begin, double end) {
   double largest = 0;
-  for (const double time : {begin, end}) {
-    const auto at = [time](const ClockModel& clock) {
-      return clock.offset + clock.rate * (time - clock.middle);
-    };
-    largest = std::max(largest, std::abs(at(one) - at(other)));
-  }
+  for (const double time : {begin, end})
+    largest = std::max(largest, std::abs(one.on_clock_of_a(time) - other.on_clock_of_a(time)));
   return largest;
 }
 

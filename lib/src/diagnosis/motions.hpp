@@ -23,6 +23,9 @@ struct ClockModel {
   double offset = 0;  ///< [s]
   double rate = 0;    ///< [s/s]
   double middle = 0;  ///< [s], on b's clock
+
+  /// A time of b's clock on that of a [s].
+  double on_clock_of_a(double time) const { return time + offset + rate * (time - middle); }
 };
 
 /// The times of a stream under a clock [s] since an origin, worked out when they are asked for: a drive of a
@@ -33,8 +36,7 @@ class Times {
       : trajectory_(&trajectory), origin_us_(origin_us), clock_(clock) {}
   std::size_t size() const { return trajectory_->size(); }
   double operator[](std::size_t i) const {
-    const double t = 1e-6 * static_cast<double>((*trajectory_)[i].time_us - origin_us_);
-    return t + clock_.offset + clock_.rate * (t - clock_.middle);
+    return clock_.on_clock_of_a(1e-6 * static_cast<double>((*trajectory_)[i].time_us - origin_us_));
   }
 
  private:
