@@ -17,6 +17,7 @@
 #include "egocal/robust/prove_outliers.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 #include "egocal/scale/estimate_scale.hpp"
+#include "pairing/offset/turning.hpp"
 
 namespace egocal {
 
@@ -96,6 +97,22 @@ std::string times_in_words(const Trajectory& a, const Trajectory& b) {
   }
   if (a.front().time_us <= b.back().time_us && b.front().time_us <= a.back().time_us) return "";
   return "; their times do not overlap: --time-offset auto if they are of one drive";
+}
+
+/// Streams that are too slow for the longest gap that is interpolated over, where that left no motions.
+std::string gaps_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts,
+                          double max_gap) {
+  if (counts.rejected[static_cast<std::size_t>(Rejection::gap)] == 0 || a.size() < 2 || b.size() < 2)
+    return "";
+  const double step_a = 1e-6 * static_cast<double>(detail::median_period_us(a)),
+               step_b = 1e-6 * static_cast<double>(detail::median_period_us(b));
+  if (!(std::min(step_a, step_b) > max_gap)) return "";
+  char text[192];
+  std::snprintf(text, sizeof text,
+                "; the median time between poses is %.3g s in a and %.3g s in b, but nothing is interpolated "
+                "over more than %.3g s: --max-gap SECONDS allows more",
+                step_a, step_b, max_gap);
+  return text;
 }
 
 /// Mode, planes, balance and prior; no motions yet.
@@ -183,7 +200,8 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
     throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
-                rejections_in_words(pairing.counts()) + times_in_words(a, b));
+                rejections_in_words(pairing.counts()) + times_in_words(a, b) +
+                gaps_in_words(a, b, pairing.counts(), pairing_options.max_gap));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What calibrate() says where it refuses streams.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "../support/simulated_drive.hpp"
+#include "egocal/calibrate.hpp"
+#include "egocal/error.hpp"
+
+namespace egocal {
+namespace {
+
+/// Every step-th pose from the first one on.
+Trajectory every(const Trajectory& poses, std::size_t first, std::size_t step) {
+  Trajectory result;
+  for (std::size_t i = first; i < poses.size(); i += step) result.push_back(poses[i]);
+  return result;
+}
+
+std::string refusal(const Trajectory& a, const Trajectory& b, double max_gap) {
+  CalibrationOptions options;
+  options.pairing.max_gap = max_gap;
+  try {
+    calibrate(a, b, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Refusals, StreamsThatAreTooSlowAreToldOfTheLongestGap) {
+  const testing::Streams data =
+      testing::simulated_drive({.terrain = Terrain::free, .poses = 1200, .rate = 10, .seed = 3});
+  const Trajectory a = every(data.a, 0, 10), b = every(data.b, 4, 20);
+  const std::string said = refusal(a, b, 0.5);
+  EXPECT_NE(said.find("the median time between poses is 1 s in a and 2 s in b, but nothing is interpolated "
+                      "over more than 0.5 s: --max-gap SECONDS allows more"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(refusal(a, b, 2.5), "");
+  // slow streams of the same stamps are not interpolated
+  EXPECT_EQ(refusal(a, every(data.b, 0, 10), 0.5), "");
+  // other times are another cause
+  Trajectory later = b;
+  for (StampedPose& pose : later) pose.time_us += 1'000'000'000;
+  EXPECT_EQ(refusal(a, later, 0.5).find("--max-gap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace egocal
