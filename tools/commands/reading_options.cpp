@@ -37,7 +37,8 @@ void refuse_reading_options(const ReadingOptions& options, const char* instead) 
 void add_reading_options(cli::App command, ReadOptions& options) {
   command.add_option("--times", options.times_file, "times of KITTI poses, one a line [s]");
   command.add_option("--columns", options.columns,
-                     "names of the columns of tables: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch, - ...");
+                     "names of the columns of tables: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch; units as "
+                     "yaw[deg]; - for others");
   command.add_option("--rate", options.rate, "of poses without times [Hz; 10]")
       .check(cli::Check::above_zero(1e6, 1e-3));
 }

@@ -83,6 +83,7 @@ Drives append_drives(const RigRequest& request, std::vector<Trajectory>& traject
     const auto begin = request.append.begin() + static_cast<std::ptrdiff_t>(i);
     std::vector<std::string> names(begin, begin + static_cast<std::ptrdiff_t>(trajectories.size()));
     std::vector<Trajectory> drive;
+    drive.reserve(names.size());
     for (const std::string& name : names) drive.push_back(read_one(name, request, report));
     drives.append(std::move(drive), std::move(names));
   }
