@@ -72,9 +72,6 @@ RigRequest rig_request(const RequestOptions& typed, const RigOptionsTyped& rig) 
   if (rig.rig.empty()) {
     request.sources = {typed.source.a, typed.source.b};
     request.sources.insert(request.sources.end(), rig.more.begin(), rig.more.end());
-    for (auto source = request.sources.begin(); source != request.sources.end(); ++source)
-      if (std::find(request.sources.begin(), source, *source) != source)
-        throw UsageError(*source + " is given twice: expected one trajectory of each sensor");
     request.names = names_of(request.sources, typed.source.log.empty());
   } else {
     if (!typed.source.a.empty()) throw UsageError("--rig: takes --from NAME=FILE or --log, not A and B");
