@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/correction.hpp"
 #include "diagnosis/robust_fit.hpp"
 #include "diagnosis/wording.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -65,6 +66,30 @@ bool contradict(const Motions& before, const Motions& after, const Division& fou
          contradicts(after, found.after.T, found.before.T);
 }
 
+/// Whether both sides contradict each other without the seconds around the change as well: a correction of an
+/// odometry ends, and leaves the mounting as it was. Where a side has fewer seconds left, whether a mounting
+/// explains both.
+bool contradict_around(const Motions& motions, const Division& found, double time, double motion_seconds,
+                       const DiagnosisOptions& options, const LargeMoveOptions& large) {
+  const double left_out = CorrectionOptions{}.seconds + 0.5 * motion_seconds;
+  std::size_t end = 0, begin = 0;
+  while (end < motions.all.size() && motions.all[end].time <= time - left_out) ++end;
+  for (begin = end; begin < motions.all.size() && motions.all[begin].time < time + left_out;) ++begin;
+  const auto seconds = [&](std::size_t first, std::size_t last) {
+    return first < last ? motions.all[last - 1].time - motions.all[first].time + motion_seconds : 0;
+  };
+  if (std::min(seconds(0, end), seconds(begin, motions.all.size())) < CorrectionOptions{}.seconds) {
+    const Stretch before{part_of(motions, 0, found.at), found.before.T},
+        after{part_of(motions, found.at, motions.all.size()), found.after.T};
+    return !unexplained_beside(before, after) && !unexplained_beside(after, before);
+  }
+  const Motions before = part_of(motions, 0, end), after = part_of(motions, begin, motions.all.size());
+  Division around = found;
+  around.before = robust_fit(before, options.fit);
+  around.after = robust_fit(after, options.fit);
+  return contradict(before, after, around, large);
+}
+
 Finding worded(const Division& found, double time, const Comparison& comparison) {
   const Vector6d change = frame_a_difference(found.before.T, found.after.T);
   Finding finding;
@@ -121,12 +146,14 @@ std::optional<Finding> move_of(const Instants& instants, int stride, const Diagn
   best.before = robust_fit(before, options.fit);
   best.after = robust_fit(after, options.fit);
   if (!contradict(before, after, best, large)) return std::nullopt;
+  const double time = time_of(best, instants, options);
+  if (!contradict_around(motions, best, time, stride * instants.period, options, large)) return std::nullopt;
 
   Explained two{motions, {}};
   two.fit.squares = best.before.squares;
   two.fit.squares.insert(two.fit.squares.end(), best.after.squares.begin(), best.after.squares.end());
   two.fit.typical = std::max(best.before.typical, best.after.typical);
-  return worded(best, time_of(best, instants, options), compare({motions, whole}, two));
+  return worded(best, time, compare({motions, whole}, two));
 }
 
 }  // namespace

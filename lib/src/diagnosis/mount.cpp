@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "diagnosis/correction.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/moves/find_moves.hpp"
 #include "egocal/pairing/congruence.hpp"
@@ -83,8 +85,8 @@ void word(const Move& move, const Answered& answered, double begin, double long_
                                     before.translation.y(), before.translation.z(), before.rotation.w(),
                                     before.rotation.x(), before.rotation.y(), before.rotation.z());
   if (move.kind == MoveKind::creep) {
-    finding.message =
-        format("The mounting creeps: %s from %.1f to %.1f s after the start", size.c_str(), from, to);
+    finding.message = format("The mounting creeps%s from %.1f to %.1f s after the start",
+                             size.empty() ? "" : (": " + size).c_str(), from, to);
     const Eigen::Vector3d turned(move.change[3], move.change[4], move.change[5]);
     if (to > from && turned.allFinite())
       finding.message +=
@@ -93,8 +95,8 @@ void word(const Move& move, const Answered& answered, double begin, double long_
     finding.remedy = "Fasten the mounting; calibrate a shorter part of the drive.";
     return;
   }
-  finding.message =
-      format("The mounting changed by %s about %.1f s after the start", size.c_str(), *finding.time);
+  finding.message = format("The mounting changed%s about %.1f s after the start",
+                           size.empty() ? "" : (" by " + size).c_str(), *finding.time);
   if (to - from > long_interval) finding.message += format(" (between %.1f and %.1f s)", from, to);
   finding.message += ". Before it the answer is " + answer + ".";
   finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
@@ -131,16 +133,64 @@ void keep_those_shown_before(const std::vector<std::vector<MotionPair>>& strides
   });
 }
 
+using Strides = std::vector<std::vector<MotionPair>>;
+
+std::int64_t begin_of(const Strides& strides, const MovesResult& result) {
+  return strides[result.stride].front().begin_us;
+}
+
+/// Without the motions in the seconds around moves.
+Strides without_those_around(Strides strides, std::int64_t begin_us, const std::vector<Move>& moves) {
+  for (const Move& move : moves) {
+    const std::int64_t left_us = begin_us + std::llround(1e6 * (move.time - CorrectionOptions{}.seconds)),
+                       right_us = begin_us + std::llround(1e6 * (move.time + CorrectionOptions{}.seconds));
+    for (std::vector<MotionPair>& pairs : strides)
+      std::erase_if(
+          pairs, [&](const MotionPair& pair) { return pair.end_us > left_us && pair.begin_us < right_us; });
+  }
+  return strides;
+}
+
+/// Without corrections of an odometry, whose motions are left out then: they spoil what is found beside them.
+void leave_out_corrections(Strides& strides, const Answered& answered, const DiagnosisOptions& options,
+                           MovesResult& result) {
+  constexpr int most_rounds = 3;  // limit on time
+  const auto creeps = [](const Move& move) { return move.kind == MoveKind::creep; };
+  for (int round = 0; round < most_rounds && !result.moves.empty(); ++round) {
+    std::vector<Move> bumps = result.moves;
+    std::erase_if(bumps, creeps);
+    const bool creep = bumps.size() < result.moves.size();
+    const std::vector<Move> kept =
+        creep ? bumps : without_corrections(strides[result.stride], answered.problem, bumps);
+    // what creeps beside a correction may be its rest: it is looked for again without all bumps
+    std::vector<Move> left_out = bumps;
+    if (!creep)
+      std::erase_if(left_out, [&](const Move& move) {
+        return std::any_of(kept.begin(), kept.end(),
+                           [&](const Move& other) { return other.time == move.time; });
+      });
+    if (left_out.empty()) return;
+    Strides others = without_those_around(strides, begin_of(strides, result), left_out);
+    MovesResult without = moves_of(others, answered, options);
+    if (creep && !without.moves.empty()) return;
+    strides = std::move(others);
+    result = std::move(without);
+    if (options.mount.shown_before > 0) keep_those_shown_before(strides, answered, options, result);
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
                                  const DiagnosisOptions& options, const PoseReading& reading) {
-  const std::vector<std::vector<MotionPair>> strides = strides_of(instants, answered, options, reading);
+  Strides strides = strides_of(instants, answered, options, reading);
   MovesResult result = moves_of(strides, answered, options);
   std::vector<Finding> findings;
   if (result.moves.empty()) return findings;
   if (options.mount.shown_before > 0) keep_those_shown_before(strides, answered, options, result);
-  const double begin = 1e-6 * static_cast<double>(strides[result.stride].front().begin_us);
+  leave_out_corrections(strides, answered, options, result);
+  if (result.moves.empty()) return findings;
+  const double begin = 1e-6 * static_cast<double>(begin_of(strides, result));
   for (const Move& move : result.moves) {
     Finding finding;
     finding.code = "mount_moved";
