@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "diagnosis/clock_check.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
 #include "egocal/estimation/attenuation.hpp"
@@ -181,6 +182,22 @@ void put_scale(const std::optional<ScaleSolution>& estimate, double scale, Calib
                                        : "The motions do not show the scale.";
 }
 
+/// What it means that another time offset fits as well.
+void put_rival_offset(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                      const DiagnosisOptions& options, Calibration& result) {
+  TimeOffset rival = *result.time_offset;
+  rival.seconds = *rival.rival;
+  const Problem problem = paired(pairing, a, on_clock_of_a(rival, b)).problem();
+  if (problem.blocks.empty()) return;
+  const Finding finding =
+      detail::rival_clock_offset(*result.time_offset, solve(problem, Method::dual).minimum);
+  result.findings.push_back(finding);
+  const std::string reason = detail::rival_in_words(finding, result.minimum, result.observability, options);
+  if (reason.empty() || result.verdict != Verdict::good) return;
+  result.verdict = Verdict::incomplete;
+  result.reason = reason;
+}
+
 /// Of streams whose lengths are in one unit. scale: found before, which adds to what is not known.
 Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
                               const CalibrationOptions& options, const std::optional<ScaleSolution>& scale) {
@@ -209,7 +226,10 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   const Answered what = answered(result, pairing.single_stride_problem(), scale);
   Diagnosis diagnosis = options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
                                                   : diagnose(what, options.diagnosis);
-  return judged(std::move(result), std::move(diagnosis));
+  result = judged(std::move(result), std::move(diagnosis));
+  if (time_offset && time_offset->rival && options.diagnosis.enabled)
+    put_rival_offset(a, given_b, pairing_options, options.diagnosis, result);
+  return result;
 }
 
 Calibration calibrate_pairs(std::span<const MotionPair> given, const CalibrationOptions& options,

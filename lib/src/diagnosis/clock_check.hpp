@@ -4,9 +4,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "diagnosis/answer_change.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
+#include "egocal/pairing/time_offset.hpp"
 
 namespace egocal::detail {
 
@@ -18,5 +20,13 @@ std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory&
                                           const PairingOptions& pairing, const MiddlePart& part,
                                           const Instants& instants, const Answered& answered,
                                           const DiagnosisOptions& options);
+
+/// Finding clock_offset, uncertain: another time offset fits as well as the one that was estimated, as the
+/// motion repeats. T_a_b: the answer with that one. Needs offset.rival.
+Finding rival_clock_offset(const TimeOffset& offset, const DualQuaternion& T_a_b);
+
+/// The same where that answer is off by more than the tolerance, in words; empty: it is not.
+std::string rival_in_words(const Finding& rival, const Pose& T_a_b, const Observability& observability,
+                           const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

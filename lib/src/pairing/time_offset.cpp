@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "pairing/offset/candidates.hpp"
 #include "pairing/offset/correlation.hpp"
 #include "pairing/offset/lasting_jumps.hpp"
 #include "pairing/offset/part_search.hpp"
@@ -114,9 +116,13 @@ struct TimeOffsetSearch::Impl {
       for (std::ptrdiff_t lag = centre - reach; lag <= centre + reach; ++lag)
         schedule.add(b.angles.size() / 64 + 1, [this, lag, least_count] {
           const Correlation here = correlation_at(a.angles, b.angles, 0, b.angles.size(), lag, least_count);
+          near_significances.push_back(static_cast<float>(here.significance));
           if (here.significance > best.significance) best = here;
         });
-      schedule.add(1, [this] { track(); });
+      schedule.add(1, [this, first = centre - reach] {
+        peaks = significant_peaks(near_significances, first, best.significance);
+        track();
+      });
       return;
     }
     lags.emplace(a.angles, b.angles, least_count);
@@ -126,16 +132,30 @@ struct TimeOffsetSearch::Impl {
   void search_lags() {
     if (!lags->next()) return schedule.add(lags->size() / 8, [this] { search_lags(); });
     const Correlation found = lags->best();
+    std::vector<Peak> here = significant_peaks(lags->significances(), lags->first_lag(), found.significance);
     lags.reset();
     // a drift smears the correlation of a long drive: its liveliest part shows the offset there
     const bool smeared = !searched_part && found.value < options.smeared_correlation &&
                          b.angles.size() > 2 * points(options.liveliest_part);
-    if (best.value == 0 || found.value > best.value) best = found;
+    if (best.value == 0 || found.value > best.value) {
+      best = found;
+      peaks = std::move(here);
+    }
     if (!smeared) return track();
     searched_part = true;
     lags.emplace(a.angles, liveliest_part(b.angles, points(options.liveliest_part)),
                  points(options.least_overlap));
     schedule.add(1, [this] { search_lags(); });
+  }
+
+  /// The most significant ones first.
+  std::vector<Peak> significant_peaks(std::span<const float> significances, std::ptrdiff_t first_lag,
+                                      double most) const {
+    std::vector<Peak> found = peaks_of(significances, first_lag, options.candidate_significance * most,
+                                       options.candidate_depth * most);
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Peak& x, const Peak& y) { return x.significance > y.significance; });
+    return found;
   }
 
   /// The series, known only in the part of this length that turns most.
@@ -175,8 +195,70 @@ struct TimeOffsetSearch::Impl {
         rate != 0 ? begin_b + static_cast<std::int64_t>(parts->middle() * second_us) : from + (to - from) / 2;
     model.at_a_us = model.at_b_us + offset_us;
     model.rate = rate;
-    refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [] {});
+    refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [this] { compare_candidates(); });
     refinement->begin(model, static_cast<double>(step_us));
+  }
+
+  /// The offset that is taken where several fit equally well [us]: that which is known, or none where most of
+  /// the shorter stream was recorded while the other one was by their stamps. Clocks that share nothing have
+  /// no such offset: it is that of the best correlation.
+  double preferred_us(double best_us) const {
+    if (options.near) return *options.near * second_us;
+    const auto lasts = [](const Trajectory& poses) { return poses.back().time_us - poses.front().time_us; };
+    const std::int64_t common = std::min(a.poses.back().time_us, b.poses.back().time_us) -
+                                std::max(a.poses.front().time_us, b.poses.front().time_us);
+    return 2 * common > std::min(lasts(a.poses), lasts(b.poses)) ? 0 : best_us;
+  }
+
+  /// Whether the motion repeats, so that another offset fits as well.
+  void compare_candidates() {
+    if (!refinement->result()) return;
+    result = refinement->result();
+    const ClockLine& found = refinement->clock();
+    const double best_us = static_cast<double>(found.at_a_us - found.at_b_us) + found.shift_us,
+                 preferred = preferred_us(best_us);
+    const auto step = static_cast<double>(step_us);
+    std::vector<double> offsets{best_us};
+    const auto add = [&](double offset) {
+      for (const double other : offsets)
+        if (std::abs(offset - other) < 2 * step) return;
+      offsets.push_back(offset);
+    };
+    const auto offset_of = [&](const Peak& peak) {
+      return best_us + static_cast<double>(peak.lag - best.lag) * step;
+    };
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+      if (std::abs(offset_of(peaks[i]) - preferred) < std::abs(offset_of(peaks[nearest]) - preferred))
+        nearest = i;
+      if (offsets.size() < options.most_candidates) add(offset_of(peaks[i]));
+    }
+    if (!peaks.empty()) add(offset_of(peaks[nearest]));
+    add(preferred);
+    if (offsets.size() < 2) return;
+    std::vector<ClockLine> starts;
+    for (const double offset : offsets) {
+      starts.push_back(found);
+      starts.back().at_a_us += std::llround(offset - best_us);
+    }
+    candidates.emplace(a.poses, b.poses, options, max_gap_us, schedule, [this] { take_candidate(); });
+    candidates->begin(std::move(starts), step, preferred);
+  }
+
+  void take_candidate() {
+    if (candidates->first()) return conclude();
+    refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [this] {
+      result = refinement->result();
+      conclude();
+    });
+    refinement->begin(candidates->clock(), 0);
+  }
+
+  void conclude() {
+    if (!result || options.near) return;
+    result->stddev = std::max({result->stddev, candidates->farthest_us() / second_us,
+                               std::abs(candidates->unsure_us()) / second_us});
+    if (!candidates->alone()) result->rival = result->seconds + candidates->nearest_us() / second_us;
   }
 
   TimeOffsetOptions options;
@@ -184,10 +266,14 @@ struct TimeOffsetSearch::Impl {
   Stream a, b;
   std::int64_t step_us = 0, max_gap_us = 0;
   std::optional<LagSearch> lags;
+  std::vector<float> near_significances;
   Correlation best;
+  std::vector<Peak> peaks;
   bool searched_part = false;
   std::optional<PartSearch> parts;
   std::optional<Refinement> refinement;
+  std::optional<CandidateComparison> candidates;
+  std::optional<TimeOffset> result;
 };
 
 TimeOffsetSearch::TimeOffsetSearch(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options)
@@ -203,7 +289,7 @@ bool TimeOffsetSearch::step(std::size_t work) {
 std::optional<TimeOffset> TimeOffsetSearch::finish() {
   while (!step(1'000'000)) {
   }
-  return impl_->refinement ? impl_->refinement->result() : std::nullopt;
+  return impl_->result;
 }
 
 std::optional<TimeOffset> estimate_time_offset(const Trajectory& a, const Trajectory& b,

@@ -147,8 +147,8 @@ void fields(auto& archive, services::Is<Choice> auto& value) {
 }
 
 void fields(auto& archive, services::Is<TimeOffset> auto& value) {
-  auto& [seconds, stddev, correlation, rate, rate_stddev, at_us, drifts, inliers] = value;
-  archive(seconds, stddev, correlation, rate, rate_stddev, at_us, drifts, inliers);
+  auto& [seconds, stddev, correlation, rate, rate_stddev, at_us, drifts, inliers, rival] = value;
+  archive(seconds, stddev, correlation, rate, rate_stddev, at_us, drifts, inliers, rival);
 }
 
 void fields(auto& archive, services::Is<ClockState::Stream> auto& value) {
@@ -314,7 +314,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 namespace services {
 
 /// Of the fields in this file.
-constexpr int state_layout = 23;
+constexpr int state_layout = 24;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {
   auto& [side, pose] = value;

@@ -33,6 +33,7 @@ struct TimeOffsetOptions {
   double most_drift = 0.01;          ///< larger rates are taken for errors [s/s]; a poor quartz is at 1e-4
   double least_drift_duration = 30;  ///< shorter drives are taken to have no drift [s]
   /// An offset to search near, with `near_by` on both sides [s]; empty: all offsets at which streams overlap.
+  /// Of offsets that fit equally well it is the nearest one to this, and no doubt remains.
   std::optional<double> near{};
   double near_by = 1;
 
@@ -71,18 +72,33 @@ struct TimeOffsetOptions {
   /// A drift that changes the offset by less than this from the middle of the drive to its ends is not
   /// applied [s]: an offset is not known to better.
   double least_drift_effect = 5e-4;
+  /// Motion that repeats turns alike at several offsets. Candidates are the lags at which the angles
+  /// correlate with at least `candidate_significance` of the best one's significance and by `candidate_depth`
+  /// of it more than around them: the `most_candidates` most significant ones, the one nearest to 0, and 0.
+  /// They are compared by how well an extrinsic explains this number of motions. Study: docs/method.md,
+  /// "Clocks".
+  double candidate_significance = 0.5, candidate_depth = 0.1;
+  std::size_t most_candidates = 8, candidate_motions = 300;
+  /// A candidate is worse where its squares are larger by this mean logarithm, and where the parts of the
+  /// drive say so by chance with at most this probability; otherwise it fits as well. Study: those that
+  /// repeat a drive have chances down to 5e-4, the others 1e-7 at most.
+  double candidate_gain = 0.1, candidate_chance = 1e-5;
 };
 
 /// What has to be added to the stamps of b so that both streams run on the clock of a.
 struct TimeOffset {
-  double seconds = 0;      ///< at `at_us` [s]
-  double stddev = 0;       ///< of `seconds`, from how much the parts of the drive differ [s]
+  double seconds = 0;  ///< at `at_us` [s]
+  /// Of `seconds`, from how much the parts of the drive differ [s]. Where other offsets fit as well it is the
+  /// distance of the farthest one of them that was compared.
+  double stddev = 0;
   double correlation = 0;  ///< of the angles that both turn by, [-1, 1]; below about 0.5 do not trust it
   double rate = 0;         ///< by how much `seconds` grows per second of b's clock: the drift [s/s]
   double rate_stddev = 0;  ///< of `rate`; infinite where the drive is too short
   std::int64_t at_us = 0;  ///< a time on the clock of b, in the middle of the drive [us]
   bool drifts = false;     ///< the rate is significant: only then it is applied
   double inliers = 0;      ///< part of the compared motions that agree, [0, 1]
+  /// The nearest other offset that fits as well: the motion repeats [s]. Empty: none does.
+  std::optional<double> rival{};
 };
 
 /// A stamp of b on the clock of a [us].

@@ -131,9 +131,9 @@ void LagSearch::pick() {
     return 1e-9 * energy;
   };
   const double least_a = rounding(a_), least_b = rounding(b_);
-  const auto begin = -static_cast<std::ptrdiff_t>(b_.size()) + 1;
   const auto end = static_cast<std::ptrdiff_t>(a_.size());
-  for (std::ptrdiff_t lag = begin; lag < end; ++lag) {
+  significances_.reserve(a_.size() + b_.size());
+  for (std::ptrdiff_t lag = first_lag(); lag < end; ++lag) {
     const std::size_t k = lag < 0 ? size_ - static_cast<std::size_t>(-lag) : static_cast<std::size_t>(lag);
     const Sums sums{std::round(scale * sums_[0][k].real()),
                     scale * sums_[1][k].real(),
@@ -142,10 +142,37 @@ void LagSearch::pick() {
                     scale * sums_[2][k].imag(),
                     scale * sums_[0][k].imag()};
     const Correlation here = correlation_of(sums, lag, least_count_, least_a, least_b);
+    significances_.push_back(static_cast<float>(here.significance));
     if (here.significance > best_.significance) best_ = here;
   }
   // rounding of the transforms is gone from the winner
   best_ = correlation_at(a_, b_, 0, b_.size(), best_.lag, least_count_);
+}
+
+std::vector<Peak> peaks_of(std::span<const float> significances, std::ptrdiff_t first_lag, double least,
+                           double depth) {
+  std::vector<Peak> peaks;
+  bool rises = true;
+  std::size_t top = 0, bottom = 0;
+  const auto take = [&] {
+    if (!significances.empty() && significances[top] >= least && significances[top] > 0)
+      peaks.push_back({first_lag + static_cast<std::ptrdiff_t>(top), significances[top]});
+  };
+  for (std::size_t i = 0; i < significances.size(); ++i) {
+    const double here = significances[i];
+    if (rises && here > significances[top]) top = i;
+    if (!rises && here < significances[bottom]) bottom = i;
+    if (rises && here < significances[top] - depth) {
+      take();
+      rises = false;
+      bottom = i;
+    } else if (!rises && here > significances[bottom] + depth) {
+      rises = true;
+      top = i;
+    }
+  }
+  if (rises) take();
+  return peaks;
 }
 
 }  // namespace egocal::detail

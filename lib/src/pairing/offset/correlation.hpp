@@ -32,6 +32,9 @@ class LagSearch {
   LagSearch(Series a, Series b, std::size_t least_count);
   bool next();
   const Correlation& best() const { return best_; }
+  /// Of every lag, from first_lag() on; to the rounding of the transforms.
+  const std::vector<float>& significances() const { return significances_; }
+  std::ptrdiff_t first_lag() const { return -static_cast<std::ptrdiff_t>(b_.size()) + 1; }
   std::size_t size() const { return size_; }  ///< of a transform
 
  private:
@@ -47,6 +50,17 @@ class LagSearch {
   std::vector<Complex> spectra_[4];  ///< of a + i known, a^2, b + i known, b^2
   std::vector<Complex> sums_[3];     ///< by lag: (n, sum ab), (sum a, sum b), (sum aa, sum bb)
   Correlation best_;
+  std::vector<float> significances_;
 };
+
+/// A lag at which a correlation is larger than around it.
+struct Peak {
+  std::ptrdiff_t lag = 0;
+  double significance = 0;
+};
+/// The peaks that are at least `least` high, in the order of their lags. Between two of them the significance
+/// falls by `depth` and rises again: noise on top of a wide peak makes no peaks.
+std::vector<Peak> peaks_of(std::span<const float> significances, std::ptrdiff_t first_lag, double least,
+                           double depth);
 
 }  // namespace egocal::detail

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"
-#include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -23,33 +22,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double second_us = 1e6;              // unit
 constexpr std::size_t interpolation_cost = 4;  ///< of a motion's two poses, in poses looked at
-
-/// Pose at a time [us] relative to `at_us`, interpolated as pairing does; empty where not known.
-std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t at_us, double time_us,
-                                      double max_gap_us, std::size_t& from) {
-  const auto since = [&](std::size_t i) { return static_cast<double>(trajectory[i].time_us - at_us); };
-  while (from + 1 < trajectory.size() && since(from + 1) <= time_us) ++from;
-  if (from + 1 >= trajectory.size() || since(from) > time_us) return std::nullopt;
-  const double gap = since(from + 1) - since(from);
-  if (gap > max_gap_us) return std::nullopt;
-  const double part = (time_us - since(from)) / gap;
-  const SynchroniserOptions options;
-  const std::size_t side = options.smooth_poses / 2;
-  if (part > 0 && from + 1 >= side && from + side < trajectory.size())
-    if (const auto smooth = interpolate_smoothly(
-            std::span(trajectory).subspan(from + 1 - side, options.smooth_poses), part, options))
-      return smooth;
-  return interpolate(trajectory[from].pose, trajectory[from + 1].pose, part);
-}
-
-/// Where to begin looking for a time.
-std::size_t first_before(const Trajectory& trajectory, std::int64_t at_us, double time_us) {
-  const auto after = std::upper_bound(trajectory.begin(), trajectory.end(), time_us,
-                                      [at_us](double time, const StampedPose& pose) {
-                                        return time < static_cast<double>(pose.time_us - at_us);
-                                      });
-  return after == trajectory.begin() ? 0 : static_cast<std::size_t>(after - trajectory.begin()) - 1;
-}
 
 /// Marks those that are `outlier` times further off than is typical of the motions of their size: what a
 /// wrong offset does to the large ones must not make outliers of them.
