@@ -11,6 +11,7 @@
 #include "../support/measured_body.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 #include "pairing/offset/correlation.hpp"
 
 namespace egocal {
@@ -199,6 +200,21 @@ TEST(RepeatingMotion, IsNamedBesideTheAnswer) {
   EXPECT_NE(half.reason.find("The answer would be another one, 180 deg"), std::string::npos) << half.reason;
   // without the option nothing is said
   EXPECT_EQ(uncertain_clock(calibrate(uneven.a, uneven.b)), nullptr);
+}
+
+/// What pairing adds to the stamps of b at the end of a live drive.
+std::optional<double> followed(const Streams& streams) {
+  PairingOptions options;
+  options.track_time_offset = true;
+  return paired(options, streams.a, streams.b).time_offset();
+}
+
+// Live, too: poses are held until the motion shows which of the offsets it is.
+TEST(RepeatingMotion, IsNotFollowedLive) {
+  EXPECT_FALSE(followed(driven({}, uneven_eight)));
+  const std::optional<double> offset = followed(driven({.late = 0.4}, human_eight));
+  ASSERT_TRUE(offset);
+  EXPECT_NEAR(*offset, -0.4, 0.01);
 }
 
 TEST(Peaks, NoiseOnAWidePeakMakesNone) {
