@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
@@ -111,6 +112,27 @@ TEST(Explanations, ScaleAndClockComeWithTheirValue) {
 }
 
 /// A machine that mostly turns in place shows the scale in few of its motions: the others fit any scale.
+TEST(Explanations, MillimetresInExchangedColumnsAreNamedBoth) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      testing::Streams streams = drive(terrain, seed);
+      for (StampedPose& stamped : streams.b) {
+        Pose pose = to_pose(stamped.pose);
+        std::swap(pose.translation.x(), pose.translation.y());
+        pose.translation *= 1000;
+        stamped.pose = to_dual_quaternion(pose);
+      }
+      const Calibration calibration = calibrate(streams.a, streams.b);
+      const Finding *units = find(calibration, "units"), *axes = find(calibration, "axes_b");
+      ASSERT_NE(units, nullptr) << seed << ": " << calibration.reason;
+      ASSERT_NE(axes, nullptr) << seed << ": " << calibration.reason;
+      EXPECT_TRUE(units->certain && axes->certain) << seed;
+      EXPECT_EQ(*units->value, 0.001) << seed;
+      ASSERT_TRUE(axes->T_a_b);
+      EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*axes->T_a_b)).rotation, 0.02) << seed;
+    }
+}
+
 TEST(Explanations, AWrongScaleIsNamedWhereFewMotionsShowIt) {
   for (const double noise : {0.003, 0.01})
     for (const double scale : {0.67, 0.95, 1.05, 1.3, 1.5})

@@ -64,6 +64,17 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
   return steps;
 }
 
+/// In units in which both streams travel as far: columns of unlike size would spoil the sums.
+void with_like_lengths(std::vector<Step>& steps) {
+  double right = 0, wrong = 0;
+  for (const Step& step : steps) {
+    right += step.t_s.norm();
+    wrong += step.d.norm();
+  }
+  if (!(right > 0) || !(wrong > 0)) return;
+  for (Step& step : steps) step.d *= right / wrong;
+}
+
 /// Weights that outliers lose, from squares in the order of the steps.
 void reweight(std::vector<Step>& steps, const std::vector<double>& squares, double inlier) {
   const double typical = std::max(median(squares), 1e-300);
@@ -165,6 +176,7 @@ std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int
   for (const bool conjugated : {false, true}) {
     std::vector<Step> steps = steps_of(instants, wrong, conjugated, stride, most, options);
     if (steps.size() < options.motions.least) continue;
+    with_like_lengths(steps);
     const Matrix3d R = orientation(steps, options.fit);
     for (const Matrix3d& W : nearest_orthogonal(linear_map(steps, R, options.fit))) {
       if (const std::optional<Matrix3d> permutation = nearest_permutation(W)) add(*permutation, conjugated);

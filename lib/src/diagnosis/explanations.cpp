@@ -191,13 +191,18 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
 /// those of the other one turned likewise: where both fit better, both are named.
 BestReading best_axes(const Evidence& evidence, const BestReading& given, const DiagnosisOptions& options) {
   std::optional<Explanation> exchanged, turned, turned_other;
-  std::optional<Explained> given_points;
   const double length = evidence.given.explained.motions.translation;
   const auto but_for_lever_arms = [&](const Explanation& here) {
-    if (!given_points) given_points = without_lever_arms(evidence.given.explained, length);
-    return better(compare(*given_points, without_lever_arms(here.explained, length)), options.least_gain,
-                  LeverArmOptions{}.sigmas);
+    // of lengths in the same unit
+    const Explained& against = here.scale != 1 ? given.best.explained : evidence.given.explained;
+    return better(compare(without_lever_arms(against, length), without_lever_arms(here.explained, length)),
+                  options.least_gain, LeverArmOptions{}.sigmas);
   };
+  const auto explains = [&](const Explained& here) {
+    return here.fit.typical < options.explains * options.explains;
+  };
+  // the lengths of b may be wrong besides
+  const bool with_scale_too = given.best.scale != 1 || !explains(given.best.explained);
   const auto fits_better = [](const std::optional<Explanation>& x, const Explanation& y) {
     return !x || compare(x->explained, y.explained).gain > 0;
   };
@@ -206,8 +211,13 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     for (const PoseReading& reading :
          axes_readings(evidence.instants, wrong, evidence.stride, options.motions.first_look, options)) {
       const bool in_b = wrong == Side::b;
-      const Explanation here = explained(evidence, in_b ? "axes_b" : "axes_a", in_b ? PoseReading{} : reading,
-                                         in_b ? reading : PoseReading{}, options);
+      Explanation here = explained(evidence, in_b ? "axes_b" : "axes_a", in_b ? PoseReading{} : reading,
+                                   in_b ? reading : PoseReading{}, options);
+      if (with_scale_too && !explains(here.explained)) {
+        Ranked two{here, with_scale(here, options)};
+        if (!explains(two.scaled.explained) || !shows_scale(evidence, two, options)) continue;
+        here = std::move(two.scaled);
+      }
       if (!better(compare(given.best.explained, here.explained), options.least_gain, options) ||
           !but_for_lever_arms(here))
         continue;
