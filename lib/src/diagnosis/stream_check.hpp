@@ -21,7 +21,7 @@ struct StreamCheckOptions {
   /// Angles of a window agree where they differ by less than this part, and may disagree from there on: noise
   /// of a tenth of every motion stays below 0.2 in the study, unlike drives are above 0.3.
   double agree = 0.25, disagree = 0.15;
-  double step = 4;             ///< least ratio, of these parts and of the angles, to windows that agree
+  double step = 4;  ///< least ratio, of these parts and of the angles, to windows that agree
   /// Lengths of the motions agree where their ratio scatters by less than this part of the lengths themselves
   /// (median deviations of the logarithms): an odometry measures how far it travels well where it hardly
   /// turns. 5,313 pairs of unrelated drives, of 14 simulated kinds and real ones, are above 0.29; sensors of
