@@ -133,6 +133,19 @@ TEST(Explanations, MillimetresInExchangedColumnsAreNamedBoth) {
     }
 }
 
+TEST(Explanations, MillimetresMirroredAtTheOriginMayBeThoseOfEitherStream) {
+  testing::Streams streams = drive(Terrain::free);
+  for (StampedPose& stamped : streams.b) {
+    Pose pose = to_pose(stamped.pose);
+    pose.translation *= -1000;
+    stamped.pose = to_dual_quaternion(pose);
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  const Finding *in_a = find(calibration, "axes_a"), *in_b = find(calibration, "axes_b");
+  ASSERT_TRUE(in_a && in_b && find(calibration, "units")) << calibration.reason;
+  EXPECT_NEAR(in_a->improvement / in_b->improvement, 1, 0.5) << "one is the other mirrored";
+}
+
 TEST(Explanations, AWrongScaleIsNamedWhereFewMotionsShowIt) {
   for (const double noise : {0.003, 0.01})
     for (const double scale : {0.67, 0.95, 1.05, 1.3, 1.5})

@@ -182,8 +182,9 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
   const bool in_b = std::string_view(found.code) == "axes_b";
   const PoseReading& reading = in_b ? found.read_b : found.read_a;
   if (reading.conjugate || reading.axes != -Eigen::Matrix3d::Identity()) return std::nullopt;
-  return explained(evidence, in_b ? "axes_a" : "axes_b", in_b ? reading : PoseReading{},
-                   in_b ? PoseReading{} : reading, options);
+  Explanation twin = explained(evidence, in_b ? "axes_a" : "axes_b", in_b ? reading : PoseReading{},
+                               in_b ? PoseReading{} : reading, options);
+  return found.scale != 1 ? with_scale(twin, options) : twin;
 }
 
 /// Positions of one file in other axes than its rotations. Exchanged columns are what people do; turned axes
