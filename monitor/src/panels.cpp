@@ -74,8 +74,8 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     const bool error = !status.last_error.empty();
     const std::string where = "pid " + std::to_string(status.pid) + " on " + clean(status.host, 20) + "  ";
     if (pane.width() - x >= width_of(where) + (error ? 30 : 0)) x = pane.text(x, y, where, Style::dim);
-    if (error && x < pane.width())
-      pane.text(x, y, clean(status.last_error, static_cast<std::size_t>(pane.width() - x)), Style::bad);
+    const auto room = static_cast<std::size_t>(std::max(0, pane.width() - x));
+    if (error && room > 0) pane.text(x, y, clean(without_folders(status.last_error, room), room), Style::bad);
     ++y;
   }
 }

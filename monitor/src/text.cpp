@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/monitor/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -91,6 +92,21 @@ std::string clean(std::string_view text, std::size_t max) {
       break;
     }
     append_utf8(result, is_safe(glyph) ? glyph : U'?');
+  }
+  return result;
+}
+
+std::string without_folders(std::string_view text, std::size_t max) {
+  std::string result(text);
+  for (std::size_t begin = 0; begin < result.size() && width_of(result) > static_cast<int>(max);) {
+    const std::size_t end = std::min(result.find_first_of(" :", begin), result.size());
+    const std::size_t folder = end > begin ? result.rfind('/', end - 1) : std::string::npos;
+    if (folder == std::string::npos || folder <= begin + 1) {
+      begin = end + 1;
+      continue;
+    }
+    result.replace(begin, folder - begin, "~");
+    begin += end - folder + 2;
   }
   return result;
 }

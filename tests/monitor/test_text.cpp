@@ -89,6 +89,17 @@ TEST(Text, NamesFromOutsideAreMadeSafe) {
   EXPECT_EQ(clean("anything", 0), "");
 }
 
+TEST(Text, PathsLoseTheirFoldersWhereThereIsNoRoom) {
+  const std::string full = "/var/lib/egocal/a/long/way/car.state: cannot be written: No space left on device";
+  EXPECT_EQ(without_folders(full, 200), full);
+  EXPECT_EQ(without_folders(full, 60), "~/car.state: cannot be written: No space left on device");
+  EXPECT_EQ(without_folders("copies /a/b/c to /d/e/f", 22), "copies ~/c to /d/e/f")
+      << "no more than is needed";
+  EXPECT_EQ(without_folders("copies /a/b/c to /d/e/f", 5), "copies ~/c to ~/f");
+  EXPECT_EQ(without_folders("/ // /x //y : /", 3), "/ // /x //y : /") << "nothing is gained";
+  EXPECT_EQ(without_folders("", 0), "");
+}
+
 TEST(Text, PaddedToTheCell) {
   EXPECT_EQ(pad_right("ab", 4), "ab  ");
   EXPECT_EQ(pad_left("±1", 4), "  ±1");

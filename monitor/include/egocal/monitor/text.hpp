@@ -34,6 +34,9 @@ const Symbols& symbols(Charset charset);
 /// width one, everything else (control characters, escapes, broken UTF-8, wide and combining ones) becomes
 /// '?'; cut to max characters, with the cut marked by "~".
 std::string clean(std::string_view text, std::size_t max = 60);
+/// Where a text is wider than this, its paths lose their folders, from the first one on: what is wrong with a
+/// file is behind its name ("~/pairing.state: cannot be written").
+std::string without_folders(std::string_view text, std::size_t max);
 
 /// Decodes UTF-8; broken bytes become '?'.
 std::u32string decode(std::string_view text);
