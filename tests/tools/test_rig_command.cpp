@@ -9,10 +9,13 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <sstream>
 
+#include "egocal/geometry/pose.hpp"
 #include "support/paths.hpp"
+#include "support/random_motion.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace egocal {
@@ -57,6 +60,43 @@ class Command : public ::testing::Test {
       "radar=2,0,0.5,1,0,0,0 ";
   testing::ScratchFolder folder;
 };
+
+/// A flat figure eight every five seconds, seen by three sensors on one body.
+std::string figure_eights(const testing::ScratchFolder& folder) {
+  testing::Random random(3);
+  std::string files;
+  for (const char* name : {"one", "two", "three"}) {
+    const Pose mount{rotation_exp(random.normal3(0.3)), random.normal3(0.3)};
+    std::ofstream file(folder.path(std::string(name) + ".tum"));
+    file.precision(12);
+    for (int i = 0; i < 1200; ++i) {
+      const double phase = 2 * std::numbers::pi * i / 100;
+      const Eigen::Vector3d place(3 * std::sin(phase), 1.5 * std::sin(2 * phase), 0);
+      const double yaw = std::atan2(std::cos(2 * phase), std::cos(phase));
+      const Pose pose = Pose{rotation_exp({0, 0, yaw}), place + random.normal3(1e-3)} * mount *
+                        Pose{rotation_exp(random.normal3(1e-4)), Eigen::Vector3d::Zero()};
+      const Eigen::Vector3d& t = pose.translation;
+      const Rotation& q = pose.rotation;
+      file << 1.7e9 + 0.05 * i << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.x() << ' ' << q.y()
+           << ' ' << q.z() << ' ' << q.w() << '\n';
+    }
+    files += " " + folder.path(std::string(name) + ".tum");
+  }
+  return files;
+}
+
+TEST_F(Command, OffsetsOfARigThatRepeatsItsMotionAreOpen) {
+  const std::string files = figure_eights(folder);
+  const json found = run("solve --json --time-offset auto" + files).object();
+  for (const json& extrinsic : found["extrinsics"]) {
+    EXPECT_NE(extrinsic["verdict"], "good");
+    EXPECT_NEAR(extrinsic["time_offset_s"].get<double>(), 0, 0.05);
+    EXPECT_NE(extrinsic["findings"].dump().find("The motion repeats every "), std::string::npos)
+        << extrinsic["findings"];
+  }
+  for (const json& extrinsic : run("solve --json" + files).object()["extrinsics"])
+    EXPECT_EQ(extrinsic["findings"].dump().find("The motion repeats"), std::string::npos);
+}
 
 TEST_F(Command, ARigOfThreeClosesItsLoopAndIsCertified) {
   const Result result = run("solve --json" + rig("drive"));

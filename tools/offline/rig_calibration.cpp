@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/rig_calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "arguments.hpp"
 #include "egocal/bus/rig.hpp"
@@ -90,10 +93,16 @@ Drives append_drives(const RigRequest& request, std::vector<Trajectory>& traject
   return drives;
 }
 
-/// All sensors on the clock of the first one. The offsets that were added [s].
-std::vector<double> synchronise(std::vector<Trajectory>& trajectories, const RigRequest& request) {
-  std::vector<double> offsets(trajectories.size(), 0);
-  if (!request.calibration.estimate_time_offset) return offsets;
+/// What was added to the stamps of a sensor [s], and after what time its motion repeats, so that another
+/// offset fits as well [s]; 0: none does.
+struct ClockOfSensor {
+  double offset = 0, period = 0;
+};
+
+/// All sensors on the clock of the first one.
+std::vector<ClockOfSensor> synchronise(std::vector<Trajectory>& trajectories, const RigRequest& request) {
+  std::vector<ClockOfSensor> clocks(trajectories.size());
+  if (!request.calibration.estimate_time_offset) return clocks;
   for (std::size_t k = 1; k < trajectories.size(); ++k) {
     const auto offset = estimate_time_offset(trajectories[0], trajectories[k],
                                              {.max_gap = request.calibration.pairing.max_gap});
@@ -101,9 +110,26 @@ std::vector<double> synchronise(std::vector<Trajectory>& trajectories, const Rig
       throw Error(request.names[0] + ", " + request.names[k] +
                   ": time offset: cannot be estimated, the streams are too short or never turn");
     trajectories[k] = on_clock_of_a(*offset, std::move(trajectories[k]));
-    offsets[k] = offset->seconds;
+    clocks[k].offset = offset->seconds;
+    if (offset->rival) clocks[k].period = std::abs(*offset->rival - offset->seconds);
   }
-  return offsets;
+  return clocks;
+}
+
+/// Which of the offsets is right is open, and so is the answer.
+void put_rival_offset(const ClockOfSensor& clock, const std::string& name, Calibration& calibration) {
+  if (clock.period == 0) return;
+  Finding finding;
+  finding.code = "clock_offset";
+  finding.message =
+      fmt::format("The motion repeats every {:.3g} s: time offsets of {} that differ by that fit as well.",
+                  clock.period, name);
+  finding.remedy = "Add some motion that does not repeat, or leave out --time-offset where the clocks agree.";
+  if (calibration.verdict == Verdict::good) {
+    calibration.verdict = Verdict::incomplete;
+    calibration.reason = finding.message;
+  }
+  calibration.findings.push_back(std::move(finding));
 }
 
 PairingOptions pairing_of(const RigRequest& request, const std::vector<GroundPlane>& planes, std::size_t a,
@@ -134,7 +160,7 @@ Choice common_choice(const std::vector<Trajectory>& trajectories, const RigReque
 }
 
 void calibrate_pairs(const std::vector<Trajectory>& trajectories, const RigRequest& request,
-                     const std::vector<GroundPlane>& planes, const std::vector<double>& offsets,
+                     const std::vector<GroundPlane>& planes, const std::vector<ClockOfSensor>& clocks,
                      const Choice& common, RigReport& report) {
   for (std::size_t a = 0; a < trajectories.size(); ++a)
     for (std::size_t b = a + 1; b < trajectories.size(); ++b) {
@@ -150,7 +176,8 @@ void calibrate_pairs(const std::vector<Trajectory>& trajectories, const RigReque
       }
       Calibration& calibration = report.pairs.back();
       calibration.choice.reason = common.reason;
-      calibration.time_offset_applied = offsets[b] - offsets[a];
+      calibration.time_offset_applied = clocks[b].offset - clocks[a].offset;
+      for (const std::size_t k : {a, b}) put_rival_offset(clocks[k], request.names[k], calibration);
       report.contradictory = report.contradictory || calibration.verdict == Verdict::contradictory;
     }
 }
@@ -167,9 +194,9 @@ RigReport calibrate_rig(const RigRequest& given) {
   report.sources = request.sources;
   std::vector<Trajectory> trajectories = read(request, report);
   const Drives drives = append_drives(request, trajectories, report);
-  const std::vector<double> offsets = synchronise(trajectories, request);
+  const std::vector<ClockOfSensor> clocks = synchronise(trajectories, request);
   const Choice common = common_choice(trajectories, request, planes);
-  calibrate_pairs(trajectories, request, planes, offsets, common, report);
+  calibrate_pairs(trajectories, request, planes, clocks, common, report);
   for (std::size_t a = 0; a < trajectories.size(); ++a)
     for (std::size_t b = a + 1; b < trajectories.size(); ++b)
       drives.require_motions(a, b, trajectories[a], trajectories[b], pairing_of(request, planes, a, b));
