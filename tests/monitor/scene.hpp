@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/verdict.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
@@ -72,6 +73,20 @@ inline problem_t problem_at(const std::string& a, const std::string& b, std::int
   p.matched = step + 1;
   p.host = "car";
   return p;
+}
+
+/// Of the lidar and the camera.
+inline verdict_t verdict_at(const Diagnosis& diagnosis, std::int64_t utime, std::int64_t session,
+                            std::int64_t seq) {
+  verdict_t message =
+      bus::to_message(diagnosis, {DualQuaternion{}, begin_utime, begin_utime + 1'000'000, 100});
+  message.utime = utime;
+  message.session = session;
+  message.seq = seq;
+  message.sensor_a = "lidar";
+  message.sensor_b = "camera";
+  message.sender = "egocal-diagnosis";
+  return message;
 }
 
 inline calibration_t calibration_at(const problem_t& p, bool global) {

@@ -41,14 +41,7 @@ class AnswerAge : public testing::Test {
     Diagnosis diagnosis;
     diagnosis.verdict = Verdict::good;
     diagnosis.reason = "The motions agree.";
-    verdict_t message =
-        bus::to_message(diagnosis, {DualQuaternion{}, test::begin_utime, test::begin_utime + 1'000'000, 100});
-    message.utime = problem.utime;
-    message.session = problem.session;
-    message.seq = problem.seq;
-    message.sensor_a = "lidar";
-    message.sensor_b = "camera";
-    message.sender = "egocal-diagnosis";
+    const verdict_t message = test::verdict_at(diagnosis, problem.utime, problem.session, problem.seq);
     const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
     ASSERT_TRUE(received) << received.reason;
     model.on_verdict(message, *received.value, now);

@@ -50,14 +50,7 @@ class VerdictShown : public testing::Test {
     model.on_calibration(test::calibration_at(problem, false), some_time);
   }
   void judge(const Diagnosis& diagnosis, std::int64_t session = test::begin_utime, std::int64_t seq = 101) {
-    verdict_t message =
-        bus::to_message(diagnosis, {DualQuaternion{}, test::begin_utime, test::begin_utime + 1'000'000, 100});
-    message.utime = test::begin_utime + 1'000'000;
-    message.session = session;
-    message.seq = seq;
-    message.sensor_a = "lidar";
-    message.sensor_b = "camera";
-    message.sender = "egocal-diagnosis";
+    const verdict_t message = test::verdict_at(diagnosis, test::begin_utime + 1'000'000, session, seq);
     const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
     ASSERT_TRUE(received) << received.reason;
     model.on_verdict(message, *received.value, some_time);

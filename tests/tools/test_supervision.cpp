@@ -327,7 +327,7 @@ TEST_F(Supervision, CtrlZWaitsUntilTheTerminalIsGivenBack) {
   }
   process("slow");
   for (std::size_t i = 1; i <= 2; ++i) {
-    std::this_thread::sleep_for(300ms);  // nobody presses it before the job runs again
+    std::this_thread::sleep_for(300ms);  // until the job runs again
     ASSERT_EQ(write(master, "\x1a", 1), 1);
     ASSERT_TRUE(until([&] { return lines(path("continued")).size() == i; }, 5s)) << i;
     EXPECT_EQ(lines(path("stopped")), std::vector<std::string>(i, "1"));

@@ -38,13 +38,6 @@ StreamSpan span_of(const Trajectory& trajectory) {
           1e-6 * static_cast<double>(trajectory.back().time_us)};
 }
 
-Trajectory read_noting(const std::string& name, const ReadOptions& options,
-                       std::vector<std::string>& warnings) {
-  TrajectoryReading reading = read_any_trajectory(name, options);
-  for (const std::string& note : reading.notes) warnings.push_back(name + ": " + note);
-  return std::move(reading.trajectory);
-}
-
 Motions read_motions(const MotionSource& source) {
   if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
   if (source.log.empty()) {

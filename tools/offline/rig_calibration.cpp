@@ -53,18 +53,12 @@ void take_from_rig(RigRequest& request, std::vector<GroundPlane>& planes) {
   request.calibration.pairing.max_gap = rig.max_gap;
 }
 
-Trajectory read_one(const std::string& name, const RigRequest& request, RigReport& report) {
-  TrajectoryReading reading = read_any_trajectory(name, request.reading);
-  for (const std::string& note : reading.notes) report.warnings.push_back(name + ": " + note);
-  return std::move(reading.trajectory);
-}
-
 /// The sensors' first drive.
 std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
   std::vector<Trajectory> trajectories;
   for (const std::string& source : request.sources) {
     if (request.log.empty()) {
-      trajectories.push_back(read_one(source, request, report));
+      trajectories.push_back(read_noting(source, request.reading, report.warnings));
       continue;
     }
     LogTrajectory channel = read_log_trajectory(request.log, source);
@@ -87,7 +81,8 @@ Drives append_drives(const RigRequest& request, std::vector<Trajectory>& traject
     std::vector<std::string> names(begin, begin + static_cast<std::ptrdiff_t>(trajectories.size()));
     std::vector<Trajectory> drive;
     drive.reserve(names.size());
-    for (const std::string& name : names) drive.push_back(read_one(name, request, report));
+    for (const std::string& name : names)
+      drive.push_back(read_noting(name, request.reading, report.warnings));
     drives.append(std::move(drive), std::move(names));
   }
   return drives;

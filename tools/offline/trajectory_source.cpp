@@ -33,4 +33,11 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   return with(std::move(reading), unused_by_messages(options));
 }
 
+Trajectory read_noting(const std::string& name, const ReadOptions& options,
+                       std::vector<std::string>& warnings) {
+  TrajectoryReading reading = read_any_trajectory(name, options);
+  for (const std::string& note : reading.notes) warnings.push_back(name + ": " + note);
+  return std::move(reading.trajectory);
+}
+
 }  // namespace egocal::tools

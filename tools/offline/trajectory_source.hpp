@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
@@ -15,5 +16,9 @@ std::unique_ptr<Recording> open_any_recording(const std::string& file, const Rea
 
 /// The trajectory FILE, FILE:TOPIC or LOG:CHANNEL. Throws Error as read_trajectory_file does.
 TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions& options = {});
+
+/// The same; the reader's notes go to the warnings, with the name.
+Trajectory read_noting(const std::string& name, const ReadOptions& options,
+                       std::vector<std::string>& warnings);
 
 }  // namespace egocal::tools

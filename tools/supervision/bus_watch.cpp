@@ -164,6 +164,32 @@ class Listening {
 
 }  // namespace
 
+void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::string& log, Shared& shared,
+                      int out, int lines) {
+  try {
+    Listening listening(rig, url);
+    bus::Loop& loop = listening.loop();
+    loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+      listening.hear(status);
+      if (status.host == loop.host()) shared.heard(status.pid, mono_ms());
+    });
+    loop.every(milliseconds(100), [&] {
+      shared.awaited = listening.awaited();
+      // does not block: where the supervisor does not read them, lines are dropped
+      write_all(lines, listening.news(mono_ms()));
+    });
+    loop.run();
+    if (!log.empty()) {
+      const Outcome outcome = listening.outcome(log);
+      write_all(out,
+                std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
+    }
+  } catch (const std::exception&) {
+    // nothing was received, then
+  }
+  _exit(0);
+}
+
 BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log) {
   void* const memory =
       mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -180,28 +206,7 @@ BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::strin
     setpgid(0, 0);  // a Ctrl-C is not for it
     close(ends[0]);
     close(line_ends[0]);
-    try {
-      Listening listening(rig, url);
-      bus::Loop& loop = listening.loop();
-      loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
-        listening.hear(status);
-        if (status.host == loop.host()) shared_->heard(status.pid, mono_ms());
-      });
-      loop.every(milliseconds(100), [&] {
-        shared_->awaited = listening.awaited();
-        // one that nobody reads is dropped
-        write_all(line_ends[1], listening.news(mono_ms()));
-      });
-      loop.run();
-      if (!log.empty()) {
-        const Outcome outcome = listening.outcome(log);
-        write_all(ends[1],
-                  std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
-      }
-    } catch (const std::exception&) {
-      // nothing was received, then
-    }
-    _exit(0);
+    listen(rig, url, log, *shared_, ends[1], line_ends[1]);
   }
   close(ends[1]);
   close(line_ends[1]);

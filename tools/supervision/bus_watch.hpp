@@ -38,6 +38,9 @@ class BusWatch {
 
  private:
   struct Shared;
+  /// The listening process, until it gets SIGTERM. Then the outcome goes to `out`.
+  [[noreturn]] static void listen(const bus::Rig& rig, const std::string& url, const std::string& log,
+                                  Shared& shared, int out, int lines);
   void end();
 
   pid_t pid_ = -1;

@@ -172,8 +172,8 @@ class Supervisor {
     wait();
   }
 
-  /// Silence is counted only while another process is heard: a network that is away is nobody's fault, nor is
-  /// a machine that slept.
+  /// Silence is counted only while another process is heard: without a network, and after a machine has
+  /// slept, all of them are silent.
   void watch_silence(Clock::time_point now) {
     const auto silent = [this](const Child& child) {
       return child.pid > 0 ? options_.silence(child.pid) : std::nullopt;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -58,51 +59,50 @@ double turning_correlation(const Motions& motions, double part = 1) {
   return variance > 0 ? (sxy - sx * sy / n) / std::sqrt(variance) : 0;
 }
 
-Finding unrelated(double correlation) {
+Finding certain_finding(const char* code, std::string message, std::string remedy) {
   Finding finding;
-  finding.code = "unrelated";
+  finding.code = code;
   finding.certain = true;
-  finding.message = format(
-      "The two streams do not turn together (correlation %.2f): they are not of one rigid "
-      "body, or not of one drive.",
-      correlation);
-  finding.remedy = "Check that both files are of the same drive and that both sensors are rigidly mounted.";
+  finding.message = std::move(message);
+  finding.remedy = std::move(remedy);
   return finding;
+}
+
+Finding unrelated(double correlation) {
+  return certain_finding(
+      "unrelated",
+      format("The two streams do not turn together (correlation %.2f): they are not of one rigid "
+             "body, or not of one drive.",
+             correlation),
+      "Check that both files are of the same drive and that both sensors are rigidly mounted.");
 }
 
 Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) {
-  Finding finding;
-  finding.code = "too_little_motion";
-  finding.certain = true;
-  finding.message = motions < options.motions.least
-                        ? format("Only %zu motions: too few to judge the fit.", motions)
-                        : "The sensors hardly turn: an extrinsic cannot be found from this drive.";
-  finding.remedy = "Record a longer drive with turns in different directions.";
-  return finding;
+  return certain_finding("too_little_motion",
+                         motions < options.motions.least
+                             ? format("Only %zu motions: too few to judge the fit.", motions)
+                             : "The sensors hardly turn: an extrinsic cannot be found from this drive.",
+                         "Record a longer drive with turns in different directions.");
 }
 
 Finding turning_in_noise(double correlation) {
-  Finding finding;
-  finding.code = "too_little_motion";
-  finding.certain = true;
-  finding.message = format(
-      "The streams travel alike but do not turn alike (correlation %.2f): the drive turns by less than the "
-      "noise of the rotations.",
-      correlation);
-  finding.remedy = "Record a drive with sharper turns in different directions, or improve the rotations.";
-  return finding;
+  return certain_finding(
+      "too_little_motion",
+      format("The streams travel alike but do not turn alike (correlation %.2f): the drive turns by "
+             "less than the noise of the rotations.",
+             correlation),
+      "Record a drive with sharper turns in different directions, or improve the rotations.");
 }
 
 Finding unexplained(const UnexplainedPart& part) {
-  Finding finding;
-  finding.code = "unrelated";
-  finding.certain = true;
+  Finding finding = certain_finding(
+      "unrelated",
+      format(
+          "The answer explains the motions of the drive but for those from %.0f to %.0f s after the start, "
+          "which contradict it: a sensor was moved, a clock jumped, or an odometry was lost.",
+          part.begin, part.end),
+      "Use the part of the drive where the streams belong together.");
   finding.time = part.begin;
-  finding.message = format(
-      "The answer explains the motions of the drive but for those from %.0f to %.0f s after the start, which "
-      "contradict it: a sensor was moved, a clock jumped, or an odometry was lost.",
-      part.begin, part.end);
-  finding.remedy = "Use the part of the drive where the streams belong together.";
   return finding;
 }
 

@@ -60,7 +60,7 @@ Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& o
   return result;
 }
 
-/// Better by so many standard deviations, as far as so few blocks can show it.
+/// Better by `sigmas` standard deviations, or by nearly all that the blocks can show where those are few.
 bool better(const Comparison& comparison, double least_log_ratio, double sigmas) {
   return comparison.sigmas >= std::min(sigmas, 0.95 * comparison.most) && comparison.gain >= least_log_ratio;
 }

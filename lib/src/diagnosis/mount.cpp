@@ -151,7 +151,8 @@ Strides without_those_around(Strides strides, std::int64_t begin_us, const std::
   return strides;
 }
 
-/// Without corrections of an odometry, whose motions are left out then: they spoil what is found beside them.
+/// Removes moves that are corrections of an odometry. Their motions are left out, and moves are looked for
+/// again: motions of a correction change what is found near it.
 void leave_out_corrections(Strides& strides, const Answered& answered, const DiagnosisOptions& options,
                            MovesResult& result) {
   constexpr int most_rounds = 3;  // limit on time

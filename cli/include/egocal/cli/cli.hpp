@@ -74,7 +74,7 @@ class App {
   Option add_option(const std::string& name, Value& value, const std::string& help = "");
   /// The name of a file that the command writes. Refused where another value of the command line names that
   /// file (also as FILE:TOPIC and NAME=FILE): what the command reads is never replaced. in_place: it may be,
-  /// for a command that mends the file it reads and writes it whole or not at all. "-" is no file.
+  /// for a command that repairs a file in place and writes it whole or not at all. "-" is no file.
   Option add_output(const std::string& name, std::string& file, const std::string& help,
                     bool in_place = false);
   /// The function is called with the text of the option.
