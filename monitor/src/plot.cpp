@@ -68,7 +68,7 @@ double round_step(double size) {
   return 10 * decade;
 }
 
-constexpr int label_width = 8;  // of the numbers at the axis
+constexpr int scale_width = 8;  // of the numbers at the axis
 
 bool usable(const Plot& plot, double value) {
   return std::isfinite(value) && (!plot.logarithmic || value > 0);
@@ -128,11 +128,11 @@ void draw_value_axis(const Pane& pane, const Plot& plot, const Axis& axis, Chars
     const double value = plot.logarithmic ? std::pow(10.0, at) : at;
     const int row = axis.row_of(at);
     if (row < 0 || row >= h) return;
-    pane.text(0, 1 + row, pad_left(compact(value, charset), label_width - 1), Style::dim);
-    pane.text(label_width, 1 + row, charset == Charset::unicode ? "┤" : "+", Style::dim);
+    pane.text(0, 1 + row, pad_left(compact(value, charset), scale_width - 1), Style::dim);
+    pane.text(scale_width, 1 + row, charset == Charset::unicode ? "┤" : "+", Style::dim);
   };
   for (int row = 0; row < h; ++row)
-    pane.text(label_width, 1 + row, charset == Charset::unicode ? "│" : "|", Style::dim);
+    pane.text(scale_width, 1 + row, charset == Charset::unicode ? "│" : "|", Style::dim);
   if (plot.logarithmic) {
     const int decades = static_cast<int>(axis.high - axis.low);
     const int every = std::max(1, (2 * decades + h - 1) / std::max(1, h));
@@ -148,13 +148,13 @@ void draw_time_axis(const Pane& pane, const Plot& plot, int w, int h, Charset ch
   const auto time_text = [&](double time) { return number(time, span < 10 ? 1 : 0, charset); };
   const std::string from = time_text(plot.begin), to = time_text(plot.end) + " s",
                     middle = time_text(plot.begin + 0.5 * span);
-  pane.text(label_width, 1 + h, charset == Charset::unicode ? "└" : "+", Style::dim);
-  for (int x = 0; x < w; ++x) pane.text(label_width + 1 + x, 1 + h, symbols(charset).line, Style::dim);
-  pane.text(label_width + 1, 1 + h, from, Style::dim);
+  pane.text(scale_width, 1 + h, charset == Charset::unicode ? "└" : "+", Style::dim);
+  for (int x = 0; x < w; ++x) pane.text(scale_width + 1 + x, 1 + h, symbols(charset).line, Style::dim);
+  pane.text(scale_width + 1, 1 + h, from, Style::dim);
   if (w > width_of(from) + width_of(to) + 1)
-    pane.text(label_width + 1 + w - width_of(to), 1 + h, to, Style::dim);
+    pane.text(scale_width + 1 + w - width_of(to), 1 + h, to, Style::dim);
   if (w > 2 * (width_of(to) + width_of(middle)) + 6)
-    pane.text(label_width + 1 + (w - width_of(middle)) / 2, 1 + h, middle, Style::dim);
+    pane.text(scale_width + 1 + (w - width_of(middle)) / 2, 1 + h, middle, Style::dim);
 }
 
 /// The threshold, the mark with its meaning beside the title, and the moves of the mount.
@@ -234,7 +234,7 @@ void draw_series(Dots& dots, const Plot& plot, const PlotSeries& series, const A
 }  // namespace
 
 void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
-  const int w = pane.width() - label_width - 2, h = pane.height() - 2;
+  const int w = pane.width() - scale_width - 2, h = pane.height() - 2;
   pane.text(1, 0, pad_right(plot.title, pane.width() - 1), Style::strong);
   if (w < 4 || h < 1) return;
 
@@ -243,13 +243,13 @@ void draw_plot(const Pane& pane, const Plot& plot, Charset charset) {
   if (plot.threshold && usable(plot, *plot.threshold)) range.take(*plot.threshold);
   if (range.empty()) {
     const std::string text = "no values yet";
-    pane.text(label_width + std::max(0, (w - width_of(text)) / 2), 1 + h / 2, text, Style::dim);
+    pane.text(scale_width + std::max(0, (w - width_of(text)) / 2), 1 + h / 2, text, Style::dim);
     return;
   }
   const Axis axis = axis_of(plot, range, h);
   draw_value_axis(pane, plot, axis, charset);
   draw_time_axis(pane, plot, w, h, charset);
-  const Pane field = pane.part({label_width + 1, 1, w, h});
+  const Pane field = pane.part({scale_width + 1, 1, w, h});
   draw_marks(pane, field, plot, axis, w, charset);
   if (nothing || !(plot.end - plot.begin > 0)) return;
 

@@ -9,16 +9,16 @@ namespace egocal::monitor {
 
 namespace {
 
-struct Line {
+struct LabelledLine {
   const char* label;
   std::string text;
   Style style;
 };
 
 /// Most important first: the first ones are drawn where there is no room for all.
-std::vector<Line> lines_of(const PairVerdict& verdict, Charset charset) {
+std::vector<LabelledLine> lines_of(const PairVerdict& verdict, Charset charset) {
   const Diagnosis& diagnosis = verdict.diagnosis;
-  std::vector<Line> lines;
+  std::vector<LabelledLine> lines;
   for (const Finding& finding : diagnosis.findings)
     if (finding.certain)
       lines.push_back({"finding", finding.message + " Cure: " + finding.remedy, Style::warning});
@@ -57,7 +57,7 @@ void draw_verdict(const Pane& pane, const PairState& pair, Charset charset) {
   int y = 2;
   if (pair.scale && y < pane.height()) row(y++, "scale", scale_text(*pair.scale, charset), "", Style::normal);
   if (!pair.verdict) return;
-  for (const Line& line : lines_of(*pair.verdict, charset)) {
+  for (const LabelledLine& line : lines_of(*pair.verdict, charset)) {
     if (y >= pane.height()) break;
     row(y++, line.label, {"", Style::normal}, line.text, line.style);
   }

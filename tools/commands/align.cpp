@@ -4,11 +4,11 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
 #include "counted.hpp"
+#include "degrees.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "offline/provenance.hpp"
@@ -64,7 +64,6 @@ std::string as_text(const SolveRequest& request, const Calibration& calibration,
   if (calibration.scale_applied != 1)
     text += fmt::format("scale         {:.6g} times the lengths of {}\n", calibration.scale_applied,
                         request.calibration.scale_side == Side::a ? "a" : "b");
-  constexpr double degrees = 180 / std::numbers::pi;
   text += fmt::format("agreement     {} compared, RMS {:.4f} m, {:.4f} deg\n",
                       counted(alignment.compared, "pose"), alignment.rms_translation,
                       alignment.rms_rotation * degrees);

@@ -4,12 +4,12 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <vector>
 
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
 #include "counted.hpp"
+#include "degrees.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/stream_summary.hpp"
@@ -129,7 +129,6 @@ void print_row(const Row& row) {
     fmt::print("  no usable pose\n");
     return;
   }
-  constexpr double degrees = 180 / std::numbers::pi;
   if (!stream.child.empty())
     fmt::print("  pose of         {} in {}\n", bus::printable(stream.child, 60),
                bus::printable(stream.parent, 60));

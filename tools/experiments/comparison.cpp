@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <numbers>
 
+#include "degrees.hpp"
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/solvers/global.hpp"
@@ -99,7 +99,6 @@ std::vector<ComparisonRow> compare(const DataSet& data, int repeats) {
 }
 
 std::string table(const std::vector<ComparisonRow>& rows) {
-  constexpr double degrees = 180 / std::numbers::pi;
   std::string text = fmt::format("{:<22} {:<7} {:>12} {:>10} {:>10}  {}\n", "approach", "mode", "e_t [cm]",
                                  "e_r [deg]", "time [ms]", "verdict");
   for (const ComparisonRow& row : rows) {

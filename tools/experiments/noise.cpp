@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 
+#include "degrees.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/solvers/global.hpp"
@@ -20,7 +21,6 @@ namespace egocal::tools {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 /// At 50 % noise two fifths of what shows the translation are noise in the mean, and more along some ways.
 constexpr double most_noise = 0.75;
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
+#include "degrees.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/blocks.hpp"
 #include "egocal/problem/problem.hpp"
@@ -82,7 +82,6 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
 }
 
 std::string csv(const std::vector<OnlinePoint>& points) {
-  constexpr double degrees = 180 / std::numbers::pi;
   std::string text =
       "frame,time_s,translation_m,rotation_deg,scaled_gap,scaled_gap_before,certified,fast_verified,global_"
       "used,fast_us,global_us,verify_us\n";
@@ -105,7 +104,6 @@ int last_global_frame(const std::vector<OnlinePoint>& points) {
 }
 
 std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
-  constexpr double degrees = 180 / std::numbers::pi;
   const int last_global = last_global_frame(points);
   const auto plot_of = [&](const std::string& title, const std::string& unit) {
     Plot plot;

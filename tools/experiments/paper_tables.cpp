@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <numbers>
 #include <span>
 
+#include "degrees.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "egocal/simulation/simulation.hpp"
@@ -17,8 +17,6 @@
 namespace egocal::tools {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 /// Beyond a kilometre the paper prints "> 10^5", which is a failure.
 std::string centimetres(double metres) {

@@ -32,8 +32,8 @@ DataSet simulated(const Source& source) {
 std::vector<std::string> drives_in(const std::string& text) {
   if (text.find(',') == std::string::npos || std::filesystem::exists(text)) return {text};
   std::vector<std::string> names;
-  std::istringstream parts(text);
-  for (std::string name; std::getline(parts, name, ',');) names.push_back(name);
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
   return names;
 }
 

@@ -1,16 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/table_text.hpp"
+#include "degrees.hpp"
 
 #include <fmt/format.h>
-
-#include <numbers>
 
 namespace egocal::tools {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 const char* mode_text(const ComparisonRow& row) {
   return row.mode == Mode::planar ? "planar" : "spatial";

@@ -7,9 +7,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "counted.hpp"
+#include "degrees.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "offline/samples.hpp"
 #include "offline/trust_report.hpp"
@@ -18,7 +18,6 @@ namespace egocal::tools {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 nlohmann::ordered_json stream_json(const StreamSpan& stream) {

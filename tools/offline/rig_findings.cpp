@@ -6,13 +6,12 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
+
+#include "degrees.hpp"
 
 namespace egocal::tools {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 std::string size_of(const Move& move) {
   const auto [turn, shift] = shown_change(move);

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "degrees.hpp"
 #include "offline/trust_report.hpp"
 
 namespace egocal::tools {
@@ -16,7 +16,6 @@ namespace egocal::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double degrees = 180 / std::numbers::pi;
 
 void add_pose(Json& json, const Pose& T) {
   json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};

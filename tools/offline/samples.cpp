@@ -5,15 +5,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <numbers>
-
+#include "degrees.hpp"
 #include "egocal/error.hpp"
 
 namespace egocal::tools {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 SampleOptions options_of(const SolveRequest& request) {
   const CalibrationOptions& calibration = request.calibration;

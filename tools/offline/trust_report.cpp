@@ -6,15 +6,13 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "degrees.hpp"
 #include "egocal/bus/diagnosis_json.hpp"
 
 namespace egocal::tools {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 /// Three significant digits, and no exponent where a number is large.
 std::string rounded(double value) {

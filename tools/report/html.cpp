@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "degrees.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
@@ -18,7 +18,6 @@ namespace egocal::tools {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 constexpr const char* style = R"(<style>

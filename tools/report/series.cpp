@@ -1,17 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/series.hpp"
+#include "degrees.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace egocal::tools {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 double seconds(std::int64_t from_us, std::int64_t to_us) {
   return 1e-6 * static_cast<double>(to_us - from_us);

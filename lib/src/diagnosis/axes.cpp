@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnosis/reading.hpp"
 #include "diagnosis/robust_fit.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/median.hpp"
@@ -35,10 +36,6 @@ Matrix3d matrix(const QuaternionVector& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
 }
 
-Vector3d position(const DualQuaternion& pose) {
-  return 2 * quaternion_product(pose.dual, quaternion_conjugate(pose.real)).tail<3>();
-}
-
 std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
                            std::size_t most, const DiagnosisOptions& options) {
   std::vector<Step> steps;
@@ -59,7 +56,8 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
     QuaternionVector w = quaternion_product(quaternion_conjugate(r0), r1);
     if (w[0] < 0) w = -w;
     if (std::max(rotation_angle(s), rotation_angle(w)) > options.motions.most_rotation) continue;
-    steps.push_back({s.real, w, matrix(s.real), matrix(r0), position(s), position(w1) - position(w0), 1});
+    steps.push_back(
+        {s.real, w, matrix(s.real), matrix(r0), position_of(s), position_of(w1) - position_of(w0), 1});
   }
   return steps;
 }

@@ -27,7 +27,7 @@ struct Manoeuvre {
 constexpr double degree = std::numbers::pi / 180;
 /// Motions that one manoeuvre gives: 16 s at a motion a second. Part of the catalogue, which ranks manoeuvres
 /// against each other; changes no answer.
-constexpr int motions = 16;
+constexpr int motions_each = 16;
 constexpr double motions_per_second = 1;  ///< at most
 /// A manoeuvre is advised where it reaches the goal within this part of the time that more of the same takes.
 constexpr double most_of_the_time = 0.5;
@@ -105,8 +105,8 @@ Matrix6d information_of(const Manoeuvre& manoeuvre, const Body& body, const Answ
   Statistics statistics;
   const DualQuaternion T = answered.T_a_b;
   const Eigen::Matrix3d axes = vehicle ? body.axes : Eigen::Matrix3d::Identity();
-  for (int i = 0; i < motions; ++i) {
-    const double phase = 2 * std::numbers::pi * (i + 0.5) / motions;
+  for (int i = 0; i < motions_each; ++i) {
+    const double phase = 2 * std::numbers::pi * (i + 0.5) / motions_each;
     // out of step, so that the axes are shown by themselves
     const Eigen::Vector3d wave(std::sin(phase), std::cos(phase), std::sin(2 * phase));
     Eigen::Vector3d turn = manoeuvre.turn, travel = manoeuvre.travel;
@@ -176,7 +176,7 @@ std::string next_manoeuvre(const Answered& answered, const GoalOptions& options,
   // for in this time
   const double rate =
       answered.seconds > 0 ? std::min(motions_per_second, count / answered.seconds) : motions_per_second;
-  const double number = seconds_left ? most_of_the_time * *seconds_left * rate : motions;
+  const double number = seconds_left ? most_of_the_time * *seconds_left * rate : motions_each;
   const char* best = "";
   double least = INFINITY;
   for (const Manoeuvre& manoeuvre : catalogue(platform)) {

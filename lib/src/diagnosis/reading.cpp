@@ -13,14 +13,6 @@ namespace {
 // Number by number: a diagnosis reads some hundred thousand poses, and temporary vectors cost more than the
 // arithmetic.
 
-/// Vector part of 2 dual conj(real): the position [m].
-Eigen::Vector3d position(const DualQuaternion& pose) {
-  const QuaternionVector &p = pose.dual, &r = pose.real;
-  const double w = r[0], x = -r[1], y = -r[2], z = -r[3];
-  return {2 * (p[0] * x + p[1] * w + p[2] * z - p[3] * y), 2 * (p[0] * y - p[1] * z + p[2] * w + p[3] * x),
-          2 * (p[0] * z + p[1] * y - p[2] * x + p[3] * w)};
-}
-
 /// 0.5 t r. The zero scalar of t counts: it turns negative zeros into positive ones.
 QuaternionVector dual_part(const QuaternionVector& r, const Eigen::Vector3d& t) {
   return {0.5 * (0.0 * r[0] - t[0] * r[1] - t[1] * r[2] - t[2] * r[3]),
@@ -31,6 +23,13 @@ QuaternionVector dual_part(const QuaternionVector& r, const Eigen::Vector3d& t) 
 
 }  // namespace
 
+Eigen::Vector3d detail::position_of(const DualQuaternion& pose) {
+  const QuaternionVector &p = pose.dual, &r = pose.real;
+  const double w = r[0], x = -r[1], y = -r[2], z = -r[3];
+  return {2 * (p[0] * x + p[1] * w + p[2] * z - p[3] * y), 2 * (p[0] * y - p[1] * z + p[2] * w + p[3] * x),
+          2 * (p[0] * z + p[1] * y - p[2] * x + p[3] * w)};
+}
+
 bool detail::as_given(const PoseReading& reading) {
   return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && !reading.conjugate &&
          reading.scale == 1 && reading.axes == Eigen::Matrix3d::Identity();
@@ -38,7 +37,7 @@ bool detail::as_given(const PoseReading& reading) {
 
 DualQuaternion detail::reread(const DualQuaternion& given, const PoseReading& reading) {
   if (as_given(reading)) return given;
-  Eigen::Vector3d t = reading.scale * (reading.axes * position(given));
+  Eigen::Vector3d t = reading.scale * (reading.axes * detail::position_of(given));
   QuaternionVector r = given.real;
   // read as x y z w and stored here as w x y z: the columns were (r1, r2, r3, r0)
   if (reading.quaternion_order == QuaternionOrder::wxyz) r = {r[1], r[2], r[3], r[0]};

@@ -13,6 +13,9 @@ struct PoseReading : Reading {
   bool conjugate = false;           ///< the rotation is that of the inverse pose
 };
 
+/// [m]: vector part of 2 dual conj(real).
+Eigen::Vector3d position_of(const DualQuaternion& pose);
+
 /// Whether it changes nothing: poses are what their file says.
 bool as_given(const PoseReading& reading);
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "egocal/solvers/global.hpp"
+#include "estimation/spread_by_poses.hpp"
 #include "statistics/select.hpp"
 
 namespace egocal {
@@ -211,10 +211,6 @@ class Judge {
   Component rotation_, translation_;
 };
 
-DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
-  return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
-}
-
 /// Verdicts by a given extrinsic: what is typical is learnt again without what has been found.
 std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q, int most_rounds) {
   std::vector<Jump> jumps;
@@ -256,7 +252,7 @@ std::vector<StepVerdict> find_jumps(std::span<const MeasuredStep> steps, const S
       sum.dual_rows += judge.weights[i] * statistics[i].dual_rows;
       sum.weight += judge.weights[i];
     }
-    judge.look_from(minimiser(cost_matrix(sum, {balance, 1}), mode));
+    judge.look_from(detail::minimiser(cost_matrix(sum, {balance, 1}), mode));
     balance = judge.rotation_weight();
     const bool sharp = mu == 1;
     mu = round == 0 ? std::max(1.0, 2 * judge.largest_excess()) : std::max(1.0, mu / options.sharpen);

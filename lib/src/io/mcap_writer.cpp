@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "egocal/error.hpp"
+#include "io/bag/mcap_records.hpp"
 
 namespace egocal {
 
 namespace {
 
 constexpr std::size_t chunk_size = 1 << 20;  // [bytes], as rosbag2 and Foxglove write them
-const std::string magic("\x89MCAP0\r\n", 8);
 
 const std::string pose_type = "geometry_msgs/msg/PoseStamped";
 const std::string transform_type = "tf2_msgs/msg/TFMessage";
@@ -225,7 +225,7 @@ struct McapWriter::State {
     write(text);
     // the checksum of the summary covers the footer up to itself
     const std::string footer = Bytes().number(2, 1).number(20, 8).number(summary, 8).number(0, 8).bytes;
-    write(footer + Bytes().number(crc_of(text + footer), 4).bytes + magic);
+    write(footer + Bytes().number(crc_of(text + footer), 4).bytes + std::string(detail::mcap_magic));
   }
 };
 
@@ -234,7 +234,7 @@ McapWriter::McapWriter(const std::string& file) : state_(std::make_unique<State>
   state_->part = file + ".part";
   state_->stream = std::fopen(state_->part.c_str(), "wb");
   if (!state_->stream) throw error_at(file, 0, "", "cannot be written");
-  state_->write(magic + record(1, Bytes().text("ros2").text("egocal").bytes));
+  state_->write(std::string(detail::mcap_magic) + record(1, Bytes().text("ros2").text("egocal").bytes));
 }
 
 McapWriter::~McapWriter() {

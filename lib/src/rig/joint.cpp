@@ -12,7 +12,7 @@ namespace egocal::detail {
 namespace {
 
 using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8>;  // never on the heap
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
 
 /// A displacement (u, v) of sensor a as sensor b sees it: the imaginary parts of q^-1 (u + eps v) q.
 Block adjoint(const DualQuaternion& q) {
@@ -30,7 +30,7 @@ Block adjoint(const DualQuaternion& q) {
 }
 
 /// [g]x of three elements.
-void add_cross(Block& M, int row, int column, const Column& g, int first) {
+void add_cross(Block& M, int row, int column, const Unknowns& g, int first) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     M(row + j, column + k) -= g[first + i];
@@ -39,7 +39,7 @@ void add_cross(Block& M, int row, int column, const Column& g, int first) {
 }
 
 /// The product of both displacements moves the pair by -(a x u, a x v + w x u): second order, times g.
-Block second_order(const Column& g) {
+Block second_order(const Unknowns& g) {
   Block M = Block::Zero(6, 6);
   add_cross(M, 0, 0, g, 0);
   add_cross(M, 0, 3, g, 3);
@@ -78,9 +78,9 @@ JointDerivatives joint_derivatives(std::span<const JointPair> pairs,
     const DualQuaternion q = relative(poses[pair.a], poses[pair.b]);
     const Block T = tangent_basis(q);
     const Block Z = lagrangian_matrix(pair.Q, least_squares_multipliers(pair.Q, q));
-    const Column v = q.vec();
+    const Unknowns v = q.vec();
     const Block Q = pair.Q;
-    const Column g = T.transpose() * (Q * v);
+    const Unknowns g = T.transpose() * (Q * v);
     const Block H = T.transpose() * (Z * T);
     // x of the pair is x_b - A x_a, to first order
     const Block A = adjoint(q);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "egocal/limits.hpp"
+#include "microseconds.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
 #include "statistics/median.hpp"
@@ -30,10 +31,6 @@ ScaleDriveOptions completed(ScaleDriveOptions options) {
   options.interpolation.cut_alike = options.pairing.synchroniser.cut_alike;
   options.least_block = std::max<std::size_t>(1, options.least_block);
   return options;
-}
-
-double seconds(std::int64_t us) {
-  return 1e-6 * static_cast<double>(us);
 }
 
 /// Scaled, with sign as the solvers take it.
@@ -102,11 +99,11 @@ void ScaleDrive::grow(const MotionPair& step, std::vector<MotionPair>& completed
     motion.b = motion.b * step.b;
     motion.end_us = step.end_us;
   }
-  if (open.empty() || seconds(step.begin_us - open.back().begin_us) >= distance) open.push_back(step);
+  if (open.empty() || detail::seconds(step.begin_us - open.back().begin_us) >= distance) open.push_back(step);
   // rounded down, streams with jitter would take one step more every other time
-  const double length = options_.motion - 0.5 * seconds(state_.step_us);
+  const double length = options_.motion - 0.5 * detail::seconds(state_.step_us);
   const double least_real = std::cos(0.5 * options_.pairing.accumulator.most_rotation);
-  while (!open.empty() && seconds(open.front().end_us - open.front().begin_us) >= length) {
+  while (!open.empty() && detail::seconds(open.front().end_us - open.front().begin_us) >= length) {
     const MotionPair& motion = open.front();
     if (std::abs(motion.a.real[0]) > least_real && std::abs(motion.b.real[0]) > least_real) {
       completed.push_back(motion);
@@ -232,7 +229,7 @@ Choice ScaleDrive::choice() const {
   Choice choice;
   if (state_.step_us > 0)
     choice.stride =
-        static_cast<int>(std::clamp(std::round(options_.motion / seconds(state_.step_us)), 1.0, 1e4));
+        static_cast<int>(std::clamp(std::round(options_.motion / detail::seconds(state_.step_us)), 1.0, 1e4));
   choice.balance = state_.solution.balance;
   choice.reason = "motions of one second, with the scale that they show";
   return choice;

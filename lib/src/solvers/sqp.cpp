@@ -17,8 +17,6 @@ using detail::Matrix6d;
 using detail::Matrix86d;
 using detail::Vector6d;
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 /// -inv(H + shift I) g, or nothing where that is not positive definite or too nearly singular to be trusted.
 bool newton_step(const Matrix6d& H, const Vector6d& g, double shift, Vector6d& x) {
   Matrix6d shifted = H;
@@ -35,7 +33,7 @@ bool newton_step(const Matrix6d& H, const Vector6d& g, double shift, Vector6d& x
 /// it is.
 Vector6d truncated_step(const Matrix6d& H, const Vector6d& g) {
   const detail::SymmetricEigen<6> eigen = detail::symmetric_eigen<6>(H);
-  const double floor = 64 * epsilon * eigen.values.cwiseAbs().maxCoeff();
+  const double floor = 64 * std::numeric_limits<double>::epsilon() * eigen.values.cwiseAbs().maxCoeff();
   Vector6d x = Vector6d::Zero();
   for (int k = 0; k < 6; ++k) {
     const double curvature = std::abs(eigen.values[k]);
@@ -73,7 +71,8 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
       solution.status = SolverStatus::degenerate;
       break;
     }
-    const double rounding = 8 * epsilon * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
+    const double rounding =
+        8 * std::numeric_limits<double>::epsilon() * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
     Vector6d x;
     DualQuaternion next;
     Vector8d v_next, Qv_next;

@@ -336,17 +336,17 @@ std::vector<double> sniffed_times(const TextLayout& layout, const Sniffed& sniff
   return times;
 }
 
-struct UnitName {
+struct TimeUnitName {
   TimeUnit unit;
   const char* name;
   double in_seconds;
 };
-constexpr UnitName units[] = {{TimeUnit::seconds, "seconds", 1},
-                              {TimeUnit::milliseconds, "milliseconds", 1e-3},
-                              {TimeUnit::microseconds, "microseconds", 1e-6},
-                              {TimeUnit::nanoseconds, "nanoseconds", 1e-9}};
+constexpr TimeUnitName time_units[] = {{TimeUnit::seconds, "seconds", 1},
+                                       {TimeUnit::milliseconds, "milliseconds", 1e-3},
+                                       {TimeUnit::microseconds, "microseconds", 1e-6},
+                                       {TimeUnit::nanoseconds, "nanoseconds", 1e-9}};
 
-const UnitName& unit_by_size(std::vector<double> times) {
+const TimeUnitName& unit_by_size(std::vector<double> times) {
   constexpr double earliest = 3e8, latest = 2.5e9;  // limits of dates [s]: 1979, before GPS time, and 2049
   // limit [s]: no sensor that is worth calibrating sends a pose every ten seconds and less often
   constexpr double longest_step = 10;
@@ -357,15 +357,15 @@ const UnitName& unit_by_size(std::vector<double> times) {
   const double typical_step = steps.empty() ? 0 : median(steps);
   // nanoseconds since a phone was switched on may look like milliseconds since 1970, but for their steps
   const double largest = times.empty() ? 0 : std::max(std::abs(times.front()), std::abs(times.back()));
-  for (const UnitName& unit : units)
+  for (const TimeUnitName& unit : time_units)
     if (largest * unit.in_seconds >= earliest && largest * unit.in_seconds <= latest &&
         typical_step * unit.in_seconds < longest_step)
       return unit;
   // any other time: the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the
   // likely one
-  if (!(typical_step >= longest_step)) return units[0];
-  const UnitName* best = &units[0];
-  for (const UnitName& unit : units)
+  if (!(typical_step >= longest_step)) return time_units[0];
+  const TimeUnitName* best = &time_units[0];
+  for (const TimeUnitName& unit : time_units)
     if (std::abs(std::log(typical_step * unit.in_seconds / 0.06)) <
         std::abs(std::log(typical_step * best->in_seconds / 0.06)))
       best = &unit;
@@ -382,12 +382,12 @@ void set_time_unit(TextLayout& layout, const Sniffed& sniffed) {
     layout.times = !layout.index;
     if (layout.index) return;
   }
-  for (const UnitName& unit : units)
+  for (const TimeUnitName& unit : time_units)
     if (!layout.matrix && layout.columns[Quantity::time].in_si == unit.in_seconds) {
       layout.unit = unit.unit;
       return;
     }
-  const UnitName& unit = unit_by_size(times);
+  const TimeUnitName& unit = unit_by_size(times);
   layout.unit = unit.unit;
   const bool usual = layout.format == "EuRoC csv" ? unit.unit == TimeUnit::nanoseconds : unit.in_seconds == 1;
   if (!usual) layout.notes.push_back(std::string("times are taken as ") + unit.name + ", by their size");

@@ -9,6 +9,7 @@
 #include "egocal/geometry/pose.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
+#include "microseconds.hpp"
 #include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"
 #include "statistics/distributions.hpp"
@@ -18,8 +19,7 @@ namespace egocal::detail {
 
 namespace {
 
-constexpr double second_us = 1e6;              // unit
-constexpr std::size_t interpolation_cost = 8;  ///< of a motion's four poses, in poses looked at
+constexpr std::size_t comparison_cost = 8;  ///< of a motion's four poses, in poses looked at
 
 /// Motion from one time to another on a stream's own clock, relative to at_us [us]; empty where not known.
 std::optional<DualQuaternion> motion_at(const Trajectory& poses, std::int64_t at_us, double from, double to,
@@ -67,7 +67,7 @@ OffsetFits::OffsetFits(const Trajectory& a, const Trajectory& b, const TimeOffse
   count_ = whole_us > 0 ? static_cast<std::size_t>(whole_us / spacing_us_) : 0;
   floor_ = {options_.angle_floor * options_.angle_floor, options_.length_floor * options_.length_floor, true};
   for (const Trajectory* poses : {&a_, &b_})
-    schedule_.add(count_ * interpolation_cost / tuning_.coarse_each, [this, poses] { find_floor(*poses); });
+    schedule_.add(count_ * comparison_cost / tuning_.coarse_each, [this, poses] { find_floor(*poses); });
 }
 
 void OffsetFits::add(const ClockLine& clock, const DualQuaternion& start) {
@@ -75,7 +75,7 @@ void OffsetFits::add(const ClockLine& clock, const DualQuaternion& start) {
     sampled_.assign(count_, {});
     schedule_.add_range(
         count_, [this, clock](std::size_t begin, std::size_t end) { sample(clock, begin, end); },
-        interpolation_cost);
+        comparison_cost);
     schedule_.add(count_, [this, start] { fit(start); });
   });
 }

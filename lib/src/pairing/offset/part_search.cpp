@@ -8,14 +8,13 @@
 #include <tuple>
 #include <utility>
 
+#include "microseconds.hpp"
 #include "pairing/offset/line_fit.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-constexpr double second_us = 1e6;  // unit
 
 /// Offset of one part of the drive.
 struct PartOffset {

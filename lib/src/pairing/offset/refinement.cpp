@@ -11,6 +11,7 @@
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "microseconds.hpp"
 #include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"
 #include "statistics/median.hpp"
@@ -20,7 +21,6 @@ namespace egocal::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double second_us = 1e6;              // unit
 constexpr std::size_t interpolation_cost = 4;  ///< of a motion's two poses, in poses looked at
 
 /// Marks those that are `outlier` times further off than is typical of the motions of their size: what a
