@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "diagnosis/clock_check.hpp"
+#include "egocal/calibrate_beside.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
+#include "egocal/diagnosis/foresee.hpp"
 #include "egocal/error.hpp"
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/pairing/congruence.hpp"
@@ -198,9 +200,11 @@ void put_rival_offset(const Trajectory& a, const Trajectory& b, const PairingOpt
   result.reason = reason;
 }
 
-/// Of streams whose lengths are in one unit. scale: found before, which adds to what is not known.
+/// Of streams whose lengths are in one unit. scale: found before, which adds to what is not known. beside:
+/// may be empty.
 Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
-                              const CalibrationOptions& options, const std::optional<ScaleSolution>& scale) {
+                              const CalibrationOptions& options, const Beside& beside,
+                              const std::optional<ScaleSolution>& scale) {
   PairingOptions pairing_options = options.pairing;
   std::optional<TimeOffset> time_offset;
   if (options.estimate_time_offset) {
@@ -213,7 +217,21 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   std::optional<Trajectory> corrected;
   if (time_offset) corrected = on_clock_of_a(*time_offset, given_b);
   const Trajectory& b = corrected ? *corrected : given_b;
-  const MotionPairing pairing = paired(pairing_options, a, b);
+  std::optional<MotionPairing> pairing_of_all;
+  std::optional<Foresight> foresight;
+  const auto pair = [&] { pairing_of_all.emplace(paired(pairing_options, a, b, beside)); };
+  const auto foresee = [&] {
+    try {
+      foresight.emplace(a, b, pairing_options, options.diagnosis);
+    } catch (const Error&) {
+      // streams without motions are not diagnosed; of others diagnose() throws it again
+    }
+  };
+  if (beside && options.diagnosis.enabled)
+    beside(pair, foresee);
+  else
+    pair();
+  const MotionPairing& pairing = *pairing_of_all;
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
     throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
@@ -224,8 +242,9 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   result.time_offset = time_offset;
   result.time_offset_applied = time_offset ? time_offset->seconds : pairing_options.time_offset;
   const Answered what = answered(result, pairing.single_stride_problem(), scale);
-  Diagnosis diagnosis = options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
-                                                  : diagnose(what, options.diagnosis);
+  Diagnosis diagnosis = foresight                   ? foresight->diagnose(what)
+                        : options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
+                                                    : diagnose(what, options.diagnosis);
   result = judged(std::move(result), std::move(diagnosis));
   if (time_offset && time_offset->rival && options.diagnosis.enabled)
     put_rival_offset(a, given_b, pairing_options, options.diagnosis, result);
@@ -274,7 +293,8 @@ Calibration calibrate_pairs(std::span<const MotionPair> given, const Calibration
 }
 
 /// Scales one stream, then calibrates as without a scale.
-Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options,
+                             const Beside& beside) {
   std::optional<ScaleSolution> estimate;
   PairingOptions pairing = options.pairing;
   if (options.estimate_scale) {
@@ -287,7 +307,7 @@ Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const Cal
   const double scale = estimate ? estimate->scale : options.scale;
   const bool on_a = options.scale_side == Side::a;
   Calibration result = calibrate_streams(on_a ? scaled(a, scale) : a, on_a ? b : scaled(b, scale),
-                                         without_scale(options), estimate);
+                                         without_scale(options), beside, estimate);
   put_scale(estimate, scale, result);
   return result;
 }
@@ -332,13 +352,18 @@ std::string motions_in_words(const Calibration& calibration) {
 }
 
 Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options) {
+  return calibrate(a, b, options, Beside{});
+}
+
+Calibration calibrate(const Trajectory& a, const Trajectory& b, const CalibrationOptions& options,
+                      const Beside& beside) {
   if (!as_read(options.read_a) || !as_read(options.read_b)) {
     CalibrationOptions rest = options;
     rest.read_a = rest.read_b = {};
-    return calibrate(reread(a, options.read_a), reread(b, options.read_b), rest);
+    return calibrate(reread(a, options.read_a), reread(b, options.read_b), rest, beside);
   }
-  if (with_scale(options)) return calibrate_scaled(a, b, options);
-  return calibrate_streams(a, b, options, std::nullopt);
+  if (with_scale(options)) return calibrate_scaled(a, b, options, beside);
+  return calibrate_streams(a, b, options, beside, std::nullopt);
 }
 
 Calibration calibrate(std::span<const MotionPair> given, const CalibrationOptions& options) {

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
+#include <system_error>
 #include <vector>
 
 #include "arguments.hpp"
 #include "egocal/baselines/baselines.hpp"
+#include "egocal/calibrate_beside.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -17,6 +20,7 @@
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "offline/append.hpp"
+#include "offline/beside.hpp"
 #include "offline/log_trajectory.hpp"
 #include "offline/remedies.hpp"
 #include "offline/samples.hpp"
@@ -38,16 +42,32 @@ StreamSpan span_of(const Trajectory& trajectory) {
           1e-6 * static_cast<double>(trajectory.back().time_us)};
 }
 
+/// A file that can be read beside another one, and is long enough to be worth a thread. Two pipes may be one.
+bool is_long_file(const std::string& name) {
+  constexpr std::uintmax_t least = 1 << 20;  // [bytes], read in some milliseconds
+  std::error_code none;
+  const std::filesystem::path file = parse_recording_name(name).file;
+  return std::filesystem::is_regular_file(file, none) && std::filesystem::file_size(file, none) >= least;
+}
+
+Motions read_both(const MotionSource& source) {
+  Motions motions;
+  std::vector<std::string> warnings_b;
+  const auto read_a = [&] { motions.a = read_noting(source.a, source.reading_a, motions.warnings); };
+  const auto read_b = [&] { motions.b = read_noting(source.b, source.reading_b, warnings_b); };
+  const bool are_long = is_long_file(source.a) && is_long_file(source.b);
+  (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b);
+  motions.warnings.insert(motions.warnings.end(), warnings_b.begin(), warnings_b.end());
+  return motions;
+}
+
 Motions read_motions(const MotionSource& source) {
   if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
-  if (source.log.empty()) {
-    Motions motions;
-    motions.a = read_noting(source.a, source.reading_a, motions.warnings);
-    motions.b = read_noting(source.b, source.reading_b, motions.warnings);
-    return motions;
-  }
-  LogTrajectory a = read_log_trajectory(source.log, source.a);
-  LogTrajectory b = read_log_trajectory(source.log, source.b);
+  if (source.log.empty()) return read_both(source);
+  LogTrajectory a, b;
+  (is_long_file(source.log) ? at_the_same_time : one_after_the_other)(
+      [&] { a = read_log_trajectory(source.log, source.a); },
+      [&] { b = read_log_trajectory(source.log, source.b); });
   Motions motions{std::move(a.poses), std::move(b.poses), {}, {}};
   for (std::string* not_used : {&a.not_used, &b.not_used})
     if (!not_used->empty()) motions.warnings.push_back(std::move(*not_used));
@@ -75,8 +95,10 @@ Drives append_drives(const SolveRequest& request, Motions& motions) {
 Calibration calibrate_motions(const MotionSource& source, const Motions& motions,
                               const CalibrationOptions& options) {
   if (!source.pairs.empty()) return calibrate(motions.pairs, options);
+  constexpr std::size_t least_poses = 1000;  // worth a thread: some milliseconds
+  const bool is_long = std::min(motions.a.size(), motions.b.size()) >= least_poses;
   try {
-    return calibrate(motions.a, motions.b, options);
+    return calibrate(motions.a, motions.b, options, is_long ? Beside(at_the_same_time) : Beside());
   } catch (const Error& error) {
     throw Error(source.a + ", " + source.b + ": " + error.what());
   }

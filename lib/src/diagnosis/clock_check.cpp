@@ -65,17 +65,21 @@ bool fits_better(const MiddlePart& part, double offset, double than, const DualQ
 
 }  // namespace
 
-std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory& b,
-                                          const PairingOptions& pairing, const MiddlePart& part,
-                                          const Instants& instants, const Answered& answered,
-                                          const DiagnosisOptions& options) {
-  const ClockCheckOptions& tuning = options.clock_check;
+std::optional<TimeOffset> offset_by_turning(const MiddlePart& part, const PairingOptions& pairing,
+                                            const ClockCheckOptions& options) {
   TimeOffsetOptions search;
   search.max_gap = pairing.max_gap;
   search.near = pairing.time_offset;
-  search.near_by = tuning.widest;
-  search.most_keys = tuning.instants;
-  const std::optional<TimeOffset> found = estimate_time_offset(part.a, part.b, search);
+  search.near_by = options.widest;
+  search.most_keys = options.instants;
+  return estimate_time_offset(part.a, part.b, search);
+}
+
+std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory& b,
+                                          const PairingOptions& pairing, const MiddlePart& part,
+                                          const Instants& instants, const std::optional<TimeOffset>& found,
+                                          const Answered& answered, const DiagnosisOptions& options) {
+  const ClockCheckOptions& tuning = options.clock_check;
   if (!found) return std::nullopt;
   const double more = found->seconds - pairing.time_offset;
   if (!(std::abs(more) > tuning.sigmas * found->stddev) || std::abs(more) > tuning.widest)

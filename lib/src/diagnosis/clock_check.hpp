@@ -12,14 +12,20 @@
 
 namespace egocal::detail {
 
+/// The offset of the middle part that its turning shows: all of small_clock_offset() that needs no answer,
+/// and most of its time.
+std::optional<TimeOffset> offset_by_turning(const MiddlePart& part, const PairingOptions& pairing,
+                                            const ClockCheckOptions& options);
+
 /// Finding clock_offset, certain, where the offset differs from zero by several of its own standard
 /// deviations and moves the answer by more than the answer states to be uncertain. Roll, pitch and yaw of a
 /// walking machine have fixed phases: late by 2 ms, its axes seem turned by half a degree, in every part of
-/// the drive alike. The streams are paired again where that is likely. instants: of `part`.
+/// the drive alike. The streams are paired again where that is likely. instants: of `part`; found: its
+/// offset_by_turning().
 std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory& b,
                                           const PairingOptions& pairing, const MiddlePart& part,
-                                          const Instants& instants, const Answered& answered,
-                                          const DiagnosisOptions& options);
+                                          const Instants& instants, const std::optional<TimeOffset>& found,
+                                          const Answered& answered, const DiagnosisOptions& options);
 
 /// Finding clock_offset, uncertain: another time offset fits as well as the one that was estimated, as the
 /// motion repeats. T_a_b: the answer with that one. Needs offset.rival.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -24,9 +25,21 @@
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/foresee.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
+
+/// What needs no answer.
+struct detail::Foreseen {
+  const Trajectory &a, &b;
+  PairingOptions pairing;
+  DiagnosisOptions options;
+  Evidence evidence;
+  std::vector<Finding> findings{};  ///< about the streams, where there are enough motions
+  bool has_offset = false;
+  std::optional<TimeOffset> offset{};  ///< offset_by_turning(), where it was looked for already
+};
 
 namespace {
 
@@ -214,8 +227,10 @@ bool of_clock(const Finding& finding) {
 
 /// What clocks that differ and interpolation change. Of streams that are understood otherwise: a wrong answer
 /// has no standard deviation that could be right.
-void look_at_times(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
-                   const DiagnosisOptions& options, Answered& answered, Diagnosis& result) {
+void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& result) {
+  const Trajectory &a = foreseen.a, &b = foreseen.b;
+  const PairingOptions& pairing = foreseen.pairing;
+  const DiagnosisOptions& options = foreseen.options;
   if (answered.problem.mode == Mode::planar) return;
   const auto certain = [&](const auto& which) {
     return std::find_if(result.findings.begin(), result.findings.end(),
@@ -227,13 +242,16 @@ void look_at_times(const Trajectory& a, const Trajectory& b, const PairingOption
       synchronised(part.a, part.b, {pairing.time_offset, 0, 0}, pairing.max_gap, 1, options.motions);
   const std::array<double, 6> of_interpolation = interpolation_stddev(instants, answered.T_a_b, options);
   auto clock = certain(of_clock);
-  if (clock == result.findings.end())
+  if (clock == result.findings.end()) {
+    const std::optional<TimeOffset> found =
+        foreseen.has_offset ? foreseen.offset : offset_by_turning(part, pairing, options.clock_check);
     if (std::optional<Finding> offset =
-            small_clock_offset(a, b, pairing, part, instants, answered, options)) {
+            small_clock_offset(a, b, pairing, part, instants, found, answered, options)) {
       // the same with less certainty
       std::erase_if(result.findings, of_clock);
       clock = result.findings.insert(result.findings.begin(), *std::move(offset));
     }
+  }
   Vector6d moved = Vector6d::Zero();
   if (clock != result.findings.end() && clock->T_a_b)
     moved = frame_a_difference(answered.T_a_b, to_dual_quaternion(*clock->T_a_b));
@@ -245,11 +263,26 @@ void look_at_times(const Trajectory& a, const Trajectory& b, const PairingOption
     result.findings.push_back(*std::move(finding));
 }
 
-}  // namespace
+Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                 const DiagnosisOptions& options) {
+  Foreseen foreseen{a, b, pairing, options,
+                    gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap, options)};
+  if (foreseen.evidence.given.explained.motions.all.size() < options.motions.least) return foreseen;
+  foreseen.findings = check_streams(a, b, foreseen.evidence.instants);
+  if (pairing.mode == Mode::planar)  // level positions are what planar mode is for
+    std::erase_if(foreseen.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
+  // what is wrong with the streams themselves looks like other mistakes
+  if (foreseen.findings.empty()) foreseen.findings = explain(foreseen.evidence, options);
+  // of a million poses 8 MB that only explain() looks at
+  foreseen.evidence.streams.turning_a = foreseen.evidence.streams.turning_b = {};
+  foreseen.evidence.turning_a = foreseen.evidence.turning_b = std::vector<float>();
+  return foreseen;
+}
 
-Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
-                   const Answered& given, const DiagnosisOptions& options) {
-  const Evidence evidence = gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap, options);
+Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
+  const PairingOptions& pairing = foreseen.pairing;
+  const DiagnosisOptions& options = foreseen.options;
+  const Evidence& evidence = foreseen.evidence;
   const Motions& motions = evidence.given.explained.motions;
   Answered answered = given;
   if (!evidence.instants.empty())
@@ -267,11 +300,7 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   const RobustFit at_answer = evaluated(motions, answered.T_a_b);
   result.fit =
       fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period, options.motions);
-  result.findings = check_streams(a, b, evidence.instants);
-  if (answered.problem.mode == Mode::planar)  // level positions are what planar mode is for
-    std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
-  // what is wrong with the streams themselves looks like other mistakes
-  if (result.findings.empty()) result.findings = explain(evidence, options);
+  result.findings = foreseen.findings;
   if (answered.problem.mode == Mode::planar)
     for (Finding& finding :
          check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
@@ -289,9 +318,33 @@ Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOption
   if (std::optional<Finding> pace = impossible_pace(motions, evidence.stride * evidence.instants.period,
                                                     evidence.instants.period, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
-  look_at_times(a, b, pairing, options, answered, result);
+  look_at_times(foreseen, answered, result);
   judge(result, answered, misfit, options);
   return result;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                   const Answered& answered, const DiagnosisOptions& options) {
+  return diagnosed(foresee(a, b, pairing, options), answered);
+}
+
+Foresight::Foresight(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                     const DiagnosisOptions& options)
+    : foreseen_(std::make_unique<Foreseen>(foresee(a, b, pairing, options))) {
+  const std::vector<Finding>& found = foreseen_->findings;
+  if (pairing.mode == Mode::planar ||
+      std::any_of(found.begin(), found.end(), [](const Finding& one) { return one.certain; }))
+    return;
+  foreseen_->offset =
+      offset_by_turning(middle_part(a, b, options.change.most_poses), pairing, options.clock_check);
+  foreseen_->has_offset = true;
+}
+Foresight::~Foresight() = default;
+
+Diagnosis Foresight::diagnose(const Answered& answered) const {
+  return diagnosed(*foreseen_, answered);
 }
 
 Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,

@@ -264,21 +264,13 @@ StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) 
   return changes;
 }
 
-/// After which part more than this number of instants the next choice follows.
-std::uint64_t StrideSums::choice_part(std::uint64_t index) const {
-  return index < tuning_.short_drive ? tuning_.short_choice_part : tuning_.choice_part;
-}
-
-std::uint64_t StrideSums::choice_delay() const {
-  return detail::choice_delay(state_.next_choice, choice_part(state_.next_choice),
-                              options_.accumulator.choice_phase);
+bool StrideSums::choice_is_due() const {
+  return detail::SumsSchedule(tuning_, options_.accumulator).is_due(state_.next_index, state_.next_choice);
 }
 
 void StrideSums::choose(const std::optional<SingleStride>& rival) {
-  // chosen before it was due: from then on
-  const std::uint64_t without_delay = state_.next_index - std::min(state_.next_index, choice_delay());
-  const std::uint64_t due = std::min(without_delay, state_.next_choice);
-  state_.next_choice = due + std::max<std::uint64_t>(1, due / choice_part(due));
+  state_.next_choice =
+      detail::SumsSchedule(tuning_, options_.accumulator).after_choice(state_.next_index, state_.next_choice);
   StrideBlocks& all = judge_open();
   leave_out_blocks(all);
   const TouchingSums touching(all);

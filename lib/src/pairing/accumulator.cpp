@@ -40,7 +40,10 @@ Accumulator::Accumulator(const PairingOptions& options, AccumulatorState state,
 
 void Accumulator::begin(std::int64_t period_us) {
   state_.period_us = period_us;
-  if (sums_) sums_->begin(period_us);
+  if (defers_)
+    deferred_.push_back({SumsStep::Kind::begin, {}, period_us, false, false, nullptr});
+  else if (sums_)
+    sums_->begin(period_us);
   state_.strides.clear();
   if (options_.stride) {
     state_.strides.push_back({*options_.stride, {}});
@@ -59,6 +62,12 @@ void Accumulator::restart() {
   for (AccumulatorState::PerStride& entry : state_.strides) entry.statistics = {};
   state_.instants.clear();
   state_.rejections = {};
+  if (defers_) {
+    deferred_.push_back({SumsStep::Kind::restart, {}, state_.period_us, false, false, nullptr});
+    deferred_instants_ = 0;
+    deferred_choice_ = options_.accumulator.first_choice;
+    return;
+  }
   state_.attenuation.reset();
   if (!sums_) return;
   sums_.emplace(options_, tuning_.sums);
@@ -92,7 +101,9 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     state_.next_choice = without_delay + without_delay / tuning_.choice_part;
     chosen_anew = true;
   }
-  if (sums_) {
+  if (defers_) {
+    defer(instant, doubtful, chosen_anew);
+  } else if (sums_) {
     sums_->add(instant, doubtful);
     // in one step both choices would take 0.7 ms (docs/benchmarks.md)
     if (sums_->choice_is_due() && !chosen_anew) {
@@ -102,6 +113,46 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     if (chosen_anew) state_.attenuation = find_attenuation(plain_problem());
   }
   return pairs;
+}
+
+void Accumulator::defer_sums() {
+  defers_ = sums_.has_value();
+  deferred_instants_ = 0;
+  deferred_choice_ = options_.accumulator.first_choice;
+}
+
+/// The best single stride is that of now: it goes with what is left for later.
+void Accumulator::defer(const Instant& instant, bool doubtful, bool chosen_anew) {
+  SumsStep step{SumsStep::Kind::instant, instant, 0, doubtful, false, nullptr};
+  const detail::SumsSchedule schedule(tuning_.sums, options_.accumulator);
+  ++deferred_instants_;
+  if (schedule.is_due(deferred_instants_, deferred_choice_) && !chosen_anew) {
+    step.choose = true;
+    deferred_choice_ = schedule.after_choice(deferred_instants_, deferred_choice_);
+  }
+  if (step.choose || chosen_anew)
+    step.single = std::make_shared<SingleStride>(
+        SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
+  deferred_.push_back(std::move(step));
+}
+
+void Accumulator::add_to_sums(const std::vector<SumsStep>& steps) {
+  for (const SumsStep& step : steps) {
+    if (step.kind != SumsStep::Kind::instant) {
+      if (step.kind == SumsStep::Kind::restart) {
+        sums_.emplace(options_, tuning_.sums);
+        state_.attenuation.reset();
+      }
+      sums_->begin(step.period_us);
+      continue;
+    }
+    sums_->add(step.instant, step.doubtful);
+    if (step.choose) sums_->choose(*step.single);
+    if (!step.single) continue;
+    Problem problem = step.single->problem;
+    if (sums_->in_force()) sums_->fill(problem);
+    state_.attenuation = find_attenuation(problem);
+  }
 }
 
 /// The motions of all strides that end at the newest instant. Returns that of the chosen stride; doubtful: it

@@ -69,6 +69,7 @@ std::vector<MotionPair> MotionPairing::finish() {
   std::vector<MotionPair> pairs;
   take(synchroniser_.finish(), pairs);
   screening_.finish();
+  accumulator_.add_to_sums(accumulator_.take_deferred());
   accumulator_.settle();
   return pairs;
 }
@@ -122,32 +123,61 @@ std::optional<double> MotionPairing::time_offset() const {
 
 namespace {
 
-/// take(pairs): what each pose completed.
-template <typename Take>
-MotionPairing pair_all(const PairingOptions& options, const Trajectory& a, const Trajectory& b, Take take) {
-  MotionPairing drive(options);
-  drive.read_at_end();
-  std::size_t i = 0, j = 0;
-  while (i < a.size() || j < b.size()) {
-    const bool from_a = j == b.size() || (i < a.size() && a[i].time_us <= b[j].time_us);
-    take(from_a ? drive.push(Side::a, a[i++]) : drive.push(Side::b, b[j++]));
+/// The poses of both streams in the order of time.
+class InOrder {
+ public:
+  InOrder(const Trajectory& a, const Trajectory& b) : a_(a), b_(b) {}
+
+  bool more() const { return i_ < a_.size() || j_ < b_.size(); }
+  std::vector<MotionPair> push_next(MotionPairing& drive) {
+    const bool from_a = j_ == b_.size() || (i_ < a_.size() && a_[i_].time_us <= b_[j_].time_us);
+    return from_a ? drive.push(Side::a, a_[i_++]) : drive.push(Side::b, b_[j_++]);
   }
-  take(drive.finish());
-  return drive;
-}
+
+ private:
+  const Trajectory &a_, &b_;
+  std::size_t i_ = 0, j_ = 0;
+};
 
 }  // namespace
 
 PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
   std::vector<MotionPair> pairs;
-  MotionPairing drive = pair_all(options, a, b, [&pairs](const std::vector<MotionPair>& more) {
+  const auto take = [&pairs](const std::vector<MotionPair>& more) {
     pairs.insert(pairs.end(), more.begin(), more.end());
-  });
+  };
+  MotionPairing drive(options);
+  drive.read_at_end();
+  for (InOrder poses(a, b); poses.more();) take(poses.push_next(drive));
+  take(drive.finish());
   return {std::move(drive), std::move(pairs)};
 }
 
 MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
-  return pair_all(options, a, b, [](const std::vector<MotionPair>&) {});
+  MotionPairing drive(options);
+  drive.read_at_end();
+  for (InOrder poses(a, b); poses.more();) poses.push_next(drive);
+  drive.finish();
+  return drive;
+}
+
+MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b,
+                     const Beside& beside) {
+  if (!beside) return paired(options, a, b);
+  constexpr int at_once = 4096;  // poses: some milliseconds, beside which a thread costs little
+  MotionPairing drive(options);
+  drive.read_at_end_beside();
+  std::vector<SumsStep> deferred;
+  for (InOrder poses(a, b); poses.more();) {
+    const auto push_some = [&] {
+      for (int i = 0; i < at_once && poses.more(); ++i) poses.push_next(drive);
+    };
+    beside(push_some, [&] { drive.add_to_sums(deferred); });
+    deferred = drive.take_deferred();
+  }
+  drive.add_to_sums(deferred);
+  drive.finish();
+  return drive;
 }
 
 }  // namespace egocal

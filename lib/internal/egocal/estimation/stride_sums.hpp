@@ -89,7 +89,7 @@ class StrideSums {
   /// at the end of a drive. Left for later it costs less, and the result is the same to the last bit.
   void settle();
   /// The drive has grown by an eighth since the last choice.
-  bool choice_is_due() const { return state_.next_index >= state_.next_choice + choice_delay(); }
+  bool choice_is_due() const;
   /// Judges the open instants again and chooses the weights. rival: the best single stride.
   void choose(const std::optional<SingleStride>& rival = {});
 
@@ -105,8 +105,6 @@ class StrideSums {
 
  private:
   Problem empty_problem() const;
-  std::uint64_t choice_part(std::uint64_t index) const;
-  std::uint64_t choice_delay() const;
   void append(JudgedInstant& judged, const JudgedInstant* before, const StepVerdict& verdict) const;
   bool too_long(const JudgedInstant& from, const JudgedInstant& to) const;
   Step step(const JudgedInstant& from, const JudgedInstant& to) const;

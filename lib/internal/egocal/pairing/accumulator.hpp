@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "egocal/estimation/attenuation.hpp"
@@ -46,6 +48,19 @@ struct AccumulatorState {
   Rejections rejections;                   ///< gap, too much rotation; of motions of the chosen stride
 };
 
+/// What the sums over strides are still to be told: an instant, or a new beginning.
+struct SumsStep {
+  enum class Kind { instant, begin, restart };
+
+  Kind kind = Kind::instant;
+  Instant instant;
+  std::int64_t period_us = 0;  ///< of a new beginning
+  bool doubtful = false;
+  bool choose = false;  ///< the weights, after the instant
+  /// Where weights or stride were chosen, which is rare: the best one.
+  std::shared_ptr<const SingleStride> single;
+};
+
 /// Instants in, statistics of every stride under consideration and the choice among them out.
 class Accumulator {
  public:
@@ -62,6 +77,15 @@ class Accumulator {
   void settle();
   /// Forgets all instants and statistics, but not the choice.
   void restart();
+
+  /// From now on add() leaves the sums over strides for add_to_sums(), which may run beside it: they say
+  /// nothing to the rest before the answer is asked for, and are half of the work. To be called before the
+  /// first add().
+  void defer_sums();
+  /// What was left since it was taken.
+  std::vector<SumsStep> take_deferred() { return std::exchange(deferred_, {}); }
+  /// All of them in order, before anything else is asked: the same bits as without defer_sums().
+  void add_to_sums(const std::vector<SumsStep>& steps);
 
   /// What is known so far, at the choice in force.
   Problem problem() const;
@@ -86,6 +110,7 @@ class Accumulator {
                                    Rejections& rejections);
   std::uint64_t choice_delay() const;
   void choose();
+  void defer(const Instant& instant, bool doubtful, bool chosen_anew);
 
   PairingOptions options_;
   EstimationOptions tuning_;
@@ -93,6 +118,9 @@ class Accumulator {
   DualQuaternion G_a_, G_b_;  ///< planar mode: ground frames in the sensors
   AccumulatorState state_;    ///< except for the sums
   std::optional<StrideSums> sums_;
+  bool defers_ = false;
+  std::vector<SumsStep> deferred_;
+  std::uint64_t deferred_instants_ = 0, deferred_choice_ = 0;  ///< StrideSumsState's, after the deferred ones
 };
 
 }  // namespace egocal

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "egocal/beside.hpp"
 #include "egocal/pairing/accumulator.hpp"
 #include "egocal/pairing/clock_offset.hpp"
 #include "egocal/pairing/options.hpp"
@@ -45,6 +46,14 @@ class MotionPairing {
 
   /// Nothing is asked before finish(): what only the answers need is left for then, which takes less time.
   void read_at_end() { settles_ = false; }
+
+  /// The same, and push() leaves the sums over strides for add_to_sums(), which may run beside it.
+  void read_at_end_beside() {
+    settles_ = false;
+    accumulator_.defer_sums();
+  }
+  std::vector<SumsStep> take_deferred() { return accumulator_.take_deferred(); }
+  void add_to_sums(const std::vector<SumsStep>& steps) { accumulator_.add_to_sums(steps); }
 
   /// No more poses will come: pairs what a drive too short to show its slower stream has held back.
   std::vector<MotionPair> finish();
@@ -86,5 +95,8 @@ struct PairingResult {
 PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, const Trajectory& b);
 /// The same without keeping the pairs, of which a long drive has many.
 MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b);
+/// The same bits, half of the work beside the other half; beside may be empty.
+MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b,
+                     const Beside& beside);
 
 }  // namespace egocal
