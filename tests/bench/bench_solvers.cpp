@@ -12,6 +12,7 @@
 
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/online/answer.hpp"
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
@@ -86,6 +87,23 @@ void per_pair(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(pairs.size()));
 }
 
+/// A whole answer: the extrinsic, its certificate and what is known of each direction, by leaving out blocks.
+void answer(benchmark::State& state) {
+  constexpr std::size_t blocks = 25;  // as pairing keeps of a drive
+  std::vector<Problem> problems;
+  for (const Drive& drive : drives(Motion::dominant_axis)) {
+    Problem& problem = problems.emplace_back();
+    problem.blocks.resize(blocks);
+    for (std::size_t i = 0; i < drive.pairs.size(); ++i)
+      problem.blocks[i * blocks / drive.pairs.size()].add(drive.pairs[i]);
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solve(problems[i], Method::dual));
+    i = (i + 1) % problems.size();
+  }
+}
+
 /// From motions to the answer: how cost grows with their number.
 void pairs_to_answer(benchmark::State& state) {
   const Drive drive(Motion::dominant_axis, 1, static_cast<std::uint64_t>(state.range(0)));
@@ -115,6 +133,7 @@ class Reporter : public benchmark::ConsoleReporter {
     at_least("planar 50 times as fast as SLSQP in four variables", "nlopt_planar_cold", "planar", 50);
     at_most("sqp warm over dual, at most 1.5", "sqp_warm", "dual", 1.5);
     below("verification below 3 us", "verify", 3e-6, 1);
+    below("a whole answer below 12 us", "answer", 12e-6, 1);
     below("building the cost below 100 ns a pair", "statistics_add_1000", 100e-9, 1000);
   }
 
@@ -166,6 +185,7 @@ int main(int argc, char** argv) {
       [](const Drive& d) { return bench::nlopt_augmented_lagrangian(d.Q, d.warm); });
   add("nlopt_planar_cold", planar, [identity](const Drive& d) { return bench::nlopt_planar(d.Q, identity); });
   add("nlopt_planar_warm", planar, [](const Drive& d) { return bench::nlopt_planar(d.Q, d.warm); });
+  benchmark::RegisterBenchmark("answer", answer);
   benchmark::RegisterBenchmark("statistics_add_1000", per_pair);
   add("baseline_analytic", rough, [](const Drive& d) { return solve_analytic(d.pairs); });
   add("baseline_matrix", rough, [](const Drive& d) { return solve_matrix(d.pairs); });

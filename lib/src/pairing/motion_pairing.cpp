@@ -164,7 +164,7 @@ MotionPairing paired(const PairingOptions& options, const Trajectory& a, const T
 MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b,
                      const Beside& beside) {
   if (!beside) return paired(options, a, b);
-  constexpr int at_once = 4096;  // poses: some milliseconds, beside which a thread costs little
+  constexpr int at_once = 8192;  // poses: ten milliseconds, beside which a thread costs little
   MotionPairing drive(options);
   drive.read_at_end_beside();
   std::vector<SumsStep> deferred;
