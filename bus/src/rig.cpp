@@ -352,7 +352,9 @@ Rig parse_rig(const std::string& text, const std::string& file) {
 }
 
 Rig read_rig(const std::string& file) {
-  if (std::filesystem::is_directory(file)) throw error_at(file, 0, "", "is a folder, expected a rig file");
+  std::error_code none;  // what cannot be looked at cannot be opened either, which is said below
+  if (std::filesystem::is_directory(file, none))
+    throw error_at(file, 0, "", "is a folder, expected a rig file");
   std::ifstream in(file, std::ios::binary);
   std::string text(max_file_size + 1, '\0');
   if (in.is_open()) in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <filesystem>
 #include <numbers>
+#include <string>
 
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
@@ -208,6 +212,21 @@ TEST(Rig, FoldersAreNamedAsSuch) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::StartsWith("/tmp: is a folder"));
   }
+}
+
+// "filesystem error: status: Too many levels of symbolic links [a.toml]"
+TEST(Rig, ALinkToItselfIsAFileThatCannotBeRead) {
+  std::string folder = (std::filesystem::temp_directory_path() / "egocal_XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const std::string file = folder + "/a.toml";
+  std::filesystem::create_symlink(file, file);
+  try {
+    read_rig(file);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(file + ": cannot be read as a rig file: "));
+  }
+  std::filesystem::remove_all(folder);
 }
 
 // toml++ ends with a crash at a dotted key of some 50,000 parts.
