@@ -193,7 +193,9 @@ TEST(Simulation, ValuesOutOfRangeAreRefused) {
   // a drive of ten million kilometres, a sensor without a pose
   refused_drive(
       [](SimulationOptions& options) { options.rate = 0.001, options.speed = 1000, options.poses = 10001; });
-  refused_drive([](SimulationOptions& options) { options.poses = 2, options.faults[0].dropped = 0.9999; });
+  refused_drive([](SimulationOptions& options) { options.poses = 2, options.faults[0].dropped = 0.999; });
+  refused_drive([](SimulationOptions& options) { options.noise_rotation = 1e4; });
+  refused([](SensorFaults& faults) { faults.dropped = 0.9999; });
 }
 
 }  // namespace

@@ -278,22 +278,20 @@ void add_simulate(cli::App program) {
       .add_option("--sensor", options->sensors,
                   "NAME=X,Y,Z,QW,QX,QY,QZ: its pose on the vehicle; two or more")
       .show_default();
-  command.add_option("--poses", simulation.poses, "of each sensor")
-      .check(cli::Check::range(2, 10'000'000))
-      .show_default();
-  // ranges as simulation.cpp has them
-  const auto number = [&](const char* name, double& value, const char* help, double least, double most) {
-    command.add_option(name, value, help).check(cli::Check::range(least, most)).show_default();
+  const auto number = [&](const char* name, auto& value, const char* help, const Range& range) {
+    command.add_option(name, value, help).check(cli::Check::range(range.least, range.most)).show_default();
   };
-  number("--rate", simulation.rate, "poses a second [Hz]", 1e-3, 1e5);
-  number("--speed", simulation.speed, "[m/s]", -1e3, 1e3);
-  number("--speed-variation", simulation.speed_variation, "of the speed on the ground, as a part of it", 0,
-         10);
-  number("--roughness", simulation.roughness, "amplitude of the road's surface [m]", 0, 1e3);
-  number("--noise", simulation.relative_noise, "of each motion, as a part of the mean one", 0, 1e3);
-  number("--noise-of-motion", simulation.noise_of_motion, "and as a part of each motion itself", 0, 1e3);
-  number("--noise-rotation", simulation.noise_rotation, "added to it [rad]", 0, 1e3);
-  number("--noise-translation", simulation.noise_translation, "added to it [m]", 0, 1e3);
+  namespace in = limits::simulation;
+  number("--poses", simulation.poses, "of each sensor", in::poses);
+  number("--rate", simulation.rate, "poses a second [Hz]", in::rate);
+  number("--speed", simulation.speed, "[m/s]", in::speed);
+  number("--speed-variation", simulation.speed_variation, "of the speed on the ground, as a part of it",
+         in::speed_variation);
+  number("--roughness", simulation.roughness, "amplitude of the road's surface [m]", in::roughness);
+  number("--noise", simulation.relative_noise, "of each motion, as a part of the mean one", in::noise);
+  number("--noise-of-motion", simulation.noise_of_motion, "and as a part of each motion itself", in::noise);
+  number("--noise-rotation", simulation.noise_rotation, "added to it [rad]", in::noise);
+  number("--noise-translation", simulation.noise_translation, "added to it [m]", in::noise);
   command.add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
   command.add_flag("--heavy-tails", simulation.heavy_tails, "noise with rare large errors (Student, 3)");
   add_fault_options(command, options->faults);

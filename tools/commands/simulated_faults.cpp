@@ -109,16 +109,16 @@ std::vector<SensorFaults> understood(const FaultTexts& texts, const std::vector<
       sensor.*field = number_in(option, text, range);
     });
   };
-  // ranges as simulation.cpp has them
-  set("--sensor-rate", texts.rates, &SensorFaults::rate, {1e-3, 1e5});
+  namespace in = limits::simulation;
+  set("--sensor-rate", texts.rates, &SensorFaults::rate, in::rate);
   set("--phase", texts.phases, &SensorFaults::phase, {0, duration});
-  set("--scale", texts.scales, &SensorFaults::scale, {1e-6, 1e6});
-  set("--scale-drift", texts.scale_drifts, &SensorFaults::scale_drift, {-1, 1});
-  set("--clock-offset", texts.clock_offsets, &SensorFaults::clock_offset, {-1e6, 1e6});
-  set("--clock-drift", texts.clock_drifts, &SensorFaults::clock_drift, {-0.1, 0.1});
-  set("--drop", texts.dropped, &SensorFaults::dropped, {0, 0.999});
-  set("--outliers", texts.outliers, &SensorFaults::outliers, {0, 1});
-  set("--noise-factor", texts.noise_factors, &SensorFaults::noise_factor, {0, 1e6});
+  set("--scale", texts.scales, &SensorFaults::scale, in::scale);
+  set("--scale-drift", texts.scale_drifts, &SensorFaults::scale_drift, in::scale_drift);
+  set("--clock-offset", texts.clock_offsets, &SensorFaults::clock_offset, in::clock_offset);
+  set("--clock-drift", texts.clock_drifts, &SensorFaults::clock_drift, in::clock_drift);
+  set("--drop", texts.dropped, &SensorFaults::dropped, in::dropped);
+  set("--outliers", texts.outliers, &SensorFaults::outliers, in::outliers);
+  set("--noise-factor", texts.noise_factors, &SensorFaults::noise_factor, in::noise_factor);
   const Range within{0, duration};
   for_each("--bump", texts.bumps, names, faults, [&](SensorFaults& sensor, const std::string& text) {
     const auto part = timed("--bump", text, 2, "TIME:DX,DY,DZ,ROLL,PITCH,YAW");

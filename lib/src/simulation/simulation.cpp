@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include <string>
@@ -108,43 +109,49 @@ std::vector<Pose> free_path(const SimulationOptions& options, const std::vector<
   return poses;
 }
 
-constexpr double most_poses = 1e7;  // a limit of memory: 640 MB a sensor
+void expect(bool good, const std::string& what) {
+  if (!good) throw Error("simulation: expected " + what);
+}
+
+void expect_in(const Range& range, double value, const char* what) {
+  if (range.contains(value)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s from %.10g to %.10g, got %.10g", what, range.least, range.most, value);
+  expect(false, text);
+}
+
+void check(const SensorFaults& faults, double duration) {
+  using namespace limits::simulation;
+  if (faults.rate != 0) expect_in(rate, faults.rate, "a sensor's rate [Hz]");
+  expect(faults.rate * duration <= poses.most, "a sensor's rate with at most 10000000 poses");
+  expect_in({0, duration}, faults.phase, "a phase within the drive [s]");
+  expect_in(scale, faults.scale, "a scale");
+  expect_in(scale_drift, faults.scale_drift, "a scale drift [1/s]");
+  expect_in(clock_offset, faults.clock_offset, "a clock offset [s]");
+  expect_in(clock_drift, faults.clock_drift, "a clock drift [s/s]");
+  expect_in(dropped, faults.dropped, "a share of dropped poses");
+  expect_in(outliers, faults.outliers, "a share of outliers");
+  expect_in(outlier_rotation, faults.outlier_rotation, "a rotation of outliers [rad]");
+  expect_in(outlier_translation, faults.outlier_translation, "a translation of outliers [m]");
+  expect_in(noise_factor, faults.noise_factor, "a noise factor");
+}
 
 void check(const SimulationOptions& options) {
-  const auto expect = [](bool good, const char* what) {
-    if (!good) throw Error(std::string("simulation: ") + what);
-  };
-  expect(options.poses >= 2, "expected at least 2 poses");
-  expect(options.rate >= 1e-3 && options.rate <= 1e5, "expected a rate from 0.001 to 100000 Hz");
-  expect(std::abs(options.speed) <= 1e3, "expected a speed within 1000 m/s");
-  expect(options.speed_variation >= 0 && options.speed_variation <= 10,
-         "expected a variation of the speed from 0 to 10");
-  expect(options.roughness >= 0 && options.roughness <= 1e3, "expected a roughness from 0 to 1000 m");
+  using namespace limits::simulation;
+  expect_in(poses, options.poses, "a number of poses");
+  expect_in(rate, options.rate, "a rate [Hz]");
+  expect_in(speed, options.speed, "a speed [m/s]");
+  expect_in(speed_variation, options.speed_variation, "a variation of the speed");
+  expect_in(roughness, options.roughness, "a roughness [m]");
+  for (const double of :
+       {options.relative_noise, options.noise_of_motion, options.noise_rotation, options.noise_translation})
+    expect_in(noise, of, "noise");
   const double duration = (options.poses - 1) / options.rate;
   expect(std::abs(options.speed) * (1 + options.speed_variation) * duration <= limits::largest_distance,
-         "expected a drive of at most 1e9 m: fewer poses, a higher rate or a lower speed");
-  expect(options.relative_noise >= 0 && options.noise_of_motion >= 0 && options.noise_rotation >= 0 &&
-             options.noise_translation >= 0 &&
-             std::isfinite(options.relative_noise + options.noise_of_motion + options.noise_rotation +
-                           options.noise_translation),
-         "expected noise of at least 0");
-  expect(!options.T_vehicle_sensor.empty(), "expected at least one sensor");
-  expect(options.faults.size() <= options.T_vehicle_sensor.size(), "expected no more faults than sensors");
-  for (const SensorFaults& faults : options.faults) {
-    expect(faults.rate == 0 || (faults.rate >= 1e-3 && faults.rate <= 1e5),
-           "expected a sensor's rate from 0.001 to 100000 Hz");
-    expect(faults.rate * duration <= most_poses, "expected a sensor's rate with at most 10000000 poses");
-    expect(faults.phase >= 0 && faults.phase <= duration, "expected a phase within the drive");
-    expect(faults.scale > 0 && std::isfinite(faults.scale), "expected a scale above 0");
-    expect(std::abs(faults.scale_drift) <= 1, "expected a scale drift within 1 per second");
-    expect(std::abs(faults.clock_offset) <= 1e6, "expected a clock offset within 1000000 s");
-    expect(std::abs(faults.clock_drift) <= 0.1, "expected a clock drift within 0.1 s per second");
-    expect(faults.dropped >= 0 && faults.dropped < 1, "expected a share of dropped poses in [0, 1)");
-    expect(faults.outliers >= 0 && faults.outliers <= 1, "expected a share of outliers in [0, 1]");
-    expect(faults.outlier_rotation >= 0 && faults.outlier_translation >= 0 && faults.noise_factor >= 0 &&
-               std::isfinite(faults.outlier_rotation + faults.outlier_translation + faults.noise_factor),
-           "expected outliers and a noise factor of at least 0");
-  }
+         "a drive of at most 1e9 m: fewer poses, a higher rate or a lower speed");
+  expect(!options.T_vehicle_sensor.empty(), "at least one sensor");
+  expect(options.faults.size() <= options.T_vehicle_sensor.size(), "no more faults than sensors");
+  for (const SensorFaults& faults : options.faults) check(faults, duration);
 }
 
 }  // namespace

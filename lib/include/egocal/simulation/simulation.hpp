@@ -6,9 +6,31 @@
 #include <vector>
 
 #include "egocal/geometry/pose.hpp"
+#include "egocal/limits.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal {
+
+/// What the options of a simulated drive must obey, in a program and on a command line.
+namespace limits::simulation {
+
+inline constexpr Range poses{2, 1e7};                ///< of each sensor; of memory: 640 MB
+inline constexpr Range rate{1e-3, 1e5};              ///< of the drive and of a sensor [Hz]
+inline constexpr Range speed{-1e3, 1e3};             ///< [m/s]
+inline constexpr Range speed_variation{0, 10};       ///< as a part of the speed
+inline constexpr Range roughness{0, 1e3};            ///< [m]
+inline constexpr Range noise{0, 1e3};                ///< of every kind [-, rad, m]
+inline constexpr Range scale{1e-6, 1e6};             ///< of a sensor's lengths
+inline constexpr Range scale_drift{-1, 1};           ///< [1/s]
+inline constexpr Range clock_offset{-1e6, 1e6};      ///< [s]
+inline constexpr Range clock_drift{-0.1, 0.1};       ///< [s/s]
+inline constexpr Range dropped{0, 0.999};            ///< a share; of all poses none would be left
+inline constexpr Range outliers{0, 1};               ///< a share
+inline constexpr Range outlier_rotation{0, 1e3};     ///< [rad]
+inline constexpr Range outlier_translation{0, 1e9};  ///< [m]
+inline constexpr Range noise_factor{0, 1e6};         ///< of the drive's noise
+
+}  // namespace limits::simulation
 
 /// A 2-D path projected on a 3-D surface (V-A), seen by sensors that are rigidly mounted on what follows it.
 enum class Terrain {
