@@ -13,6 +13,7 @@
 #include "egocal/diagnosis/foresee.hpp"
 #include "egocal/error.hpp"
 #include "egocal/estimation/attenuation.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/outlier_choice.hpp"
@@ -70,15 +71,6 @@ Calibration judged(Calibration calibration, Diagnosis diagnosis) {
 
 bool as_read(const Reading& reading) {
   return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && reading.scale == 1;
-}
-
-std::string span_in_words(const char* label, const Trajectory& trajectory) {
-  if (trajectory.empty()) return std::string(label) + ": no poses";
-  char text[128];
-  std::snprintf(text, sizeof text, "%s: %zu poses from %.3f to %.3f s", label, trajectory.size(),
-                1e-6 * static_cast<double>(trajectory.front().time_us),
-                1e-6 * static_cast<double>(trajectory.back().time_us));
-  return text;
 }
 
 /// Streams of one drive hardly differ more in length; other units of time differ by a thousand.
@@ -234,7 +226,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   const MotionPairing& pairing = *pairing_of_all;
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
-    throw Error("no motion pairs; " + span_in_words("a", a) + ", " + span_in_words("b", b) + "; " +
+    throw Error("no motion pairs; a: " + span_in_words(a) + ", b: " + span_in_words(b) + "; " +
                 rejections_in_words(pairing.counts()) + times_in_words(a, b) +
                 gaps_in_words(a, b, pairing.counts(), pairing_options.max_gap));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);

@@ -8,10 +8,10 @@
 
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
-#include "counted.hpp"
 #include "degrees.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/io/stream_summary.hpp"
 #include "offline/provenance.hpp"
 #include "offline/trajectory_source.hpp"

@@ -9,23 +9,12 @@
 #include <limits>
 #include <utility>
 
-#include "counted.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal::tools {
-
-namespace {
-
-std::string span_text(const Trajectory& trajectory) {
-  if (trajectory.empty()) return "no poses";
-  return fmt::format("{} from {:.3f} to {:.3f} s", counted(trajectory.size(), "pose"),
-                     1e-6 * static_cast<double>(trajectory.front().time_us),
-                     1e-6 * static_cast<double>(trajectory.back().time_us));
-}
-
-}  // namespace
 
 Drives::Drives(std::vector<Trajectory*> sensors, std::vector<std::string> names)
     : sensors_(std::move(sensors)) {
@@ -35,7 +24,7 @@ Drives::Drives(std::vector<Trajectory*> sensors, std::vector<std::string> names)
 void Drives::note(std::vector<std::string> names, const std::vector<const Trajectory*>& drive,
                   std::vector<std::size_t> begin) {
   Drive noted{std::move(names), {}, std::move(begin)};
-  for (const Trajectory* trajectory : drive) noted.spans.push_back(span_text(*trajectory));
+  for (const Trajectory* trajectory : drive) noted.spans.push_back(span_in_words(*trajectory));
   drives_.push_back(std::move(noted));
 }
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "counted.hpp"
 #include "degrees.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/in_words.hpp"
 #include "offline/samples.hpp"
 #include "offline/trust_report.hpp"
 
@@ -220,17 +220,18 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   text += "\nmotions       " + motions_in_words(calibration) + "\n";
   if (calibration.counts.jumps > 0)
     text += fmt::format("jumps         {} in the odometry, no motion spans them\n", calibration.counts.jumps);
-  if (result.calibration.counts.outliers > 0)
-    text += fmt::format("outliers      {} more pairs contradict these\n", result.calibration.counts.outliers);
+  if (const std::uint64_t count = calibration.counts.outliers; count > 0)
+    text += fmt::format("outliers      {} {} these\n", counted(count, "more pair"),
+                        count == 1 ? "contradicts" : "contradict");
   if (calibration.outliers && calibration.outliers->choice == OutlierChoice::proven)
     text += "outliers      proven: no other choice of them has an extrinsic that fits better\n";
   else if (calibration.outliers)
-    text += fmt::format("outliers      not proven: {} parts of the drive could change sides\n",
-                        calibration.outliers->undecided);
+    text += fmt::format("outliers      not proven: {} of the drive could change sides\n",
+                        counted(calibration.outliers->undecided, "part"));
   for (const auto& [label, stream] : {std::pair{"a", result.a}, std::pair{"b", result.b}})
     if (stream)
-      text += fmt::format("stream {}      {} from {:.3f} to {:.3f} s\n", label,
-                          counted(stream->poses, "pose"), stream->first, stream->last);
+      text += fmt::format("stream {}      {}\n", label,
+                          span_in_words(stream->poses, stream->first, stream->last));
   std::vector<std::string> pairing;
   if (result.a)
     pairing.push_back(fmt::format("{} instants synchronised", result.calibration.counts.synchronised));

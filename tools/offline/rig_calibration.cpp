@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/rig_calibration.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "arguments.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/rig/rig.hpp"
 #include "offline/append.hpp"
 #include "offline/log_trajectory.hpp"
@@ -116,9 +115,7 @@ void put_rival_offset(const ClockOfSensor& clock, const std::string& name, Calib
   if (clock.period == 0) return;
   Finding finding;
   finding.code = "clock_offset";
-  finding.message =
-      fmt::format("The motion repeats every {:.3g} s: time offsets of {} that differ by that fit as well.",
-                  clock.period, name);
+  finding.message = rival_offsets_in_words(clock.period, name);
   finding.remedy = "Add some motion that does not repeat, or leave out --time-offset where the clocks agree.";
   if (calibration.verdict == Verdict::good) {
     calibration.verdict = Verdict::incomplete;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "diagnosis/wording.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
@@ -120,8 +121,7 @@ Finding rival_clock_offset(const TimeOffset& offset, const DualQuaternion& T_a_b
   finding.code = "clock_offset";
   finding.value = offset.rival.value();
   finding.T_a_b = to_pose(T_a_b);
-  finding.message = format("The motion repeats every %.3g s: time offsets that differ by that fit as well.",
-                           std::abs(*offset.rival - offset.seconds));
+  finding.message = rival_offsets_in_words(std::abs(*offset.rival - offset.seconds));
   finding.remedy = "Add some motion that does not repeat, or give --time-offset SECONDS.";
   return finding;
 }
