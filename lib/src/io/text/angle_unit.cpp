@@ -10,7 +10,6 @@ namespace egocal::detail {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr int shortest_chord = -10, longest_chord = 20;  // limits, powers of two: 1 mm to 1000 km
 
 /// 1 - R of directions: 0 where all are the same, about 1 where they are spread over the circle.
 double spread(const std::complex<double>& sum, int count) {
@@ -27,9 +26,9 @@ std::complex<double> doubled_middle(double from, double to) {
 }  // namespace
 
 AngleUnit::AngleUnit(const AngleUnitOptions& options) : options_(options) {
-  for (int power = shortest_chord; power <= longest_chord; ++power) {
+  for (double length = options_.shortest_chord; length <= options_.longest_chord; length *= 2) {
     chords_.emplace_back();
-    chords_.back().length = std::ldexp(1.0, power);
+    chords_.back().length = length;
   }
 }
 
