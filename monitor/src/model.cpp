@@ -117,7 +117,7 @@ void Model::begin_session(PairState& pair, std::int64_t session) {
   pair.scale.reset();
   pair.solvers.clear();
   pair.behind_in_a_row = 0;
-  pair.unanswered_mono_us.reset();
+  pair.unanswered.forget();
   pair.old = 0;
   pair.counted = -1;
   pair.shown = {};

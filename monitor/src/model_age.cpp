@@ -8,29 +8,24 @@
 
 namespace egocal::monitor {
 
-/// Called wherever a problem or an answer is new. Each new answer starts the time anew: a solver that is slow
-/// skips problems and still follows.
+/// Called wherever a problem or an answer is new.
 void Model::note_unanswered(PairState& pair, Now now) {
   const calibration_t* const answer = pair.answer();
-  if (!answer || !pair.has_problem || pair.problem.seq <= answer->seq) {
-    pair.unanswered_mono_us.reset();
-    return;
-  }
-  if (pair.unanswered_mono_us && pair.unanswered_seq == answer->seq) return;
-  pair.unanswered_mono_us = now.mono_us;
-  pair.unanswered_seq = answer->seq;
+  if (answer && pair.has_problem)
+    pair.unanswered.note({pair.session, answer->seq}, pair.problem.seq > answer->seq, now.mono_us);
+  else
+    pair.unanswered.forget();
 }
 
 /// Solvers that hang leave an answer behind, and so does a pairing process.
 void Model::watch_age_of_answer(PairState& pair, Now now) {
-  const double unanswered = pair.unanswered_mono_us ? seconds(*pair.unanswered_mono_us, now.mono_us) : 0;
+  const double unanswered = pair.unanswered.old(now.mono_us, options_.answer_age);
   // where no problem was ever received, the answer is not verified, which is shown as well
   const double silent =
       pairing_is_silent(pair) && pair.has_problem ? seconds(pair.problem_at.mono_us, now.mono_us) : 0;
-  const bool no_solver = unanswered > options_.answered_within;
   const bool was_old = pair.old > 0;
-  pair.old = std::max(no_solver ? unanswered : 0, silent);
-  if (no_solver && !was_old)
+  pair.old = std::max(unanswered, silent);
+  if (unanswered > 0 && !was_old)
     note(Severity::bad, pair_name(pair.a, pair.b),
          "the answer is old: no solver answers the motions that came since", now);
 }

@@ -50,6 +50,12 @@ TEST_F(OutcomeTest, OfAWholeLogIsTheVerdict) {
   EXPECT_THAT(outcome().text, Not(HasSubstr("log")));
 }
 
+TEST_F(OutcomeTest, WhatIsMissedIsAnOption) {
+  read_until["RIGHT"] = begin_us + 7 * second;
+  EXPECT_TRUE(outcome().unusable);
+  EXPECT_FALSE(outcome_of(rig, answers, extent, read_until, {.least_missing = 4}).unusable);
+}
+
 TEST_F(OutcomeTest, WithoutTheEndThatNoSolverAnsweredIsUnusable) {
   const problem_t later = problem(150);
   answers.hear(later);

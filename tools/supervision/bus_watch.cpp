@@ -47,8 +47,6 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
 
 namespace {
 
-/// A solver answers within milliseconds, and one that was killed is back within a second.
-constexpr milliseconds answered_within{5000};
 /// Of our processes and of others on this host: a limit on memory.
 constexpr std::size_t most_processes = 32;
 
@@ -93,7 +91,8 @@ namespace {
 /// What the listening process knows.
 class Listening {
  public:
-  Listening(const bus::Rig& rig, const std::string& url) : rig_(rig), loop_(url, {.require_network = false}) {
+  Listening(const bus::Rig& rig, const std::string& url, const BusWatchOptions& options)
+      : rig_(rig), options_(options), loop_(url, {.require_network = false}) {
     answers_.expect_scales(rig);
     const auto hear = [this](const auto& message, const bus::Arrival&) { answers_.hear(message); };
     for (const bus::PairConfig& pair : rig.pairs) {
@@ -106,7 +105,7 @@ class Listening {
   }
   bus::Loop& loop() { return loop_; }
   Outcome outcome(const std::string& log) const {
-    return outcome_of(rig_, answers_, log_extent(log, rig_), read_until_);
+    return outcome_of(rig_, answers_, log_extent(log, rig_), read_until_, options_.outcome);
   }
 
   void hear(const status_t& status) {
@@ -127,35 +126,35 @@ class Listening {
   }
 
   /// Lines about pairs that have not been answered for a while, and are again.
-  std::string news(std::int64_t now_ms) {
+  std::string news(std::int64_t now_us) {
     std::string text;
     for (const bus::PairConfig& config : rig_.pairs) {
       const PairName pair{config.a, config.b};
       const Answers::Best* const best = answers_.best(pair);
-      const Key key = best ? Key{best->message.session, best->message.seq} : Key{-1, -1};
+      const auto number = best ? bus::AnswerAge::Number{best->message.session, best->message.seq}
+                               : bus::AnswerAge::Number{-1, -1};
       Unanswered& of = unanswered_[pair];
-      if (answers_.answered_to_the_end(pair) || key != of.key) {
-        if (of.reported) text += fmt::format("{} -> {}: a solver answers again\n", pair.first, pair.second);
-        of = {key, now_ms, false};
-      } else if (!of.reported && now_ms - of.since_ms > answered_within.count()) {
-        of.reported = true;
-        text += fmt::format("{} -> {}: no solver answers the motions of the last {} s\n", pair.first,
-                            pair.second, answered_within.count() / 1000);
-      }
+      of.age.note(number, !answers_.answered_to_the_end(pair), now_us);
+      const bool old = of.age.old(now_us, options_.answer_age) > 0;
+      if (old != of.reported)
+        text += pair.first + " -> " + pair.second + ": " +
+                (old ? fmt::format("no solver answers the motions of the last {:g} s\n",
+                                   options_.answer_age.answered_within)
+                     : "a solver answers again\n");
+      of.reported = old;
     }
     return text;
   }
 
  private:
   static constexpr std::size_t most_channels = 1000;  // a limit on memory
-  using Key = std::pair<std::int64_t, std::int64_t>;  // session and number of an answer
   struct Unanswered {
-    Key key{-1, -1};
-    std::int64_t since_ms = 0;
+    bus::AnswerAge age;
     bool reported = false;
   };
 
   const bus::Rig& rig_;
+  const BusWatchOptions& options_;
   bus::Loop loop_;
   Answers answers_;
   ReadUntil read_until_;
@@ -164,10 +163,10 @@ class Listening {
 
 }  // namespace
 
-void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::string& log, Shared& shared,
-                      int out, int lines) {
+void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::string& log,
+                      const BusWatchOptions& options, Shared& shared, int out, int lines) {
   try {
-    Listening listening(rig, url);
+    Listening listening(rig, url, options);
     bus::Loop& loop = listening.loop();
     loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
       listening.hear(status);
@@ -176,7 +175,7 @@ void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::st
     loop.every(milliseconds(100), [&] {
       shared.awaited = listening.awaited();
       // does not block: where the supervisor does not read them, lines are dropped
-      write_all(lines, listening.news(mono_ms()));
+      write_all(lines, listening.news(1000 * mono_ms()));
     });
     loop.run();
     if (!log.empty()) {
@@ -190,7 +189,8 @@ void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::st
   _exit(0);
 }
 
-BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log) {
+BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log,
+                   const BusWatchOptions& options) {
   void* const memory =
       mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw Error(std::string("mmap: ") + std::strerror(errno));
@@ -206,7 +206,7 @@ BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::strin
     setpgid(0, 0);  // a Ctrl-C is not for it
     close(ends[0]);
     close(line_ends[0]);
-    listen(rig, url, log, *shared_, ends[1], line_ends[1]);
+    listen(rig, url, log, options, *shared_, ends[1], line_ends[1]);
   }
   close(ends[1]);
   close(line_ends[1]);

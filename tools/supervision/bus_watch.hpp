@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "egocal/bus/answer_age.hpp"
 #include "egocal/bus/rig.hpp"
 #include "supervision/outcome.hpp"
 
@@ -16,12 +17,18 @@ namespace egocal::tools {
 /// A pairing process that is alive on the bus within this time, as text: "egocal-pairing (pid 7 on car)".
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
 
+struct BusWatchOptions {
+  bus::AnswerAgeOptions answer_age;
+  OutcomeOptions outcome;
+};
+
 /// Listens to the processes, answers and verdicts of a rig while this object exists: a process of its own, so
 /// that the supervisor has no threads. Ends with us.
 class BusWatch {
  public:
   /// Of a bus on which this log is played; empty: none is.
-  BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log);
+  BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log,
+           const BusWatchOptions& options = {});
   ~BusWatch();
   BusWatch(const BusWatch&) = delete;
   BusWatch& operator=(const BusWatch&) = delete;
@@ -40,7 +47,7 @@ class BusWatch {
   struct Shared;
   /// The listening process, until it gets SIGTERM. Then the outcome goes to `out`.
   [[noreturn]] static void listen(const bus::Rig& rig, const std::string& url, const std::string& log,
-                                  Shared& shared, int out, int lines);
+                                  const BusWatchOptions& options, Shared& shared, int out, int lines);
   void end();
 
   pid_t pid_ = -1;

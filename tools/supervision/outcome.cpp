@@ -13,17 +13,13 @@ namespace egocal::tools {
 
 namespace {
 
-/// Streams do not begin and end together, and pairing waits for a neighbour to interpolate: less than this is
-/// not missed [s].
-constexpr double least_missing = 1;
-
 double seconds(std::int64_t us) {
   return 1e-6 * static_cast<double>(us);
 }
 
 /// The log's end after what pairing has read, on the channel that has more of it [s].
 double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& extent,
-                const ReadUntil& read_until) {
+                const ReadUntil& read_until, const OutcomeOptions& options) {
   double most = 0;
   for (const std::string& name : {pair.first, pair.second}) {
     const auto stream = extent.sensors.find(name);
@@ -31,18 +27,19 @@ double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& exte
     if (stream != extent.sensors.end() && until != read_until.end())
       most = std::max(most, seconds(stream->second.last_us - until->second));
   }
-  return most > least_missing ? most : 0;
+  return most > options.least_missing ? most : 0;
 }
 
 /// The log's begin before the answer's session, which begins with a pose of either sensor, in that one's
 /// time [s]. Of clocks that differ the nearer one is it.
-double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session) {
+double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session,
+                      const OutcomeOptions& options) {
   std::optional<double> least;
   for (const std::string& name : {pair.first, pair.second})
     if (const auto stream = extent.sensors.find(name); stream != extent.sensors.end())
       if (const double late = seconds(session - stream->second.first_us); late >= 0)
         least = std::min(least.value_or(late), late);
-  return least.value_or(0) > least_missing ? *least : 0;
+  return least.value_or(0) > options.least_missing ? *least : 0;
 }
 
 /// A verdict that does not know the end of the drive states that first.
@@ -116,7 +113,7 @@ std::string damage_of(const LogExtent& extent) {
 }  // namespace
 
 Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent& extent,
-                   const ReadUntil& read_until) {
+                   const ReadUntil& read_until, const OutcomeOptions& options) {
   Outcome outcome;
   for (const bus::PairConfig& config : rig.pairs) {
     const PairName pair{config.a, config.b};
@@ -126,10 +123,11 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
       continue;
     }
     const Diagnosis* const diagnosis = answers.diagnosis(pair);
-    const std::string missing = missing_end(pair, answers, not_read(rig, pair, extent, read_until));
+    const std::string missing = missing_end(pair, answers, not_read(rig, pair, extent, read_until, options));
     outcome.answered = true;
     outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis));
-    outcome.text += line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session));
+    outcome.text +=
+        line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options));
   }
   outcome.text += possible_of_all(rig, answers) + damage_of(extent);
   return outcome;

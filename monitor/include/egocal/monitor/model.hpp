@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "egocal/bus/answer_age.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/bus/scale.hpp"
 #include "egocal/bus/stream_watch.hpp"
@@ -38,10 +39,8 @@ struct ModelOptions {
   /// A verdict is old where motions have come for this time since, and this more for each pair [s]: the
   /// diagnosis judges one pair after another, each in less than 0.1 s of its 4 % of a core.
   double judged_within = 10, judged_within_per_pair = 3;
-  /// An answer is old where problems have come for this time that it does not know [s]. A solver answers
-  /// within milliseconds; one that was killed is back within a second.
-  double answered_within = 5;
-  double max_gap = 0.5;  ///< [s] of measured time between two problems; more is reported as a gap
+  bus::AnswerAgeOptions answer_age;  ///< when an answer is old
+  double max_gap = 0.5;              ///< [s] of measured time between two problems; more is reported as a gap
   // Study of these: tests/monitor/test_model.cpp.
   /// A certificate, a fallback or a pause must have lasted this long before its end is an event [s]: solvers
   /// alternate, people do not.
@@ -112,9 +111,7 @@ struct PairState {
   std::vector<SolverTrack> solvers;
   std::optional<calibration_t> previous;  ///< the answer that counted when the last session ended
   int behind_in_a_row = 0;                ///< newest problems that are older than the answer that counts
-  /// Since when there are problems that the answer that counts does not know; empty: it knows the newest.
-  std::optional<std::int64_t> unanswered_mono_us{};
-  std::int64_t unanswered_seq = -1;  ///< that answer's
+  bus::AnswerAge unanswered;
   /// The answer that counts is not one of the present [s]: for so long no solver has answered what came
   /// since, or nothing has come from pairing.
   double old = 0;
