@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
 
 #include "values.hpp"
 
@@ -56,6 +58,13 @@ std::string path_of(const CLI::App& app) {
   for (const CLI::App* parent = app.get_parent(); parent; parent = parent->get_parent())
     path = parent->get_name() + " " + path;
   return path;
+}
+
+/// "ONE verb OTHER", as CLI11 words it, in its two names.
+std::optional<std::pair<std::string, std::string>> around(const std::string& verb, const std::string& text) {
+  const std::size_t at = text.find(verb);
+  if (at == std::string::npos) return std::nullopt;
+  return std::pair(text.substr(0, at), text.substr(at + verb.size()));
 }
 
 /// What CLI11 did not know what to do with.
@@ -116,8 +125,15 @@ std::string in_words(const CLI::ParseError& error, const CLI::App& program) {
       return in_words_unexpected(command, words.front());
   const std::vector<std::string> commands = subcommand_names(command);
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !commands.empty())
-    return path_of(command) + ": expected a command: " + alternatives(commands) + see;
+    return (command.get_parent() ? path_of(command) + ": " : "") +
+           "expected a command: " + alternatives(commands) + see;
   const std::string text = error.what();
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
+    if (const auto names = around(" requires ", text))
+      return names->first + ": goes with " + names->second + ", which is not given" + see;
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    if (const auto names = around(" excludes ", text))
+      return names->first + ", " + names->second + ": exclude each other: give one of them" + see;
   const std::string name = text.substr(0, text.find(':'));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
     return name +

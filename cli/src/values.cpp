@@ -84,12 +84,6 @@ Check Check::above_zero(double most, double least) {
   return check;
 }
 
-Check Check::existing_file() {
-  Check check;
-  check.kind_ = Kind::existing_file;
-  return check;
-}
-
 Option& Option::check(const Check& check) {
   // what is no finite number is in no range, whose message says more
   const auto add = [this](auto good, const std::string& expected, const std::string& description) {
@@ -136,9 +130,6 @@ Option& Option::check(const Check& check) {
       if (least > 0) add([least](double value) { return value >= least; }, "at least " + shortest(least), "");
       break;
     }
-    case Check::Kind::existing_file:
-      option_->check(CLI::ExistingFile);
-      break;
   }
   return *this;
 }

@@ -12,11 +12,9 @@ int main(int argc, char** argv) {
                    "egocal-monitor: shows what the calibration knows while you drive.\n"
                    "Without a terminal, or with --follow, it prints lines.",
                    EGOCAL_VERSION);
-  app.add_option("--rig", options.rig, "rig file: which pairs to expect, time limits, LCM URL")
-      .check(egocal::cli::Check::existing_file());
+  app.add_option("--rig", options.rig, "rig file: which pairs to expect, time limits, LCM URL");
   app.add_option("--lcm-url", options.lcm_url, "LCM URL instead of the rig's");
-  cli::Option log = app.add_option("--log", options.log, "show a recorded session instead of a live one")
-                        .check(egocal::cli::Check::existing_file());
+  cli::Option log = app.add_option("--log", options.log, "show a recorded session instead of a live one");
   app.add_option("--speed", options.speed, "of the log, in times of real time; 0: at once")
       .check(egocal::cli::Check::range(0.0, 1e6))
       .needs(log);

@@ -134,7 +134,8 @@ TEST_F(Commands, RangesNameTheirOption) {
         {"--frame-a 'my lidar' --json", "--frame-a: expected up to 100 letters, digits and _ - . /"}})
     expect_refusal(egocal(solve + arguments), 2, said);
   EXPECT_FALSE(fs::exists("-"));
-  expect_refusal(egocal("compare --truth 0,0,0,1,0,0,0"), 2, "--truth requires A");  // it has its own
+  expect_refusal(egocal("compare --truth 0,0,0,1,0,0,0"), 2,
+                 "--truth: goes with A, which is not given");  // it has its own
   expect_refusal(egocal("experiment noise --out -"), 2, "--out: '-' is not taken for standard output");
 }
 

@@ -37,11 +37,10 @@ class Check {
   static Check range(double least, double most);  ///< inclusive
   static Check not_negative();
   static Check above_zero(double most, double least = 0);
-  static Check existing_file();
 
  private:
   friend class Option;
-  enum class Kind { one_of, range, not_negative, above_zero, existing_file };
+  enum class Kind { one_of, range, not_negative, above_zero };
   Kind kind_ = Kind::range;
   std::vector<std::string> values_;
   double least_ = 0, most_ = 0;
