@@ -207,7 +207,8 @@ TEST_F(Commands, BadLogsAndRigsAreRefused) {
   expect_refusal(
       egocal("info " + path("d.log") + ":OTHER"), 1,
       "OTHER: no pose under this name; topics with poses: ODOMETRY_LIDAR (egocal.odometry_t, 200), ");
-  expect_refusal(egocal("compare " + path("d.log") + " " + path("d.log")), 1, "d.log: is an LCM log");
+  expect_refusal(egocal("compare " + path("d.log") + " " + path("d.log")), 1,
+                 "d.log: holds several streams, choose one with ");
   expect_refusal(egocal("solve --log " + file("text.log", "this is no log at all") + " A B"), 1,
                  "is not an LCM log");
   expect_refusal(egocal("log info " + path("none.log")), 1, "none.log: cannot be opened");

@@ -83,11 +83,48 @@ TEST_F(Commands, OutputsThatContradictEachOtherAreRefused) {
   const Outcome both = egocal(solve + "yaml --out " + path("mount.yaml"));
   EXPECT_TRUE(json::parse(both.out)["certified"]);
   EXPECT_THAT(read(path("mount.yaml")), HasSubstr("translation"));
-  expect_refusal(egocal("up none.toml --monitor --follow"), 2, " excludes --");
-  expect_refusal(egocal("compare --json --csv"), 2, " excludes --");
-  expect_refusal(egocal("compare --csv --latex"), 2, " excludes --");
-  expect_refusal(program("egocal-monitor", "--once --json --size 100x30"), 2, " excludes --");
-  expect_refusal(program("egocal-monitor", "--once --follow"), 2, " excludes --");
+  expect_refusal(egocal("up none.toml --monitor --follow"), 2,
+                 "--monitor, --follow: exclude each other: give one of them");
+  expect_refusal(egocal("compare --json --csv"), 2, "--json, --csv: exclude each other: give one of them");
+  expect_refusal(egocal("compare --csv --latex"), 2, "exclude each other: give one of them");
+  expect_refusal(program("egocal-monitor", "--once --json --size 100x30"), 2,
+                 "exclude each other: give one of them");
+  expect_refusal(program("egocal-monitor", "--once --follow"), 2, "exclude each other: give one of them");
+}
+
+// Losses were dropped silently, and LCM logs were no trajectories
+TEST_F(Commands, CompareSaysWhatItReadAsSolveDoes) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d.log")).code, 0);
+  std::string rows = read(path("d/lidar.tum"));
+  const std::string cut = file("cut.tum", rows.substr(0, rows.size() - 20));
+  const std::string others = " " + path("d.log") + ":ODOMETRY_CAMERA --repeats 1";
+  const Outcome table = egocal("compare " + cut + others);
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_THAT(table.err, HasSubstr("egocal: warning: " + cut + ": "));
+  const json object = json::parse(egocal("compare " + cut + others + " --json 2>/dev/null").out);
+  ASSERT_EQ(object["notes"].size(), 1u);
+  EXPECT_THAT(object["notes"][0].get<std::string>(), HasSubstr(cut));
+}
+
+TEST_F(Commands, ALogWithoutASensorOfTheRigIsMadeWithAWarning) {
+  ASSERT_EQ(egocal("simulate --poses 20 --out " + path("d") + " --rig-out " + path("d.toml")).code, 0);
+  const std::string create = "log create " + path("d.toml") + " --out " + path("c.log");
+  const std::string lidar = " --from lidar=" + path("d/lidar.tum");
+  const Outcome half = egocal(create + lidar);
+  EXPECT_EQ(half.code, 0);
+  EXPECT_EQ(
+      half.err,
+      "egocal: warning: no --from of the sensor camera: its channel ODOMETRY_CAMERA is not in the log\n");
+  EXPECT_EQ(egocal(create + lidar + " --from camera=" + path("d/camera.tum")).err, "");
+}
+
+TEST_F(Commands, WhatGoesTogetherIsNamed) {
+  expect_refusal(egocal("compare --stride 2"), 2,
+                 "--stride: goes with A, which is not given; see egocal compare --help");
+  expect_refusal(egocal("tell egocal-player seek"), 2, "tell: seek: expected a number from 0 up, got ''");
+  expect_refusal(egocal("compare a.tum"), 2, "A: goes with B, which is not given");
+  expect_refusal(egocal("compare a.tum b.tum --poses 5"), 2, "A, --poses: exclude each other");
 }
 
 TEST_F(Commands, NothingHalfWrittenIsLeft) {

@@ -7,12 +7,13 @@
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
-#include "counted.hpp"
 #include "degrees.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/alignment.hpp"
+#include "egocal/in_words.hpp"
 #include "offline/provenance.hpp"
 #include "offline/trust_report.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -76,7 +77,7 @@ void run(const Options& options, const std::string& command_line) {
     throw cli::UsageError("align: takes two trajectories; not --pairs, --samples, --append");
   request.keep_motions = true;
   const SolveResult result = calibrate_offline(request);
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: {}\n", warning);
+  print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
   const Alignment alignment =
       align(result.trajectory_a, result.trajectory_b, calibration.T_a_b, calibration.time_offset_applied);

@@ -9,6 +9,7 @@
 #include "offline/calibration.hpp"
 #include "offline/provenance.hpp"
 #include "offline/trust_report.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -36,7 +37,7 @@ void run(const Options& options, const std::string& command_line) {
   request.source.reading_a = options.reading.of_a();
   request.source.reading_b = options.reading.of_b();
   const SolveResult result = calibrate_offline(request);
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
+  print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
   if (options.json) {
     nlohmann::ordered_json json = trust_json(calibration);

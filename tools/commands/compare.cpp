@@ -40,7 +40,7 @@ nlohmann::ordered_json row_json(const ComparisonRow& row) {
 }
 
 void run(const Options& options, const std::string& command_line) {
-  const DataSet data = load(options.source);
+  const DataSet data = load_warning(options.source);
   const std::vector<ComparisonRow> rows = compare(data, options.repeats);
   if (options.json) {
     nlohmann::ordered_json json = provenance_json(command_line);
@@ -48,10 +48,11 @@ void run(const Options& options, const std::string& command_line) {
                                 {"b", options.source.file_b},
                                 {"times_a", options.source.reading_a.times_file},
                                 {"times_b", options.source.reading_b.times_file}});
+    json["notes"] = data.notes;
     json["pairs"] = data.pairs.size();
     json["methods"] = nlohmann::ordered_json::array();
     for (const ComparisonRow& row : rows) json["methods"].push_back(row_json(row));
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return;
   }
   if (options.csv || options.latex) {

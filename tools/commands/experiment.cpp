@@ -110,7 +110,7 @@ void add_online(cli::App experiment) {
       .check(cli::Check::one_of({"dual", "sdp"}));
   command.add_output("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
-    const DataSet data = load(options->source);
+    const DataSet data = load_warning(options->source);
     OnlineOptions online;
     online.t_no_fail = options->t_no_fail;
     online.fast = method_from_name(options->fast).value_or(Method::sqp);
@@ -135,7 +135,8 @@ void add_globality(cli::App experiment) {
       .check(cli::Check::range(1, 100000));
   command.add_output("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
-    finish(globality_experiment(load(options->source), options->globality), options->out, "globality");
+    finish(globality_experiment(load_warning(options->source), options->globality), options->out,
+           "globality");
   });
 }
 

@@ -6,19 +6,21 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
-#include "counted.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/io/mcap_writer.hpp"
 #include "offline/lcm_pose.hpp"
 #include "offline/trajectory_source.hpp"
 #include "progress.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -40,24 +42,25 @@ void create(const CreateOptions& options) {
   };
   std::vector<Trajectory> trajectories(options.from.size());
   std::vector<Entry> entries;
+  std::vector<std::string> warnings;
+  std::set<std::string> given;
   for (std::size_t k = 0; k < options.from.size(); ++k) {
     const std::string& text = options.from[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
       throw UsageError("--from: expected SENSOR=FILE, got '" + text + "'");
     const std::string name = text.substr(0, equals);
-    for (std::size_t other = 0; other < k; ++other)
-      if (options.from[other].rfind(name + "=", 0) == 0)
-        throw UsageError("--from: the sensor " + name + " is given twice");
+    if (!given.insert(name).second) throw UsageError("--from: the sensor " + name + " is given twice");
     const bus::Sensor& sensor = bus::sensor(rig, name);
-    TrajectoryReading read = read_any_trajectory(text.substr(equals + 1), options.reading);
-    for (const std::string& note : read.notes)
-      fmt::print(stderr, "egocal: {}: {}\n", text.substr(equals + 1), note);
-    trajectories[k] = std::move(read.trajectory);
+    trajectories[k] = read_noting(text.substr(equals + 1), options.reading, warnings);
     for (std::size_t i = 0; i < trajectories[k].size(); ++i)
       entries.push_back(
           {trajectories[k][i].time_us, &sensor, static_cast<std::int64_t>(i), &trajectories[k][i]});
   }
+  for (const bus::Sensor& sensor : rig.sensors)
+    if (!given.contains(sensor.name))
+      warnings.push_back("no --from of the sensor " + sensor.name + ": its channel " + sensor.channel +
+                         " is not in the log");
   std::stable_sort(entries.begin(), entries.end(),
                    [](const Entry& x, const Entry& y) { return x.time_us < y.time_us; });
   // Times that begin near zero are no dates; on the wire they must be plausible ones.
@@ -76,8 +79,9 @@ void create(const CreateOptions& options) {
   }
   log.close();
   if (shift != 0)
-    fmt::print(stderr, "egocal: times do not begin after 1970; {:.3f} s were added to all of them\n",
-               1e-6 * static_cast<double>(shift));
+    warnings.push_back(fmt::format("times do not begin after 1970; {:.3f} s were added to all of them",
+                                   1e-6 * static_cast<double>(shift)));
+  print_warnings(warnings);
 }
 
 constexpr std::size_t most_name = 4096;  // PATH_MAX
@@ -257,12 +261,12 @@ void add_log(cli::App program) {
   const auto file = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   cli::App info = log.add_subcommand("info", "what is in a log");
-  info.add_option("LOG", *file).required();
+  info.add_option("LOG", *file, "an LCM log").required();
   info.add_flag("--json", *json, "one JSON object on standard output");
   info.callback([file, json] { print_info(*file, *json); });
 
   cli::App check = log.add_subcommand("check", "reads all of a log; fails where it is damaged");
-  check.add_option("LOG", *file).required();
+  check.add_option("LOG", *file, "an LCM log").required();
   check.callback([file] {
     const Info found = inspect(*file);
     if (found.damage.any()) throw error_at(*file, 0, "", damage_text(found.damage));
@@ -271,12 +275,12 @@ void add_log(cli::App program) {
 
   const auto out = std::make_shared<std::string>();
   cli::App repairing = log.add_subcommand("repair", "all events that can be read, as a new log");
-  repairing.add_option("LOG", *file).required();
+  repairing.add_option("LOG", *file, "an LCM log").required();
   repairing.add_output("--out", *out, "the new log; LOG itself: repaired in place", true).required();
   repairing.callback([file, out] { repair(*file, *out); });
 
   cli::App exported = log.add_subcommand("export", "poses and calibrations of a log for ROS 2 and Foxglove");
-  exported.add_option("LOG", *file).required();
+  exported.add_option("LOG", *file, "an LCM log").required();
   exported.add_output("--mcap", *out, "the MCAP file").required();
   exported.callback([file, out] { export_mcap(*file, *out); });
 }

@@ -13,6 +13,7 @@
 #include "offline/calibration.hpp"
 #include "offline/provenance.hpp"
 #include "offline/report.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -82,7 +83,7 @@ void run(const Options& options, const std::string& command_line) {
   if (!options.rig.from.empty()) throw cli::UsageError("--from: goes with --rig");
   const SolveRequest request = understood(options.request);
   const SolveResult result = calibrate_offline(request);
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
+  print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
   const bool written = !options.format.empty() || !options.out.empty();
   if (written) write_extrinsic(options, result);

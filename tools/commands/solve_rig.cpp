@@ -11,6 +11,7 @@
 #include "egocal/io/whole_file.hpp"
 #include "offline/provenance.hpp"
 #include "offline/rig_report.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -129,7 +130,7 @@ void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, 
   RigRequest request = rig_request(typed, rig);
   request.calibration = common.calibration;
   const RigReport report = calibrate_rig(request);
-  for (const std::string& warning : report.warnings) fmt::print(stderr, "egocal: warning: {}\n", warning);
+  print_warnings(report.warnings);
   const bool written = !output.format.empty() || !output.out.empty();
   if (written) write_tree(report, output);
   if (written && report.contradictory)

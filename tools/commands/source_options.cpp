@@ -6,10 +6,13 @@
 #include <utility>
 
 #include "arguments.hpp"
+#include "offline/trajectory_source.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
 void add_source_options(cli::App command, Source& source) {
+  source.read = read_any_trajectory;
   cli::Option a =
       command.add_option("A", source.file_a,
                          "trajectory of sensor a, or several drives A1,A2; without files: a simulated drive");
@@ -45,7 +48,7 @@ void add_source_options(cli::App command, Source& source) {
       .needs(a);
   command.add_option("--poses", source.poses, "of the simulated drive")
       .show_default()
-      .check(cli::Check::range(3, 10000000))
+      .check(cli::Check::range(3, limits::simulation::poses.most))
       .excludes(a);
   command.add_option("--noise", source.noise, "of the simulated drive, relative to the mean motion")
       .show_default()
@@ -62,6 +65,12 @@ void add_source_options(cli::App command, Source& source) {
        })
       .excludes(a);
   command.add_option("--seed", source.seed, "of the simulated drive").show_default().excludes(a);
+}
+
+DataSet load_warning(const Source& source) {
+  DataSet data = load(source);
+  print_warnings(data.notes);
+  return data;
 }
 
 }  // namespace egocal::tools

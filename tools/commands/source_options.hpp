@@ -11,4 +11,7 @@ namespace egocal::tools {
 /// The options that say which data an experiment is run on: two files, or a simulated drive.
 void add_source_options(cli::App command, Source& source);
 
+/// Reads or simulates; what was assumed, repaired or lost while reading is printed as warnings.
+DataSet load_warning(const Source& source);
+
 }  // namespace egocal::tools

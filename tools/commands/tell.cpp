@@ -29,8 +29,9 @@ std::string words(const Options& options) {
     throw UsageError("tell: " + options.verb + " takes no number, got '" + bus::printable(options.value, 40) +
                      "'");
   if (!with_number) return options.verb;
-  if (number(options.verb, options.value) < 0)
-    throw UsageError("tell: " + options.verb + ": expected a number >= 0");
+  if (options.value.empty() || number("tell: " + options.verb, options.value) < 0)
+    throw UsageError("tell: " + options.verb + ": expected a number from 0 up, got '" +
+                     bus::printable(options.value, 40) + "'");
   return options.verb + " " + options.value;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "egocal/pairing/trajectory.hpp"
@@ -16,6 +17,7 @@ struct DataSet {
   std::optional<DualQuaternion> truth;
   std::optional<GroundPlane> plane_a, plane_b;  ///< both or none: whether the planar mode can be run
   Balance balance;
+  std::vector<std::string> notes;  ///< what was assumed, repaired or lost while reading, with the file's name
 };
 
 /// Motions between consecutive poses of two trajectories that are synchronous index by index.

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include "egocal/error.hpp"
-#include "egocal/io/trajectory_file.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal::tools {
@@ -37,9 +37,14 @@ std::vector<std::string> drives_in(const std::string& text) {
   return names;
 }
 
-std::vector<MotionPair> pairs_of_drive(const Source& source) {
-  const Trajectory a = read_trajectory_file(source.file_a, source.reading_a).trajectory;
-  const Trajectory b = read_trajectory_file(source.file_b, source.reading_b).trajectory;
+std::vector<MotionPair> pairs_of_drive(const Source& source, std::vector<std::string>& notes) {
+  const auto read = [&](const std::string& name, const ReadOptions& options) {
+    TrajectoryReading reading = source.read(name, options);
+    for (const std::string& note : reading.notes) notes.push_back(name + ": " + note);
+    return std::move(reading.trajectory);
+  };
+  const Trajectory a = read(source.file_a, source.reading_a);
+  const Trajectory b = read(source.file_b, source.reading_b);
   PairingOptions options;
   options.stride = source.stride;
   options.balance = Balance{};
@@ -62,7 +67,7 @@ DataSet recorded(const Source& source) {
     Source drive = source;
     drive.file_a = a[i];
     drive.file_b = b[i];
-    const std::vector<MotionPair> pairs = pairs_of_drive(drive);
+    const std::vector<MotionPair> pairs = pairs_of_drive(drive, data.notes);
     data.pairs.insert(data.pairs.end(), pairs.begin(), pairs.end());
   }
   return data;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "egocal/io/recording.hpp"
+#include "egocal/io/trajectory_file.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "experiments/data_set.hpp"
 
@@ -17,6 +19,8 @@ namespace egocal::tools {
 struct Source {
   std::string file_a{}, file_b{};
   ReadOptions reading_a{}, reading_b{};
+  /// Reads a trajectory: what the library knows, or more.
+  std::function<TrajectoryReading(const std::string& name, const ReadOptions&)> read = read_trajectory_file;
   std::optional<Pose> truth{};  ///< pose of sensor b in sensor a, where known
   std::optional<GroundPlane> plane_a{}, plane_b{};
   Balance balance{};
