@@ -1,6 +1,7 @@
 # What every target of ours shares: warnings, sanitizers, and arithmetic that is the same on every run.
 
 include(CheckCXXSourceCompiles)
+include(Folders)
 include(Precompiled)
 
 # whether the flags of this build (-march=native) allow fused multiply-adds
@@ -20,6 +21,9 @@ function(egocal_target_defaults target)
   list(APPEND ARGN programs)
   list(GET ARGN 0 kind)
   egocal_precompile(${target} ${kind})
+  if(NOT kind STREQUAL "tests")
+    egocal_compile_folders(${target})
+  endif()
 endfunction()
 
 function(egocal_compile_flags target)

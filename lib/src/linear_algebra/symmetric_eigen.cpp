@@ -3,19 +3,32 @@
 #include "linear_algebra/symmetric_eigen.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <type_traits>
 
 namespace egocal::detail {
 
+namespace {
+
+/// Of any size to 10, without memory from the heap: a type of its own for each size is 5 s of compilation.
+using UpToTen = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 10, 10>;
+
+/// What every answer needs (4, 6), or compiles fast (3), is compiled for its size.
+template <int n>
+using Solver = Eigen::SelfAdjointEigenSolver<
+    std::conditional_t<n == 3 || n == 4 || n == 6, Eigen::Matrix<double, n, n>, UpToTen>>;
+
+}  // namespace
+
 template <int n>
 SymmetricEigen<n> symmetric_eigen(const Eigen::Matrix<double, n, n>& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> eigen(matrix);
+  Solver<n> eigen(matrix.rows());
+  eigen.compute(matrix);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
 template <int n>
 Eigen::Matrix<double, n, 1> symmetric_eigenvalues(const Eigen::Matrix<double, n, n>& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>>(matrix, Eigen::EigenvaluesOnly)
-      .eigenvalues();
+  return Solver<n>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 template SymmetricEigen<2> symmetric_eigen<2>(const Eigen::Matrix<double, 2, 2>&);

@@ -15,7 +15,7 @@ struct SymmetricEigen {
 };
 
 /// Eigenvalues and eigenvectors of a symmetric matrix, of which the lower triangle is read. Unspecified where
-/// it is not finite. Compiled for n = 2, 3, 4, 5, 6, 8, 10 and Eigen::Dynamic.
+/// it is not finite. Compiled for n = 2, 3, 4, 5, 6, 8, 10 and Eigen::Dynamic (at most 10 x 10).
 template <int n>
 SymmetricEigen<n> symmetric_eigen(const Eigen::Matrix<double, n, n>& matrix);
 
