@@ -3,6 +3,7 @@
 // `egocal up` with the real processes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -180,6 +181,19 @@ TEST_F(Up, AnAnswerWithoutTheEndOfTheLogIsNotOneOfTheLog) {
   EXPECT_THAT(said, HasSubstr("lidar -> camera: no solver answers the motions of the last 5 s"));
   EXPECT_THAT(said, HasSubstr("lidar -> camera: old answer, the last "));
   EXPECT_THAT(said, HasSubstr("are not in it (no solver answered them). Before: good: "));
+}
+
+// It was in the output of pairing alone: the user who asked for the state learnt of it on another day.
+TEST_F(Up, AStateThatCannotBeSavedIsReported) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{4096, before.rlim_max};  // as a disk that is full; less than a state
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  ChildProcess egocal = up({"--log", log, "--speed", "10", "--state", path("kept")});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")),
+              HasSubstr("egocal up: egocal-pairing: " + path("kept") + ": cannot be written"));
 }
 
 TEST_F(Up, AProcessThatWasStoppedIsContinuedAndNothingIsLost) {

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <map>
 #include <new>
+#include <set>
 #include <utility>
 
 #include "answers/answers.hpp"
@@ -109,11 +110,24 @@ class Listening {
   }
 
   void hear(const status_t& status) {
+    hear_error(status);
     if (status.role == bus::role_name(bus::Role::pairing) &&
         status.state != bus::state_name(bus::State::waiting))
       for (const acknowledgement_t& entry : status.acknowledgements)
         if (read_until_.size() < most_channels || read_until_.contains(entry.channel))
           read_until_[entry.channel] = entry.utime;
+  }
+
+  /// Of pairing and the diagnosis, such as a state that cannot be saved: without a monitor nobody sees it.
+  /// Solvers and the player report what passes by itself.
+  void hear_error(const status_t& status) {
+    if (status.last_error.empty() || reported_.size() >= most_errors ||
+        (status.role != bus::role_name(bus::Role::pairing) &&
+         status.role != bus::role_name(bus::Role::diagnosis)))
+      return;
+    const std::string line =
+        bus::printable(status.name, 40) + ": " + bus::printable(status.last_error, 300) + "\n";
+    if (reported_.insert(line).second) errors_ += line;
   }
 
   int awaited() const {
@@ -125,9 +139,9 @@ class Listening {
         }));
   }
 
-  /// Lines about pairs that have not been answered for a while, and are again.
+  /// Lines about pairs that have not been answered for a while, and are again, and errors of processes.
   std::string news(std::int64_t now_us) {
-    std::string text;
+    std::string text = std::exchange(errors_, {});
     for (const bus::PairConfig& config : rig_.pairs) {
       const PairName pair{config.a, config.b};
       const Answers::Best* const best = answers_.best(pair);
@@ -147,7 +161,7 @@ class Listening {
   }
 
  private:
-  static constexpr std::size_t most_channels = 1000;  // a limit on memory
+  static constexpr std::size_t most_channels = 1000, most_errors = 100;  // limits on memory
   struct Unanswered {
     bus::AnswerAge age;
     bool reported = false;
@@ -159,6 +173,8 @@ class Listening {
   Answers answers_;
   ReadUntil read_until_;
   std::map<PairName, Unanswered> unanswered_;
+  std::set<std::string> reported_;
+  std::string errors_;  ///< that were not told yet
 };
 
 }  // namespace

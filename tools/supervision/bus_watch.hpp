@@ -38,7 +38,7 @@ class BusWatch {
   /// Pairs whose newest answer or verdict is not about the newest motions: those of a drive's end still come.
   int awaited() const;
   /// Readable, without blocking: lines of text about pairs that no solver answers, and that are answered
-  /// again.
+  /// again, and what pairing and the diagnosis report as errors, each once.
   int lines() const { return lines_; }
   /// Stops listening and reads the log for what is missing in the answers. Once.
   Outcome outcome();
