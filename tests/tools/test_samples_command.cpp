@@ -85,6 +85,11 @@ TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
   }
 }
 
+TEST_F(SamplesCommand, NamesOneWrongRowInTheSingular) {
+  write(false);
+  EXPECT_NE(solve("--samples").out.find(", 1 wrong and not used: row 1\n"), std::string::npos);
+}
+
 TEST_F(SamplesCommand, TheCureOfEyeToHandIsToLeaveItOut) {
   write(false, 60);
   const Result result = solve("--samples --json --eye-to-hand");

@@ -7,6 +7,7 @@
 
 #include "degrees.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 
 namespace egocal::tools {
 
@@ -51,8 +52,7 @@ void answer_samples(const SolveRequest& request, const Trajectory& a, const Traj
   result.method = "dual";
   result.eye_to_hand = request.samples->eye_to_hand;
   if (result.matched.without_partner > 0)
-    result.warnings.push_back(
-        fmt::format("{} rows have no partner and are not used", result.matched.without_partner));
+    result.warnings.push_back("no partner, not used: " + counted(result.matched.without_partner, "row"));
   if (!result.matched.by_stamp)
     result.warnings.push_back("the stamps do not agree: row i of a belongs to row i of b");
 }
@@ -93,7 +93,8 @@ std::string samples_text(const SolveResult& result) {
       "most; noise of one sample {:.3g} deg, {:.3g} mm\n",
       samples.residuals.size(),
       wrong.empty() ? std::string()
-                    : fmt::format(", {} wrong and not used: rows {}", wrong.size(), fmt::join(wrong, ", ")),
+                    : fmt::format(", {} wrong and not used: {} {}", wrong.size(),
+                                  wrong.size() == 1 ? "row" : "rows", fmt::join(wrong, ", ")),
       1e3 * samples.spread_median, 1e3 * samples.spread_rms, 1e3 * samples.spread_largest,
       samples.noise_rotation * degrees, 1e3 * samples.noise_translation);
   const Pose& Y = samples.T_world_a_world_b;
