@@ -44,17 +44,6 @@ int Pane::text(int x, int y, std::string_view utf8, Style style, bool reverse) c
   return x;
 }
 
-void Pane::reverse_row(int y) const {
-  for (int x = 0; x < rect_.w; ++x) {
-    const int cx = rect_.x + x, cy = rect_.y + y;
-    if (y < 0 || y >= rect_.h || cx < 0 || cy < 0 || cx >= canvas_->width() || cy >= canvas_->height())
-      continue;
-    Cell cell = canvas_->at(cx, cy);
-    cell.reverse = true;
-    canvas_->put(cx, cy, cell);
-  }
-}
-
 Pane Pane::part(const Rect& rect) const {
   return {*canvas_, intersection(rect_, {rect_.x + rect.x, rect_.y + rect.y, rect.w, rect.h})};
 }

@@ -69,7 +69,6 @@ class Pane {
   void put(int x, int y, const Cell& cell) const;
   /// Returns the column behind the text.
   int text(int x, int y, std::string_view utf8, Style style = Style::normal, bool reverse = false) const;
-  void reverse_row(int y) const;
   Pane part(const Rect& rect) const;  ///< rect in this pane's coordinates
   void clear() const;
 
