@@ -373,6 +373,52 @@ TEST(Explanations, TimesInAnotherUnitAreNamedByAnImpossiblePace) {
   EXPECT_EQ(calibration.verdict, Verdict::doubtful) << calibration.reason;
 }
 
+/// With the coordinates of a map: a thousand kilometres from the origin.
+Trajectory on_a_map(Trajectory trajectory) {
+  const DualQuaternion shift = to_dual_quaternion(Pose{Eigen::Quaterniond::Identity(), {5e5, 5.4e6, 300}});
+  for (StampedPose& pose : trajectory) pose.pose = canonical_sign(shift * pose.pose);
+  return trajectory;
+}
+
+TEST(Explanations, CoordinatesOfAMapAreNeitherFrozenNorMissing) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.a = on_a_map(streams.a);
+  streams.b = testing::inverted(on_a_map(streams.b));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  for (const char* code : {"frozen_a", "frozen_b", "missing_a", "missing_b"})
+    EXPECT_EQ(find(calibration, code), nullptr) << code;
+  EXPECT_NE(find(calibration, "inverted_b"), nullptr) << calibration.reason;
+}
+
+TEST(Explanations, BothInvertedOnAMapIsNotCalledAWrongUnitOfTime) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.a = testing::inverted(on_a_map(streams.a));
+  streams.b = testing::inverted(on_a_map(streams.b));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(find(calibration, "time_unit"), nullptr);
+  const Finding* finding = find(calibration, "inverted_both");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_TRUE(finding->certain);
+}
+
+TEST(Explanations, BothInvertedIsNotMentionedWhereMetresSayOtherwise) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.a = on_a_map(streams.a);
+  streams.b = on_a_map(streams.b);
+  EXPECT_EQ(find(calibrate(streams.a, streams.b), "inverted_both"), nullptr);
+}
+
+TEST(Explanations, TheRemedyOfAUnitNamesTheStreamThatItIsOf) {
+  testing::Streams streams = drive(Terrain::free);
+  const Finding* finding = nullptr;
+  const Calibration of_b = calibrate(streams.a, testing::lengthened(streams.b, 1000));
+  ASSERT_NE(finding = find(of_b, "units"), nullptr);
+  EXPECT_EQ(finding->remedy, "--scale-b 0.001");
+  const Calibration of_a = calibrate(testing::lengthened(streams.a, 1000), streams.b);
+  ASSERT_NE(finding = find(of_a, "units"), nullptr);
+  EXPECT_EQ(finding->remedy, "--scale 0.001");
+}
+
 TEST(Explanations, AreDeterministic) {
   testing::Streams streams = drive(Terrain::rough);
   streams.b = testing::late(streams.b, 0.2);

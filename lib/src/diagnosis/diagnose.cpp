@@ -315,8 +315,13 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
     for (Finding& finding : in_one_frame(answered)) result.findings.push_back(std::move(finding));
-  if (std::optional<Finding> pace = impossible_pace(motions, evidence.stride * evidence.instants.period,
-                                                    evidence.instants.period, options.pace))
+  const auto reads_otherwise = [](const Finding& one) {
+    return one.certain && one.code.starts_with("inverted_");
+  };
+  if (std::any_of(result.findings.begin(), result.findings.end(), reads_otherwise)) {
+    // the pace is that of inverse poses
+  } else if (std::optional<Finding> pace = impossible_pace(
+                 motions, evidence.stride * evidence.instants.period, evidence.instants.period, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
   judge(result, answered, misfit, options);

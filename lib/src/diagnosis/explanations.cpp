@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "diagnosis/axes.hpp"
+#include "diagnosis/both_streams.hpp"
+#include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/forward.hpp"
 #include "diagnosis/scale.hpp"
 #include "diagnosis/without_lever_arms.hpp"
@@ -16,75 +18,6 @@
 namespace egocal::detail {
 
 namespace {
-
-struct Candidate {
-  const char* code;
-  PoseReading a, b;
-};
-
-/// The mistakes that have an option as their cure, simplest first.
-std::vector<Candidate> common_mistakes() {
-  PoseReading as_read, inverted, wxyz, xyzw;
-  inverted.invert = true;
-  wxyz.quaternion_order = QuaternionOrder::wxyz;
-  xyzw.quaternion_order = QuaternionOrder::xyzw;
-  return {{"inverted_a", inverted, as_read},     {"inverted_b", as_read, inverted},
-          {"inverted_both", inverted, inverted}, {"quaternion_order_a", wxyz, as_read},
-          {"quaternion_order_a", xyzw, as_read}, {"quaternion_order_b", as_read, wxyz},
-          {"quaternion_order_b", as_read, xyzw}, {"quaternion_order_both", wxyz, wxyz},
-          {"quaternion_order_both", xyzw, xyzw}};
-}
-
-/// By motions of this number of instants.
-Explanation explained(const Evidence& evidence, int stride, const char* code, const PoseReading& a,
-                      const PoseReading& b, const DiagnosisOptions& options) {
-  Explanation result{code, a, b, evidence.clock, 1, {}};
-  result.explained.motions =
-      motions_of(evidence.instants, a, b, stride, options.motions.most, options.motions);
-  if (!result.explained.motions.all.empty())
-    result.explained.fit = robust_fit(result.explained.motions, options.fit);
-  return result;
-}
-
-Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
-                      const DiagnosisOptions& options) {
-  return explained(evidence, evidence.stride, code, a, b, options);
-}
-
-Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& options) {
-  Explanation result = explanation;
-  if (explanation.explained.motions.all.empty()) return result;
-  ScaledFit scaled = fit_with_scale(explanation.explained.motions, options);
-  result.scale = scaled.scale;
-  result.explained = std::move(scaled.explained);
-  return result;
-}
-
-/// Better by `sigmas` standard deviations, or by nearly all that the blocks can show where those are few.
-bool better(const Comparison& comparison, double least_log_ratio, double sigmas) {
-  return comparison.sigmas >= std::min(sigmas, 0.95 * comparison.most) && comparison.gain >= least_log_ratio;
-}
-
-/// Clearly better by the stated test.
-bool better(const Comparison& comparison, double least_log_ratio, const DiagnosisOptions& options) {
-  return better(comparison, least_log_ratio, options.sigmas);
-}
-
-/// One number more explains a little of any noise: it must be clear beyond what few blocks can show, or gain
-/// much.
-bool number_explains(const Comparison& comparison, const DiagnosisOptions& options) {
-  if (!better(comparison, options.least_gain, options)) return false;
-  return comparison.sigmas >= options.sigmas || comparison.gain >= options.gain;
-}
-
-Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain) {
-  Finding finding;
-  finding.code = explanation.code;
-  finding.certain = certain;
-  finding.improvement = std::exp(comparison.gain);
-  finding.T_a_b = to_pose(explanation.explained.fit.T);
-  return finding;
-}
 
 Finding scale_finding(const Explanation& explanation, const Comparison& comparison, bool certain,
                       const DiagnosisOptions& options) {
@@ -128,11 +61,17 @@ std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptio
   return ranked;
 }
 
-/// Of twins, which are each other with both streams inverted, the one under which a vehicle travels forward.
+bool inverts_one(const Explanation& explanation) {
+  return explanation.code == "inverted_a" || explanation.code == "inverted_b";
+}
+
+/// Of twins, which are each other with both streams inverted, the one under which a vehicle travels forward,
+/// or the one that fits better in metres.
 bool preferred(const Explanation& x, const Explanation& y, const HeadingOptions& options) {
   const Heading of_x = heading(x.explained.motions), of_y = heading(y.explained.motions);
   const bool x_forward = forward(of_x, options), y_forward = forward(of_y, options);
   if (x_forward != y_forward) return x_forward;
+  if (inverts_one(x) && inverts_one(y)) return loss_in_metres(x.explained, y.explained) > 0;
   return compare(y.explained, x.explained).ratio > 1;
 }
 
@@ -170,6 +109,9 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   if (twin && forward(heading(best.scaled.explained.motions), options.heading) &&
       !forward(heading(twin->explained.motions), options.heading))
     twin.reset();
+  if (twin && inverts_one(best.as_is) && inverts_one(*twin) &&
+      loss_in_metres(best.as_is.explained, twin->explained) > decisive_loss)
+    twin.reset();
   if (number_explains(compare(best.as_is.explained, best.scaled.explained), options) &&
       shows_scale(evidence, best, options))
     return {best.scaled, twin};
@@ -193,11 +135,14 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
 BestReading best_axes(const Evidence& evidence, const BestReading& given, const DiagnosisOptions& options) {
   std::optional<Explanation> exchanged, turned, turned_other;
   const double length = evidence.given.explained.motions.translation;
+  std::optional<Explained> of_best, of_given;  // the same for every reading
   const auto but_for_lever_arms = [&](const Explanation& here) {
     // of lengths in the same unit
-    const Explained& against = here.scale != 1 ? given.best.explained : evidence.given.explained;
-    return better(compare(without_lever_arms(against, length), without_lever_arms(here.explained, length)),
-                  options.least_gain, LeverArmOptions{}.sigmas);
+    std::optional<Explained>& against = here.scale != 1 ? of_best : of_given;
+    if (!against)
+      against = without_lever_arms(here.scale != 1 ? given.best.explained : evidence.given.explained, length);
+    return better(compare(*against, without_lever_arms(here.explained, length)), options.least_gain,
+                  LeverArmOptions{}.sigmas);
   };
   const auto explains = [&](const Explained& here) {
     return here.fit.typical < options.explains * options.explains;
@@ -276,50 +221,6 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   const Explained& so_far = result.empty() ? best.explained : result.back().explained;
   take("clock_drift", fits.drift, Explained(so_far));
   return result;
-}
-
-/// Both files inverted is no contradiction by itself: the answer is then that of the two odometry frames. It
-/// is certain where a vehicle's way points forward under it alone. Noise that grows with the distance from
-/// the start supports the streams as given, but not the inverted ones: a mount that moved looks the
-/// same. Otherwise both answers stand.
-std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
-  // mean log ratio of the squares; arms (Tampere) that were inverted fit better by up to 2.3
-  constexpr double decisive_loss = 3;
-  PoseReading inverted;
-  inverted.invert = true;
-  const Explanation both = explained(evidence, "inverted_both", inverted, inverted, options);
-  if (both.explained.motions.all.empty()) return std::nullopt;
-  const Comparison comparison = compare(evidence.given.explained, both.explained);
-  const Heading as_given = heading(evidence.given.explained.motions);
-  const Heading as_inverted = heading(both.explained.motions);
-  const bool noise_says_given = comparison.ratio < 1 / options.decisive && comparison.gain < -decisive_loss;
-  if (forward(as_given, options.heading) && !forward(as_inverted, options.heading)) return std::nullopt;
-  // a body that tumbles has no direction of travel, but may seem to under the wrong reading: far from the
-  // origin its inverse goes along an arc
-  const bool trace = forward(as_inverted, options.heading) && scattered(as_given, options.heading) &&
-                     longer_way(evidence.given.explained.motions, both.explained.motions);
-  if (!trace && noise_says_given) return std::nullopt;
-  Finding finding = finding_of(both, comparison, trace);
-  finding.improvement = comparison.ratio;
-  return finding;
-}
-
-/// The order of the quaternions wrong in both streams alike: where both sensors move in nearly the same way
-/// that is nearly consistent. Short motions, of which there are many, show it.
-std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options) {
-  const int brief = std::max(1, evidence.stride / 16);
-  if (brief == evidence.stride) return std::nullopt;
-  const Explanation given = explained(evidence, brief, "", {}, {}, options);
-  std::optional<Finding> best;
-  for (const Candidate& candidate : common_mistakes()) {
-    if (std::string_view(candidate.code) != "quaternion_order_both") continue;
-    const Explanation here = explained(evidence, brief, candidate.code, candidate.a, candidate.b, options);
-    if (given.explained.motions.all.empty() || here.explained.motions.all.empty()) continue;
-    const Comparison comparison = compare(given.explained, here.explained);
-    if (!better(comparison, 0, options) || (best && best->improvement > std::exp(comparison.gain))) continue;
-    best = worded_reading(finding_of(here, comparison, false), candidate.a, candidate.b);
-  }
-  return best;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/stillest_point.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal::detail {
 
@@ -15,6 +16,11 @@ double sum_of_lengths(const std::vector<Eigen::Vector3d>& vectors) {
   double sum = 0;
   for (const Eigen::Vector3d& vector : vectors) sum += vector.norm();
   return sum;
+}
+
+/// Largest eigenvalue over the trace; of nothing 0.
+double largest_part(const Eigen::Matrix3d& sum) {
+  return sum.trace() > 0 ? symmetric_eigen<3>(sum).values.maxCoeff() / sum.trace() : 0;
 }
 
 /// Way of the point of each body that goes the shortest one [m].
@@ -36,6 +42,7 @@ Ways of_stillest_points(const Motions& motions) {
 Heading heading(const Motions& motions) {
   Heading result;
   Eigen::Vector3d sum_a = Eigen::Vector3d::Zero(), sum_b = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d lines_a = Eigen::Matrix3d::Zero(), lines_b = lines_a;
   double length_a = 0, length_b = 0;
   for (const Motion& motion : motions.all) {
     // by length, but no single jump counts for more than a few motions
@@ -43,10 +50,12 @@ Heading heading(const Motions& motions) {
     const double a = motion.t_a.norm(), b = motion.t_b.norm();
     if (a > 0 && a <= limit) {
       sum_a += motion.t_a;
+      lines_a += motion.t_a * motion.t_a.transpose() / a;
       length_a += a;
     }
     if (b > 0 && b <= limit) {
       sum_b += motion.t_b;
+      lines_b += motion.t_b * motion.t_b.transpose() / b;
       length_b += b;
     }
     result.turned += motion.angle_a;
@@ -55,7 +64,13 @@ Heading heading(const Motions& motions) {
   result.way_b = length_b;
   if (length_a > 0) result.concentration_a = sum_a.norm() / length_a;
   if (length_b > 0) result.concentration_b = sum_b.norm() / length_b;
+  result.line_a = largest_part(lines_a);
+  result.line_b = largest_part(lines_b);
   return result;
+}
+
+bool along_one_line(const Heading& heading, const HeadingOptions& options) {
+  return heading.turned > options.least_turning && std::min(heading.line_a, heading.line_b) > options.always;
 }
 
 bool forward(const Heading& heading, const HeadingOptions& options) {

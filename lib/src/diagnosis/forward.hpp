@@ -9,14 +9,17 @@ namespace egocal::detail {
 /// In which direction of their own bodies the sensors travel.
 struct Heading {
   double concentration_a = 0, concentration_b = 0;  ///< length of the mean direction: 1 always the same
-  double way_a = 0, way_b = 0;                      ///< length of all motions [m]
-  double turned = 0;                                ///< angle in all, of all motions [rad]
+  double line_a = 0, line_b = 0;  ///< mean squared cosine with the usual line: 1 always forwards or backwards
+  double way_a = 0, way_b = 0;    ///< length of all motions [m]
+  double turned = 0;              ///< angle in all, of all motions [rad]
 };
 
 Heading heading(const Motions& motions);
 
 /// A vehicle: both sensors always travel the same way of their bodies.
 bool forward(const Heading& heading, const HeadingOptions& options);
+/// A vehicle that reverses as well: both always travel along the same line of their bodies.
+bool along_one_line(const Heading& heading, const HeadingOptions& options);
 /// Neither does.
 bool scattered(const Heading& heading, const HeadingOptions& options);
 

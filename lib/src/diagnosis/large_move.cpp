@@ -9,6 +9,7 @@
 #include "diagnosis/correction.hpp"
 #include "diagnosis/robust_fit.hpp"
 #include "diagnosis/wording.hpp"
+#include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
@@ -53,6 +54,17 @@ std::size_t best_place(const Motions& motions, const Division& division, std::si
 /// Typical residual of one part at an answer, as a part of the typical motion.
 double typical_at(const Motions& part, const DualQuaternion& T) {
   return std::sqrt(evaluated(part, T).typical);
+}
+
+/// Half of the motions of this part of the drive are not much smaller than usual.
+bool moves(const Motions& part, double least) {
+  std::vector<double> sizes;
+  for (const Motion& motion : part.all) {
+    const auto size = [](double a, double b, double usual) { return usual > 0 ? std::max(a, b) / usual : 0; };
+    sizes.push_back(std::max(size(motion.angle_a, motion.angle_b, part.rotation),
+                             size(motion.t_a.norm(), motion.t_b.norm(), part.translation)));
+  }
+  return !sizes.empty() && median(std::move(sizes)) > least;
 }
 
 bool contradict(const Motions& before, const Motions& after, const Division& found,
@@ -173,12 +185,16 @@ std::optional<UnexplainedPart> unexplained_part(const Motions& motions, const Du
   const std::size_t windows = large.windows;
   const std::size_t n = motions.all.size();
   if (n < 4 * windows) return std::nullopt;
-  std::vector<double> misfits;
-  for (std::size_t w = 0; w < windows; ++w)
-    misfits.push_back(typical_at(part_of(motions, w * n / windows, (w + 1) * n / windows), T_a_b));
-  std::vector<double> sorted = misfits;
+  std::vector<double> misfits, sorted;
+  for (std::size_t w = 0; w < windows; ++w) {
+    const Motions window = part_of(motions, w * n / windows, (w + 1) * n / windows);
+    // while the sensors stand only wrong poses move
+    misfits.push_back(moves(window, large.least_motion) ? typical_at(window, T_a_b) : 0);
+    if (misfits.back() > 0) sorted.push_back(misfits.back());
+  }
+  if (sorted.empty()) return std::nullopt;
   std::sort(sorted.begin(), sorted.end());
-  const double explained = std::max(sorted[windows / 6], 1e-3);
+  const double explained = std::max(sorted[sorted.size() / 6], 1e-3);
   const double limit = std::max(2 * large.contradicts, explained / large.own);
   const auto is_bad = [&](double misfit) { return misfit > limit; };
   const auto bad = static_cast<std::size_t>(std::count_if(misfits.begin(), misfits.end(), is_bad));

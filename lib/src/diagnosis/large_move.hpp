@@ -25,6 +25,9 @@ struct LargeMoveOptions {
   double own = 0.4;
   /// Parts of the drive in which unexplained_part() looks for one run: a third of the drive is four of them.
   std::size_t windows = 12;
+  /// Of the typical motion: where the median one of a window is smaller the sensors stand, and only wrong
+  /// poses move. As find_moves() ignores motions (MovesOptions::least_motion).
+  double least_motion = 0.1;
 };
 
 /// Finding mount_moved with the time and the answer after it; its improvement compares two answers with one.

@@ -126,7 +126,7 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   finding.T_a_b = to_pose(explained.fit.T);
   finding.message = "The lengths of b must be multiplied by a factor that changes along the drive: " +
                     in_words(course, origin_us) + ". With these the mounting does not move.";
-  finding.remedy = "--scale-b auto finds the factors; --scale-a auto where b is in metres.";
+  finding.remedy = "--scale-b auto finds the factors; --scale auto where b is in metres.";
   return finding;
 }
 

@@ -158,6 +158,11 @@ static std::vector<double> sizes_of(const Motions& motions) {
   return sizes;
 }
 
+static double weight_of(double square, double limit) {
+  const double w = 1 / (1 + square / limit);
+  return w * w;
+}
+
 /// sizes: of the motions. Without weights.
 static RobustFit evaluated(const Motions& motions, const std::vector<double>& sizes,
                            const DualQuaternion& T) {
@@ -180,15 +185,31 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T) {
   return fit;
 }
 
+/// Weights before anything is known of the extrinsic: whatever it is, both sensors turn by the same angle.
+/// The first solution would otherwise be that of the wrong poses, which make the largest motions.
+static std::vector<double> first_weights(const Motions& motions, const std::vector<double>& sizes,
+                                         double inlier) {
+  std::vector<std::pair<double, double>> differences;
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    const double difference = motions.all[i].angle_a - motions.all[i].angle_b;
+    differences.emplace_back(difference * difference, sizes[i]);
+  }
+  const double typical =
+      std::max(weighted_median(differences), rounding * motions.rotation * motions.rotation);
+  std::vector<double> weights;
+  for (const auto& [square, size] : differences)
+    weights.push_back(typical > 0 ? weight_of(square, inlier * typical) : 1);
+  return weights;
+}
+
 static RobustFit reweighted(const Motions& motions, int rounds, double inlier) {
   const std::vector<double> sizes = sizes_of(motions);
-  std::vector<double> weights(motions.all.size(), 1.0);
+  std::vector<double> weights = first_weights(motions, sizes, inlier);
   RobustFit fit;
   for (int round = 0; round < rounds; ++round) {
     fit = evaluated(motions, sizes, weighted_solution(motions, weights));
     for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double w = 1 / (1 + fit.squares[i] / (inlier * fit.typical));
-      weights[i] = w * w;
+      weights[i] = weight_of(fit.squares[i], inlier * fit.typical);
     }
   }
   fit.weights = std::move(weights);
@@ -276,6 +297,20 @@ Comparison compare(const Explained& x, const Explained& y) {
   const auto k = static_cast<double>(gains.size());
   return {sum / count, signed_rank_sigmas(gains), std::sqrt(1.5 * k * (k + 1) / (2 * k + 1)),
           trimmed_mean(x.fit.squares) / std::max(trimmed_mean(y.fit.squares), rounding)};
+}
+
+double loss_in_metres(const Explained& x, const Explained& y) {
+  if (x.motions.all.size() != y.motions.all.size()) return 0;
+  const Pose of_x = to_pose(x.fit.T), of_y = to_pose(y.fit.T);
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < x.motions.all.size(); ++i) {
+    const double here = residual_at(x.motions.all[i], of_x).translation,
+                 there = residual_at(y.motions.all[i], of_y).translation;
+    if (!(here > 0 && there > 0)) continue;
+    sum += 2 * std::log(there / here);
+    count += 1;
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 }  // namespace egocal::detail

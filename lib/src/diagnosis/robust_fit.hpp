@@ -54,6 +54,10 @@ struct Comparison {
 };
 Comparison compare(const Explained& x, const Explained& y);
 
+/// Mean of log(squared residual of the translation of y / of x) [m^2]: > 0 where x fits better in metres,
+/// however long its motions are. The same motions, under two readings; 0 where they are not.
+double loss_in_metres(const Explained& x, const Explained& y);
+
 /// The value below which `part` of the total weight lies.
 double weighted_quantile(std::vector<std::pair<double, double>> values_weights, double part);
 double weighted_median(std::vector<std::pair<double, double>> values_weights);

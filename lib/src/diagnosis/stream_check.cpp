@@ -28,6 +28,11 @@ double size_of(const DualQuaternion& motion) {
   return std::max(motion.real.tail<3>().norm(), motion.dual.norm());
 }
 
+/// What computing with a pose adds to a motion from it.
+double rounding_of(const DualQuaternion& pose, const StreamCheckOptions& options) {
+  return options.rounding * (1 + pose.dual.norm());
+}
+
 Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
   Steps steps;
   const std::size_t n = instants.size();
@@ -36,13 +41,17 @@ Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
     const PosePair from = instants.at(i), to = instants.at(i + 1);
     const DualQuaternion a = canonical_sign(conjugate(from.a) * to.a),
                          b = canonical_sign(conjugate(from.b) * to.b);
-    const double rounding = options.same * (1 + from.a.dual.norm() + from.b.dual.norm());
     const double size_a = size_of(a), size_b = size_of(b);
-    const bool still_a = size_a < rounding, still_b = size_b < rounding;
+    const bool still_a = size_a < rounding_of(from.a, options),
+               still_b = size_b < rounding_of(from.b, options);
     if (still_a && still_b) continue;
     ++steps.all;
     steps.travelled += std::max(size_a, size_b);
-    if ((a.vec() - b.vec()).norm() < rounding) ++steps.equal;
+    // digits of a file: with coordinates of a map these may be those of a motion
+    const double digits = options.same * (1 + from.a.dual.norm() + from.b.dual.norm());
+    const double alike = std::max(rounding_of(from.a, options) + rounding_of(from.b, options),
+                                  std::min(digits, options.same_part * std::max(size_a, size_b)));
+    if ((a.vec() - b.vec()).norm() < alike) ++steps.equal;
     if (still_a) {
       ++steps.frozen_a;
       steps.travelled_a += size_b;
@@ -123,23 +132,28 @@ Finding flat(char which, const Flatness& flatness) {
 /// in, rotations that are all the identity.
 std::optional<Finding> without_part(char which, const Trajectory& own, const Trajectory& other,
                                     const StreamCheckOptions& options) {
-  const auto sizes = [&](const Trajectory& trajectory) {
+  struct Sizes {
     double travelled = 0, turned = 0;
+    double rounding = 0;  ///< of either
+  };
+  const auto sizes = [&](const Trajectory& trajectory) {
+    Sizes sum;
     const std::size_t each = std::max<std::size_t>(1, trajectory.size() / options.most);
     for (std::size_t i = 0; i + each < trajectory.size(); i += each) {
       const DualQuaternion motion = conjugate(trajectory[i].pose) * trajectory[i + each].pose;
-      travelled += motion.dual.norm();
-      turned += motion.real.tail<3>().norm();
+      sum.travelled += motion.dual.norm();
+      sum.turned += motion.real.tail<3>().norm();
+      sum.rounding += rounding_of(trajectory[i].pose, options);
     }
-    return std::pair(travelled, turned);
+    return sum;
   };
   if (own.size() < options.least || other.size() < options.least) return std::nullopt;
-  const auto [travelled, turned] = sizes(own);
-  const auto [other_travelled, other_turned] = sizes(other);
-  const bool no_positions =
-      travelled <= options.flat * other_travelled && turned > options.flat * other_turned;
-  const bool no_rotations = turned <= options.flat * other_turned &&
-                            travelled > options.flat * other_travelled && other_turned > options.least_tilt;
+  const Sizes here = sizes(own), there = sizes(other);
+  // to rounding as well: poses that were inverted far from their origin travel a million times as far
+  const bool travels = here.travelled > std::min(options.flat * there.travelled, here.rounding);
+  const bool turns = here.turned > options.flat * there.turned;
+  const bool no_positions = !travels && turns && there.travelled > there.rounding;
+  const bool no_rotations = !turns && travels && there.turned > options.least_tilt;
   if (no_positions == no_rotations) return std::nullopt;
   Finding finding;
   finding.code = std::string("missing_") + which;
@@ -164,6 +178,7 @@ struct Window {
   double begin = 0, end = 0;  ///< [s]
   double turned = 0;
   double difference = 0;
+  std::vector<double> differences;  ///< of all motions
 
   double misfit() const { return difference / turned; }
 };
@@ -179,8 +194,9 @@ std::vector<Window> windows_of(const Motions& motions, std::size_t count) {
       turned.push_back(0.5 * (motions.all[i].angle_a + motions.all[i].angle_b));
       difference.push_back(std::abs(motions.all[i].angle_a - motions.all[i].angle_b));
     }
+    const double typical = median(difference);
     windows.push_back({motions.all[first].time, motions.all[last - 1].time, median(std::move(turned)),
-                       median(std::move(difference))});
+                       typical, std::move(difference)});
   }
   return windows;
 }
@@ -262,12 +278,19 @@ std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOpt
   if (std::find_if(end, windows.end(), disagrees) != windows.end()) return {};
   if (end - first < 2 || static_cast<std::ptrdiff_t>(windows.size()) - (end - first) < 2) return {};
   // noise of one size is a large part of the angle where little is turned
-  std::vector<double> other;
-  for (auto window = first; window != end; ++window) other.push_back(window->difference);
+  std::vector<double> other, all_others;
+  for (auto window = first; window != end; ++window) {
+    other.push_back(window->difference);
+    all_others.insert(all_others.end(), window->differences.begin(), window->differences.end());
+  }
   double agreeing = 0;
   for (const Window& window : windows)
     if (!disagrees(window)) agreeing = std::max(agreeing, window.difference);
   if (!(median(std::move(other)) > options.step * agreeing)) return {};
+  // wrong poses spoil some of the motions; of another drive all are wrong
+  const auto agrees = [&](double difference) { return difference <= options.step * agreeing; };
+  const auto count = static_cast<double>(std::count_if(all_others.begin(), all_others.end(), agrees));
+  if (count > options.most_agreeing * static_cast<double>(all_others.size())) return {};
   const auto last = end - 1;
   Finding finding;
   finding.code = "unrelated";

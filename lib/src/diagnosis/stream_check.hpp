@@ -13,8 +13,12 @@
 namespace egocal::detail {
 
 struct StreamCheckOptions {
-  std::size_t most = 4000;     ///< steps that are looked at; bounds the cost of a drive of any length
-  double same = 1e-9;          ///< of the length and of 1: poses that agree better are equal
+  std::size_t most = 4000;  ///< steps that are looked at; bounds the cost of a drive of any length
+  /// Of the length and of 1: motions that agree better are equal to the digits of their files,
+  double same = 1e-9;
+  double same_part = 1e-4;  ///< where they also agree to this part of the motion
+  double rounding =
+      1e-13;  ///< of the length and of 1: a motion that is smaller is none, to a hundred roundings
   std::size_t least = 20;      ///< equal steps, fewer are chance
   double least_frozen = 0.05;  ///< of what the other stream travels meanwhile; pairing rejects it anyway
   std::size_t windows = 10;    ///< of the drive; a part of another drive is found to a tenth
@@ -22,6 +26,9 @@ struct StreamCheckOptions {
   /// of a tenth of every motion stays below 0.2 in the study, unlike drives are above 0.3.
   double agree = 0.25, disagree = 0.15;
   double step = 4;  ///< least ratio, of these parts and of the angles, to windows that agree
+  /// Part of the motions that agree as the other windows do, by chance: more than a third, and wrong poses
+  /// explain the rest (two of three motions have an end at one where a third of the poses are wrong).
+  double most_agreeing = 1.0 / 3;
   /// Lengths of the motions agree where their ratio scatters by less than this part of the lengths themselves
   /// (median deviations of the logarithms): an odometry measures how far it travels well where it hardly
   /// turns. 5,313 pairs of unrelated drives, of 14 simulated kinds and real ones, are above 0.29; sensors of

@@ -114,8 +114,7 @@ Finding worded_scale(Finding finding) {
   if (finding.code == "units") {
     finding.message = format("The lengths of %s are not in metres: those of b times %g fit those of a.",
                              scale < 1 ? "b" : "a", scale);
-    finding.remedy = scale < 1 ? format("--scale %g", scale)
-                               : format("Write the positions of a in metres: divide them by %g.", scale);
+    finding.remedy = scale < 1 ? format("--scale-b %g", scale) : format("--scale %g", 1 / scale);
   } else {
     finding.message = format("The lengths of b times %.4g fit those of a: %s.", scale, fits(finding).c_str());
     finding.remedy = "--scale-b auto, or --scale auto if it is the lengths of a that are wrong.";

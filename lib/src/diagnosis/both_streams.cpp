@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/both_streams.hpp"
+
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "diagnosis/common_mistakes.hpp"
+#include "diagnosis/forward.hpp"
+#include "diagnosis/pace.hpp"
+#include "diagnosis/wording.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Far from their origin inverse poses travel faster than anything does.
+bool too_fast_unless_inverted(const Evidence& evidence, const Explanation& both,
+                              const DiagnosisOptions& options) {
+  const double period = evidence.instants.period;
+  const auto impossible = [&](const Motions& motions) {
+    const std::optional<Finding> pace =
+        impossible_pace(motions, evidence.stride * period, period, options.pace);
+    return pace && pace->certain;
+  };
+  return impossible(evidence.given.explained.motions) && !impossible(both.explained.motions);
+}
+
+}  // namespace
+
+std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
+  PoseReading inverted;
+  inverted.invert = true;
+  const Explanation both = explained(evidence, "inverted_both", inverted, inverted, options);
+  if (both.explained.motions.all.empty()) return std::nullopt;
+  const Comparison comparison = compare(evidence.given.explained, both.explained);
+  const Heading as_given = heading(evidence.given.explained.motions);
+  const Heading as_inverted = heading(both.explained.motions);
+  const bool noise_says_given = comparison.ratio < 1 / options.decisive && comparison.gain < -decisive_loss;
+  if (forward(as_given, options.heading) && !forward(as_inverted, options.heading)) return std::nullopt;
+  // a body that tumbles has no direction of travel, but may seem to under the wrong reading: far from the
+  // origin its inverse goes along an arc
+  const bool trace = (forward(as_inverted, options.heading) && scattered(as_given, options.heading) &&
+                      longer_way(evidence.given.explained.motions, both.explained.motions)) ||
+                     too_fast_unless_inverted(evidence, both, options);
+  // whatever errs by its rotations errs by metres under the wrong reading, far from the origin
+  const bool metres_say_given = both.explained.fit.typical < options.explains * options.explains &&
+                                loss_in_metres(evidence.given.explained, both.explained) > decisive_loss;
+  const bool line_says_given =
+      along_one_line(as_given, options.heading) && !along_one_line(as_inverted, options.heading);
+  if (!trace && (noise_says_given || metres_say_given || line_says_given)) return std::nullopt;
+  Finding finding = finding_of(both, comparison, trace);
+  finding.improvement = comparison.ratio;
+  return finding;
+}
+
+std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options) {
+  const int brief = std::max(1, evidence.stride / 16);
+  if (brief == evidence.stride) return std::nullopt;
+  Explanation given = explained(evidence, brief, "", {}, {}, options);
+  // wrong poses that no longer motions contain can spoil the fit of short ones
+  const RobustFit of_longer = evaluated(given.explained.motions, evidence.given.explained.fit.T);
+  if (of_longer.typical < given.explained.fit.typical) given.explained.fit = of_longer;
+  std::optional<Finding> best;
+  for (const Candidate& candidate : common_mistakes()) {
+    if (std::string_view(candidate.code) != "quaternion_order_both") continue;
+    const Explanation here = explained(evidence, brief, candidate.code, candidate.a, candidate.b, options);
+    if (given.explained.motions.all.empty() || here.explained.motions.all.empty()) continue;
+    if (!(here.explained.fit.typical < options.explains * options.explains)) continue;
+    const Comparison comparison = compare(given.explained, here.explained);
+    if (!better(comparison, 0, options) || (best && best->improvement > std::exp(comparison.gain))) continue;
+    best = worded_reading(finding_of(here, comparison, false), candidate.a, candidate.b);
+  }
+  return best;
+}
+
+}  // namespace egocal::detail
