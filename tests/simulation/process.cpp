@@ -38,22 +38,22 @@ bool is_silent(Part part) {
   return part == Part::odometry || part == Part::exporter;
 }
 
-/// That of the host; what the disk takes in a turn passes in that turn.
-class OwnClock final : public bus::Clock {
- public:
-  explicit OwnClock(const Host& host) : host_(host) {}
-  std::int64_t mono_ns() const override { return host_.clock.mono_ns() + 1000 * host_.disk.waited_us(); }
-  std::int64_t wall_us() const override { return host_.clock.wall_us() + host_.disk.waited_us(); }
-  int wait(std::span<pollfd>, std::chrono::nanoseconds) const override { return 0; }
-
- private:
-  const Host& host_;
-};
-
 }  // namespace
 
 /// One life. Members end in reverse order, as those of a main().
 struct Process::Instance {
+  /// That of the host; what the disk takes in a turn passes in that turn.
+  class OwnClock final : public bus::Clock {
+   public:
+    explicit OwnClock(const Host& host) : host_(host) {}
+    std::int64_t mono_ns() const override { return host_.clock.mono_ns() + 1000 * host_.disk.waited_us(); }
+    std::int64_t wall_us() const override { return host_.clock.wall_us() + host_.disk.waited_us(); }
+    int wait(std::span<pollfd>, std::chrono::nanoseconds) const override { return 0; }
+
+   private:
+    const Host& host_;
+  };
+
   explicit Instance(const Host& host) : clock(host) {}
 
   OwnClock clock;

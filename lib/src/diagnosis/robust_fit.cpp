@@ -17,7 +17,7 @@ namespace egocal::detail {
 namespace {
 
 /// Squares below this part of the motion are rounding: 1e-8, eight digits of a pose.
-constexpr double rounding = 1e-16;
+constexpr double least_square = 1e-16;
 
 /// Size of a motion in units of the typical one; the smaller of the two, for an outlier makes one of them
 /// large.
@@ -175,7 +175,7 @@ static RobustFit evaluated(const Motions& motions, const std::vector<double>& si
     fit.squares.push_back(square_of(residual_at(motions.all[i], pose), motions));
     values.emplace_back(fit.squares.back(), sizes[i]);
   }
-  fit.typical = std::max(weighted_median(std::move(values)), rounding);
+  fit.typical = std::max(weighted_median(std::move(values)), least_square);
   return fit;
 }
 
@@ -195,7 +195,7 @@ static std::vector<double> first_weights(const Motions& motions, const std::vect
     differences.emplace_back(difference * difference, sizes[i]);
   }
   const double typical =
-      std::max(weighted_median(differences), rounding * motions.rotation * motions.rotation);
+      std::max(weighted_median(differences), least_square * motions.rotation * motions.rotation);
   std::vector<double> weights;
   for (const auto& [square, size] : differences)
     weights.push_back(typical > 0 ? weight_of(square, inlier * typical) : 1);
@@ -296,7 +296,7 @@ Comparison compare(const Explained& x, const Explained& y) {
   if (gains.empty()) return {};
   const auto k = static_cast<double>(gains.size());
   return {sum / count, signed_rank_sigmas(gains), std::sqrt(1.5 * k * (k + 1) / (2 * k + 1)),
-          trimmed_mean(x.fit.squares) / std::max(trimmed_mean(y.fit.squares), rounding)};
+          trimmed_mean(x.fit.squares) / std::max(trimmed_mean(y.fit.squares), least_square)};
 }
 
 double loss_in_metres(const Explained& x, const Explained& y) {
