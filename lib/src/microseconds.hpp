@@ -6,7 +6,7 @@
 
 namespace egocal::detail {
 
-inline constexpr double second_us = 1e6;
+inline constexpr double second_us = 1e6;  ///< unit
 
 inline double seconds(std::int64_t us) {
   return 1e-6 * static_cast<double>(us);

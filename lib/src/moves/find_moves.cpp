@@ -117,7 +117,7 @@ class Finder {
   /// in the middle or at an end, shows it.
   std::optional<Found> best(std::size_t from, std::size_t to) {
     if (std::optional<Found> found = best(from, to, options_.most_blocks, 1)) return found;
-    constexpr std::size_t halves = 3;
+    constexpr std::size_t halves = 3;  // as many tests: first, middle, last
     const std::size_t quarter = (to - from) / 4;
     std::optional<Found> best_half;
     for (std::size_t k = 0; k < halves; ++k) {
