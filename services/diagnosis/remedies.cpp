@@ -51,7 +51,7 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
     return "The odometry of " + one() + " has to fill quat in the order w x y z.";
   if (code == "scale_change")
     return "Live, a session has one scale: reset the pair (key r in the monitor) after it has changed. In a "
-           "recording egocal solve --scale-b auto finds the factors, --scale-a auto where " +
+           "recording egocal solve --scale-b auto finds the factors, --scale auto where " +
            pair.b + " is in metres.";
   // what creeps goes on after a reset: the cure is that of a recording
   if (code == "mount_moved" && finding.message.starts_with(creeping))
