@@ -4,7 +4,8 @@
 option(EGOCAL_FOLDERS "Compile the files of a folder together in builds from scratch" OFF)
 
 function(egocal_compile_folders target)
-  if(NOT EGOCAL_FOLDERS)
+  # with clang a local that has the name of a constant of a neighbour shadows it
+  if(NOT EGOCAL_FOLDERS OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     return()
   endif()
   get_target_property(sources ${target} SOURCES)

@@ -112,26 +112,9 @@ class Finder {
     return options_.false_alarms * (block_pairs < options_.block_pairs ? options_.of_short_blocks : 1);
   }
 
-  /// The best change within the stretch, if it is significant and large enough to report. A mount that falls
-  /// back to where it was has half of each change on both sides of any division: of such a stretch one half,
-  /// in the middle or at an end, shows it.
+  /// The best change within the stretch, if it is significant and large enough to report.
   std::optional<Found> best(std::size_t from, std::size_t to) {
-    if (std::optional<Found> found = best(from, to, options_.most_blocks, 1)) return found;
-    constexpr std::size_t halves = 3;  // as many tests: first, middle, last
-    const std::size_t quarter = (to - from) / 4;
-    std::optional<Found> best_half;
-    for (std::size_t k = 0; k < halves; ++k) {
-      std::optional<Found> found =
-          best(from + k * quarter, from + (k + 2) * quarter, options_.most_blocks / 2, halves);
-      if (found && !found->creep && (!best_half || found->test.false_alarm < best_half->test.false_alarm))
-        best_half = std::move(found);
-    }
-    return best_half;
-  }
-
-  /// trials: stretches of the same motions, one of which is to show a change.
-  std::optional<Found> best(std::size_t from, std::size_t to, std::size_t most_blocks, std::size_t trials) {
-    const std::size_t count = std::min(most_blocks, blocks_in(from, to));
+    const std::size_t count = blocks_in(from, to);
     if (count < options_.least_blocks) return std::nullopt;
     Found found;
     found.from = from;
@@ -140,8 +123,6 @@ class Finder {
     if (found.stretch.blocks.empty()) return std::nullopt;
     found.test = detail::test_change(found.stretch.blocks, least_side(count, options_), options_.test);
     if (found.test.split == 0) return std::nullopt;
-    found.test.false_alarm *= static_cast<double>(trials);
-    found.test.even_false_alarm *= static_cast<double>(trials);
     chance_ = std::min({chance_, found.test.false_alarm, 2 * found.test.even_false_alarm});
     const double alarms = false_alarms((to - from) / count);
     found.creep = found.test.even && found.test.even_false_alarm <= 0.5 * alarms;
