@@ -118,8 +118,8 @@ class Listening {
           read_until_[entry.channel] = entry.utime;
   }
 
-  /// Of pairing and the diagnosis, such as a state that cannot be saved: without a monitor nobody sees it.
-  /// Solvers and the player report what passes by itself.
+  /// Reports errors of pairing and the diagnosis, such as a state that cannot be saved, which otherwise only
+  /// a monitor shows. Those of solvers and the player pass by themselves.
   void hear_error(const status_t& status) {
     if (status.last_error.empty() || reported_.size() >= most_errors ||
         (status.role != bus::role_name(bus::Role::pairing) &&

@@ -26,6 +26,7 @@
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/foresee.hpp"
+#include "egocal/in_words.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -91,12 +92,11 @@ Finding unrelated(double correlation) {
 }
 
 Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) {
-  return certain_finding(
-      "too_little_motion",
-      motions < options.motions.least
-          ? format("Only %zu motion%s: too few to judge the fit.", motions, motions == 1 ? "" : "s")
-          : "The sensors hardly turn: an extrinsic cannot be found from this drive.",
-      "Record a longer drive with turns in different directions.");
+  return certain_finding("too_little_motion",
+                         motions < options.motions.least
+                             ? "Only " + counted(motions, "motion") + ": too few to judge the fit."
+                             : "The sensors hardly turn: an extrinsic cannot be found from this drive.",
+                         "Record a longer drive with turns in different directions.");
 }
 
 Finding turning_in_noise(double correlation) {

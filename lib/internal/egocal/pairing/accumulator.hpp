@@ -48,7 +48,7 @@ struct AccumulatorState {
   Rejections rejections;                   ///< gap, too much rotation; of motions of the chosen stride
 };
 
-/// What the sums over strides are still to be told: an instant, or a new beginning.
+/// A step that the sums over strides have not taken yet: an instant, or a new beginning.
 struct SumsStep {
   enum class Kind { instant, begin, restart };
 

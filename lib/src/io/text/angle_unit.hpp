@@ -27,7 +27,7 @@ struct AngleUnitOptions {
                           ///< chance has a probability of 2e-5 (Rayleigh: exp(-n R^2))
   /// [m] of the lengths of chords that are tried, each twice the one before: from below the noise of any
   /// odometry to beyond any drive. Lengths of which there are less than least_chords do not count, so both
-  /// ends are limits of the work, 31 lengths, not of what is told.
+  /// ends are limits of the work (31 lengths) and change no decision.
   double shortest_chord = 1.0 / 1024, longest_chord = 1 << 20;
   double ratio = 4;  ///< of the spreads of the directions against both readings: F of 20 and 20 degrees of
                      ///< freedom, 0.2 % by chance
