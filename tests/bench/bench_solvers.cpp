@@ -18,7 +18,11 @@
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
 #include "nlopt_rivals.hpp"
+#include "silence.hpp"
 #include "support/random_motion.hpp"
+#ifdef EGOCAL_WITH_CSDP
+#include "csdp_rival.hpp"
+#endif
 #ifdef EGOCAL_WITH_SDPA
 #include "sdpa_rival.hpp"
 #endif
@@ -127,6 +131,7 @@ class Reporter : public benchmark::ConsoleReporter {
   void print_ratios() const {
     std::printf("\n| asked | measured |\n|---|---|\n");
     at_least("dual 100 times as fast as SDPA", "sdpa", "dual", 100);
+    at_least("dual 50 times as fast as CSDP", "csdp", "dual", 50);
     at_least("dual 30 times as fast as SLSQP cold", "nlopt_slsqp_cold", "dual", 30);
     at_least("dual faster than SLSQP warm", "nlopt_slsqp_warm", "dual", 1);
     at_least("dual faster than AUGLAG + TNEWTON warm", "nlopt_auglag_warm", "dual", 1);
@@ -177,6 +182,13 @@ int main(int argc, char** argv) {
     drives(rough);
     const bench::Silence silence;
     run(state, rough, [](const Drive& d) { return bench::sdpa(d.Q); });
+  });
+#endif
+#ifdef EGOCAL_WITH_CSDP
+  benchmark::RegisterBenchmark("csdp", [](benchmark::State& state) {
+    drives(rough);
+    const bench::Silence silence;
+    run(state, rough, [](const Drive& d) { return bench::csdp(d.Q); });
   });
 #endif
   add("nlopt_slsqp_cold", rough, [identity](const Drive& d) { return bench::nlopt_slsqp(d.Q, identity); });

@@ -2,30 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sdpa_rival.hpp"
 
-#include <fcntl.h>
 #include <sdpa_call.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <iostream>
 
 namespace egocal::bench {
-
-Silence::Silence() {
-  std::fflush(stdout);
-  std::cout.flush();
-  kept_ = dup(STDOUT_FILENO);
-  const int nowhere = open("/dev/null", O_WRONLY);
-  dup2(nowhere, STDOUT_FILENO);
-  close(nowhere);
-}
-
-Silence::~Silence() {
-  std::fflush(stdout);
-  std::cout.flush();
-  dup2(kept_, STDOUT_FILENO);
-  close(kept_);
-}
 
 Multipliers sdpa(const Matrix8d& Q) {
   // min c . x subject to F1 x1 + F2 x2 - F0 >= 0, with x = lambda and indices from one
