@@ -58,6 +58,14 @@ SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen) {
   return result;
 }
 
+void SpreadByPoses::widen(double of_rotation, double of_translation) {
+  if (rotation > 0) score += std::log(of_rotation);
+  if (translation > 0) score += std::log(of_translation);
+  rotation *= of_rotation;
+  translation *= of_translation;
+  for (std::size_t i = 0; i < 6; ++i) stddev[i] *= i < 3 ? of_translation : of_rotation;
+}
+
 double standard_error(const SpreadByPoses& x, const SpreadByPoses& y) {
   double sum = 0;
   for (std::size_t i = 0; i < x.influence.size(); ++i) sum += std::pow(x.influence[i] - y.influence[i], 2);

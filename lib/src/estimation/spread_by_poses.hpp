@@ -23,6 +23,9 @@ struct SpreadByPoses {
   double translation = 0;          ///< [m]
   std::array<double, 6> stddev{};  ///< of each direction [m, rad]
   std::vector<double> influence;   ///< of each block on the score
+
+  /// Multiplies the spreads.
+  void widen(double of_rotation, double of_translation);
 };
 
 /// problem: touching blocks, as WeightedBlocks make them. The score is not finite where a block cannot be

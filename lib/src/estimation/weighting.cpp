@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "estimation/missed_noise.hpp"
 #include "estimation/spread_by_poses.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -91,6 +92,10 @@ Residuals residuals(const Ladder& ladder, const DualQuaternion& q) {
   return result;
 }
 
+double growth_of_grid(const ResidualWeightOptions& o, int k) {
+  return o.least_growth * std::pow(o.most_growth / o.least_growth, static_cast<double>(k) / o.grid);
+}
+
 /// lambda of variances 2 a + b s of motions of s steps: lambda + 1 / lambda = 2 + b / a, from the precision
 /// matrix of a random walk seen through white noise.
 double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
@@ -98,8 +103,7 @@ double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
   double best = std::numeric_limits<double>::infinity(), lambda = 0;
   const ResidualWeightOptions& o = ladder.options;
   for (int k = 0; k <= o.grid; ++k) {
-    const double growth =
-        o.least_growth * std::pow(o.most_growth / o.least_growth, static_cast<double>(k) / o.grid);
+    const double growth = growth_of_grid(o, k);
     double total = 0, mean = 0, squares = 0;
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       const double count = counts[i] / ladder.strides[i];  // independent ones
@@ -215,23 +219,55 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
   return text;
 }
 
+/// By how much the noise of motions grows with their steps, relative to that of poses: what the residuals of
+/// the rotations show beyond doubt. Those of translations also grow with the rotations' noise. Noise that is
+/// forgotten within a block of instants is noise on poses as far as omitting blocks is concerned.
+double noise_growth(const Ladder& ladder, const DualQuaternion& q, std::uint64_t block_length,
+                    const WeightingOptions& options) {
+  detail::StrideVariances seen{ladder.strides, residuals(ladder, q).rotation, {}};
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    const bool longer = ladder.strides[i] >= static_cast<double>(block_length);
+    seen.independent.push_back(longer ? ladder.turns[i] / ladder.strides[i] : 0);
+  }
+  std::vector<double> growths{0};
+  const ResidualWeightOptions& o = options.residuals;
+  for (int k = 0; k <= o.grid; ++k) growths.push_back(growth_of_grid(o, k));
+  return detail::least_growth(seen, growths, options.growth_evidence);
+}
+
 class Trials {
  public:
-  Trials(const TouchingSums& sums, const Problem& problem, std::size_t least_blocks)
-      : sums_(sums), problem_(problem), least_blocks_(least_blocks) {}
+  Trials(const TouchingSums& sums, const Problem& problem, const Ladder& ladder, std::uint64_t block_length,
+         const WeightingOptions& options)
+      : sums_(sums), problem_(problem), ladder_(ladder), block_length_(block_length), options_(options) {}
 
+  /// Of the residuals at q; without it no spread is corrected.
+  void judge_noise(const DualQuaternion& q) { growth_ = noise_growth(ladder_, q, block_length_, options_); }
   /// False where the blocks are too few for a spread.
   bool set(const StrideWeights& weights) {
     sums_.weighted(weights).fill(problem_);
-    return problem_.blocks.size() >= least_blocks_;
+    weights_ = weights;
+    return problem_.blocks.size() >= options_.least_blocks;
   }
   Seen seen() const { return detail::seen_directions(problem_); }
-  SpreadByPoses spread(const Seen& seen) const { return spread_by_poses(problem_, seen); }
+  /// With the noise that omitting blocks misses.
+  SpreadByPoses spread(const Seen& seen) const {
+    SpreadByPoses result = spread_by_poses(problem_, seen);
+    const auto missed = [&](const std::vector<double>& weights) {
+      return detail::missed_noise(ladder_.strides, weights, growth_, block_length_);
+    };
+    result.widen(missed(weights_.rotation), missed(weights_.translation));
+    return result;
+  }
 
  private:
   const TouchingSums& sums_;
   Problem problem_;
-  std::size_t least_blocks_;
+  const Ladder& ladder_;
+  std::uint64_t block_length_;
+  const WeightingOptions& options_;
+  StrideWeights weights_;
+  double growth_ = 0;
 };
 
 /// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be. shorter: the
@@ -306,7 +342,8 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
     others.push_back(with_memory(ladder, problem.mode, memory, best->q));
 
   // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights
-  Trials trials(sums, problem, options.least_blocks);
+  Trials trials(sums, problem, ladder, blocks.state().block_length, options);
+  trials.judge_noise(best->q);
   Seen seen{};
   if (!others.empty() && trials.set(others.back().weights)) seen = trials.seen();
   if (!trials.set(best->weights)) return std::nullopt;
