@@ -22,7 +22,9 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
       saved_(std::move(saved)),
       accumulation_(saved_ ? saved_->restore() : Accumulation(rig)),
       arrivals_(rig.sensors.size()),
-      published_mono_us_(rig.pairs.size()) {
+      published_mono_us_(rig.pairs.size()),
+      watched_mono_us_(loop.mono_us()),
+      listened_us_(watched_mono_us_) {
   for (std::size_t i = 0; i < rig.sensors.size(); ++i)
     loop_.subscribe_bytes(
         rig.sensors[i].channel,
@@ -34,14 +36,17 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
   hear_commands(loop_, heartbeat_, [this](Verb verb, const command_t& command) { obey(verb, command); });
   heartbeat_.on_status([this](const status_t& status) { hear(status); });
   heartbeat_.before_publish([this] { acknowledge(); });
-  loop_.after_batch([this](bool caught_up) { after_batch(caught_up); });
-  loop_.every(100ms, [this] { watch_gaps(); });
+  loop_.after_batch([this](bool caught_up) {
+    caught_up_ = caught_up;
+    after_batch(caught_up);
+  });
+  loop_.every(options_.watch_period, [this] { watch_gaps(); });
   loop_.every(1s, [this] { every_second(); });
   if (saved_ && !saved_->not_saved().empty()) not_saved(saved_->not_saved());
   const bool restored = saved_ && saved_->restored();
   if (restored) {
     patient_ = true;
-    settle_until_mono_us_ = loop_.mono_us() + options_.patience_us;
+    settle_until_us_ = listened_us() + options_.patience_us;
     heartbeat_.counter("restored") = 1;
   }
   show_state();
@@ -85,10 +90,10 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   Arrivals& arrivals = arrivals_[channel];
   const std::int64_t repeated = accumulation_.stream(channel).repeated();
   ++arrivals.count;
-  arrivals.heard_mono_us = loop_.mono_us();
+  arrivals.heard_at_us = listened_us();
   ++unacknowledged_;
   feed({Input::Kind::message, channel, arrival.bytes, arrival.mono_us});
-  if (accumulation_.stream(channel).repeated() != repeated) arrivals.repeated_mono_us = loop_.mono_us();
+  if (accumulation_.stream(channel).repeated() != repeated) arrivals.repeated_at_us = listened_us();
   if (unacknowledged_ >= options_.acknowledge_every && acknowledges_early()) heartbeat_.publish();
 }
 
@@ -166,38 +171,59 @@ void Pairing::publish_motions() {
     loop_.publish(channels_[motion.pair].motion, motion.message);
 }
 
+/// The monotonic clock without the time in which this process was stopped, or read what had come meanwhile:
+/// how long others have been silent.
+std::int64_t Pairing::listened_us() const {
+  const std::int64_t longest_us = 2 * std::chrono::microseconds(options_.watch_period).count();
+  return listened_us_ + std::min(loop_.mono_us() - watched_mono_us_, longest_us);
+}
+
+void Pairing::listen_on() {
+  const std::int64_t now = loop_.mono_us(), listened = listened_us();
+  const bool stopped = listened - listened_us_ < now - watched_mono_us_;
+  watched_mono_us_ = now;
+  catching_up_ = stopped || (catching_up_ && !caught_up_);
+  if (!catching_up_) listened_us_ = listened;
+  if (stopped) heard_again_us_ = listened_us_ + options_.heard_again_us;
+}
+
 /// A player sends again what is missing.
 void Pairing::be_patient_if_it_helps() {
-  const bool patient = loop_.mono_us() < settle_until_mono_us_ || heartbeat_.alive(bus::Role::player);
+  const std::int64_t now = listened_us();
+  const bool patient =
+      now < settle_until_us_ || heartbeat_.alive(bus::Role::player) || (patient_ && now < heard_again_us_);
   if (patient != patient_) feed({patient ? Input::Kind::patient : Input::Kind::impatient});
   patient_ = patient;
 }
 
-/// Ten times a second: what is missing and does not come.
+/// Ten times a second: what is missing and does not come. After a stop what waits in the socket is read
+/// first.
 void Pairing::watch_gaps() {
+  listen_on();
+  if (catching_up_) return;
   be_patient_if_it_helps();
-  const std::int64_t now = loop_.mono_us();
+  const std::int64_t now = listened_us();
   for (std::size_t channel = 0; channel < arrivals_.size(); ++channel) {
     const auto i = static_cast<std::uint16_t>(channel);
     Arrivals& arrivals = arrivals_[i];
     const Stream& stream = accumulation_.stream(i);
     if (!stream.gone_over())
-      arrivals.gone_over_mono_us = 0;
-    else if (arrivals.gone_over_mono_us == 0)
-      arrivals.gone_over_mono_us = now;
-    else if (now - arrivals.gone_over_mono_us >= options_.latest_us)
+      arrivals.gone_over_at_us = 0;
+    else if (arrivals.gone_over_at_us == 0)
+      arrivals.gone_over_at_us = now;
+    else if (now - arrivals.gone_over_at_us >= options_.latest_us)
       feed({Input::Kind::settled, i});
     // a player that was restarted comes to what is missing at the speed of the recording
     const bool comes =
-        patient_ && arrivals.repeated_mono_us > 0 && now - arrivals.repeated_mono_us <= options_.patience_us;
+        patient_ && arrivals.repeated_at_us > 0 && now - arrivals.repeated_at_us <= options_.patience_us;
     if (!stream.waiting()) {
-      arrivals.gap_mono_us = 0;
-      if (stream.settling() && now > settle_until_mono_us_) feed({Input::Kind::give_up, i});
-    } else if (comes || arrivals.gap_mono_us == 0 || arrivals.expected != stream.expected()) {
-      arrivals.gap_mono_us = now;
+      arrivals.gap_at_us = 0;
+      if (stream.settling() && now > settle_until_us_) feed({Input::Kind::give_up, i});
+    } else if (comes || arrivals.gap_at_us == 0 || arrivals.expected != stream.expected()) {
+      arrivals.gap_at_us = now;
       arrivals.expected = stream.expected();
-    } else if (patient_ || stream.settling() ? now - arrivals.gap_mono_us > options_.patience_us
-                                             : now - arrivals.heard_mono_us > options_.silence_us) {
+    } else if (patient_ || stream.settling() ? now - arrivals.gap_at_us > options_.patience_us
+                                             : now - arrivals.heard_at_us > options_.silence_us) {
       feed({Input::Kind::give_up, i});
     }
   }

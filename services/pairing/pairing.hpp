@@ -34,13 +34,13 @@ class Pairing {
   struct Channel {
     std::string problem, motion, scale_problem;  // of a pair
   };
-  struct Arrivals {                      // of a sensor
-    std::int64_t count = 0;              // since the start of the process
-    std::int64_t heard_mono_us = 0;      // the last one
-    std::int64_t repeated_mono_us = 0;   // the last one from before what is waited for; 0: none
-    std::int64_t gap_mono_us = 0;        // since when something is missing; 0: nothing is
-    std::int64_t expected = -1;          // its number
-    std::int64_t gone_over_mono_us = 0;  // since when the sender repeats messages; 0: it does not
+  struct Arrivals {                    // of a sensor; times are those of listened_us()
+    std::int64_t count = 0;            // since the start of the process
+    std::int64_t heard_at_us = 0;      // the last one
+    std::int64_t repeated_at_us = 0;   // the last one from before what is waited for; 0: none
+    std::int64_t gap_at_us = 0;        // since when something is missing; 0: nothing is
+    std::int64_t expected = -1;        // its number
+    std::int64_t gone_over_at_us = 0;  // since when the sender repeats messages; 0: it does not
   };
 
   void feed(const Input& input);
@@ -54,6 +54,8 @@ class Pairing {
   void publish_motions();
   void be_patient_if_it_helps();
   void give_up_what_was_not_sent(const status_t& player);
+  std::int64_t listened_us() const;
+  void listen_on();
   void watch_gaps();
   void every_second();
   void obey(Verb verb, const command_t& command);
@@ -74,9 +76,12 @@ class Pairing {
   std::vector<Channel> channels_;                // of the pairs
   std::vector<std::int64_t> published_mono_us_;  // each pair's problem
   std::optional<bus::Loop::TimerId> publish_timer_, acknowledge_timer_;
-  std::set<std::int64_t> known_runs_;  // of solvers and players
-  std::int64_t settle_until_mono_us_ = 0;
-  std::int64_t sent_ = 0;  // problems
+  std::set<std::int64_t> known_runs_;                      // of solvers and players
+  std::int64_t watched_mono_us_ = 0, listened_us_ = 0;     // at the last watch_gaps(), see listened_us()
+  std::int64_t settle_until_us_ = 0, heard_again_us_ = 0;  // of listened_us()
+  bool catching_up_ = false;  // what came while this process was stopped is still to be read
+  bool caught_up_ = true;     // by the last batch
+  std::int64_t sent_ = 0;     // problems
   std::string save_error_;
   std::int64_t save_again_mono_us_ = 0;
   int unacknowledged_ = 0;

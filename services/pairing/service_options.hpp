@@ -25,6 +25,11 @@ struct PairingServiceOptions {
   /// What the network delays comes within this time [us]: a sender that goes over its messages again has
   /// sent all of them once. Study: egocal_simulation, seeds 10140070 and 10571754.
   std::int64_t latest_us = 100'000;
+  /// Gaps are looked at this often. A process that did not for twice as long was stopped (SIGSTOP, Ctrl-Z, a
+  /// machine that slept): what nobody could hear meanwhile was not silence.
+  std::chrono::milliseconds watch_period{100};
+  /// After that a player counts as alive this long without a status [us]: it sends one a second.
+  std::int64_t heard_again_us = 1'500'000;
   /// Problems of one pair are at least this far apart [us], so that a replay at full speed costs the solvers
   /// little; every pose at 1 kHz has an answer of its own, and at more an answer covers several
   /// (docs/benchmarks.md).
