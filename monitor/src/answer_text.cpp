@@ -15,6 +15,14 @@ std::string bounded(const std::string& text) {
   return text.substr(0, Model::max_text);
 }
 
+bool sums_strides(const problem_t& problem) {
+  return problem.choice.starts_with("sum over strides");  // docs/json.md
+}
+
+std::string stride_text(const problem_t& problem) {
+  return sums_strides(problem) ? "many strides" : "stride " + std::to_string(problem.stride);
+}
+
 double scale_of(int direction) {
   return direction < 3 ? centimetres_per_metre : degrees_per_radian;
 }

@@ -62,6 +62,10 @@ std::string goal_text(const Diagnosis& diagnosis);
 std::string fit_text(const PairVerdict& verdict, Charset charset);
 /// "0.37012 ±0.0004 of camera, proven": what its lengths are multiplied by, or why that is not known.
 Label scale_text(const bus::CheckedScale& scale, Charset charset);
+/// The answer is of motions of many strides; the problem's stride is the best single one, and not in force.
+bool sums_strides(const problem_t& problem);
+/// "stride 4", "many strides".
+std::string stride_text(const problem_t& problem);
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
 /// "fast" for "egocal-fast".
 std::string short_solver(const std::string& name, std::size_t max = 12);

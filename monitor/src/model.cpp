@@ -169,7 +169,9 @@ void Model::on_problem(const problem_t& message, Now now) {
       seconds(pair->paused_mono_us, now.mono_us) > options_.settle)
     pair->paused = false;  // it was resumed, or the command was lost
   if (pair->silent) note(Severity::good, name, "the stream is back", now);
-  const bool chosen_anew = pair->has_problem && pair->problem.stride != message.stride;
+  const bool sum = sums_strides(message);
+  const bool chosen_anew = pair->has_problem && (sums_strides(pair->problem) != sum ||
+                                                 (!sum && pair->problem.stride != message.stride));
   pair->silent = false;
   pair->has_problem = true;
   pair->problem_at = now;
@@ -186,7 +188,9 @@ void Model::on_problem(const problem_t& message, Now now) {
   kept.n_blocks = 0;
   kept.blocks = {};  // verified by now, and too large to keep with every copy of the model
   if (chosen_anew)
-    note(Severity::info, name, "stride is now " + std::to_string(kept.stride) + " (" + kept.choice + ")",
+    note(Severity::info, name,
+         sum ? "the motions are now a " + kept.choice
+             : "stride is now " + std::to_string(kept.stride) + " (" + kept.choice + ")",
          now);
 
   const double share = share_of_outliers(kept);
@@ -396,6 +400,7 @@ void Model::tick(Now now) {
   now_ = now;
   watch_loops(now);
   for (ProcessState& process : processes_) {
+    if (is_own(process)) process.at = now;
     if (process.alive && seconds(process.at.mono_us, now.mono_us) > options_.heartbeat_timeout) {
       process.alive = false;
       process.rate_in = process.rate_out = -1;

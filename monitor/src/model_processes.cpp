@@ -60,6 +60,11 @@ void update_rates(ProcessState& process, Now now) {
 
 }  // namespace
 
+bool Model::is_own(const ProcessState& process) const {
+  return options_.own_pid != 0 && process.status.pid == options_.own_pid &&
+         process.status.host == options_.own_host;
+}
+
 void Model::on_status(const status_t& message, Now now) {
   now_ = now;
   ++messages_;

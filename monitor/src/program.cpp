@@ -317,6 +317,10 @@ int run(const ProgramOptions& options) {
     return 2;
   }
   ModelOptions model_options;
+  if (options.log.empty()) {
+    model_options.own_host = bus::host_name();
+    model_options.own_pid = static_cast<std::int32_t>(getpid());
+  }
   std::optional<bus::Rig> rig;
   std::string url = bus::Rig().lcm_url;
   if (!options.rig.empty()) {

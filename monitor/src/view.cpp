@@ -50,7 +50,7 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
       if (problem.time_offset_stddev >= 0)
         offset += " " + std::string(s.plus_minus) + number(problem.time_offset_stddev * 1e3, 1, view.charset);
       item(between + "offset " + offset + " ms", Style::dim);
-      item(between + "stride " + std::to_string(problem.stride), Style::dim);
+      item(between + stride_text(problem), Style::dim);
     }
   } else {
     x = pane.text(x, 0, "egocal", Style::title) + 2;

@@ -124,6 +124,47 @@ TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
                                  "no global solver", "changed from paused to ended"));
 }
 
+TEST(ModelEvents, ThisProcessIsThereWithoutANetwork) {
+  PairDrive drive;
+  ModelOptions options;
+  options.own_host = "car";
+  options.own_pid = 7;
+  drive.model = Model(options);
+  status_t own = status_of("egocal-monitor", "monitor", 1), other = own;
+  own.host = other.host = "car";
+  own.pid = 7;
+  other.pid = 8;
+  drive.heartbeat(own);
+  drive.heartbeat(other);
+  drive.run(40);
+  ASSERT_EQ(drive.model.processes().size(), 2u);
+  EXPECT_TRUE(drive.model.processes()[0].alive);
+  EXPECT_EQ(drive.model.processes()[0].at.mono_us, drive.model.now().mono_us);
+  EXPECT_FALSE(drive.model.processes()[1].alive);
+}
+
+TEST(ModelEvents, StrideChosenAnewOrAddedUp) {
+  PairDrive drive;
+  drive.run(10);
+  drive.fresh();
+  const auto choose = [&](int stride, const std::string& why) {
+    drive.change_problem = [=](problem_t& p) {
+      p.stride = stride;
+      p.choice = why;
+    };
+    drive.run(1);
+    return drive.fresh();
+  };
+  const std::string sum = "sum over strides, 1.1 steps in the mean, weighted by the residuals";
+  EXPECT_THAT(choose(16, "smallest spread"),
+              ElementsAre("lidar -> camera: stride is now 16 (smallest spread)"));
+  // the best single stride stays 16, and is not in force
+  EXPECT_THAT(choose(16, sum), ElementsAre("lidar -> camera: the motions are now a " + sum));
+  EXPECT_THAT(choose(4, sum), IsEmpty());
+  EXPECT_THAT(choose(4, "smallest spread"),
+              ElementsAre("lidar -> camera: stride is now 4 (smallest spread)"));
+}
+
 TEST(ModelEvents, SessionResetForgetsTheOldOne) {
   PairDrive drive;
   drive.run(30);

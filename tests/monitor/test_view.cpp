@@ -109,6 +109,18 @@ TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("17 rejected"));
 }
 
+TEST_F(View, AStrideThatIsNotInForceIsNotShown) {
+  EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("stride 1"));
+  send(
+      [](problem_t& p) {
+        p.stride = 16;
+        p.choice = "sum over strides, 1.1 steps in the mean, weighted by the residuals";
+      },
+      [](calibration_t&) {});
+  EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("many strides"));
+  EXPECT_THAT(shown(Screen::detail, 140, 42), Not(HasSubstr("stride 16")));
+}
+
 TEST_F(View, ProcessesSayWhoWhereAndWhatIsWrong) {
   status_t status = test::status_of("egocal-fast", "fast", 5);
   status.last_error = "no global solver is alive";

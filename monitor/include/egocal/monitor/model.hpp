@@ -50,6 +50,9 @@ struct ModelOptions {
   /// No session lasts longer: a time beyond it is not drawn [s]. A leap year.
   double longest_session = 366 * 86400.0;
   std::size_t most_reasons = 64;  ///< for which a process rejects messages: a bound on memory
+  /// This process, which is there although a network that is away brings its own status to nobody; 0: none.
+  std::string own_host{};
+  std::int32_t own_pid = 0;
 };
 
 enum class Severity { info, good, warning, bad };
@@ -207,6 +210,7 @@ class Model {
   void note_unanswered(PairState& pair, Now now);
   void watch_age_of_answer(PairState& pair, Now now);
   void watch_loops(Now now);
+  bool is_own(const ProcessState& process) const;
 
   ModelOptions options_;
   std::vector<PairState> pairs_;
