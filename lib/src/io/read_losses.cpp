@@ -11,7 +11,8 @@ std::string losses_in_words(const ReadLosses& losses) {
     add(std::to_string(losses.regions) + " damaged " + (losses.regions == 1 ? "region (" : "regions (") +
         std::to_string(losses.bytes) + " bytes) skipped");
   if (losses.truncated) add("the end is cut off");
-  if (losses.checksum) add("the checksum of the data differs");
+  if (losses.checksum)
+    add("the checksum of the data differs: they were damaged since they were written (copy the file again)");
   if (losses.refused > 0)
     add(std::to_string(losses.refused) + " without a usable pose skipped (first: " + losses.first_refused +
         ")");

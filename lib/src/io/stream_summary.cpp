@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "microseconds.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {
@@ -23,18 +24,18 @@ void StreamSummariser::add(const StampedPose& pose) {
   }
   summary_.first_us = std::min(summary_.first_us, pose.time_us);
   summary_.last_us = std::max(summary_.last_us, pose.time_us);
-  const double seconds = 1e-6 * static_cast<double>(pose.time_us - last_->time_us);
-  if (seconds <= 0) {
+  const double step = detail::seconds(pose.time_us - last_->time_us);
+  if (step <= 0) {
     ++summary_.out_of_order;
     return;
   }
-  if (steps_.size() < kept_steps) steps_.push_back(static_cast<float>(seconds));
-  if (seconds > options_.least_gap && suspect_steps_.size() < 16 * kept_steps)
-    suspect_steps_.push_back(static_cast<float>(seconds));
+  if (steps_.size() < kept_steps) steps_.push_back(static_cast<float>(step));
+  if (step > options_.least_gap && suspect_steps_.size() < 16 * kept_steps)
+    suspect_steps_.push_back(static_cast<float>(step));
   const Pose motion = to_pose(conjugate(last_->pose) * pose.pose);
   const Eigen::Vector3d turn = rotation_log(motion.rotation);
-  if (motion.translation.norm() > options_.largest_speed * seconds ||
-      turn.norm() > options_.largest_turn_rate * seconds) {
+  if (motion.translation.norm() > options_.largest_speed * step ||
+      turn.norm() > options_.largest_turn_rate * step) {
     ++summary_.jumps;
   } else {
     summary_.path_length += motion.translation.norm();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "egocal/limits.hpp"
+#include "microseconds.hpp"
 
 namespace egocal {
 
@@ -26,9 +27,9 @@ std::optional<DualQuaternion> TwistIntegrator::add(const Twist& twist) {
   if (!twist.linear.allFinite() || !twist.angular.allFinite()) return std::nullopt;
   if (last_) {
     if (twist.time_us <= last_->time_us) return std::nullopt;
-    const double seconds = 1e-6 * static_cast<double>(twist.time_us - last_->time_us);
-    const Pose step = screw(0.5 * seconds * (last_->linear + twist.linear),
-                            0.5 * seconds * (last_->angular + twist.angular));
+    const double step_s = detail::seconds(twist.time_us - last_->time_us);
+    const Pose step =
+        screw(0.5 * step_s * (last_->linear + twist.linear), 0.5 * step_s * (last_->angular + twist.angular));
     // a damaged velocity may be finite, and its way not
     const Eigen::Vector4d q(step.rotation.w(), step.rotation.x(), step.rotation.y(), step.rotation.z());
     const Eigen::Vector3d way = step.translation;

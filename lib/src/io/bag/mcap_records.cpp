@@ -112,7 +112,10 @@ bool McapRecords::next(McapRecord& record) {
       if (next_in_chunk(record)) return true;
     } else {
       consume(std::exchange(pending_, 0));
-      if (!next_in_file(record)) return in_chunk_ ? next(record) : false;
+      if (!next_in_file(record)) {
+        source_->count_unpacking(losses_);
+        return in_chunk_ ? next(record) : false;
+      }
       if (record.opcode != static_cast<std::uint8_t>(McapOpcode::chunk)) return true;
       open_chunk(record.content, false);
     }
@@ -133,7 +136,7 @@ bool McapRecords::next_in_file(McapRecord& record) {
       continue;
     }
     if (head.size() < head_size) {
-      losses_.truncated = losses_.truncated || !head.empty() || source_->unpacking_failed();
+      losses_.truncated = losses_.truncated || !head.empty();
       return false;
     }
     const auto [opcode, length] = head_of(head);

@@ -105,6 +105,7 @@ bool Rosbag1Reader::next(BagMessage& message) {
     } else {
       source_->skip(std::exchange(pending_, 0));
       if (!next_in_file(record)) {
+        source_->count_unpacking(losses_);
         if (in_chunk_) continue;  // the part of the last chunk that has arrived
         return false;
       }
@@ -125,10 +126,7 @@ bool Rosbag1Reader::next(BagMessage& message) {
 bool Rosbag1Reader::next_in_file(Record& record) {
   while (true) {
     const ByteSpan length = source_->peek(4);
-    if (length.empty()) {
-      losses_.truncated = losses_.truncated || source_->unpacking_failed();
-      return false;
-    }
+    if (length.empty()) return false;
     const std::uint32_t header_size = LittleEndian(length).u32();
     std::uint32_t data_size = 0;
     record = {};

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "egocal/error.hpp"
 
@@ -67,7 +68,10 @@ std::size_t ByteSource::read_unpacked(unsigned char* to, std::size_t size) {
         unpacker_->unpack({packed_.data() + packed_at_, packed_end_ - packed_at_}, {to, size});
     packed_at_ += step.consumed;
     const bool stuck = step.consumed == 0 && step.produced == 0;
-    unpacking_failed_ = step.failed || (stuck && !(last && unpacker_->complete()));
+    if (step.failed)
+      failure_ = step.checksum ? Failure::checksum : Failure::damaged;
+    else if (stuck && !(last && unpacker_->complete()))
+      failure_ = last ? Failure::cut_off : Failure::damaged;
     if (step.produced > 0 || stuck || step.failed) return step.produced;
   }
 }
@@ -85,7 +89,7 @@ void ByteSource::fill(std::size_t size) {
     const std::size_t room = window_.size() - filled_;
     const std::size_t got =
         unpacker_ ? read_unpacked(window_.data() + filled_, room) : read_raw(window_.data() + filled_, room);
-    end_ = got == 0 || unpacking_failed_;
+    end_ = got == 0 || failure_ != Failure::none;
     filled_ += got;
   }
 }
@@ -116,7 +120,34 @@ std::uint64_t ByteSource::skip(std::uint64_t size) {
   return passed;
 }
 
+void ByteSource::count_unpacking(ReadLosses& losses) {
+  if (std::exchange(counted_, true)) return;
+  switch (failure_) {
+    case Failure::none:
+      return;
+    case Failure::cut_off:
+      losses.truncated = true;
+      return;
+    case Failure::checksum:
+      losses.checksum = true;
+      return;
+    case Failure::damaged:
+      ++losses.regions;
+      losses.bytes += packed_left();
+      return;
+  }
+}
+
+/// Of the packed file, from where unpacking has ended; of a pipe what has been read.
+std::uint64_t ByteSource::packed_left() const {
+  const std::uint64_t read = packed_end_ - packed_at_;
+  const off_t at = seekable_ ? ::lseek(descriptor_, 0, SEEK_CUR) : -1;
+  return read +
+         (at >= 0 && static_cast<std::uint64_t>(at) < size_ ? size_ - static_cast<std::uint64_t>(at) : 0);
+}
+
 void ByteSource::rewind() {
+  counted_ = false;
   if (window_offset_ == 0) {
     position_ = 0;
     return;
@@ -125,7 +156,8 @@ void ByteSource::rewind() {
     throw error_at(file_, 0, "", "is a pipe and has to be read twice; save it to a file first");
   window_offset_ = 0;
   position_ = filled_ = packed_at_ = packed_end_ = 0;
-  end_ = unpacking_failed_ = false;
+  end_ = false;
+  failure_ = Failure::none;
   if (unpacker_) unpacker_->restart();
 }
 

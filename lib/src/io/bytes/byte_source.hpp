@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "egocal/io/trajectory_file.hpp"
 #include "io/bytes/unpacker.hpp"
 
 namespace egocal::detail {
@@ -35,8 +36,8 @@ class ByteSource {
   std::uint64_t offset() const { return window_offset_ + position_; }
   /// Bytes of the whole file where that is known: a plain file on a disk; otherwise 0.
   std::uint64_t plain_size() const { return unpacker_ ? 0 : size_; }
-  /// The packed file is damaged or cut off: unpacking ended before its end.
-  bool unpacking_failed() const { return unpacking_failed_; }
+  /// At the end: what a packed file that is damaged or cut off has lost; once until rewind().
+  void count_unpacking(ReadLosses& losses);
 
   /// Back to the first byte. Throws Error where the file is a pipe that has been read from.
   void rewind();
@@ -45,6 +46,7 @@ class ByteSource {
   void fill(std::size_t size);
   std::size_t read_raw(unsigned char* to, std::size_t size);
   std::size_t read_unpacked(unsigned char* to, std::size_t size);
+  std::uint64_t packed_left() const;
 
   std::string file_;
   int descriptor_ = -1;
@@ -53,7 +55,8 @@ class ByteSource {
   std::unique_ptr<Unpacker> unpacker_;
   std::vector<unsigned char> packed_;           ///< input of the unpacker
   std::size_t packed_at_ = 0, packed_end_ = 0;  ///< what of it is still to be unpacked
-  bool unpacking_failed_ = false, end_ = false;
+  enum class Failure { none, cut_off, damaged, checksum } failure_ = Failure::none;  ///< of unpacking
+  bool end_ = false, counted_ = false;
   std::vector<unsigned char> window_;
   std::size_t position_ = 0, filled_ = 0;  ///< in the window
   std::uint64_t window_offset_ = 0;        ///< of the window's first byte

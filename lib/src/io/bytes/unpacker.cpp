@@ -6,6 +6,7 @@
 #include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include <algorithm>
 #include <initializer_list>
@@ -17,6 +18,9 @@ namespace egocal::detail {
 namespace {
 
 constexpr std::size_t largest_step = std::numeric_limits<unsigned int>::max() / 2;
+/// Of zstd and lz4, which then ask for as much as they need for a block: what a call unpacks before it finds
+/// damage is lost, so none is given more.
+constexpr std::size_t first_input = 4;  // [bytes]
 
 class Gzip : public Unpacker {
  public:
@@ -36,8 +40,11 @@ class Gzip : public Unpacker {
     const unsigned int in = stream_.avail_in, out = stream_.avail_out;
     const int result = complete_ ? Z_OK : inflate(&stream_, Z_NO_FLUSH);
     complete_ = complete_ || result == Z_STREAM_END;
+    // of the sum and of the length at the end of the data
+    const std::string_view why = result == Z_DATA_ERROR && stream_.msg ? stream_.msg : "";
     return {in - stream_.avail_in, out - stream_.avail_out,
-            result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR};
+            result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR,
+            why == "incorrect data check" || why == "incorrect length check"};
   }
   void restart() override {
     inflateReset(&stream_);
@@ -58,7 +65,8 @@ class Bzip2 : public Unpacker {
   Bzip2& operator=(const Bzip2&) = delete;
 
   Step unpack(std::span<const unsigned char> from, std::span<unsigned char> to) override {
-    if (complete_) return {};
+    if (complete_ && from.empty()) return {};
+    if (complete_) restart();  // bzip2 files may be joined, and parallel programs write many streams
     stream_.next_in = const_cast<char*>(reinterpret_cast<const char*>(from.data()));
     stream_.avail_in = static_cast<unsigned int>(std::min(from.size(), largest_step));
     stream_.next_out = reinterpret_cast<char*>(to.data());
@@ -96,21 +104,24 @@ class Zstd : public Unpacker {
   Zstd& operator=(const Zstd&) = delete;
 
   Step unpack(std::span<const unsigned char> from, std::span<unsigned char> to) override {
-    ZSTD_inBuffer in{from.data(), from.size(), 0};
+    ZSTD_inBuffer in{from.data(), std::min(from.size(), next_), 0};
     ZSTD_outBuffer out{to.data(), to.size(), 0};
     const std::size_t result = ZSTD_decompressStream(context_, &out, &in);
     const bool failed = ZSTD_isError(result) != 0;
+    next_ = failed || result == 0 ? first_input : result;
     if (in.pos > 0 || out.pos > 0) complete_ = !failed && result == 0;
-    return {in.pos, out.pos, failed};
+    return {in.pos, out.pos, failed, ZSTD_getErrorCode(result) == ZSTD_error_checksum_wrong};
   }
   void restart() override {
     ZSTD_DCtx_reset(context_, ZSTD_reset_session_only);
+    next_ = first_input;
     complete_ = false;
   }
   bool complete() const override { return complete_; }
 
  private:
   ZSTD_DCtx* context_;
+  std::size_t next_ = first_input;
   bool complete_ = false;
 };
 
@@ -124,20 +135,24 @@ class Lz4 : public Unpacker {
   Lz4& operator=(const Lz4&) = delete;
 
   Step unpack(std::span<const unsigned char> from, std::span<unsigned char> to) override {
-    std::size_t in = from.size(), out = to.size();
+    std::size_t in = std::min(from.size(), next_), out = to.size();
     const std::size_t result = LZ4F_decompress(context_, to.data(), &out, from.data(), &in, nullptr);
     const bool failed = LZ4F_isError(result) != 0;
+    next_ = failed || result == 0 ? first_input : result;
     if (in > 0 || out > 0) complete_ = !failed && result == 0;
-    return {in, out, failed};
+    return {in, out, failed,
+            failed && std::string_view(LZ4F_getErrorName(result)) == "ERROR_contentChecksum_invalid"};
   }
   void restart() override {
     LZ4F_resetDecompressionContext(context_);
+    next_ = first_input;
     complete_ = false;
   }
   bool complete() const override { return complete_; }
 
  private:
   LZ4F_dctx* context_ = nullptr;
+  std::size_t next_ = first_input;
   bool complete_ = false;
 };
 

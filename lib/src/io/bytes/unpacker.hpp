@@ -16,6 +16,7 @@ class Unpacker {
   struct Step {
     std::size_t consumed = 0, produced = 0;  ///< [bytes]
     bool failed = false;                     ///< the packed bytes are damaged; nothing more can be unpacked
+    bool checksum = false;                   ///< then: all of them were unpacked, and their checksum differs
   };
   virtual ~Unpacker() = default;
   virtual Step unpack(std::span<const unsigned char> from, std::span<unsigned char> to) = 0;

@@ -122,7 +122,7 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
     images.push_back(std::move(image));
     lines.next(line);  // the points seen in it; the line is empty where there are none
   }
-  losses_.truncated = losses_.truncated || source_->unpacking_failed();
+  source_->count_unpacking(losses_);
   if (images.empty()) throw error_at(file_, 0, "", "holds no data");
 
   const std::optional<TimeUnit> unit = unit_of(largest);

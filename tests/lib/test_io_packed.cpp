@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Packed files (gzip, zstd, bzip2, lz4): what is cut off, damaged, or has another checksum is three things.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "../support/bag_writer.hpp"
+#include "../support/random_motion.hpp"
+#include "../support/scratch_folder.hpp"
+#include "egocal/io/recording.hpp"
+#include "egocal/io/trajectory_file.hpp"
+
+namespace egocal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::size_t poses = 4000;  // more than is unpacked at once
+
+std::string tum() {
+  testing::Random random(1);
+  std::string text;
+  for (std::size_t i = 0; i < poses; ++i) {
+    const Pose pose = to_pose(testing::random_extrinsic(random));
+    char line[200];
+    std::snprintf(line, sizeof line, "%zu.5 %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", 1'700'000'000 + i,
+                  pose.translation.x(), pose.translation.y(), pose.translation.z(), pose.rotation.x(),
+                  pose.rotation.y(), pose.rotation.z(), pose.rotation.w());
+    text += line;
+  }
+  return text;
+}
+
+/// With a checksum of the whole at the end.
+std::string packed(const std::string& kind, const std::string& plain) {
+  if (kind == "bz2") return testing::packed("bz2", plain);
+  std::string out(plain.size() + 1000, '\0');
+  if (kind == "gz") {
+    z_stream stream{};
+    deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(plain.data()));
+    stream.avail_in = static_cast<unsigned int>(plain.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = static_cast<unsigned int>(out.size());
+    deflate(&stream, Z_FINISH);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+  } else if (kind == "zst") {
+    ZSTD_CCtx* const context = ZSTD_createCCtx();
+    ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+    out.resize(ZSTD_compress2(context, out.data(), out.size(), plain.data(), plain.size()));
+    ZSTD_freeCCtx(context);
+  } else {
+    LZ4F_preferences_t preferences{};
+    preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+    out.resize(LZ4F_compressFrame(out.data(), out.size(), plain.data(), plain.size(), &preferences));
+  }
+  return out;
+}
+
+class Packed : public ::testing::Test {
+ protected:
+  TrajectoryReading read(const std::string& content) const {
+    return read_trajectory_file(folder_.file("file", content));
+  }
+  testing::ScratchFolder folder_;
+  std::string plain_ = tum();
+};
+
+TEST_F(Packed, AWrongChecksumIsNamedAsOneAndNotAsAnEndThatIsCutOff) {
+  for (const std::string kind : {"gz", "zst", "lz4"}) {
+    std::string file = packed(kind, plain_);
+    // of gzip's eight bytes the first four are the sum
+    file[file.size() - (kind == "gz" ? 8 : 1)] ^= 0x55;
+    const TrajectoryReading reading = read(file);
+    EXPECT_EQ(reading.trajectory.size(), poses) << kind;
+    EXPECT_TRUE(reading.losses.checksum) << kind;
+    EXPECT_FALSE(reading.losses.truncated) << kind;
+    EXPECT_EQ(reading.losses.regions, 0u) << kind;
+    EXPECT_THAT(reading.notes, Contains(AllOf(HasSubstr("checksum"), HasSubstr("copy the file again"),
+                                              Not(HasSubstr("cut off")))))
+        << kind;
+  }
+}
+
+TEST_F(Packed, AnEndThatIsCutOffIsNamedAsOne) {
+  for (const std::string kind : {"gz", "zst", "lz4"}) {
+    const std::string file = packed(kind, plain_);
+    for (const std::size_t kept : {file.size() - 1, file.size() / 2}) {
+      const TrajectoryReading reading = read(file.substr(0, kept));
+      EXPECT_GT(reading.trajectory.size(), poses / 4) << kind;
+      EXPECT_TRUE(reading.losses.truncated) << kind;
+      EXPECT_FALSE(reading.losses.checksum) << kind;
+    }
+  }
+}
+
+TEST_F(Packed, DamageInTheMiddleIsARegionThatIsCounted) {
+  for (const std::string kind : {"zst", "bz2"}) {  // of gzip rubbish may come out before the damage is seen
+    std::string file = packed(kind, plain_);
+    for (std::size_t i = file.size() / 2; i < file.size() / 2 + 200; ++i) file[i] = '\xa5';
+    const TrajectoryReading reading = read(file);
+    EXPECT_LT(reading.trajectory.size(), poses) << kind;
+    EXPECT_GT(reading.trajectory.size(), poses / 10) << kind;
+    EXPECT_GE(reading.losses.regions, 1u) << kind;
+    EXPECT_GT(reading.losses.bytes, 0u) << kind;
+    EXPECT_FALSE(reading.losses.checksum) << kind;
+  }
+}
+
+TEST_F(Packed, LossesAreThoseOfEachTimeItIsRead) {
+  std::string file = packed("gz", plain_.substr(0, 1000));
+  file[file.size() - 8] ^= 0x55;
+  const std::unique_ptr<Recording> recording = open_recording(folder_.file("file", file));
+  for (int time = 0; time < 3; ++time) {
+    recording->read("", [](std::size_t, const StampedPose&) {});
+    EXPECT_TRUE(recording->losses().checksum) << time;
+  }
+}
+
+TEST_F(Packed, FilesThatWereJoinedAreReadToTheEnd) {
+  const std::size_t half = plain_.find('\n', plain_.size() / 2) + 1;
+  for (const std::string kind : {"gz", "zst", "bz2", "lz4"}) {
+    const TrajectoryReading reading =
+        read(packed(kind, plain_.substr(0, half)) + packed(kind, plain_.substr(half)));
+    EXPECT_EQ(reading.trajectory.size(), poses) << kind;
+    EXPECT_FALSE(reading.losses.any()) << kind;
+  }
+}
+
+}  // namespace
+}  // namespace egocal
