@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "../support/scratch_folder.hpp"
@@ -173,6 +174,56 @@ TEST_F(Tables, TimesSinceASensorWasSwitchedOnKeepTheirUnit) {
       EXPECT_EQ(poses.front().time_us, begin_s * 1'000'000) << second << " a second";
       EXPECT_EQ(poses.back().time_us, begin_s * 1'000'000 + 1'950'000) << second << " a second";
     }
+}
+
+TEST_F(Tables, DecimalCommasAreReadWhereNothingElseIsMeant) {
+  const std::string commas =
+      "1000000000 1,0 2,0 3,0 0 0 0,7071068 0,7071068\n"
+      "1000000000,1 4,0 5,0 6,0 0 0 0,7071068 0,7071068\n";
+  std::string tabs = commas, semicolons = commas;
+  std::replace(tabs.begin(), tabs.end(), ' ', '\t');
+  std::replace(semicolons.begin(), semicolons.end(), ' ', ';');
+  for (const std::string& rows : {commas, tabs, semicolons}) expect_two_poses(rows);
+  expect_two_poses("t x y z qx qy qz qw\n" + commas);
+  // every field of the first row has one, and it is no header
+  expect_two_poses(
+      "1000000000,0;1,0;2,0;3,0;0,0;0,0;0,7071068;0,7071068\n"
+      "1000000000,1;4,0;5,0;6,0;0,0;0,0;0,7071068;0,7071068\n");
+  // a last row of whole numbers
+  EXPECT_EQ(read("t;x;y;z;yaw\n1,5;1;2;3;0\n2;1;2;3;0\n").trajectory.front().time_us, 1'500'000);
+}
+
+TEST_F(Tables, ADecimalCommaAmongPointsIsNamed) {
+  const std::string cure = "; write decimals with a point";
+  expect_error("1.5 2,3 1.0 0 0 0 0 1\n1.6 2.4 1,0 0 0 0 0 1\n", "(tx): expected a number, got '2,3'" + cure);
+  expect_error("1.5 2.3 1.0 0 0 0 0 1\n1.6 2.4 1,0 0 0 0 0 1\n",
+               ":2: field 3 (ty): expected a number, got '1,0'" + cure);
+  expect_error("t;x;y;yaw\n1.5;2.5;3.5;0\n1,6;2;3;0\n", "'1,6'" + cure);
+  expect_error("t,x,y,z,yaw\n\"1,5\",\"2,5\",0,0,0\n", cure);
+}
+
+TEST_F(Tables, AFileWithoutAnyPoseIsNotAskedForByAName) {
+  const std::string refused = "2 without a usable pose skipped (first: line 2: an empty field)";
+  try {
+    read("t,x,y,yaw\n0,,,\n1,,,\n");
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              folder_.path("table") + ": holds no pose that can be read; " + refused);
+  }
+}
+
+TEST_F(Tables, RowsLongerThanTheirHeaderAreNotGuessedAt) {
+  // decimal commas between commas, or a first column that has no name
+  expect_error(
+      "t,x,y,z,qx,qy,qz,qw\n1,5,2,3,1,0,0,0,0,0,1\n",
+      ":2: expected 8 fields, as the header has names, got 11; write decimals with a point, or name the "
+      "columns with --columns");
+  expect_error("t x y yaw\n0 1.5 2 3 0\n", ":2: expected 4 fields, as the header has names, got 5");
+  EXPECT_EQ(read("t,x,y,yaw\n0,1,2,0,\n", {}).trajectory.size(), 1u);  // a comma behind the last field
+  ReadOptions named;
+  named.columns = "-,t,x,y,yaw";
+  EXPECT_EQ(read("t,x,y,yaw\n0,1,2,3,0\n", named).trajectory.size(), 1u);
 }
 
 TEST_F(Tables, ALastRowThatIsCutOffIsCounted) {

@@ -97,11 +97,23 @@ bool parse_number(std::string_view text, double& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+bool has_decimal_comma(std::string_view text) {
+  std::string with_point(text);
+  const std::size_t comma = with_point.find(',');
+  if (comma == std::string::npos || comma + 1 == with_point.size()) return false;
+  with_point[comma] = '.';
+  double value = 0;
+  return comma > 0 && with_point[comma - 1] >= '0' && with_point[comma - 1] <= '9' &&
+         with_point[comma + 1] >= '0' && with_point[comma + 1] <= '9' && parse_number(with_point, value);
+}
+
 void throw_not_a_number(const std::string& file, long line, const std::string& field, std::string_view text) {
   double value = 0;
+  // a comma within quotes has parted the field
+  const bool comma = has_decimal_comma(text) || (text.starts_with('"') && !text.ends_with('"'));
   throw error_at(file, line, field,
                  std::string("expected a ") + (parse_number(text, value) ? "finite " : "") + "number, got " +
-                     quoted(text));
+                     quoted(text) + (comma ? "; write decimals with a point" : ""));
 }
 
 double number(const std::string& file, long line, const std::string& field, std::string_view text) {

@@ -30,6 +30,8 @@ void split(std::string_view text, char separator, std::vector<std::string_view>&
 
 /// The number that fills the whole text. False where there is none; it may be infinite or NaN.
 bool parse_number(std::string_view text, double& value);
+/// "1,25": a number of a country that writes decimals so.
+bool has_decimal_comma(std::string_view text);
 /// A finite number. Throws Error naming file, line and field.
 double number(const std::string& file, long line, const std::string& field, std::string_view text);
 /// The error of a text that is no finite number.

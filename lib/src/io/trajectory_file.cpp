@@ -82,6 +82,16 @@ std::string full_name(const std::vector<RecordedStream>& streams, const std::str
   return !topic.empty() && !known(head) && known("/" + head) ? "/" + topic : topic;
 }
 
+/// name: what was asked for; empty: the only stream. Text has one without a name.
+Error no_pose(const Recording& recording, const std::string& name) {
+  const std::vector<RecordedStream>& streams = recording.streams();
+  const bool nameless = streams.size() == 1 && streams.front().name.empty();
+  return error_at(recording.file(), 0, detail::printable(name),
+                  (name.empty() ? "holds no pose that can be read" : "no pose under this name") +
+                      (nameless ? "" : "; " + detail::topics_in_words(streams)) +
+                      (recording.losses().any() ? "; " + losses_in_words(recording.losses()) : ""));
+}
+
 }  // namespace
 
 void put_in_order(TrajectoryReading& reading) {
@@ -133,10 +143,7 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
   if (reading.trajectory.empty() && !looked && name.find(':') != std::string::npos)
     read_chain(recording, name, reading);
   reading.losses = recording.losses();
-  if (reading.trajectory.empty())
-    throw error_at(recording.file(), 0, detail::printable(name),
-                   "no pose under this name; " + detail::topics_in_words(recording.streams()) +
-                       (reading.losses.any() ? "; " + losses_in_words(reading.losses) : ""));
+  if (reading.trajectory.empty()) throw no_pose(recording, name);
   reading.format = recording.format();
   reading.stream = name;
   put_in_order(reading);

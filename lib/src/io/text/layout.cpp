@@ -102,24 +102,48 @@ Sniffed sniff(ByteSource& source) {
   return sniffed;
 }
 
-char separator_of(std::string_view line) {
-  if (line.find(';') != std::string_view::npos) return ';';
-  return line.find(',') != std::string_view::npos ? ',' : ' ';
-}
-
 bool is_number(std::string_view text) {
   double value = 0;
   return parse_number(text, value);
+}
+
+/// Between blanks or tabs there are numbers only, some with a decimal comma.
+bool has_commas_in_numbers(std::string_view line) {
+  std::vector<std::string_view> fields;
+  split(line, ' ', fields);
+  return fields.size() >= 3 && std::all_of(fields.begin(), fields.end(), [](std::string_view field) {
+           return is_number(field) || has_decimal_comma(field);
+         });
+}
+
+char separator_of(std::string_view line) {
+  if (line.find(';') != std::string_view::npos) return ';';
+  return line.find(',') != std::string_view::npos && !has_commas_in_numbers(line) ? ',' : ' ';
 }
 
 /// Names instead of numbers: the first field is a word, and so are most of the others.
 bool is_header(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   split(line, separator, fields);
-  const auto words =
-      std::count_if(fields.begin(), fields.end(), [](std::string_view field) { return !is_number(field); });
+  const auto words = std::count_if(fields.begin(), fields.end(), [](std::string_view field) {
+    return !is_number(field) && !has_decimal_comma(field);
+  });
   return fields.size() >= 3 && !is_number(fields[0]) &&
          2 * words > static_cast<std::ptrdiff_t>(fields.size());
+}
+
+/// In the numbers of a file that has no decimal point.
+bool has_decimal_commas(const Sniffed& sniffed, char separator) {
+  bool any = false;
+  std::vector<std::string_view> fields;
+  for (const Line& line : sniffed.data) {
+    split(line.text, separator, fields);
+    for (const std::string_view field : fields) {
+      any = any || has_decimal_comma(field);
+      if (field.find('.') != std::string_view::npos && is_number(field)) return false;
+    }
+  }
+  return any;
 }
 
 /// The header's names, of which those of a quantity become columns.
@@ -396,13 +420,14 @@ void set_time_unit(TextLayout& layout, const Sniffed& sniffed) {
 }  // namespace
 
 TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
-  const Sniffed sniffed = sniff(source);
+  Sniffed sniffed = sniff(source);
   if (sniffed.data.empty()) throw error_at(source.file(), 0, "", "holds no data");
   TextLayout layout;
   layout.separator = separator_of(sniffed.data.back().text);
-  const std::string_view sample = sniffed.data.back().text;
-  layout.decimal_comma = layout.separator == ';' && sample.find(',') != std::string_view::npos &&
-                         sample.find('.') == std::string_view::npos;
+  layout.decimal_comma = layout.separator != ',' && has_decimal_commas(sniffed, layout.separator);
+  if (layout.decimal_comma)
+    for (Line& line : sniffed.data)
+      if (!is_header(line.text, layout.separator)) std::replace(line.text.begin(), line.text.end(), ',', '.');
   std::vector<std::string_view> row;
   split(sniffed.data.front().text, layout.separator, row);
   if (!set_named(layout, sniffed, options, source.file()) && !set_ros2_csv(layout, row) &&

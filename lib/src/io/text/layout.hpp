@@ -17,7 +17,7 @@ namespace egocal::detail {
 struct TextLayout {
   std::string format;          ///< "TUM", "EuRoC csv", "KITTI", "table"
   char separator = ' ';        ///< ' ' for blanks and tabs, ',' or ';'
-  bool decimal_comma = false;  ///< 1,5 between semicolons
+  bool decimal_comma = false;  ///< 1,5 between semicolons, blanks or tabs
   long header_line = 0;        ///< that holds names and no data; 0: none
   ColumnMap columns;           ///< of formats with columns
   bool matrix = false;         ///< rows of a 3 x 4 pose matrix, after a first column where first_column is 1

@@ -14,6 +14,7 @@
 #include "io/text/geodesy.hpp"
 #include "io/text/line_reader.hpp"
 #include "io/text/rotation_rows.hpp"
+#include "microseconds.hpp"
 
 namespace egocal::detail {
 
@@ -201,7 +202,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
 double TextRecording::seconds_of_row(const Rows& rows) const {
   if (rows.fields.size() < layout_.fields) return 0;
   try {
-    return 1e-6 * static_cast<double>(time_of_row(rows));
+    return seconds(time_of_row(rows));
   } catch (const Error&) {
     return 0;
   }
@@ -246,7 +247,7 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
       take(0, *pose);
     }
   }
-  losses_.truncated = losses_.truncated || source_->unpacking_failed();
+  source_->count_unpacking(losses_);
   if (rows.count == 0) throw error_at(file_, 0, "", "holds no data");
   if (!times_.empty() && times_.size() != rows.count)
     throw error_at(options_.times_file, 0, "",
@@ -289,6 +290,12 @@ std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
                        std::to_string(n) +
                        (rows.count == 1 && !layout_.matrix ? "; name other columns with --columns" : ""));
   }
+  if (layout_.header_line > 0 && options_.columns.empty() && n > layout_.names.size())
+    throw error_at(file_, rows.lines.number(), "",
+                   "expected " + std::to_string(layout_.names.size()) +
+                       " fields, as the header has names, got " + std::to_string(n) +
+                       (layout_.separator == ',' ? "; write decimals with a point, or" : ";") +
+                       " name the columns with --columns t,x,y,z,qx,qy,qz,qw");
   if (layout_.format == "table")
     for (const auto& column : layout_.columns.of)
       if (column && rows.fields[column->index].empty()) return empty_field();
@@ -335,7 +342,8 @@ double TextRecording::value(const Rows& rows, std::size_t index) const {
         layout_.matrix ? (index >= layout_.first_column ? matrix[index - layout_.first_column] : "time")
                        : (index < layout_.names.size() ? layout_.names[index] : "");
     const std::string field = "field " + std::to_string(index + 1) + " (" + name.substr(0, 100) + ")";
-    if (rows.count == 1 && !layout_.matrix && layout_.format != "table")
+    if (rows.count == 1 && !layout_.matrix && layout_.format != "table" &&
+        !has_decimal_comma(rows.fields[index]))
       throw error_at(file_, rows.lines.number(), field,
                      "expected a number, got " + quoted(rows.fields[index]) +
                          "; name the columns with --columns t,x,y,z,qx,qy,qz,qw (- for others)");
