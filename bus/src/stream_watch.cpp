@@ -3,8 +3,6 @@
 #include "egocal/bus/stream_watch.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "egocal/bus/channels.hpp"
@@ -33,16 +31,10 @@ std::optional<Refusal> add(HeardStream& stream, std::size_t most_refusals, const
   return stream.refusals.back();
 }
 
-/// How fast the times of a stream run, where it is one of the usual mistakes.
-const char* wrong_unit(double pace) {
-  const auto near = [pace](double factor) { return pace > factor / 1.5 && pace < factor * 1.5; };
-  return near(1e3) ? "nanoseconds" : near(1e-3) ? "milliseconds" : near(1e-6) ? "seconds" : nullptr;
-}
-
 }  // namespace
 
 StreamWatch::StreamWatch(const std::vector<Sensor>& sensors, const StreamWatchOptions& options)
-    : options_(options), counting_(sensors.size()) {
+    : options_(options), counting_(sensors.size()), clocks_(sensors.size(), StreamClock(options.clock)) {
   for (const Sensor& sensor : sensors) sensors_.push_back({sensor, std::nullopt});
 }
 
@@ -59,36 +51,20 @@ void StreamWatch::count(HeardStream& stream, Counting& counting, std::int64_t mo
   counting.in_window = 1;
 }
 
-std::optional<Refusal> StreamWatch::examine(HeardStream& stream, Counting& counting, const Sensor& sensor,
-                                            Bytes bytes, std::int64_t mono_us) {
+std::optional<Refusal> StreamWatch::examine(HeardStream& stream, StreamClock& clock, const Sensor& sensor,
+                                            Bytes bytes, std::int64_t mono_us) const {
   const ReceivedOdometry odometry = decode_odometry(sensor, bytes);
   if (!odometry.decoded)
     return add(stream, options_.most_refusals, "not decodable", cure_of("not decodable", sensor.type, bytes));
   if (!odometry.pose)
     return add(stream, options_.most_refusals, odometry.pose.reason,
                cure_of(odometry.pose.reason, sensor.type, bytes));
-  const std::int64_t time = odometry.pose.value->time_us;
-  counting.at_same_time = time == counting.last_time_us ? counting.at_same_time + 1 : 0;
-  counting.last_time_us = time;
-  if (counting.at_same_time >= options_.most_at_same_time)
-    return add(stream, options_.most_refusals, "the same time again",
-               "the time does not advance: " + std::to_string(time) +
-                   " us: fill utime with the time of the measurement.");
-  if (counting.first_mono_us == 0 || time < counting.first_time_us) {
-    counting.first_mono_us = mono_us;
-    counting.first_time_us = time;
-  }
-  const std::int64_t elapsed = mono_us - counting.first_mono_us;
-  if (elapsed < options_.pace_window_us) return std::nullopt;
-  const double pace = static_cast<double>(time - counting.first_time_us) / static_cast<double>(elapsed);
-  counting.first_mono_us = mono_us;
-  counting.first_time_us = time;
-  const char* const unit = wrong_unit(pace);
-  if (!unit) return std::nullopt;
-  char text[200];
-  std::snprintf(text, sizeof text, "its time runs %.2g times as fast as the clock: %s? Send microseconds.",
-                pace, unit);
-  return add(stream, options_.most_refusals, "unit of time", text);
+  const StampedPose& pose = *odometry.pose.value;
+  const Eigen::Vector3d place = to_pose(pose.pose).translation;
+  const std::optional<ClockFault> fault =
+      clock.hear({pose.time_us, mono_us, odometry.seq, {place.x(), place.y(), place.z()}});
+  if (!fault) return std::nullopt;
+  return add(stream, options_.most_refusals, fault->reason, fault->cure);
 }
 
 std::optional<Refusal> StreamWatch::hear(const std::string& channel, Bytes bytes, std::int64_t mono_us) {
@@ -98,7 +74,7 @@ std::optional<Refusal> StreamWatch::hear(const std::string& channel, Bytes bytes
     if (!stream.heard) stream.heard.emplace().channel = channel;
     count(*stream.heard, counting_[i], mono_us);
     stream.heard->type = type_name(bytes);
-    return examine(*stream.heard, counting_[i], stream.sensor, bytes, mono_us);
+    return examine(*stream.heard, clocks_[i], stream.sensor, bytes, mono_us);
   }
   if (channel.starts_with("EGOCAL_")) return std::nullopt;
   const auto entry = others_.find(channel);

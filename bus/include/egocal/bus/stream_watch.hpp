@@ -12,6 +12,7 @@
 
 #include "egocal/bus/bytes.hpp"
 #include "egocal/bus/rig.hpp"
+#include "egocal/bus/stream_clock.hpp"
 
 namespace egocal::bus {
 
@@ -48,10 +49,7 @@ struct StreamLine {
 /// Study: tests/bus/test_stream_watch.cpp.
 struct StreamWatchOptions {
   std::int64_t rate_window_us = 2'000'000;  ///< the rate is counted over this: two messages of 1 Hz [us]
-  /// Times of a stream are compared with the clock after this long [us]: a wrong unit is off by a thousand.
-  std::int64_t pace_window_us = 3'000'000;
-  /// Messages in a row with the same time: five are no accident.
-  std::int64_t most_at_same_time = 5;
+  StreamClockOptions clock;
   std::int64_t silent_us = 2'000'000;  ///< a stream without messages for this long is silent [us]
   std::size_t most_others = 64;        ///< channels that no sensor names: a bound on memory
   std::size_t most_refusals = 16;      ///< kinds, of one channel: a bound on memory
@@ -77,16 +75,15 @@ class StreamWatch {
  private:
   struct Counting {
     std::int64_t window_begin_us = 0, in_window = 0;
-    std::int64_t first_time_us = 0, first_mono_us = 0, last_time_us = -1;
-    std::int64_t at_same_time = 0;
   };
   void count(HeardStream& stream, Counting& counting, std::int64_t mono_us) const;
-  std::optional<Refusal> examine(HeardStream& stream, Counting& counting, const Sensor& sensor, Bytes bytes,
-                                 std::int64_t mono_us);
+  std::optional<Refusal> examine(HeardStream& stream, StreamClock& clock, const Sensor& sensor, Bytes bytes,
+                                 std::int64_t mono_us) const;
 
   StreamWatchOptions options_;
   std::vector<SensorStream> sensors_;
-  std::vector<Counting> counting_;  ///< of the sensors
+  std::vector<Counting> counting_;   ///< of the sensors
+  std::vector<StreamClock> clocks_;  ///< likewise
   std::map<std::string, HeardStream> others_;
   std::map<std::string, Counting> others_counting_;
 };
