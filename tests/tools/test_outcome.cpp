@@ -62,10 +62,10 @@ TEST_F(OutcomeTest, WithoutTheEndThatNoSolverAnsweredIsUnusable) {
   EXPECT_TRUE(outcome().unusable);
   EXPECT_THAT(outcome().text,
               StartsWith("left -> right: old answer, the last 5.0 s of the log are not in it (no "
-                         "solver answered them). Before: the last 5.0 s are not judged; before: "
-                         "good: "));
+                         "solver answered them), and the last 5.0 s are not judged. Before: good: "));
   answers.hear(answer(later));
   EXPECT_FALSE(outcome().unusable) << "the verdict alone is missing, and that is said";
+  EXPECT_THAT(outcome().text, StartsWith("left -> right: the last 5.0 s are not judged. Before: good: "));
 }
 
 TEST_F(OutcomeTest, WithoutTheEndThatPairingDidNotReadIsUnusable) {

@@ -42,14 +42,14 @@ double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_
   return least.value_or(0) > options.least_missing ? *least : 0;
 }
 
-/// A verdict that does not know the end of the drive states that first.
-std::string judgement_of(const PairName& pair, const Answers& answers) {
+/// What neither the answer (missing: how much, and why) nor the verdict knows of the end of the drive comes
+/// first.
+std::string judgement_of(const PairName& pair, const Answers& answers, const std::string& missing) {
   const Diagnosis* const diagnosis = answers.diagnosis(pair);
-  if (!diagnosis) return "not judged";
-  const double rest = answers.seconds_not_judged(pair).value_or(0);
-  const bool to_the_end = answers.judged_to_the_end(pair) || rest == 0;
-  return (to_the_end ? "" : fmt::format("the last {:.1f} s are not judged; before: ", rest)) +
-         verdict_line(*diagnosis);
+  const double rest = answers.judged_to_the_end(pair) ? 0 : answers.seconds_not_judged(pair).value_or(0);
+  const std::string unjudged = rest > 0 ? fmt::format("the last {:.1f} s are not judged", rest) : "";
+  const std::string end = missing + (missing.empty() || unjudged.empty() ? "" : ", and ") + unjudged;
+  return end + (end.empty() ? "" : ". Before: ") + (diagnosis ? verdict_line(*diagnosis) : "not judged");
 }
 
 /// Empty: the answer knows the end of the log.
@@ -57,12 +57,12 @@ std::string missing_end(const PairName& pair, const Answers& answers, double unr
   const double unanswered = answers.seconds_not_answered(pair);
   if (answers.answered_to_the_end(pair) && unread == 0) return {};
   return fmt::format(
-      "old answer, the last {:.1f} s of the log are not in it ({}). Before: ", unanswered + unread,
+      "old answer, the last {:.1f} s of the log are not in it ({})", unanswered + unread,
       answers.answered_to_the_end(pair) ? "pairing did not read them" : "no solver answered them");
 }
 
 /// Of a pair that has an answer.
-std::string line_of(const PairName& pair, const Answers& answers, const std::string& first,
+std::string line_of(const PairName& pair, const Answers& answers, const std::string& missing,
                     double not_in_session) {
   const Answers::Best& best = *answers.best(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
@@ -71,7 +71,7 @@ std::string line_of(const PairName& pair, const Answers& answers, const std::str
   std::string text = fmt::format(
       "{} -> {}: {}\n  {}, {} motion pairs; "
       "translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} {:.5f} {:.5f} {:.5f}\n",
-      pair.first, pair.second, first + judgement_of(pair, answers),
+      pair.first, pair.second, judgement_of(pair, answers, missing),
       answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
       T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
   if (not_in_session > 0)
