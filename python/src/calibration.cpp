@@ -18,8 +18,11 @@ using namespace pybind11::literals;
 /// "equal", "auto", or a pair of numbers (rotation, translation).
 void set_weights(const py::object& weights, PairingOptions& pairing, bool stride_given) {
   if (!py::isinstance<py::str>(weights)) {
-    const auto pair = weights.cast<std::pair<double, double>>();
-    pairing.balance = Balance{pair.first, pair.second};
+    constexpr const char* expected = "'auto', 'equal' or a pair of numbers";
+    const Array pair = to_array(weights, "weights", expected);
+    if (pair.ndim() != 1 || pair.size() != 2)
+      throw py::value_error(std::string("weights: expected ") + expected);
+    pairing.balance = Balance{pair.data()[0], pair.data()[1]};
     return;
   }
   const auto text = weights.cast<std::string>();
@@ -54,11 +57,17 @@ CalibrationOptions options_of(const std::string& method, const py::object& plane
       throw py::value_error("time_offset: expected seconds or 'auto'");
     options.estimate_time_offset = true;
   } else {
-    options.pairing.time_offset = time_offset.cast<double>();
+    options.pairing.time_offset = to_number(time_offset, "time_offset", "seconds or 'auto'");
   }
   options.pairing.max_gap = max_gap;
-  if (!nominal.is_none())
-    options.pairing.prior = to_dual_quaternion(to_pose(nominal.cast<Eigen::Matrix4d>(), "nominal"));
+  if (!nominal.is_none()) {
+    const Array matrix = to_array(nominal, "nominal", "a (4, 4) matrix");
+    if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+      throw py::value_error("nominal: expected a (4, 4) matrix");
+    using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    const Eigen::Matrix4d pose = Eigen::Map<const Rows>(matrix.data());
+    options.pairing.prior = to_dual_quaternion(to_pose(pose, "nominal"));
+  }
   return options;
 }
 

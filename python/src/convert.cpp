@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "egocal/io/trajectory_file.hpp"
@@ -20,11 +21,41 @@ namespace {
   throw py::value_error(std::string(name) + ": " + why);
 }
 
+constexpr const char* forms =
+    "a file name, an (N, 8) array of t x y z qx qy qz qw, or a pair of times (N,) and matrices (N, 4, 4)";
+
+std::string text(const char* format, double value) {
+  char buffer[100];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
 std::int64_t to_microseconds(double seconds, const char* name, py::ssize_t row) {
   // beyond this a double no longer holds microseconds, and times subtract without overflow below it
   if (!std::isfinite(seconds) || std::abs(seconds) > 9e9)
-    refuse(name, "row " + std::to_string(row) + ": expected a time in seconds");
+    refuse(name, "row " + std::to_string(row) + ": expected a time in seconds, got " + text("%.4g", seconds));
   return std::llround(seconds * 1e6);
+}
+
+/// Numbers of four bytes hold a date to two minutes. times: the first numbers of the rows.
+void require_fine_times(const py::handle& object, double largest, const char* name) {
+  constexpr double coarsest = 1e-3;  // [s]: a tenth of the period of a fast sensor
+  const py::array array = py::array::ensure(object);
+  if (!array || array.dtype().kind() != 'f' || array.itemsize() >= 8) return;
+  const double step = largest * (array.itemsize() == 4 ? 0x1p-23 : 0x1p-10);
+  if (step > coarsest)
+    refuse(name, "its times are " + text("%.2g", step) + " s apart in float" +
+                     std::to_string(8 * array.itemsize()) + ": give them as float64");
+}
+
+/// Why this is no pose; empty: it is one. The limits of poses in files.
+std::string fault_of(const Eigen::Vector3d& position, const Eigen::Vector4d& quaternion) {
+  if (!position.allFinite()) return "the position is not finite";
+  if (!plausible_distance(position.cwiseAbs().maxCoeff())) return "position: expected less than 1e9 m";
+  if (!quaternion.allFinite()) return "the quaternion is not finite";
+  if (!plausible_norm(quaternion.norm()))
+    return "quaternion: expected length 1, got " + text("%.4g", quaternion.norm());
+  return "";
 }
 
 /// Sorted by time, the first of equal times kept.
@@ -43,8 +74,8 @@ Trajectory from_rows(const Array& rows, const char* name) {
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     const Eigen::Quaterniond rotation(at(i, 7), at(i, 4), at(i, 5), at(i, 6));
     const Eigen::Vector3d translation(at(i, 1), at(i, 2), at(i, 3));
-    if (!translation.allFinite() || !rotation.coeffs().allFinite() || !(rotation.norm() > 1e-3))
-      refuse(name, "row " + std::to_string(i) + ": not a pose");
+    if (const std::string fault = fault_of(translation, rotation.coeffs()); !fault.empty())
+      refuse(name, "row " + std::to_string(i) + ": not a pose: " + fault);
     const Pose pose{rotation.normalized(), translation};
     trajectory.push_back({to_microseconds(at(i, 0), name, i), to_dual_quaternion(pose)});
   }
@@ -67,12 +98,13 @@ Trajectory from_matrices(const Array& times, const Array& matrices, const char* 
   return in_order(std::move(trajectory));
 }
 
-constexpr const char* not_rigid = "not a rigid displacement (rotation, translation, last row 0 0 0 1)";
+constexpr const char* not_rigid =
+    "not a rigid displacement (rotation, translation of less than 1e9 m, last row 0 0 0 1)";
 
 bool rigid(const Eigen::Matrix4d& matrix) {
   constexpr double tolerance = 1e-3;  // what three printed decimals of a rotation matrix leave
   const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  return matrix.allFinite() &&
+  return matrix.allFinite() && plausible_distance(matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff()) &&
          (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
          R.determinant() > 0 &&
          (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < tolerance;
@@ -83,7 +115,32 @@ Pose pose_of_rigid(const Eigen::Matrix4d& matrix) {
   return {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()};
 }
 
+double largest_time(const Array& numbers, py::ssize_t step) {
+  double largest = 0;
+  for (py::ssize_t i = 0; i < numbers.size(); i += step)
+    if (std::isfinite(numbers.data()[i])) largest = std::max(largest, std::abs(numbers.data()[i]));
+  return largest;
+}
+
 }  // namespace
+
+Array to_array(const py::handle& object, const char* name, const char* expected) {
+  if (py::module_::import("numpy").attr("ma").attr("is_masked")(object).cast<bool>())
+    refuse(name, "has masked entries: leave these rows out");
+  const py::array array = py::array::ensure(object);
+  if (array && array.dtype().kind() == 'c') refuse(name, "expected real numbers, got complex ones");
+  const Array numbers = array ? Array::ensure(array) : Array::ensure(object);
+  if (!numbers) refuse(name, std::string("expected ") + expected);
+  return numbers;
+}
+
+double to_number(const py::handle& object, const char* name, const char* expected) {
+  try {
+    return object.cast<double>();
+  } catch (const py::cast_error&) {
+    refuse(name, std::string("expected ") + expected);
+  }
+}
 
 Eigen::Matrix4d to_matrix(const Pose& T) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
@@ -103,20 +160,30 @@ Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number
 }
 
 Trajectory to_trajectory(const py::handle& object, const char* name) {
-  if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__"))
-    return read_trajectory(py::str(object).cast<std::string>());
+  if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__")) {
+    const std::string file = py::str(object).cast<std::string>();
+    if (file.empty()) refuse(name, "the file name is empty");
+    const py::gil_scoped_release release;
+    return read_trajectory(file);
+  }
   if (py::isinstance<py::tuple>(object)) {
     const auto pair = object.cast<py::tuple>();
     if (pair.size() != 2) refuse(name, "expected a pair of times (N,) and matrices (N, 4, 4)");
-    return from_matrices(pair[0].cast<Array>(), pair[1].cast<Array>(), name);
+    const Array times = to_array(pair[0], name, forms), matrices = to_array(pair[1], name, forms);
+    require_fine_times(pair[0], largest_time(times, 1), name);
+    return from_matrices(times, matrices, name);
   }
-  return from_rows(object.cast<Array>(), name);
+  const Array rows = to_array(object, name, forms);
+  if (rows.ndim() == 2 && rows.shape(1) == 8) require_fine_times(object, largest_time(rows, 8), name);
+  return from_rows(rows, name);
 }
 
 std::optional<GroundPlane> to_plane(const py::object& object, const char* name) {
   if (object.is_none()) return std::nullopt;
-  const auto numbers = object.cast<std::vector<double>>();
-  if (numbers.size() != 4) refuse(name, "expected four numbers NX NY NZ D");
+  constexpr const char* expected = "four numbers NX NY NZ D";
+  const Array array = to_array(object, name, expected);
+  if (array.ndim() != 1 || array.size() != 4) refuse(name, std::string("expected ") + expected);
+  const double* const numbers = array.data();
   return GroundPlane{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
 }
 

@@ -20,10 +20,16 @@ namespace py = pybind11;
 /// Numbers in C order, converted where they are of another type.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+/// Throws ValueError where the object holds no numbers, masked or complex ones. name: the argument, expected:
+/// its shape, for the message.
+Array to_array(const py::handle& object, const char* name, const char* expected);
+/// One number; throws ValueError likewise.
+double to_number(const py::handle& object, const char* name, const char* expected);
+
 /// A 4 x 4 homogeneous matrix.
 Eigen::Matrix4d to_matrix(const Pose& T);
-/// Throws ValueError where the matrix is not a rigid displacement: not finite, last row not 0 0 0 1, or a
-/// rotation that is off by more than 1e-3. name: the argument, for the message.
+/// Throws ValueError where the matrix is not a rigid displacement: not finite, last row not 0 0 0 1, a
+/// rotation that is off by more than 1e-3, or 1e9 m long. name: the argument, for the message.
 Pose to_pose(const Eigen::Matrix4d& matrix, const char* name);
 /// The same for one of many: the message has its number.
 Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number);

@@ -18,13 +18,13 @@ using namespace pybind11::literals;
 /// The numbers of n rotations or translations: one array of them all, or a sequence of arrays.
 class Rows {
  public:
-  explicit Rows(const py::sequence& rows) {
+  Rows(const py::sequence& rows, const char* name, const char* expected) {
     size_ = rows.size();
     if (py::isinstance<py::array>(rows)) {
-      add(rows.cast<Array>(), size_);
+      add(to_array(rows, name, expected), size_);
       return;
     }
-    for (const py::handle row : rows) add(row.cast<Array>(), 1);
+    for (const py::handle row : rows) add(to_array(row, name, expected), 1);
   }
   std::size_t size() const { return size_; }
   std::size_t width(std::size_t i) const { return widths_[i]; }
@@ -68,7 +68,8 @@ std::vector<Pose> poses_of(const py::sequence& rotations, const py::sequence& tr
                            const char* name) {
   if (rotations.size() != translations.size())
     throw py::value_error(std::string(name) + ": as many rotations as translations are expected");
-  const Rows R(rotations), t(translations);
+  const Rows R(rotations, name, "3 x 3 rotations or rotation vectors"),
+      t(translations, name, "translations of 3 numbers");
   std::vector<Pose> poses;
   poses.reserve(R.size());
   for (std::size_t i = 0; i < R.size(); ++i) poses.push_back(pose_of(R, t, i, name));

@@ -3,6 +3,9 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <string>
+
 #include "convert.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/cost.hpp"
@@ -14,7 +17,21 @@ namespace {
 
 using namespace pybind11::literals;
 
+void require_weight(double weight, const char* name) {
+  if (!(weight >= 0) || !std::isfinite(weight))
+    throw py::value_error(std::string(name) + ": expected a finite number, 0 or more");
+}
+
+/// What a cost matrix always is; without it there is no minimum to be found.
+void require_cost_matrix(const Matrix8d& Q) {
+  constexpr double rounding = 1e-9;  // of sums in another order
+  if (!Q.allFinite()) throw py::value_error("Q: expected finite numbers");
+  if (!((Q - Q.transpose()).cwiseAbs().maxCoeff() <= rounding * Q.cwiseAbs().maxCoeff()))
+    throw py::value_error("Q: expected a symmetric matrix");
+}
+
 py::dict verified(const Matrix8d& Q, const Eigen::Matrix4d& T_a_b) {
+  require_cost_matrix(Q);
   const Certificate certificate = verify(Q, to_dual_quaternion(to_pose(T_a_b, "T_a_b")));
   return py::dict("certified"_a = certificate.optimality == Optimality::certified,
                   "cost"_a = certificate.cost, "lower_bound"_a = certificate.lower_bound,
@@ -33,6 +50,7 @@ void bind_statistics(py::module_& module) {
           "add",
           [](Statistics& statistics, const Eigen::Matrix4d& motion_a, const Eigen::Matrix4d& motion_b,
              double weight) {
+            require_weight(weight, "weight");
             statistics.add(to_dual_quaternion(to_pose(motion_a, "motion_a")),
                            to_dual_quaternion(to_pose(motion_b, "motion_b")), weight);
           },
@@ -45,6 +63,8 @@ void bind_statistics(py::module_& module) {
           "cost_matrix",
           [](const Statistics& statistics, double rotation,
              double translation) -> Eigen::Matrix<double, 8, 8> {
+            require_weight(rotation, "rotation");
+            require_weight(translation, "translation");
             return cost_matrix(statistics, Balance{rotation, translation});
           },
           "(8, 8): Q of (16)", "rotation"_a = 1.0, "translation"_a = 1.0)
@@ -63,7 +83,10 @@ void bind_statistics(py::module_& module) {
 
   module.def(
       "solve_dual",
-      [](const Eigen::Matrix<double, 8, 8>& Q) { return to_matrix(egocal::to_pose(solve_dual(Q).q)); },
+      [](const Eigen::Matrix<double, 8, 8>& Q) {
+        require_cost_matrix(Q);
+        return to_matrix(egocal::to_pose(solve_dual(Q).q));
+      },
       "(4, 4): the global minimum of (18) for the cost matrix Q (8, 8). verify() proves it.", "Q"_a);
   module.def("verify", &verified,
              "Whether T_a_b (4, 4), wherever it comes from, is the global minimum for Q (8, 8): a dict of\n"

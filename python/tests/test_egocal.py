@@ -81,6 +81,81 @@ def test_bad_arguments_are_named(drive):
         egocal.solve(rows, rows + np.array([1e6, 0, 0, 0, 0, 0, 0, 0]))
 
 
+def changed(rows, row, column, value):
+    copy = rows.copy()
+    copy[row, column] = value
+    return copy
+
+
+def test_what_is_no_trajectory_is_refused_with_its_reason(drive):
+    rows = np.loadtxt(drive[0])
+    masked = np.ma.masked_array(rows, mask=False)
+    masked[5, 1] = np.ma.masked
+    for bad, why in [
+        (changed(rows, 5, 2, np.inf), "a: row 5: not a pose: the position is not finite"),
+        (changed(rows, 5, 1, 1e300), "a: row 5: not a pose: position: expected less than 1e9 m"),
+        (changed(rows, 5, slice(4, 8), 0), "a: row 5: not a pose: quaternion: expected length 1, got 0"),
+        (changed(rows, 5, 0, 1.7e18), "a: row 5: expected a time in seconds, got 1.7e.18"),
+        (rows.astype(np.float32), "a: its times are .* s apart in float32: give them as float64"),
+        (masked, "a: has masked entries"),
+        (rows.astype(complex), "a: expected real numbers"),
+        ({}, "a: expected a file name, an .N, 8. array"),
+        (b"lidar.tum", "a: expected a file name"),
+        ([rows[:, 0], matrices(rows)], "a: expected a file name"),
+        ("", "a: the file name is empty"),
+    ]:
+        with pytest.raises(ValueError, match=why):
+            egocal.solve(bad, rows)
+    relative = rows - np.array([rows[0, 0], 0, 0, 0, 0, 0, 0, 0])
+    assert egocal.solve(relative.astype(np.float32), relative).pairs > 0  # fine enough
+
+
+def test_options_that_cannot_be_understood_are_value_errors(drive):
+    rows = np.loadtxt(drive[0])
+    for option, value in [("weights", (1, 1, 1)), ("weights", None), ("time_offset", None), ("nominal", np.eye(3)),
+                          ("nominal", 2 * np.eye(4)), ("plane_a", "flat"), ("plane_a", (0, 0, 1))]:
+        with pytest.raises(ValueError, match=option):
+            egocal.solve(rows, rows, **{option: value})
+
+
+def test_no_number_that_is_none_reaches_the_statistics():
+    statistics, nan = egocal.Statistics(), float("nan")
+    for weight in (-1, nan, float("inf")):
+        with pytest.raises(ValueError, match="weight: expected a finite number"):
+            statistics.add(np.eye(4), np.eye(4), weight)
+    assert len(statistics) == 0
+    with pytest.raises(ValueError, match="translation"):
+        statistics.cost_matrix(1, nan)
+    for Q in (np.full((8, 8), nan), np.arange(64.0).reshape(8, 8)):
+        with pytest.raises(ValueError, match="Q: expected"):
+            egocal.solve_dual(Q)
+        with pytest.raises(ValueError, match="Q: expected"):
+            egocal.verify(Q, np.eye(4))
+    far = np.eye(4)
+    far[0, 3] = 1e200
+    with pytest.raises(ValueError, match="motion_a: not a rigid displacement"):
+        statistics.add(far, np.eye(4))
+
+
+def test_reading_files_releases_the_lock(drive):
+    """Another thread writes what is read."""
+    import threading
+    folder = pathlib.Path(drive[0]).parent
+    pipes = [folder / "a.pipe", folder / "b.pipe"]
+    for pipe in pipes:
+        os.mkfifo(pipe)
+
+    def write():
+        for pipe, file in zip(pipes, drive):
+            pipe.write_bytes(pathlib.Path(file).read_bytes())
+
+    writer = threading.Thread(target=write, daemon=True)
+    writer.start()
+    answer = egocal.solve(*pipes)  # hangs where it keeps the lock
+    writer.join()
+    assert (answer.T_a_b == egocal.solve(*drive).T_a_b).all()
+
+
 def random_pose(rng, turn=0.5):
     axis = rng.normal(size=3)
     axis *= turn * rng.uniform(0.3, 1) / np.linalg.norm(axis)
