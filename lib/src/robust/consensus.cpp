@@ -23,8 +23,9 @@ struct Part {
   Matrix8d Q;     ///< (16) of this part alone
   double weight;  ///< of its motions
   double count;
-  double size;   ///< squared_size
-  double limit;  ///< of the excess over typical
+  double size;        ///< squared_size
+  double limit;       ///< of the excess over typical
+  double motion = 0;  ///< its share in what must agree [weight times squared size]
 };
 
 struct Candidate {
@@ -57,11 +58,16 @@ class Search {
       const Matrix8d Q = cost_matrix(part, problem.balance);
       parts_.push_back({Q, part.weight, static_cast<double>(part.count), squared_size(Q),
                         detail::excess_limit(part.count, options)});
-      all_ += part.weight * parts_.back().size;
+    }
+    // a wrong pose makes motions that may be longer than all others together
+    const double most = options.most_size * typical_size();
+    for (Part& part : parts_) {
+      part.motion = part.weight * std::min(part.size, most);
+      all_ += part.motion;
     }
   }
 
-  /// Motion there is, in all [weight times squared size].
+  /// Motion there is, in all [weight times squared size, of which a part has a limited one].
   double motion() const { return all_; }
 
   Candidate fit(const std::vector<double>& factors) const {
@@ -83,7 +89,7 @@ class Search {
     std::vector<std::pair<double, double>> absolute, relative;
     double weight = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const double motion = parts_[i].weight * parts_[i].size;
+      const double motion = parts_[i].motion;
       weight += parts_[i].weight;
       if (!(motion > 0)) continue;
       absolute.emplace_back(fit.residuals[i], motion);
@@ -120,7 +126,7 @@ class Search {
 
   double motion_of(const std::vector<double>& factors) const {
     double sum = 0;
-    for (std::size_t i = 0; i < parts_.size(); ++i) sum += factors[i] * parts_[i].weight * parts_[i].size;
+    for (std::size_t i = 0; i < parts_.size(); ++i) sum += factors[i] * parts_[i].motion;
     return sum;
   }
 
@@ -158,7 +164,7 @@ class Search {
   Candidate without_dissenters(Candidate fit, std::vector<double>& factors) const {
     const std::vector<Alone> alone = fit_alone();
     while (const std::optional<std::size_t> i = dissenter(fit, alone, factors)) {
-      const double rest = motion_of(factors) - parts_[*i].weight * parts_[*i].size;
+      const double rest = motion_of(factors) - parts_[*i].motion;
       if (rest < options_.majority * motion()) break;
       factors[*i] = 0;
       fit = this->fit(factors);
@@ -176,6 +182,14 @@ class Search {
   std::size_t size() const { return parts_.size(); }
 
  private:
+  /// The squared size that half of the way is made at or below: lengths rather than squares, of which few
+  /// wrong motions are most.
+  double typical_size() const {
+    std::vector<std::pair<double, double>> sizes;
+    for (const Part& part : parts_) sizes.emplace_back(part.size, part.weight * std::sqrt(part.size));
+    return weighted_median(std::move(sizes));
+  }
+
   DualQuaternion minimiser(const Matrix8d& Q) const {
     return mode_ == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
   }

@@ -59,6 +59,10 @@ struct ConsensusOptions {
   /// times the tightest fit is no fit.
   double majority = 0.55;
   int most_relaxed = 8;
+  /// For that no part counts as if its motions were larger than this many times the typical squared size:
+  /// three times as long. Poses that are wrong by ten steps make motions of a hundred times, and one that was
+  /// not recognised in each 30 s is half of what a truck drives in a yard.
+  double most_size = 9;
 };
 
 /// Truncated least squares over parts of a drive (single motions or runs of them): the extrinsic for which
