@@ -3,10 +3,13 @@
 // A mount that moves is named with its time and size, and what only looks like a move is not.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
+#include "../support/random_motion.hpp"
 #include "../support/turning_machine.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
@@ -35,6 +38,45 @@ TEST(MovedMount, AMovedMountIsFoundAtItsTime) {
   ASSERT_NE(moved, nullptr) << calibration.reason;
   EXPECT_NEAR(*moved->time, 30, 4);
   EXPECT_GE(calibration.verdict, Verdict::doubtful);
+}
+
+/// Straight on for 22 s, 19 s still, eight seconds of turning on the spot, still again: the first part says
+/// nothing of the rotation about the direction of travel, the second one nothing of that about the vertical.
+/// Noise is remembered for a second.
+testing::Streams straight_then_turning(std::uint64_t seed) {
+  constexpr double period = 0.05, kept = 0.95;
+  testing::Random random(seed);
+  const std::array<DualQuaternion, 2> mounts{testing::random_extrinsic(random),
+                                             testing::random_extrinsic(random)};
+  std::array<Eigen::Vector3d, 2> turn_noise{random.normal3(1), random.normal3(1)},
+      shift_noise{random.normal3(1), random.normal3(1)};
+  std::array<DualQuaternion, 2> poses;
+  testing::Streams streams;
+  streams.T = conjugate(mounts[0]) * mounts[1];
+  for (int i = 0; i <= 1200; ++i) {
+    const double t = i * period, speed = t < 22 ? 2.5 : 0, rate = t > 41 && t < 49 ? 0.25 : 0;
+    const DualQuaternion step = testing::displacement(
+        {0.001 * std::sin(9 * t), 0.0006 * std::sin(11 * t), rate * period}, {speed * period, 0, 0});
+    for (std::size_t k = 0; k < 2; ++k) {
+      for (Eigen::Vector3d* noise : {&turn_noise[k], &shift_noise[k]})
+        *noise = kept * *noise + random.normal3(std::sqrt(1 - kept * kept));
+      if (i > 0)
+        poses[k] = poses[k] * (conjugate(mounts[k]) * step * mounts[k]) *
+                   testing::displacement(0.0002 * turn_noise[k], 0.0015 * shift_noise[k]);
+    }
+    const auto time_us = static_cast<std::int64_t>(std::llround(1e6 * t));
+    streams.a.push_back({time_us, poses[0]});
+    streams.b.push_back({time_us, poses[1]});
+  }
+  return streams;
+}
+
+TEST(MovedMount, PartsThatShowDifferentDirectionsAreNoMove) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const testing::Streams streams = straight_then_turning(seed);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << seed << ": " << calibration.reason;
+  }
 }
 
 // A tenth of every motion is noise, and remembered for ten of them.
