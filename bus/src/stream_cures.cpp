@@ -101,7 +101,9 @@ std::string cure_of(const std::string& reason, OdometryType type, Bytes bytes) {
 
 std::string cure_of_rejection(const std::string& reason) {
   static const std::map<std::string, std::string> cures{
-      {"duplicate", "a message came twice: a player sent it again, or two senders, or a network loop."},
+      {"duplicate",
+       "a message or its time came twice: a player sent it again, two senders, a network loop, or stamps "
+       "that repeat."},
       {"too late", "it came after newer ones had been used: raise reorder_window in the rig file."},
       {"time or number jumps", "stamps or sequence numbers leap: check the clock of the sender."},
       {std::string(to_string(Rejection::not_finite)), "the odometry sends values that are no poses."},

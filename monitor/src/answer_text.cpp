@@ -206,6 +206,18 @@ std::string pair_title(const PairState& pair, Charset charset, std::size_t max) 
   return clean(pair.a, max) + " " + symbols(charset).arrow + " " + clean(pair.b, max);
 }
 
+std::string pair_in(const std::string& a, const std::string& b, int cells, Charset charset) {
+  const std::string arrow = std::string(" ") + symbols(charset).arrow + " ";
+  const int room = std::max(2, cells - width_of(arrow));
+  const int first = width_of(clean(a, Model::max_text)), second = width_of(clean(b, Model::max_text));
+  const int of_a =
+      first + second <= room ? first : std::clamp(room - second, room / 2, std::max(room / 2, first));
+  const auto part = [](const std::string& name, int width) {
+    return clean_name(name, static_cast<std::size_t>(std::max(1, width)));
+  };
+  return part(a, std::min(first, of_a)) + arrow + part(b, room - std::min(first, of_a));
+}
+
 std::string short_solver(const std::string& name, std::size_t max) {
   const std::string prefix = "egocal-";
   return clean(name.rfind(prefix, 0) == 0 && name.size() > prefix.size() ? name.substr(prefix.size()) : name,

@@ -156,7 +156,10 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
 }
 
 void draw_direction(const Pane& pane, const PairState& pair, bool inverted, bool matrix, Charset charset) {
-  const std::string from = clean(inverted ? pair.b : pair.a, 16), to = clean(inverted ? pair.a : pair.b, 16);
+  constexpr int words = 16;  // cells of the title beside the two names
+  const auto most = static_cast<std::size_t>(std::clamp((pane.width() - words) / 2, 3, 16));
+  const std::string from = clean_name(inverted ? pair.b : pair.a, most),
+                    to = clean_name(inverted ? pair.a : pair.b, most);
   draw_title(pane, "pose of " + to + " in " + from, charset);
   const calibration_t* answer = pair.answer();
   if (!answer || !pair.shown.valid) {

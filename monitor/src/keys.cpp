@@ -110,7 +110,8 @@ class Cursor {
   void scroll(int lines) {
     // the newest event is at the bottom, the first stream at the top
     if (view_.screen == Screen::streams)
-      view_.scroll = std::clamp(view_.scroll - lines, 0, std::max(0, stream_line_count(model_) - page_));
+      view_.scroll =
+          std::clamp(view_.scroll - lines, 0, std::max(0, stream_line_count(model_, view_.width) - page_));
     else
       view_.scroll = std::clamp(view_.scroll + lines, 0, std::max(0, events_ - page_));
   }

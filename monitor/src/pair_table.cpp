@@ -133,11 +133,12 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
 }
 
 /// Empty: nothing is drawn there.
-std::optional<Cell> cell_of(const PairState& pair, PairColumn column, bool selected, Now now,
+std::optional<Cell> cell_of(const PairState& pair, const PlacedColumn& placed, bool selected, Now now,
                             Charset charset) {
+  const PairColumn column = placed.column;
   const calibration_t* answer = pair.answer();
   if (column == PairColumn::name)
-    return Cell{pair_title(pair, charset), selected ? Style::title : Style::normal};
+    return Cell{pair_in(pair.a, pair.b, placed.width, charset), selected ? Style::title : Style::normal};
   if (column == PairColumn::verdict) {
     const Label verdict = verdict_of(pair, charset);
     return Cell{verdict.text, verdict.style};
@@ -176,7 +177,7 @@ void draw_pair_table(const Pane& pane, const Model& model, int selected, bool he
     const PairState& pair = pairs[static_cast<std::size_t>(index)];
     if (index == selected && pane.width() >= 20) pane.text(0, y, symbols(charset).cursor, Style::key);
     for (const PlacedColumn& column : columns)
-      if (const auto cell = cell_of(pair, column.column, index == selected, model.now(), charset))
+      if (const auto cell = cell_of(pair, column, index == selected, model.now(), charset))
         draw_cell(pane, y, column, *cell);
   }
 }

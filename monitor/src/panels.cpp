@@ -96,11 +96,11 @@ void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offse
                         : event.severity == Severity::bad     ? Style::bad
                                                               : Style::normal;
     int x = pane.text(2, i - first, clock_time(event.at.wall_us, utc_offset_s), Style::dim) + 2;
+    const int cells = pane.width() >= 90 ? 24 : 18;
     std::string subject = event.subject;
-    if (const auto at = subject.find(" -> "); at != std::string::npos && charset == Charset::unicode)
-      subject.replace(at, 4, " → ");
-    x = pane.text(x, i - first, pad_right(clean(subject, 40), pane.width() >= 90 ? 24 : 18), Style::strong) +
-        1;
+    if (const auto at = subject.find(" -> "); at != std::string::npos)
+      subject = pair_in(subject.substr(0, at), subject.substr(at + 4), cells, charset);
+    x = pane.text(x, i - first, pad_right(clean(subject, 40), cells), Style::strong) + 1;
     const std::string times =
         event.repeated > 1 ? " (" + std::to_string(event.repeated) + " times)" : std::string();
     const int room = pane.width() - x - width_of(times);

@@ -24,7 +24,8 @@ void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offse
 
 /// stream_panel.cpp: the sensors' streams; all: with what the processes reject, and why.
 void draw_streams(const Pane& pane, const Model& model, int scroll, bool all, Charset charset);
-int stream_line_count(const Model& model);
+/// On a screen of this width.
+int stream_line_count(const Model& model, int width);
 
 // detail_panels.cpp
 /// verdict_panel.cpp: verdict, findings, goal and fit, a line each.

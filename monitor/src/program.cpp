@@ -210,9 +210,10 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
     if (mono - drawn >= options.redraw_us || (changed && mono - drawn >= options.redraw_us / 4)) {
       drawn = mono;
       changed = false;
+      view.width = terminal->width();
       view.height = terminal->height();
       view.network_error = source.network_error();
-      Canvas canvas(terminal->width(), view.height);
+      Canvas canvas(view.width, view.height);
       draw(canvas, still ? *still : model, view);
       terminal->show(canvas);
     }

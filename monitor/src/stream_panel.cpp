@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "panels.hpp"
@@ -25,7 +29,14 @@ Style style_of(bus::StreamLine::Severity severity) {
   return Style::bad;
 }
 
-std::vector<Line> lines_of(const Model& model, bool all) {
+constexpr int indent = 6;  // of a line that goes on: behind those of a sensor's faults
+
+std::size_t room(int width) {
+  return static_cast<std::size_t>(std::max(1, width - 3));
+}
+
+/// all: with what processes reject, and whole, whatever rows that takes.
+std::vector<Line> lines_of(const Model& model, bool all, int width) {
   std::vector<Line> lines;
   for (const bus::StreamLine& line : model.streams()) lines.push_back({line.text, style_of(line.severity)});
   if (!all) return lines;
@@ -34,19 +45,23 @@ std::vector<Line> lines_of(const Model& model, bool all) {
       lines.push_back({process.status.name + " rejected " + count(refusal.count) + " x " + refusal.reason +
                            (refusal.cure.empty() ? "" : ": " + refusal.cure),
                        Style::dim});
-  return lines;
+  std::vector<Line> rows;
+  for (const Line& line : lines)
+    for (std::string& row : wrapped(line.text, room(width), indent))
+      rows.push_back({std::move(row), line.style});
+  return rows;
 }
 
 }  // namespace
 
-int stream_line_count(const Model& model) {
-  return static_cast<int>(lines_of(model, true).size());
+int stream_line_count(const Model& model, int width) {
+  return static_cast<int>(lines_of(model, true, width).size());
 }
 
 void draw_streams(const Pane& pane, const Model& model, int scroll, bool all, Charset charset) {
   const int top = pane.height() >= 2 ? 1 : 0;
   if (top) draw_title(pane, "Streams", charset);
-  const std::vector<Line> lines = lines_of(model, all);
+  const std::vector<Line> lines = lines_of(model, all, pane.width());
   if (lines.empty()) {
     pane.text(2, top, "not watched: this is a log, or no rig file was given", Style::dim);
     return;
@@ -55,8 +70,7 @@ void draw_streams(const Pane& pane, const Model& model, int scroll, bool all, Ch
     const int i = scroll + y - top;
     if (i < 0 || i >= static_cast<int>(lines.size())) break;
     const Line& line = lines[static_cast<std::size_t>(i)];
-    if (pane.width() > 3)
-      pane.text(2, y, clean(line.text, static_cast<std::size_t>(pane.width() - 3)), line.style);
+    if (pane.width() > 3) pane.text(2, y, clean(line.text, room(pane.width())), line.style);
   }
 }
 

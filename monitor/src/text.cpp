@@ -80,6 +80,10 @@ void append_utf8(std::string& text, char32_t c) {
   }
 }
 
+namespace {
+constexpr std::size_t longest_name = 1000;  // a limit [characters]: several lines of any terminal
+}
+
 std::string clean(std::string_view text, std::size_t max) {
   std::string result;
   std::size_t cells = 0;
@@ -94,6 +98,37 @@ std::string clean(std::string_view text, std::size_t max) {
     append_utf8(result, is_safe(glyph) ? glyph : U'?');
   }
   return result;
+}
+
+std::string clean_name(std::string_view name, std::size_t max) {
+  const std::string whole = clean(name, longest_name);
+  const std::u32string glyphs = decode(whole);
+  if (glyphs.size() <= max || max < 3) return clean(whole, max);
+  const std::size_t head = (max - 1) / 2, tail = max - 1 - head;
+  std::string result;
+  for (const char32_t glyph : glyphs.substr(0, head)) append_utf8(result, glyph);
+  result += '~';
+  for (const char32_t glyph : glyphs.substr(glyphs.size() - tail)) append_utf8(result, glyph);
+  return result;
+}
+
+std::vector<std::string> wrapped(std::string_view text, std::size_t max, std::size_t indent) {
+  std::u32string rest = decode(clean(text, longest_name));
+  const std::u32string begin(max > 2 * indent ? indent : 0, U' ');
+  std::vector<std::string> lines;
+  while (max > 0 && !rest.empty()) {
+    std::size_t end = std::min(rest.size(), max);
+    if (end < rest.size()) {
+      const std::size_t blank = rest.rfind(U' ', end);
+      if (blank != rest.npos && 2 * blank > end) end = blank;
+    }
+    std::string& line = lines.emplace_back();
+    for (const char32_t glyph : rest.substr(0, end)) append_utf8(line, glyph);
+    rest.erase(0, end);
+    if (!rest.empty() && rest.front() == U' ') rest.erase(0, 1);
+    if (!rest.empty()) rest = begin + rest;
+  }
+  return lines;
 }
 
 std::string without_folders(std::string_view text, std::size_t max) {

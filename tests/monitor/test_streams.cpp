@@ -43,6 +43,28 @@ TEST_F(Streams, AFirstScreenSaysWhichSensorIsMissed) {
   EXPECT_THAT(shown(Screen::streams, 80, 24), HasSubstr("lidar: ODOMETRY_LIDAR, 10 Hz"));
 }
 
+TEST_F(Streams, TheirOwnScreenHasRoomForWholeSentences) {
+  model.set_streams({{Severity_::warning,
+                      "camera: ODOMETRY_CAMERA, egocal.odometry_t, 10 Hz, 145 messages, 1 of "
+                      "them with faults"},
+                     {Severity_::warning,
+                      "  1 x clock jumps: its time jumped ahead by 3600 s: was the clock of the "
+                      "sender set? Set it before the sensor sends."}});
+  for (const int w : {40, 60, 80, 110}) {
+    const std::string text = shown(Screen::streams, w, 24);
+    EXPECT_THAT(text, HasSubstr("with faults")) << w;
+    EXPECT_THAT(text, HasSubstr("sensor sends.")) << w;
+    EXPECT_THAT(text, Not(HasSubstr("~"))) << w;
+  }
+  EXPECT_THAT(shown(Screen::overview, 80, 24), HasSubstr("~")) << "a row each";
+  // the end can be reached where it is below the screen
+  view.screen = Screen::streams;
+  view.width = 40;
+  view.height = 6;
+  for (int i = 0; i < 20; ++i) press(view, model, {Key::down});
+  EXPECT_THAT(shown(Screen::streams, 40, 6), HasSubstr("sensor sends."));
+}
+
 TEST_F(Streams, NeverOverlapTheRestAtAnySize) {
   for (int w = 1; w < 130; w += 3)
     for (int h = 1; h < 50; ++h)

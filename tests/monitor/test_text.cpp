@@ -89,6 +89,34 @@ TEST(Text, NamesFromOutsideAreMadeSafe) {
   EXPECT_EQ(clean("anything", 0), "");
 }
 
+TEST(Text, NamesThatBeginAlikeAreCutInTheMiddle) {
+  EXPECT_EQ(clean_name("radar_rear", 10), "radar_rear");
+  EXPECT_EQ(clean_name("radar_front_long_range", 8), "rad~ange");
+  EXPECT_EQ(clean_name("radar_rear", 8), "rad~rear");
+  EXPECT_EQ(clean_name("kam\x1b"
+                       "era",
+                       6),
+            "ka~era");
+  for (std::size_t max = 0; max < 12; ++max)
+    EXPECT_LE(width_of(clean_name("radar_rear", max)), static_cast<int>(max));
+}
+
+TEST(Text, LongLinesAreWrappedAtBlanks) {
+  EXPECT_EQ(wrapped("one two three four", 9, 2), (std::vector<std::string>{"one two", "  three", "  four"}));
+  EXPECT_EQ(wrapped("short", 9, 2), std::vector<std::string>{"short"});
+  EXPECT_TRUE(wrapped("", 9, 2).empty());
+  EXPECT_TRUE(wrapped("text", 0, 2).empty());
+  for (std::size_t max = 1; max < 30; ++max) {
+    std::string all;
+    for (const std::string& line : wrapped(std::string(60, 'x') + " and more", max, 4)) {
+      EXPECT_LE(width_of(line), static_cast<int>(max));
+      for (const char c : line)
+        if (c != ' ') all += c;
+    }
+    EXPECT_EQ(all, std::string(60, 'x') + "andmore") << max;
+  }
+}
+
 TEST(Text, PathsLoseTheirFoldersWhereThereIsNoRoom) {
   const std::string full = "/var/lib/egocal/a/long/way/car.state: cannot be written: No space left on device";
   EXPECT_EQ(without_folders(full, 200), full);

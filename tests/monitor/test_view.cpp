@@ -109,6 +109,18 @@ TEST_F(View, RejectedMotionsAndTheClocksAreSaid) {
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("17 rejected"));
 }
 
+TEST_F(View, PairsOfOneSensorCanBeToldApart) {
+  for (const char* b : {"camera_left", "camera_right", "radar_front_long_range", "radar_rear"}) {
+    model.on_problem(test::problem_at("lidar_top_front", b, 1, 10), some_time);
+    model.note(Severity::info, pair_name("lidar_top_front", b), "noted", some_time);
+  }
+  for (const int w : {80, 110})
+    for (const Screen screen : {Screen::overview, Screen::events})
+      for (const char* end : {"left ", "ight ", "ange ", "rear "})
+        EXPECT_THAT(shown(screen, w, 40), HasSubstr(end)) << w;
+  EXPECT_THAT(shown(Screen::overview, 200, 40), HasSubstr("lidar_top_front → radar_"));
+}
+
 TEST_F(View, AStrideThatIsNotInForceIsNotShown) {
   EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("stride 1"));
   send(

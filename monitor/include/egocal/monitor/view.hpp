@@ -23,7 +23,7 @@ struct ViewState {
   bool logarithmic = true;
   bool frozen = false;          ///< the view is frozen, the calibration continues
   int scroll = 0;               ///< events: lines up from the newest
-  int height = 24;              ///< of the screen: how far the events can be scrolled
+  int width = 80, height = 24;  ///< of the screen: how far lists can be scrolled
   std::string notice;           ///< one line for the bottom: the outcome of the last key
   std::string source;           ///< where the messages come from
   std::string network_error{};  ///< why nothing comes from there; empty: the network is there
