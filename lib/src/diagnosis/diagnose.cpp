@@ -196,7 +196,7 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   const bool inverted_both = has(findings, "inverted_both");
   // its time is more exact where it is small enough for the linear test
   findings = moved_mount(evidence.instants, answered, options);
-  if (findings.size() != 1) findings = {*std::move(move)};
+  if (!one_move(findings)) findings = {*std::move(move)};
   findings = moves_or_else(std::move(findings), pairing, evidence, answered, inverted_both, options);
   return true;
 }

@@ -65,6 +65,9 @@ std::vector<std::vector<MotionPair>> strides_of(const Instants& instants, const 
   return strides;
 }
 
+/// Begins the last sentence of the message of a bump.
+constexpr const char* before_it = ". Before it the answer is ";
+
 /// observable: of the answer; the size of a change in another direction is noise.
 std::string size_of(Move move, const std::array<bool, 6>& observable) {
   for (std::size_t i = 0; i < 6; ++i)
@@ -98,8 +101,19 @@ void word(const Move& move, const Answered& answered, double begin, double long_
   finding.message = format("The mounting changed%s about %.1f s after the start",
                            size.empty() ? "" : (" by " + size).c_str(), *finding.time);
   if (to - from > long_interval) finding.message += format(" (between %.1f and %.1f s)", from, to);
-  finding.message += ". Before it the answer is " + answer + ".";
+  finding.message += before_it + answer + ".";
   finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
+}
+
+/// Of a mount that moved and fell back.
+void word_falling_back(Finding& first, Finding& second) {
+  const double moved = *first.time, back = *second.time;
+  second.message.insert(second.message.rfind(before_it),
+                        format(", back to where it was before %.1f s", moved));
+  first.remedy = second.remedy = format(
+      "Fasten the mounting. Calibrate the parts before %.1f s, from then to %.1f s and after it "
+      "separately.",
+      moved, back);
 }
 
 MovesResult moves_of(const std::vector<std::vector<MotionPair>>& strides, const Answered& answered,
@@ -201,7 +215,14 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
     word(move, answered, begin, options.mount.long_interval, finding);
     findings.push_back(std::move(finding));
   }
+  for (std::size_t k = 1; k < result.moves.size(); ++k)
+    if (falls_back(result.moves[k - 1], result.moves[k])) word_falling_back(findings[k - 1], findings[k]);
   return findings;
+}
+
+bool one_move(const std::vector<Finding>& moves) {
+  // a mount that fell back has one remedy, which names both times
+  return moves.size() == 1 || (moves.size() == 2 && moves[0].remedy == moves[1].remedy);
 }
 
 }  // namespace egocal::detail

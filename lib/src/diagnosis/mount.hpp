@@ -14,4 +14,7 @@ namespace egocal::detail {
 std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
                                  const DiagnosisOptions& options, const PoseReading& reading = {});
 
+/// Whether these findings of moved_mount() are one move, or one and the way back.
+bool one_move(const std::vector<Finding>& moves);
+
 }  // namespace egocal::detail

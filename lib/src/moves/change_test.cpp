@@ -7,154 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "linear_algebra/symmetric_eigen.hpp"
-#include "statistics/distributions.hpp"
-#include "statistics/median.hpp"
+#include "moves/division.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-using Blocks = std::span<const LinearBlock>;
-
-Parameters zero_vector(Blocks blocks) {
-  return Parameters::Zero(blocks.front().g.size());
-}
-ParameterMatrix zero_matrix(Blocks blocks) {
-  return ParameterMatrix::Zero(blocks.front().g.size(), blocks.front().g.size());
-}
-
-ParameterMatrix curvature(Blocks blocks) {
-  ParameterMatrix sum = zero_matrix(blocks);
-  for (const LinearBlock& block : blocks) sum += block.H;
-  return sum;
-}
-
-/// One division of the blocks: both optima, and the residuals around them.
-struct Division {
-  ParameterMatrix H1, H2, H;          ///< curvature before, after, in all
-  std::vector<Parameters> gradients;  ///< with outlying residuals shortened
-  std::vector<Parameters> residuals;  ///< whitened
-  Parameters x1, x2;                  ///< optima
-};
-
-/// Where the lengths of residuals end: those of blocks that are longer count as if they were this long.
-double longest_length(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
-  std::vector<double> lengths;
-  lengths.reserve(residuals.size());
-  for (const Parameters& z : residuals) lengths.push_back(z.norm());
-  return options.longest_residual * median(std::move(lengths));
-}
-
-Division divide(Blocks blocks, std::size_t split, const ChangeTestOptions& options) {
-  Division d;
-  d.H1 = curvature(blocks.first(split));
-  d.H2 = curvature(blocks.subspan(split));
-  d.H = d.H1 + d.H2;
-  const Eigen::LDLT<ParameterMatrix> before(ParameterMatrix(d.H1 + options.borrowed_curvature * d.H));
-  const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + options.borrowed_curvature * d.H));
-  for (const LinearBlock& block : blocks) d.gradients.push_back(block.g);
-  d.residuals.resize(blocks.size());
-  for (int pass = 0; pass < 3; ++pass) {
-    Parameters g1 = zero_vector(blocks), g2 = g1;
-    for (std::size_t i = 0; i < blocks.size(); ++i) (i < split ? g1 : g2) += d.gradients[i];
-    d.x1 = -before.solve(g1);
-    d.x2 = -after.solve(g2);
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (i < split ? d.x1 : d.x2));
-    const double limit = longest_length(d.residuals, options);
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const Parameters& x = i < split ? d.x1 : d.x2;
-      const double length = d.residuals[i].norm();
-      if (length > limit) d.residuals[i] *= limit / length;
-      d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
-    }
-  }
-  return d;
-}
-
-/// What whitens residuals together, by the sum of all blocks' noise: that of one block is uncertain, and its
-/// inverse would be too large in the mean.
-ParameterMatrix whitener(Blocks blocks) {
-  ParameterMatrix assumed = zero_matrix(blocks);
-  for (const LinearBlock& block : blocks) assumed += block.root * block.root;
-  const SymmetricEigen<Eigen::Dynamic> noise = symmetric_eigen<Eigen::Dynamic>(assumed);
-  const Parameters inverse = noise.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  return noise.vectors * inverse.asDiagonal() * noise.vectors.transpose();
-}
-
-/// Covariance of the whitened residuals; two extrinsics were fitted. The eigenvalues below their mean are
-/// raised to it: the noise has about the shape assumed, so what is smaller is so by chance, and chance must
-/// not be taken for a precise direction. whiten: of the same blocks.
-ParameterMatrix residual_covariance(Blocks blocks, const std::vector<Parameters>& residuals,
-                                    const ParameterMatrix& whiten) {
-  ParameterMatrix found = zero_matrix(blocks);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const Parameters e = blocks[i].root * residuals[i];
-    found += e * e.transpose();
-  }
-  const auto n = static_cast<double>(blocks.size());
-  const SymmetricEigen<Eigen::Dynamic> eigen =
-      symmetric_eigen<Eigen::Dynamic>(n / (n - 2) * whiten * found * whiten);
-  const Eigen::VectorXd raised = eigen.values.cwiseMax(eigen.values.mean());
-  return eigen.vectors * raised.asDiagonal() * eigen.vectors.transpose();
-}
-
-/// Chance of T^2 where nothing changes.
-double chance_of(double t2, Eigen::Index parameters, std::size_t blocks, const ChangeTestOptions& options) {
-  return hotelling_exceeded(t2, static_cast<double>(parameters),
-                            options.freedom * (static_cast<double>(blocks) - 2));
-}
-
-/// The evidence S, what one side's gradients lack to the common optimum, its variance and T^2 = S'V^-1 S.
-struct Evidence {
-  Parameters S;
-  ParameterMatrix V;
-  double t2 = 0;
-};
-
-Evidence evidence(Blocks blocks, std::size_t split, const Division& d, const ParameterMatrix& whiten) {
-  const Eigen::LDLT<ParameterMatrix> whole(d.H);
-  const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
-  const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
-  const ParameterMatrix C = residual_covariance(blocks, d.residuals, whiten);
-  ParameterMatrix C1 = zero_matrix(blocks), C2 = C1;
-  Parameters g1 = zero_vector(blocks), g2 = g1;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    (i < split ? C1 : C2) += blocks[i].root * C * blocks[i].root;
-    (i < split ? g1 : g2) += d.gradients[i];
-  }
-  Evidence result;
-  result.S = from_after * g2 - from_before * g1;
-  result.V = from_before * C1 * from_before.transpose() + from_after * C2 * from_after.transpose();
-  const Eigen::LDLT<ParameterMatrix> factor(result.V);
-  if (factor.info() == Eigen::Success && factor.isPositive())
-    result.t2 = result.S.dot(factor.solve(result.S));
-  if (!std::isfinite(result.t2)) result.t2 = 0;
-  return result;
-}
-
-/// How much more the sums of neighbouring residuals vary than those of independent ones would: noise that
-/// wanders shows here. Of noise that forgets, the correlation of blocks k apart is r1 phi^(k-1), so the
-/// variance of long sums is 1 + 2 r1 / (1 - phi) times that of independent blocks. Both correlations count
-/// less their standard deviation.
-double correlation_of(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
-  const std::size_t count = residuals.size();
-  const auto n = static_cast<double>(count);
-  double square = 0, first = 0, second = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    square += residuals[i].squaredNorm();
-    if (i >= 1) first += residuals[i].dot(residuals[i - 1]);
-    if (i >= 2) second += residuals[i].dot(residuals[i - 2]);
-  }
-  if (!(square > 0)) return 1;
-  // the residuals of either side sum to about zero, which takes 2 / n off
-  const double lost = 2 / n, scatter = 1 / std::sqrt(n * static_cast<double>(residuals.front().size()));
-  const double r1 = first / square + lost - scatter, r2 = second / square + lost - scatter;
-  if (!(r1 > 0)) return 1;
-  const double phi = std::clamp(r2 / r1, 0.0, options.longest_memory);
-  return 1 + 2 * r1 / (1 - phi);
-}
 
 /// Reduction of the cost by an optimum of their own for blocks [from, to).
 class Gains {
@@ -286,23 +143,21 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
   const ParameterMatrix whiten = whitener(blocks);
   double largest = 0;
   for (std::size_t split = least_side; split + least_side <= count; ++split) {
-    const double t2 = evidence(blocks, split, divide(blocks, split, options), whiten).t2;
+    const Part after{split, count};
+    const double t2 = evidence(blocks, after, divide(blocks, after, options), whiten).t2;
     if (t2 > largest) largest = t2, test.split = split;
   }
   if (test.split == 0) return test;
 
-  const Division d = divide(blocks, test.split, options);
-  const Evidence found = evidence(blocks, test.split, d, whiten);
+  const Part after{test.split, count};
+  const Division d = divide(blocks, after, options);
+  const Evidence found = evidence(blocks, after, d, whiten);
   test.correlation = correlation_of(d.residuals, options);
   const double places = static_cast<double>(count + 1 - 2 * least_side);
   test.false_alarm =
       std::min(1.0, places * chance_of(found.t2 / test.correlation, d.x1.size(), count, options));
   test.change = d.x2 - d.x1;
-  // S = M change with M = H1 inv(H) H2
-  const ParameterMatrix M = d.H.ldlt().solve(d.H2);
-  const ParameterMatrix harmonic = d.H1 * M + options.borrowed_curvature * d.H;
-  const Eigen::LDLT<ParameterMatrix> inverse(harmonic);
-  test.covariance = test.correlation * inverse.solve(inverse.solve(found.V).transpose());
+  test.covariance = test.correlation * covariance_of_change(d, found.V, options);
 
   const EvenChange even = fit_even_change(blocks, d.H, options);
   test_even_change(blocks, even, options, test);
@@ -316,9 +171,10 @@ ChangeAt test_change_at(Blocks blocks, std::size_t split, std::size_t least_side
   const ParameterMatrix whiten = whitener(blocks);
   for (const std::size_t either : {split, split - std::min<std::size_t>(split, 1)}) {
     const std::size_t at = std::clamp(either, least_side, blocks.size() - least_side);
-    const Division d = divide(blocks, at, options);
+    const Part after{at, blocks.size()};
+    const Division d = divide(blocks, after, options);
     const double correlation = correlation_of(d.residuals, options);
-    const double t2 = evidence(blocks, at, d, whiten).t2 / correlation;
+    const double t2 = evidence(blocks, after, d, whiten).t2 / correlation;
     const double chance = std::min(1.0, 2 * chance_of(t2, d.x1.size(), blocks.size(), options));
     if (either == split || chance < best.chance) best = {chance, correlation};
   }

@@ -3,6 +3,7 @@
 #include "egocal/moves/find_moves.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "moves/change_test.hpp"
 #include "moves/linear_blocks.hpp"
 #include "moves/moving_pairs.hpp"
+#include "moves/segment_test.hpp"
 #include "statistics/order_statistic.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -61,10 +63,13 @@ void describe_change(const detail::ParameterMatrix& covariance, double length, c
   }
 }
 
+std::size_t part_of(std::size_t blocks, double part) {
+  return static_cast<std::size_t>(std::ceil(part * static_cast<double>(blocks)));
+}
+
 /// Blocks on each side of a change, at least.
 std::size_t least_side(std::size_t blocks, const MovesOptions& options) {
-  const double part = std::ceil(options.least_side * static_cast<double>(blocks));
-  return std::max({std::size_t{1}, options.least_side_blocks, static_cast<std::size_t>(part)});
+  return std::max({std::size_t{1}, options.least_side_blocks, part_of(blocks, options.least_side)});
 }
 
 class Finder {
@@ -84,6 +89,7 @@ class Finder {
     search(0, pairs_.size());
     result.chance = std::min(1.0, chance_);
     settle();
+    join_same();
     for (const Found& found : found_)
       if (std::optional<Move> move = described(found)) result.moves.push_back(*std::move(move));
     return result;
@@ -96,6 +102,7 @@ class Finder {
     ChangeTest test;
     Linearised stretch;
     bool creep = false;
+    bool of_two = false;  ///< found with another one: not tested by itself yet
   };
 
   std::size_t blocks_in(std::size_t from, std::size_t to) const {
@@ -134,6 +141,40 @@ class Finder {
     if (!(found.test.false_alarm <= alarms) || !large_enough(found)) return std::nullopt;
     found.at = from + found.stretch.begin[found.test.split];
     return found;
+  }
+
+  /// A mount that moved and fell back: both changes, each with its own stretch. One division shows little of
+  /// it (docs/moves.md, "Falling back").
+  std::optional<std::array<Found, 2>> best_two(std::size_t from, std::size_t to) {
+    const std::size_t count = blocks_in(from, to);
+    if (count < options_.least_blocks) return std::nullopt;
+    Found found;
+    found.stretch = detail::linearise(pairs_.subspan(from, to - from), problem_, count, options_.test);
+    if (found.stretch.blocks.empty()) return std::nullopt;
+    const std::size_t side = least_side(count, options_);
+    const detail::SegmentTest test =
+        detail::test_segment(found.stretch.blocks, side,
+                             std::max(2 * side, part_of(count, options_.least_displaced)), options_.test);
+    if (test.part.to == 0) return std::nullopt;
+    found.test.split = test.part.from;
+    found.test.false_alarm = std::min(1.0, test.chance / options_.of_falling_back);
+    found.test.correlation = test.correlation;
+    found.test.change = test.change;
+    found.test.covariance = test.covariance;
+    found.of_two = true;
+    chance_ = std::min(chance_, found.test.false_alarm);
+    const bool fell_back =
+        test.chance_of_rest > options_.confirmation || test.rest_by_change <= options_.most_left;
+    if (!(found.test.false_alarm <= false_alarms((to - from) / count)) || !large_enough(found) ||
+        !(test.chance_of_halves <= options_.confirmation) || !fell_back)
+      return std::nullopt;
+    std::array<Found, 2> two = {found, found};
+    two[0].from = from;
+    two[0].at = two[1].from = from + found.stretch.begin[test.part.from];
+    two[0].to = two[1].at = from + found.stretch.begin[test.part.to];
+    two[1].to = to;
+    two[1].test.change = -test.change;
+    return two;
   }
 
   /// Noise that wanders for longer than a block makes neighbouring blocks alike, and the test believes it.
@@ -181,11 +222,29 @@ class Finder {
   void search(std::size_t from, std::size_t to) {
     if (found_.size() >= options_.most_moves) return;
     const std::optional<Found> found = best(from, to);
-    if (!found) return;
+    if (!found) {
+      search_two(from, to);
+      return;
+    }
     found_.push_back(*found);
     if (found->creep) return;
     search(from, found->at);
     search(found->at, to);
+  }
+
+  void search_two(std::size_t from, std::size_t to) {
+    std::optional<std::array<Found, 2>> two = best_two(from, to);
+    if (!two) return;
+    auto& [moved, back] = *two;
+    // motion by motion: the rest of a block with the other extrinsic would be a change of its own
+    move_to_place(moved);
+    back.from = moved.at;
+    move_to_place(back);
+    moved.to = back.at;
+    found_.insert(found_.end(), two->begin(), two->end());
+    search(from, moved.at);
+    search(moved.at, back.at);
+    search(back.at, to);
   }
 
   /// Every change once more between its neighbours; what is no longer significant there was an echo of them,
@@ -199,7 +258,7 @@ class Finder {
       }
       const std::size_t from = i > 0 ? found_[i - 1].at : 0;
       const std::size_t to = i + 1 < found_.size() ? found_[i + 1].at : pairs_.size();
-      const bool tested = found_[i].from == from && found_[i].to == to;
+      const bool tested = found_[i].from == from && found_[i].to == to && !found_[i].of_two;
       const std::optional<Found> again = tested ? found_[i] : best(from, to);
       if (blocks_in(from, to) >= options_.least_blocks && !(again && shows_in_longer_blocks(*again))) {
         found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -229,6 +288,30 @@ class Finder {
                               found.test.correlation, overlap_, options_);
     for (std::size_t* index : {&place.at, &place.earliest, &place.latest}) *index += found.from;
     return place;
+  }
+
+  std::size_t placed(const Found& found) const {
+    return place(found, minimiser(found.from, found.at), minimiser(found.at, found.to)).at;
+  }
+  void move_to_place(Found& found) const {
+    const std::size_t at = placed(found);
+    if (at > found.from && at < found.to) found.at = at;
+  }
+
+  /// A change within a block that was found from both ends of it is one.
+  void join_same() {
+    for (std::size_t i = 0; i + 1 < found_.size();) {
+      const Found &x = found_[i], &y = found_[i + 1];
+      if (x.creep || y.creep || placed(x) != placed(y)) {
+        ++i;
+        continue;
+      }
+      const std::optional<Found> again = best(x.from, y.to);
+      Found joined = again && !again->creep ? *again : y;
+      joined.from = x.from;
+      found_[i] = std::move(joined);
+      found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
   }
 
   /// By how much the motions of one side fit the other side's answer worse than their own: root mean squares,
@@ -295,81 +378,13 @@ class Finder {
   std::vector<Found> found_;
 };
 
-/// The motions from the move before number k to the one after it: others would pass for noise. Times of moves
-/// are counted from origin_us.
-Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k, std::int64_t origin_us) {
-  const auto at = [&](const Move& move) { return origin_us + static_cast<std::int64_t>(1e6 * move.time); };
-  std::size_t from = 0, to = pairs.size();
-  if (k > 0 && moves[k - 1].kind == MoveKind::bump)
-    while (from < to && pairs[from].begin_us < at(moves[k - 1])) ++from;
-  if (k + 1 < moves.size())
-    while (to > from && pairs[to - 1].end_us > at(moves[k + 1])) --to;
-  return pairs.subspan(from, to - from);
-}
-
-/// False: the motions were tested and do not show it.
-bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_t origin_us,
-              const MovesOptions& options) {
-  const std::int64_t time_us = origin_us + static_cast<std::int64_t>(1e6 * move.time);
-  const std::optional<double> chance = chance_of_move(pairs, problem, move.kind, time_us, options);
-  return !chance || *chance <= options.confirmation;
-}
-
-/// Of three components: of those that are significant, or of all.
-double length_of(const Move& move, std::size_t first, double least_sigmas) {
-  double sum = 0;
-  for (std::size_t i = first; i < first + 3; ++i)
-    if (std::abs(move.change[i]) > least_sigmas * move.stddev[i]) sum += move.change[i] * move.change[i];
-  return std::sqrt(sum);
-}
-
 }  // namespace
-
-ShownChange shown_change(const Move& move) {
-  constexpr double sigmas = 3;  // of six components two of theirs are exceeded by chance now and then
-  ShownChange shown{length_of(move, 3, sigmas), length_of(move, 0, sigmas)};
-  if (shown.turn == 0 && shown.shift == 0)
-    shown.turn = length_of(move, 3, 0);  // about an axis across the frame's
-  return shown;
-}
 
 MovesResult find_moves(Pairs pairs, const Problem& problem, const MovesOptions& options) {
   std::vector<MotionPair> kept;
   const Pairs moving = detail::moving_pairs(pairs, options.least_motion, kept);
   if (moving.size() < 2) return {};
   return Finder(moving, pairs.front().begin_us, problem, options).run();
-}
-
-MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strides, const Problem& problem,
-                                  const MovesOptions& given) {
-  MovesOptions options = given;
-  options.false_alarms /= static_cast<double>(std::max<std::size_t>(1, strides.size()));
-  MovesResult best;
-  double least = 1, least_chance = 1;
-  for (std::size_t i = 0; i < strides.size(); ++i) {
-    MovesResult result = find_moves(strides[i], problem, options);
-    least_chance = std::min(least_chance, static_cast<double>(strides.size()) * result.chance);
-    double chance = 1;
-    for (const Move& move : result.moves) chance = std::min(chance, move.false_alarm);
-    const bool first = !best.tested && result.tested;
-    if (!first && !(chance < least)) continue;
-    least = chance;
-    best = std::move(result);
-    best.stride = i;
-  }
-  // a mount that moved shows in motions of every length; errors of one length only are those of an odometry
-  std::vector<Move> confirmed;
-  for (std::size_t k = 0; k < best.moves.size(); ++k) {
-    bool shown = true;
-    for (std::size_t i = 0; i < strides.size() && shown; ++i)
-      shown = i == best.stride ||
-              shown_by(between_neighbours(strides[i], best.moves, k, strides[best.stride].front().begin_us),
-                       problem, best.moves[k], strides[best.stride].front().begin_us, given);
-    if (shown) confirmed.push_back(best.moves[k]);
-  }
-  best.moves = std::move(confirmed);
-  best.chance = least_chance;
-  return best;
 }
 
 std::optional<double> chance_of_move(Pairs pairs, const Problem& problem, MoveKind kind, std::int64_t time_us,

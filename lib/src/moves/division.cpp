@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "moves/division.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "linear_algebra/symmetric_eigen.hpp"
+#include "statistics/distributions.hpp"
+#include "statistics/median.hpp"
+
+namespace egocal::detail {
+
+Parameters zero_vector(Blocks blocks) {
+  return Parameters::Zero(blocks.front().g.size());
+}
+
+ParameterMatrix zero_matrix(Blocks blocks) {
+  return ParameterMatrix::Zero(blocks.front().g.size(), blocks.front().g.size());
+}
+
+ParameterMatrix curvature(Blocks blocks) {
+  ParameterMatrix sum = zero_matrix(blocks);
+  for (const LinearBlock& block : blocks) sum += block.H;
+  return sum;
+}
+
+double longest_length(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
+  std::vector<double> lengths;
+  lengths.reserve(residuals.size());
+  for (const Parameters& z : residuals) lengths.push_back(z.norm());
+  return options.longest_residual * median(std::move(lengths));
+}
+
+Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
+  Division d;
+  d.H1 = d.H2 = zero_matrix(blocks);
+  for (std::size_t i = 0; i < blocks.size(); ++i) (second.has(i) ? d.H2 : d.H1) += blocks[i].H;
+  d.H = d.H1 + d.H2;
+  const Eigen::LDLT<ParameterMatrix> before(ParameterMatrix(d.H1 + options.borrowed_curvature * d.H));
+  const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + options.borrowed_curvature * d.H));
+  for (const LinearBlock& block : blocks) d.gradients.push_back(block.g);
+  d.residuals.resize(blocks.size());
+  for (int pass = 0; pass < 3; ++pass) {
+    Parameters g1 = zero_vector(blocks), g2 = g1;
+    for (std::size_t i = 0; i < blocks.size(); ++i) (second.has(i) ? g2 : g1) += d.gradients[i];
+    d.x1 = -before.solve(g1);
+    d.x2 = -after.solve(g2);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (second.has(i) ? d.x2 : d.x1));
+    const double limit = longest_length(d.residuals, options);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const Parameters& x = second.has(i) ? d.x2 : d.x1;
+      const double length = d.residuals[i].norm();
+      if (length > limit) d.residuals[i] *= limit / length;
+      d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
+    }
+  }
+  return d;
+}
+
+ParameterMatrix whitener(Blocks blocks) {
+  ParameterMatrix assumed = zero_matrix(blocks);
+  for (const LinearBlock& block : blocks) assumed += block.root * block.root;
+  const SymmetricEigen<Eigen::Dynamic> noise = symmetric_eigen<Eigen::Dynamic>(assumed);
+  const Parameters inverse = noise.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  return noise.vectors * inverse.asDiagonal() * noise.vectors.transpose();
+}
+
+ParameterMatrix residual_covariance(Blocks blocks, const std::vector<Parameters>& residuals,
+                                    const ParameterMatrix& whiten) {
+  ParameterMatrix found = zero_matrix(blocks);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Parameters e = blocks[i].root * residuals[i];
+    found += e * e.transpose();
+  }
+  const auto n = static_cast<double>(blocks.size());
+  const SymmetricEigen<Eigen::Dynamic> eigen =
+      symmetric_eigen<Eigen::Dynamic>(n / (n - 2) * whiten * found * whiten);
+  const Eigen::VectorXd raised = eigen.values.cwiseMax(eigen.values.mean());
+  return eigen.vectors * raised.asDiagonal() * eigen.vectors.transpose();
+}
+
+double chance_of(double t2, Eigen::Index parameters, std::size_t blocks, const ChangeTestOptions& options) {
+  return hotelling_exceeded(t2, static_cast<double>(parameters),
+                            options.freedom * (static_cast<double>(blocks) - 2));
+}
+
+Evidence evidence(Blocks blocks, Part second, const Division& d, const ParameterMatrix& whiten) {
+  const Eigen::LDLT<ParameterMatrix> whole(d.H);
+  const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
+  const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
+  const ParameterMatrix C = residual_covariance(blocks, d.residuals, whiten);
+  ParameterMatrix C1 = zero_matrix(blocks), C2 = C1;
+  Parameters g1 = zero_vector(blocks), g2 = g1;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    (second.has(i) ? C2 : C1) += blocks[i].root * C * blocks[i].root;
+    (second.has(i) ? g2 : g1) += d.gradients[i];
+  }
+  Evidence result;
+  result.S = from_after * g2 - from_before * g1;
+  result.V = from_before * C1 * from_before.transpose() + from_after * C2 * from_after.transpose();
+  const Eigen::LDLT<ParameterMatrix> factor(result.V);
+  if (factor.info() == Eigen::Success && factor.isPositive())
+    result.t2 = result.S.dot(factor.solve(result.S));
+  if (!std::isfinite(result.t2)) result.t2 = 0;
+  return result;
+}
+
+double correlation_of(const std::vector<Parameters>& residuals, const ChangeTestOptions& options) {
+  const std::size_t count = residuals.size();
+  const auto n = static_cast<double>(count);
+  double square = 0, first = 0, second = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    square += residuals[i].squaredNorm();
+    if (i >= 1) first += residuals[i].dot(residuals[i - 1]);
+    if (i >= 2) second += residuals[i].dot(residuals[i - 2]);
+  }
+  if (!(square > 0)) return 1;
+  // the residuals of either side sum to about zero, which takes 2 / n off
+  const double lost = 2 / n, scatter = 1 / std::sqrt(n * static_cast<double>(residuals.front().size()));
+  const double r1 = first / square + lost - scatter, r2 = second / square + lost - scatter;
+  if (!(r1 > 0)) return 1;
+  const double phi = std::clamp(r2 / r1, 0.0, options.longest_memory);
+  return 1 + 2 * r1 / (1 - phi);
+}
+
+ParameterMatrix covariance_of_change(const Division& d, const ParameterMatrix& V,
+                                     const ChangeTestOptions& options) {
+  // S = M change with M = H1 inv(H) H2
+  const ParameterMatrix M = d.H.ldlt().solve(d.H2);
+  const ParameterMatrix harmonic = d.H1 * M + options.borrowed_curvature * d.H;
+  const Eigen::LDLT<ParameterMatrix> inverse(harmonic);
+  return inverse.solve(inverse.solve(V).transpose());
+}
+
+}  // namespace egocal::detail
