@@ -345,7 +345,8 @@ inline std::vector<Mistake> mistakes() {
       {"roll, pitch, yaw of b in another order", "",
        [](Streams& s) { s.b = with_angles_in_another_order(s.b); }},
       {"stamps of b rounded to 0.25 s", "", [](Streams& s) { s.b = with_rounded_stamps(s.b, 250'000); }},
-      {"every 10th pose of b, interpolated", "", [](Streams& s) { s.b = interpolated(s.b, 10); }},
+      {"every 10th pose of b, interpolated", "undersampled_b",
+       [](Streams& s) { s.b = interpolated(s.b, 10); }},
       {"scale of b grows by 10 %", "", [](Streams& s) { s.b = with_growing_scale(s.b, 0.1); }},
       {"b 0.3 s late from the middle on", "", [](Streams& s) { s.b = late_from_the_middle(s.b, 300'000); }},
       {"odometry of b starts anew", "", [](Streams& s) { s.b = restarted(s.b); }},
@@ -367,7 +368,15 @@ inline std::vector<Mistake> mistakes() {
       {"scale of b 1.15 from the middle on", "scale_change",
        [](Streams& s) { s.b = longer_from_the_middle(s.b, 1.15); }},
       {"b of another drive", "unrelated", [](Streams& s) { s.b = of_another_drive(s.b); }},
-  };
+      {"rotations of both inverse", "axes_both",
+       [](Streams& s) {
+         s.a = with_inverse_rotations(s.a);
+         s.b = with_inverse_rotations(s.b);
+       }},
+      {"x, y, z of both from y, z, x", "axes_both", [=](Streams& s) {
+         s.a = with_position_columns(s.a, cycle);
+         s.b = with_position_columns(s.b, cycle);
+       }}};
 }
 
 }  // namespace egocal::testing

@@ -30,10 +30,23 @@ struct Step {
   Matrix3d R_s, R_world;  ///< rotation of s; orientation of w at the begin of the motion
   Vector3d t_s, d;        ///< translation of s in its own frame; of w in its file's axes
   double weight = 1;
+  Matrix3d R_world_s = Matrix3d::Identity();  ///< of s, where both streams are wrong,
+  Vector3d d_s = Vector3d::Zero();            ///< and its translation in its file's axes
 };
 
 Matrix3d matrix(const QuaternionVector& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+}
+
+QuaternionVector rotation(const DualQuaternion& pose, bool conjugated) {
+  return conjugated ? quaternion_conjugate(pose.real) : pose.real;
+}
+
+/// From one pose to the other.
+QuaternionVector turn(const DualQuaternion& from, const DualQuaternion& to, bool conjugated) {
+  const QuaternionVector q =
+      quaternion_product(quaternion_conjugate(rotation(from, conjugated)), rotation(to, conjugated));
+  return q[0] < 0 ? QuaternionVector(-q) : q;
 }
 
 std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
@@ -51,13 +64,31 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
     const DualQuaternion s = canonical_sign(in_b ? conjugate(from.a) * to.a : conjugate(from.b) * to.b);
     const DualQuaternion w0 = in_b ? from.b : from.a;
     const DualQuaternion w1 = in_b ? to.b : to.a;
-    const QuaternionVector r0 = conjugated ? quaternion_conjugate(w0.real) : w0.real;
-    const QuaternionVector r1 = conjugated ? quaternion_conjugate(w1.real) : w1.real;
-    QuaternionVector w = quaternion_product(quaternion_conjugate(r0), r1);
-    if (w[0] < 0) w = -w;
+    const QuaternionVector r0 = rotation(w0, conjugated), w = turn(w0, w1, conjugated);
     if (std::max(rotation_angle(s), rotation_angle(w)) > options.motions.most_rotation) continue;
     steps.push_back(
         {s.real, w, matrix(s.real), matrix(r0), position_of(s), position_of(w1) - position_of(w0), 1});
+  }
+  return steps;
+}
+
+/// Both streams read alike: a is s, b is w.
+std::vector<Step> steps_of_both(const Instants& instants, bool conjugated, int stride, std::size_t most,
+                                const DiagnosisOptions& options) {
+  std::vector<Step> steps;
+  const std::size_t n = instants.size(), span = static_cast<std::size_t>(stride);
+  if (n <= span) return steps;
+  const std::size_t each = std::max<std::size_t>(1, (n - span) / most);
+  for (std::size_t i = 0; i + span < n; i += each) {
+    const std::size_t k = i + span;
+    if (instants.time(k) - instants.time(i) > options.motions.most_stretched * stride * instants.period)
+      continue;
+    const PosePair from = instants.at(i), to = instants.at(k);
+    const QuaternionVector s = turn(from.a, to.a, conjugated), w = turn(from.b, to.b, conjugated);
+    if (2 * std::acos(std::min({1.0, s[0], w[0]})) > options.motions.most_rotation) continue;
+    steps.push_back({s, w, matrix(s), matrix(rotation(from.b, conjugated)), Vector3d::Zero(),
+                     position_of(to.b) - position_of(from.b), 1, matrix(rotation(from.a, conjugated)),
+                     position_of(to.a) - position_of(from.a)});
   }
   return steps;
 }
@@ -131,6 +162,50 @@ Matrix3d linear_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFit
   return Eigen::Map<const Matrix3d>(x.data() + 3);
 }
 
+/// The map of the positions of both streams, W: (R_s - 1) t + R_world_s' W d_s - R R_world' W d = 0 has a
+/// solution up to a factor, of both t and W. It is the one that explains most of what W makes of the
+/// positions.
+Matrix3d common_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFitOptions& options) {
+  Eigen::VectorXd x = Vector12d::Zero();
+  const auto rows_of_both = [&R](const Step& step) {
+    Rows rows;
+    rows.leftCols<3>() = step.R_s - Matrix3d::Identity();
+    const Matrix3d turned = -R * step.R_world.transpose(), back = step.R_world_s.transpose();
+    for (int column = 0; column < 3; ++column)
+      rows.middleCols<3>(3 + 3 * column) = step.d[column] * turned + step.d_s[column] * back;
+    return rows;
+  };
+  for (int round = 0; round < options.rounds; ++round) {
+    Matrix12d A = Matrix12d::Zero();
+    Matrix3d travelled = Matrix3d::Zero();
+    for (const Step& step : steps) {
+      const Rows rows = rows_of_both(step);
+      A += step.weight * rows.transpose() * rows;
+      travelled += step.weight * (step.d * step.d.transpose() + step.d_s * step.d_s.transpose());
+    }
+    // a direction that nothing travels along stays zero, and is completed below
+    A.diagonal().array() += 1e-4 * travelled.trace() + 1e-300;
+    travelled.diagonal().array() += 1e-6 * travelled.trace() + 1e-300;
+    // without t, and with lengths that are those of what W makes of the positions
+    const Matrix3d whitened = travelled.llt().matrixL().solve(Matrix3d::Identity()).transpose();
+    Eigen::Matrix<double, 9, 9> whiten = Eigen::Matrix<double, 9, 9>::Zero();
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        whiten.block<3, 3>(3 * row, 3 * column) = whitened(row, column) * Matrix3d::Identity();
+    const Eigen::Matrix<double, 3, 9> lever = -A.topLeftCorner<3, 3>().ldlt().solve(A.topRightCorner<3, 9>());
+    const Eigen::MatrixXd rest =
+        whiten.transpose() * (A.bottomRightCorner<9, 9>() + A.bottomLeftCorner<9, 3>() * lever) * whiten;
+    x.tail<9>() = whiten * symmetric_eigen<Eigen::Dynamic>(rest).vectors.col(0);
+    x.head<3>() = lever * x.tail<9>();
+    std::vector<double> squares;
+    squares.reserve(steps.size());
+    for (const Step& step : steps) squares.push_back((rows_of_both(step) * x).squaredNorm());
+    reweight(steps, squares, options.inlier);
+  }
+  const Matrix3d W = Eigen::Map<const Matrix3d>(x.data() + 3);
+  return W.sum() < 0 ? Matrix3d(-W) : W;  // either sign: columns are read with few minus signs
+}
+
 /// Orthogonal matrices nearest to W: two where the drive shows two directions only, none where it shows
 /// fewer.
 std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
@@ -160,6 +235,29 @@ std::optional<Matrix3d> nearest_permutation(const Matrix3d& W) {
 
 bool is_permutation(const Matrix3d& axes) {
   return (axes.array() == axes.array().round()).all();
+}
+
+std::vector<PoseReading> common_axes_readings(const Instants& instants, int stride, std::size_t most,
+                                              const DiagnosisOptions& options) {
+  PoseReading inverse_rotation, inverse_position;
+  inverse_rotation.conjugate = true;
+  inverse_position.invert = inverse_position.conjugate = true;
+  std::vector<PoseReading> readings = {inverse_rotation, inverse_position};
+  for (const bool conjugated : {false, true}) {
+    std::vector<Step> steps = steps_of_both(instants, conjugated, stride, most, options);
+    if (steps.size() < options.motions.least) continue;
+    const Matrix3d R = orientation(steps, options.fit);
+    for (const Matrix3d& W : nearest_orthogonal(common_map(steps, R, options.fit)))
+      for (const std::optional<Matrix3d>& axes : {nearest_permutation(W), std::optional(W)}) {
+        // mirrored at the origin both streams have the same motions, but for the sign of the lever arm
+        if (!axes || axes->isIdentity(1e-12) || (-*axes).isIdentity(1e-12)) continue;
+        PoseReading reading;
+        reading.axes = *axes;
+        reading.conjugate = conjugated;
+        readings.push_back(reading);
+      }
+  }
+  return readings;
 }
 
 std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int stride, std::size_t most,

@@ -18,6 +18,10 @@ namespace egocal::detail {
 std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int stride, std::size_t most,
                                        const DiagnosisOptions& options);
 
+/// The same of both streams, read alike: one program wrote both files.
+std::vector<PoseReading> common_axes_readings(const Instants& instants, int stride, std::size_t most,
+                                              const DiagnosisOptions& options);
+
 /// Whether the matrix only exchanges and mirrors axes.
 bool is_permutation(const Eigen::Matrix3d& axes);
 

@@ -16,8 +16,10 @@
 #include "diagnosis/explanations.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/forward.hpp"
+#include "diagnosis/interpolated_stream.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/large_move.hpp"
+#include "diagnosis/late_positions.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/not_a_move.hpp"
 #include "diagnosis/pace.hpp"
@@ -177,8 +179,13 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
       findings.insert(findings.begin(), *std::move(scale));
       return;
     }
-  if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T))
+  if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T)) {
     findings.push_back(unexplained(*part));
+    return;
+  }
+  if (answered.problem.mode == Mode::planar) return;
+  if (std::optional<Finding> late = late_positions(evidence, options))
+    findings.insert(findings.begin(), *std::move(late));
 }
 
 /// A mount that moved by much looks like other axes, another clock or another recording: it is named instead
@@ -325,6 +332,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                  motions, evidence.stride * evidence.instants.period, evidence.instants.period, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
+  for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b))
+    if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
   judge(result, answered, misfit, options);
   return result;
 }

@@ -11,6 +11,7 @@
 #include "diagnosis/both_streams.hpp"
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/forward.hpp"
+#include "diagnosis/large_move.hpp"
 #include "diagnosis/scale.hpp"
 #include "diagnosis/without_lever_arms.hpp"
 #include "diagnosis/wording.hpp"
@@ -129,6 +130,28 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
   return found.scale != 1 ? with_scale(twin, options) : twin;
 }
 
+/// The same wrong axes in both files, the one that fits best: what is left may agree nearly where both
+/// sensors stand alike.
+std::optional<Explanation> common_axes(const Evidence& evidence, const DiagnosisOptions& options) {
+  std::optional<Explanation> best;
+  for (const PoseReading& reading :
+       common_axes_readings(evidence.instants, evidence.stride, options.motions.first_look, options)) {
+    Explanation here = explained(evidence, "axes_both", reading, reading, options);
+    if (here.explained.motions.all.empty() ||
+        !(here.explained.fit.typical < options.explains * options.explains))
+      continue;
+    // as where both are inverted, noise alone may suit the wrong reading better, and far from the origin any
+    // residual is a small part of its motions
+    const Explained& given = evidence.given.explained;
+    if (reading.conjugate && (compare(given, here.explained).gain < decisive_loss ||
+                              loss_in_metres(given, here.explained) > -decisive_loss))
+      continue;
+    // simple readings come first
+    if (!best || compare(best->explained, here.explained).gain > options.alike) best = std::move(here);
+  }
+  return best;
+}
+
 /// Positions of one file in other axes than its rotations. Exchanged columns are what people do; turned axes
 /// have three more unknowns and must explain clearly more. Turned axes of one stream are up to the lever arm
 /// those of the other one turned likewise: where both fit better, both are named.
@@ -177,10 +200,11 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   }
   BestReading result = given;
   if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options)};
-  if (!turned || !better(compare(result.best.explained, turned->explained), options.gain, options))
-    return result;
-  result = {*turned, {}};
-  result.twin = turned_other;
+  if (turned && better(compare(result.best.explained, turned->explained), options.gain, options))
+    result = {*turned, turned_other};
+  if (std::optional<Explanation> both = common_axes(evidence, options))
+    if (better(compare(result.best.explained, both->explained), options.gain, options))
+      result = {*std::move(both), {}};
   return result;
 }
 
@@ -221,6 +245,22 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   const Explained& so_far = result.empty() ? best.explained : result.back().explained;
   take("clock_drift", fits.drift, Explained(so_far));
   return result;
+}
+
+/// What holds in a part of the drive only cures nothing by itself: a file whose convention changes on its
+/// way.
+void name_part(const Explained& final, std::vector<Finding>& findings) {
+  LargeMoveOptions shortest;
+  shortest.least_part = 1.0 / 6;  // two windows: every sixth of the drive was asked for by nothing else
+  const std::optional<UnexplainedPart> part = unexplained_part(final.motions, final.fit.T, shortest);
+  if (!part) return;
+  for (Finding& finding : findings) {
+    finding.message +=
+        format(" This explains the drive without the part from %.0f to %.0f s after the start.", part->begin,
+               part->end);
+    finding.remedy = format("Calibrate the drive from %.0f to %.0f s separately; of the rest: %s",
+                            part->begin, part->end, finding.remedy.c_str());
+  }
 }
 
 }  // namespace
@@ -304,6 +344,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     finding.value = drift ? clock.clock.rate : clock.clock.offset;
     add(worded_clock(std::move(finding), clock.clock));
   }
+  name_part(final, findings);
   if (findings.empty())
     if (std::optional<Finding> orders = both_orders(evidence, options))
       findings.push_back(std::move(*orders));

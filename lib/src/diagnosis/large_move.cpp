@@ -56,8 +56,7 @@ double typical_at(const Motions& part, const DualQuaternion& T) {
   return std::sqrt(evaluated(part, T).typical);
 }
 
-/// Half of the motions of this part of the drive are not much smaller than
-/// usual.
+/// Half of the motions of this part of the drive are not much smaller than usual.
 bool moves(const Motions& part, double least) {
   std::vector<double> sizes;
   for (const Motion& motion : part.all) {
@@ -79,9 +78,9 @@ bool contradict(const Motions& before, const Motions& after, const Division& fou
          contradicts(after, found.after.T, found.before.T);
 }
 
-/// Whether one answer suits both sides hardly worse than their own ones do. A
-/// side may leave open what the other one shows (straight on first, turns on
-/// the spot later); its answer contradicts the other side by chance.
+/// Whether one answer suits both sides hardly worse than their own ones do. A side may leave open what the
+/// other one shows (straight on first, turns on the spot later); its answer contradicts the other side by
+/// chance.
 bool suits_both(const Motions& before, const Motions& after, const Division& found,
                 const DualQuaternion& common, const LargeMoveOptions& large) {
   const auto suits = [&](const Motions& part, const DualQuaternion& own) {
@@ -90,10 +89,9 @@ bool suits_both(const Motions& before, const Motions& after, const Division& fou
   return suits(before, found.before.T) && suits(after, found.after.T);
 }
 
-/// Whether both sides contradict each other without the seconds around the
-/// change as well: a correction of an odometry ends, and leaves the mounting as
-/// it was. Where a side has fewer seconds left, whether a mounting explains
-/// both.
+/// Whether both sides contradict each other without the seconds around the change as well: a correction of an
+/// odometry ends, and leaves the mounting as it was. Where a side has fewer seconds left, whether a mounting
+/// explains both.
 bool contradict_around(const Motions& motions, const Division& found, double time, double motion_seconds,
                        const DiagnosisOptions& options, const LargeMoveOptions& large) {
   const double left_out = CorrectionOptions{}.seconds + 0.5 * motion_seconds;
@@ -127,16 +125,14 @@ Finding worded(const Division& found, double time, const Comparison& comparison)
   const std::string size = turned < 1 ? format("shifted by %.0f cm", 100 * change.head<3>().norm())
                                       : format("turned by %.0f deg", turned);
   finding.message = format(
-      "From about %.1f s after the start on, another mounting explains "
-      "the motions: it is %s. A sensor was "
+      "From about %.1f s after the start on, another mounting explains the motions: it is %s. A sensor was "
       "moved, or its poses are in other axes from then on.",
       time, size.c_str());
   finding.remedy = format("Calibrate the drive before and after %.1f s separately.", time);
   return finding;
 }
 
-/// Single steps show the time best: longer motions that cross it fit neither
-/// answer.
+/// Single steps show the time best: longer motions that cross it fit neither answer.
 double time_of(const Division& division, const Instants& instants, const DiagnosisOptions& options) {
   const Motions steps = motions_of(instants, {}, {}, 1, options.motions.most, options.motions);
   if (steps.all.empty()) return 0;
@@ -214,7 +210,8 @@ std::optional<UnexplainedPart> unexplained_part(const Motions& motions, const Du
   const double limit = std::max(2 * large.contradicts, explained / large.own);
   const auto is_bad = [&](double misfit) { return misfit > limit; };
   const auto bad = static_cast<std::size_t>(std::count_if(misfits.begin(), misfits.end(), is_bad));
-  if (3 * bad < windows || 3 * bad > 2 * windows) return std::nullopt;
+  const double part = static_cast<double>(bad) / static_cast<double>(windows);
+  if (part < large.least_part || part > large.most_part) return std::nullopt;
   // one run, except for one window
   const auto first = std::find_if(misfits.begin(), misfits.end(), is_bad);
   const auto last = std::find_if(misfits.rbegin(), misfits.rend(), is_bad).base();

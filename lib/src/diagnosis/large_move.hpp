@@ -25,6 +25,9 @@ struct LargeMoveOptions {
   double own = 0.4;
   /// Parts of the drive in which unexplained_part() looks for one run: a third of the drive is four of them.
   std::size_t windows = 12;
+  /// Part of the drive that unexplained_part() finds, at least and at most: less may be a sharp turn or wrong
+  /// poses, of more the answer is that of the other part.
+  double least_part = 1.0 / 3, most_part = 2.0 / 3;
   /// Of the typical motion: where the median one of a window is smaller the sensors stand, and only wrong
   /// poses move. As find_moves() ignores motions (MovesOptions::least_motion).
   double least_motion = 0.1;
@@ -36,8 +39,8 @@ struct LargeMoveOptions {
 std::optional<Finding> large_move(const Instants& instants, int stride, const DiagnosisOptions& options,
                                   const LargeMoveOptions& large = {});
 
-/// A part of the drive, at least a third and at most two thirds, that the answer does not explain while it
-/// explains the rest.
+/// A part of the drive, by default at least a third and at most two thirds, that the answer does not explain
+/// while it explains the rest.
 struct UnexplainedPart {
   double begin = 0, end = 0;  ///< [s]
 };

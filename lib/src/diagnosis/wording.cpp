@@ -105,6 +105,8 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
     word_axes(finding, read_a, "a");
   } else if (code == "axes_b") {
     word_axes(finding, read_b, "b");
+  } else if (code == "axes_both") {
+    word_axes(finding, read_a, "both streams");
   }
   return finding;
 }

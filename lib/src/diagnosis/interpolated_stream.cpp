@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/interpolated_stream.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "diagnosis/wording.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+struct Lines {
+  std::size_t moving = 0, straight = 0;  ///< poses
+  double seconds = 0;                    ///< that they take
+
+  double part() const { return moving > 0 ? static_cast<double>(straight) / static_cast<double>(moving) : 0; }
+  /// Of poses that are on no line, which are the ends of lines [1/s].
+  double rate() const { return seconds > 0 ? static_cast<double>(moving - straight) / seconds : 0; }
+};
+
+Lines lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options) {
+  Lines lines;
+  const std::size_t n = poses.size(), count = std::min(n, options.most), first = (n - count) / 2;
+  for (std::size_t i = first + 1; i + 1 < first + count; ++i) {
+    const double before = 1e-6 * static_cast<double>(poses[i].time_us - poses[i - 1].time_us),
+                 after = 1e-6 * static_cast<double>(poses[i + 1].time_us - poses[i].time_us);
+    if (!(before > 0 && after > 0)) continue;
+    const Pose x = to_pose(poses[i - 1].pose), y = to_pose(poses[i].pose), z = to_pose(poses[i + 1].pose);
+    const double ratio = before / after;
+    const Eigen::Vector3d moved = y.translation - x.translation, moves = z.translation - y.translation;
+    const Eigen::Vector3d turned = rotation_log(x.rotation.conjugate() * y.rotation),
+                          turns = rotation_log(y.rotation.conjugate() * z.rotation);
+    // digits of the three poses, and of coordinates of a map
+    const double digits = options.digits * std::max(1.0, ratio) + options.rounding * y.translation.norm();
+    if (std::max(moved.norm(), turned.norm()) < 10 * digits) continue;  // at rest
+    const auto alike = [&](const Eigen::Vector3d& here, const Eigen::Vector3d& next) {
+      return (ratio * next - here).norm() < options.straight * here.norm() + digits;
+    };
+    lines.seconds += before;
+    ++lines.moving;
+    // position and rotation by themselves, or along a screw
+    if (alike(turned, turns) &&
+        (alike(moved, moves) || alike(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves)))
+      ++lines.straight;
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory& b,
+                                          const InterpolatedStreamOptions& options) {
+  if (std::min(a.size(), b.size()) < options.least) return {};
+  const Lines of_a = lines_of(a, options), of_b = lines_of(b, options);
+  for (const char which : {'a', 'b'}) {
+    const Lines &lines = which == 'a' ? of_a : of_b, &other = which == 'a' ? of_b : of_a;
+    if (lines.moving < options.least || lines.part() < options.part || other.part() > options.other_part)
+      continue;
+    Finding finding;
+    finding.code = std::string("undersampled_") + which;
+    finding.certain = true;
+    finding.message = format(
+        "Of the poses of %c %.0f %% lie on straight lines between about %.1f poses a second: it was "
+        "interpolated before, and what its sensor did between those is lost.",
+        which, 100 * lines.part(), lines.rate());
+    finding.remedy = format("Give the poses of %c as they were measured, at their own times.", which);
+    return {finding};
+  }
+  return {};
+}
+
+}  // namespace egocal::detail

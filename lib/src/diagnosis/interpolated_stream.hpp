@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A stream that was interpolated before it was given: poses on straight lines, or along screws, between fewer
+// poses.
+#pragma once
+
+#include <vector>
+
+#include "egocal/diagnosis/verdict.hpp"
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal::detail {
+
+struct InterpolatedStreamOptions {
+  std::size_t most = 4000;  ///< poses that are looked at, from the middle: bounds the cost of a long drive
+  std::size_t least = 60;   ///< poses of a shorter stream may be on straight lines by chance
+  /// A pose lies between its neighbours where the velocities before and after it differ by less than this
+  /// part, or by the digits of a file [m, rad]. Steps of sensors differ by a percent, by noise alone.
+  double straight = 1e-3, digits = 3e-6;
+  double rounding = 1e-12;  ///< of positions far from the origin, as a part of them
+  /// Part of the poses that do, at least, in this stream, and at most in the other one: straight lines of
+  /// machines, or of noiseless simulations, are in both.
+  double part = 0.4, other_part = 0.1;
+};
+
+/// undersampled_a or undersampled_b, certain: of which stream, and its real rate.
+std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory& b,
+                                          const InterpolatedStreamOptions& options = {});
+
+}  // namespace egocal::detail

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/late_positions.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/common_mistakes.hpp"
+#include "diagnosis/stillest_point.hpp"
+#include "diagnosis/wording.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+/// What a second of delay adds to the translation of each motion, in the frame of its begin [m/s].
+struct Changes {
+  std::vector<Vector3d> a, b;
+};
+
+/// Of the positions of a stream about an instant, by those on either side.
+class Speeds {
+ public:
+  Speeds(const Instants& instants, const LatePositionsOptions& late)
+      : instants_(instants),
+        side_(std::clamp<std::size_t>(
+            static_cast<std::size_t>(std::ceil(0.5 * late.least_span / std::max(instants.period, 1e-6))), 1,
+            late.most_instants)) {}
+
+  std::pair<Vector3d, Vector3d> at(std::size_t i) const {
+    const std::size_t before = i >= side_ ? i - side_ : 0, after = std::min(i + side_, instants_.size() - 1);
+    const PosePair from = instants_.at(before), to = instants_.at(after);
+    const double seconds = instants_.time(after) - instants_.time(before);
+    if (!(seconds > 0)) return {Vector3d::Zero(), Vector3d::Zero()};
+    return {(position_of(to.a) - position_of(from.a)) / seconds,
+            (position_of(to.b) - position_of(from.b)) / seconds};
+  }
+
+ private:
+  const Instants& instants_;
+  std::size_t side_;
+};
+
+/// The changes of the motions that motions_of() makes of the same instants, by their times.
+Changes changes_of(const Evidence& evidence, const Motions& motions, const LatePositionsOptions& late) {
+  const Instants& instants = evidence.instants;
+  const Speeds speeds(instants, late);
+  const auto span = static_cast<std::size_t>(motions.stride);
+  Changes changes;
+  std::size_t i = 0;
+  for (const Motion& motion : motions.all) {
+    while (i + span + 1 < instants.size() &&
+           0.5 * (instants.time(i) + instants.time(i + span)) < motion.time - 1e-9)
+      ++i;
+    const PosePair begin = instants.at(i);
+    const auto [from_a, from_b] = speeds.at(i);
+    const auto [to_a, to_b] = speeds.at(i + span);
+    changes.a.push_back(rotation_of(begin.a).transpose() * (to_a - from_a));
+    changes.b.push_back(rotation_of(begin.b).transpose() * (to_b - from_b));
+  }
+  return changes;
+}
+
+Matrix3d cross(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+void set_translation(DualQuaternion& motion, const Vector3d& t) {
+  motion = canonical_sign(to_dual_quaternion(Pose{to_pose(motion).rotation, t}));
+}
+
+/// The motions with the positions of one stream taken `delay` later.
+Motions later(const Motions& given, const Changes& changes, Side side, double delay) {
+  Motions motions = given;
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    Motion& motion = motions.all[i];
+    if (side == Side::a) {
+      motion.t_a += delay * changes.a[i];
+      set_translation(motion.a, motion.t_a);
+    } else {
+      motion.t_b += delay * changes.b[i];
+      set_translation(motion.b, motion.t_b);
+    }
+  }
+  return motions;
+}
+
+/// The delay that suits the translations best, beside a change of the extrinsic: linear least squares.
+double best_delay(const Explained& given, const Changes& changes, Side side) {
+  const Pose T = to_pose(given.fit.T);
+  const Matrix3d R = T.rotation.toRotationMatrix();
+  Matrix7d sum = Matrix7d::Zero();
+  Vector7d right = Vector7d::Zero();
+  for (std::size_t i = 0; i < given.motions.all.size(); ++i) {
+    const Motion& motion = given.motions.all[i];
+    const double weight = given.fit.weights[i];
+    const Vector3d there = R * motion.t_b;
+    const Vector3d residual = motion.R_a * T.translation + motion.t_a - there - T.translation;
+    Eigen::Matrix<double, 3, 7> rows;
+    rows.leftCols<3>() = motion.R_a - Matrix3d::Identity();
+    rows.middleCols<3>(3) = cross(there);
+    rows.col(6) = side == Side::a ? changes.a[i] : Vector3d(-(R * changes.b[i]));
+    sum += weight * rows.transpose() * rows;
+    right -= weight * rows.transpose() * residual;
+  }
+  sum.diagonal().array() += 1e-9 * sum.trace() / 7 + 1e-300;  // what the drive does not show stays as it is
+  return sum.ldlt().solve(right)[6];
+}
+
+struct Late {
+  Side side = Side::b;
+  double delay = 0;
+  Explained explained;
+  Comparison comparison;
+};
+
+Late fitted(const Explained& given, const Changes& changes, Side side, const DiagnosisOptions& options) {
+  Late late{side, 0, given, {}};
+  for (int round = 0; round < options.fit.rounds; ++round) {
+    late.delay += best_delay(late.explained, changes, side);
+    late.explained.motions = later(given.motions, changes, side, late.delay);
+    late.explained.fit = robust_fit(late.explained.motions, options.fit);
+  }
+  late.comparison = compare(given, late.explained);
+  return late;
+}
+
+}  // namespace
+
+std::optional<Finding> late_positions(const Evidence& evidence, const DiagnosisOptions& options,
+                                      const LatePositionsOptions& late) {
+  const Explained& given = evidence.given.explained;
+  if (evidence.instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
+  const Changes changes = changes_of(evidence, given.motions, late);
+  std::optional<Late> best;
+  for (const Side side : {Side::b, Side::a}) {
+    Late here = fitted(given, changes, side, options);
+    if (!std::isfinite(here.delay) || std::abs(here.delay) < late.least ||
+        !(here.explained.fit.typical < options.explains * options.explains) ||
+        !better(here.comparison, options.gain, options))
+      continue;
+    if (!best || here.comparison.gain > best->comparison.gain) best = std::move(here);
+  }
+  if (!best) return std::nullopt;
+  const char which = best->side == Side::a ? 'a' : 'b';
+  Finding finding;
+  finding.code = std::string("late_positions_") + which;
+  finding.certain = true;
+  finding.improvement = std::exp(best->comparison.gain);
+  finding.T_a_b = to_pose(best->explained.fit.T);
+  finding.value = best->delay;
+  finding.message = format(
+      "The positions of %c are about %.2f s %s than its rotations: the squared residuals are %.3g times "
+      "smaller with both at the same times.",
+      which, std::abs(best->delay), best->delay > 0 ? "later" : "earlier", finding.improvement);
+  finding.remedy = format(
+      "Give positions and rotations of %c of the same times: no filter that smooths or delays one of them.",
+      which);
+  return finding;
+}
+
+}  // namespace egocal::detail

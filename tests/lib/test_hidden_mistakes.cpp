@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Mistakes that leave motions which nearly agree, and an answer that is wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "../support/bounded_drive.hpp"
+#include "../support/findings.hpp"
+#include "../support/mistakes.hpp"
+#include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
+
+namespace egocal {
+namespace {
+
+using testing::bounded_drive;
+using testing::drive;
+using testing::find;
+
+/// One program wrote both files. Where both sensors look the same way at the begin the motions agree nearly,
+/// and the answer is wrong.
+TEST(HiddenMistakes, TheSameWrongAxesInBothStreamsAreNamed) {
+  Eigen::Matrix3d cycle;
+  cycle << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  const auto columns = [&](const Trajectory& poses) { return testing::with_position_columns(poses, cycle); };
+  const testing::Streams right = bounded_drive();
+  EXPECT_EQ(find(calibrate(right.a, right.b), "axes_both"), nullptr);
+  for (const auto& [name, wrong] : {std::pair<const char*, std::function<Trajectory(const Trajectory&)>>{
+                                        "rotation taken as its inverse", testing::with_inverse_rotations},
+                                    {"position columns read as x from z, y from x, z from y", columns}}) {
+    const Calibration calibration = calibrate(wrong(right.a), wrong(right.b));
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory) << name << ": " << calibration.reason;
+    const Finding* finding = find(calibration, "axes_both");
+    ASSERT_NE(finding, nullptr) << name << ": " << calibration.reason;
+    EXPECT_TRUE(finding->certain);
+    EXPECT_NE(finding->message.find(name), std::string::npos) << finding->message;
+    ASSERT_TRUE(finding->T_a_b);
+    EXPECT_LT(extrinsic_error(right.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.01) << name;
+  }
+}
+
+/// A file whose convention changes on its way: the option alone cures nothing.
+TEST(HiddenMistakes, AStreamThatIsInvertedFromSomeTimeOnSaysSo) {
+  testing::Streams streams = drive(Terrain::free);
+  const Trajectory inverted = testing::inverted(streams.b);
+  std::copy(inverted.begin() + static_cast<std::ptrdiff_t>(inverted.size()) * 3 / 10, inverted.end(),
+            streams.b.begin() + static_cast<std::ptrdiff_t>(inverted.size()) * 3 / 10);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  const Finding* finding = find(calibration, "inverted_b");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_NE(finding->message.find("explains the drive without the part from 0 to "), std::string::npos)
+      << finding->message;
+  EXPECT_TRUE(finding->remedy.starts_with("Calibrate the drive from 0 to ")) << finding->remedy;
+}
+
+/// A filter that is late by 0.3 s, of the positions alone.
+TEST(HiddenMistakes, PositionsThatAreLaterThanTheRotationsAreNamed) {
+  testing::Streams streams = bounded_drive();
+  EXPECT_EQ(find(calibrate(streams.a, streams.b), "late_positions_b"), nullptr);
+  streams.b = testing::with_late_positions(streams.b, 3);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+  const Finding* finding = find(calibration, "late_positions_b");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_TRUE(finding->certain);
+  ASSERT_TRUE(finding->value && finding->T_a_b);
+  EXPECT_NEAR(*finding->value, 0.3, 0.05);
+  const auto off_by = [&](const DualQuaternion& T) { return extrinsic_error(streams.T, T).translation; };
+  EXPECT_LT(off_by(to_dual_quaternion(*finding->T_a_b)), 0.5 * off_by(to_dual_quaternion(calibration.T_a_b)));
+}
+
+/// Whatever moved the sensor between the poses that were measured is lost.
+TEST(HiddenMistakes, AStreamThatWasInterpolatedIsNamed) {
+  testing::Streams streams = bounded_drive();
+  streams.b = testing::interpolated(streams.b, 10);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  const Finding* finding = find(calibration, "undersampled_b");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_NE(finding->message.find("between about 1.0 poses a second"), std::string::npos) << finding->message;
+  EXPECT_EQ(find(calibration, "undersampled_a"), nullptr);
+}
+
+/// Straight lines that both sensors drive are no interpolation.
+TEST(HiddenMistakes, SteadyMotionIsNoInterpolation) {
+  testing::Streams streams;
+  const Pose T{rotation_exp({0.2, -0.1, 0.4}), {0.3, 0.2, -0.1}};
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.1 * i,
+                 turn = 0.4 * std::floor(t / 5) + (std::fmod(t, 10) < 5 ? 0 : 0.4 * (std::fmod(t, 5) / 5));
+    const Pose rig{rotation_exp({0.3 * turn, 0.1 * turn, turn}), {t, 0.2 * t, 0}};
+    const auto time_us = static_cast<std::int64_t>(i) * 100'000;
+    streams.a.push_back({time_us, canonical_sign(to_dual_quaternion(rig))});
+    streams.b.push_back({time_us, canonical_sign(to_dual_quaternion(rig * T))});
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(find(calibration, "undersampled_a"), nullptr);
+  EXPECT_EQ(find(calibration, "undersampled_b"), nullptr);
+}
+
+}  // namespace
+}  // namespace egocal
