@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "egocal/estimation/attenuation.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
@@ -131,12 +133,25 @@ Parameters local_optimum(const std::vector<LinearBlock>& blocks, std::size_t k,
   return -H.ldlt().solve(g);
 }
 
+/// Q of statistics, without the noise of their own rotations.
+Matrix8d cost_without_noise(const Statistics& statistics, const Balance& balance,
+                            const std::optional<Attenuation>& attenuation) {
+  Matrix8d Q = cost_matrix(statistics, balance);
+  if (attenuation) {
+    const Eigen::Vector4d r = attenuation->r;
+    Q.bottomRightCorner<4, 4>() -= r.dot(Q.bottomRightCorner<4, 4>() * r) * attenuation->taken_off;
+  }
+  return Q;
+}
+
 /// Sum e e' of the gradients of each block's motions, at the optimum of the block and its neighbours, which a
 /// change elsewhere does not touch.
 std::vector<ParameterMatrix> noise_of_motions(const Gated& gated, std::span<const MotionPair> pairs,
                                               const Problem& problem, const Multipliers& lambda,
                                               const Directions& T, const ParameterMatrix& H_mean,
-                                              const Linearised& stretch, const ChangeTestOptions& options) {
+                                              const Linearised& stretch,
+                                              const std::optional<Attenuation>& attenuation,
+                                              const ChangeTestOptions& options) {
   const Matrix8d constraints = lagrangian_matrix(Matrix8d::Zero(), lambda);
   std::vector<ParameterMatrix> result;
   for (std::size_t k = 0; k < stretch.blocks.size(); ++k) {
@@ -147,7 +162,7 @@ std::vector<ParameterMatrix> noise_of_motions(const Gated& gated, std::span<cons
     for (const std::size_t i : gated.kept[k]) {
       Statistics one;
       one.add(pairs[i]);
-      const Matrix8d Q = in_units_of(stretch.length, cost_matrix(one, problem.balance));
+      const Matrix8d Q = in_units_of(stretch.length, cost_without_noise(one, problem.balance, attenuation));
       const Parameters e = one.weight * (T.transpose() * (Q * at) + of_constraints);
       sum += e * e.transpose();
     }
@@ -197,10 +212,21 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
   Linearised result;
   const Gated gated = gated_blocks(pairs, problem, count, options);
   const Statistics all = sum_blocks(gated.blocks);
-  const Matrix8d Q_metres = cost_matrix(all, problem.balance);
+  Matrix8d Q_metres = cost_matrix(all, problem.balance);
   if (!Q_metres.allFinite() || !(Q_metres.diagonal().maxCoeff() > 0)) return result;
+  DualQuaternion q = gated.q;
+  std::optional<Attenuation> attenuation;
+  if (problem.mode == Mode::spatial) {
+    Problem whole = problem;
+    whole.blocks = {all};
+    attenuation = whole_attenuation(whole);
+    if (attenuation) {
+      Q_metres = cost_without_noise(all, problem.balance, attenuation);
+      q = solve_dual(Q_metres).q;
+    }
+  }
   result.length = length_scale(Q_metres);
-  result.q = in_units_of(result.length, gated.q);
+  result.q = in_units_of(result.length, q);
   const Matrix8d Q = in_units_of(result.length, Q_metres);
   const Multipliers lambda = least_squares_multipliers(Q, result.q);
   const Directions T = directions(result.q, problem.mode);
@@ -210,7 +236,8 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
   for (std::size_t k = 0; k < gated.blocks.size(); ++k) {
     const Statistics& statistics = gated.blocks[k];
     const double share = statistics.weight / all.weight * whole;  // 1 for blocks of equal weight
-    const Matrix8d Q_block = in_units_of(result.length, cost_matrix(statistics, problem.balance));
+    const Matrix8d Q_block =
+        in_units_of(result.length, cost_without_noise(statistics, problem.balance, attenuation));
     LinearBlock block;
     block.g = share * (T.transpose() * (Q_block * v));
     block.H = share * (T.transpose() * lagrangian_matrix(Q_block, lambda) * T);
@@ -220,7 +247,8 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
     result.begin.push_back(from);
   }
   const std::vector<ParameterMatrix> noise = noise_of_blocks(
-      noise_of_motions(gated, pairs, problem, lambda, T, H_mean, result, options), H_mean, result, options);
+      noise_of_motions(gated, pairs, problem, lambda, T, H_mean, result, attenuation, options), H_mean,
+      result, options);
   for (std::size_t k = 0; k < noise.size(); ++k) set_roots(noise[k], result.blocks[k]);
   return result;
 }
