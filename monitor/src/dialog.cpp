@@ -65,7 +65,7 @@ Text text_of(const PairState* pair, const ViewState& view, int width, int height
 }
 
 /// At blanks, where there is one.
-std::vector<std::string> wrapped(const std::vector<std::string>& lines, int width) {
+std::vector<std::string> rows_of(const std::vector<std::string>& lines, int width) {
   std::vector<std::string> out;
   for (std::string line : lines) {
     while (width_of(line) > width) {
@@ -98,7 +98,7 @@ void draw_frame(const Pane& pane, const std::string& title, Charset charset) {
 void draw_dialog(Canvas& canvas, const PairState* pair, const ViewState& view) {
   if (view.dialog == Dialog::none) return;
   Text text = text_of(pair, view, canvas.width(), canvas.height());
-  text.lines = wrapped(text.lines, canvas.width() - 4);
+  text.lines = rows_of(text.lines, canvas.width() - 4);
   // what must be read does not give way to blank lines
   if (static_cast<int>(text.lines.size()) + 2 > canvas.height()) std::erase(text.lines, "");
   int wanted = 0;
