@@ -29,9 +29,10 @@ function(egocal_target_defaults target)
 endfunction()
 
 # A test's own code runs once or twice: optimising it takes longer than it saves (a quarter of its compilation). What it tests is
-# optimised as users get it.
+# optimised as users get it. With -O1 GCC sees the free() in an operator delete of ours, but not the malloc() in its new.
 function(egocal_compile_once target)
-  target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:RelWithDebInfo>,$<CXX_COMPILER_ID:GNU>>:-O1>)
+  target_compile_options(${target} PRIVATE
+    "$<$<AND:$<CONFIG:RelWithDebInfo>,$<CXX_COMPILER_ID:GNU>>:-O1;-Wno-mismatched-new-delete>")
 endfunction()
 
 function(egocal_compile_flags target)
