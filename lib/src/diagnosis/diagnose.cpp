@@ -208,6 +208,23 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   return true;
 }
 
+/// Axes that are turned alike in both files by any angle explain a part of what a mount that moved does, or
+/// of one that fell back: the moves are named instead where they explain more.
+bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
+                      const DiagnosisOptions& options, std::vector<Finding>& findings) {
+  if (answered.problem.mode == Mode::planar) return false;
+  const auto axes = std::find_if(findings.begin(), findings.end(),
+                                 [](const Finding& one) { return one.certain && one.code == "axes_both"; });
+  if (axes == findings.end()) return false;
+  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
+  if (moves.empty() || std::exp(gain_of_parts(evidence, moves, options)) <= axes->improvement) return false;
+  moves =
+      moves_or_else(std::move(moves), pairing, evidence, answered, has(findings, "inverted_both"), options);
+  if (moves.empty()) return false;
+  findings = std::move(moves);
+  return true;
+}
+
 /// There is nothing further to look for. Twin readings that both fit far better are uncertain each, but one
 /// of them is right.
 bool explains(const Finding& finding, const DiagnosisOptions& options) {
@@ -316,6 +333,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   Misfit misfit{detail::misfit(motions, at_answer), detail::misfit(motions, evidence.given.explained.fit),
                 median_misfit(motions, at_answer)};
   const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
+                         replace_by_moves(pairing, evidence, answered, options, result.findings) ||
                          std::any_of(result.findings.begin(), result.findings.end(),
                                      [&](const Finding& one) { return explains(one, options); });
   if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);

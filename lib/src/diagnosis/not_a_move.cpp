@@ -173,6 +173,12 @@ bool moves_with_the_scale(const PairingOptions& pairing, const Evidence& evidenc
 
 }  // namespace
 
+double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves,
+                     const DiagnosisOptions& options) {
+  const Explained& given = evidence.given.explained;
+  return compare(given, in_parts(given, moves, options)).gain;
+}
+
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
                                    const Evidence& evidence, const Answered& answered, bool inverted_both,
                                    const DiagnosisOptions& options) {

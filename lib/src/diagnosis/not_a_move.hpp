@@ -18,6 +18,10 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
                                       const Answered& answered, const DiagnosisOptions& options,
                                       const std::vector<Finding>& moves = {});
 
+/// Comparison::gain of an extrinsic for each part between the moves, over one for the drive.
+double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves,
+                     const DiagnosisOptions& options);
+
 /// Findings mount_moved as they are; or scale_change instead; or none, where a scale that wanders as those of
 /// odometries do explains the motions as well; or uncertain, where both streams may be
 /// world-to-sensor (inverted_both): no mount moves then, and one extrinsic explains the motions about as well
