@@ -45,8 +45,9 @@ struct Fit {
 /// An explanation that fits better than the streams as given, or as well and with another answer.
 struct Finding {
   std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
-                     ///< clock_offset, clock_drift, axes_a, axes_b, plane_a, plane_b, unrelated, mount_moved,
-                     ///< scale_change, time_unit, too_little_motion, undersampled_a, undersampled_b
+                     ///< clock_offset, clock_drift, axes_a, axes_b, axes_both, plane_a, plane_b, unrelated,
+                     ///< mount_moved, scale_change, time_unit, too_little_motion, undersampled_a,
+                     ///< undersampled_b, late_positions_a, late_positions_b
   bool certain = false;         ///< it fits clearly better; otherwise both remain possible
   std::string message;          ///< what was found, one sentence
   std::string remedy;           ///< option or action that cures it
