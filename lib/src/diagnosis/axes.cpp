@@ -49,26 +49,33 @@ QuaternionVector turn(const DualQuaternion& from, const DualQuaternion& to, bool
   return q[0] < 0 ? QuaternionVector(-q) : q;
 }
 
-std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
-                           std::size_t most, const DiagnosisOptions& options) {
-  std::vector<Step> steps;
+/// Takes the pairs of poses at both ends of motions, most of them at most, that no gap stretches.
+template <typename Take>
+void for_each_motion(const Instants& instants, int stride, std::size_t most, const DiagnosisOptions& options,
+                     const Take& take) {
   const std::size_t n = instants.size(), span = static_cast<std::size_t>(stride);
-  if (n <= span) return steps;
+  if (n <= span) return;
   const std::size_t each = std::max<std::size_t>(1, (n - span) / most);
   for (std::size_t i = 0; i + span < n; i += each) {
     const std::size_t k = i + span;
-    if (instants.time(k) - instants.time(i) > options.motions.most_stretched * stride * instants.period)
-      continue;
+    if (instants.time(k) - instants.time(i) <= options.motions.most_stretched * stride * instants.period)
+      take(instants.at(i), instants.at(k));
+  }
+}
+
+std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated, int stride,
+                           std::size_t most, const DiagnosisOptions& options) {
+  std::vector<Step> steps;
+  for_each_motion(instants, stride, most, options, [&](const PosePair& from, const PosePair& to) {
     const bool in_b = wrong == Side::b;
-    const PosePair from = instants.at(i), to = instants.at(k);
     const DualQuaternion s = canonical_sign(in_b ? conjugate(from.a) * to.a : conjugate(from.b) * to.b);
     const DualQuaternion w0 = in_b ? from.b : from.a;
     const DualQuaternion w1 = in_b ? to.b : to.a;
     const QuaternionVector r0 = rotation(w0, conjugated), w = turn(w0, w1, conjugated);
-    if (std::max(rotation_angle(s), rotation_angle(w)) > options.motions.most_rotation) continue;
+    if (std::max(rotation_angle(s), rotation_angle(w)) > options.motions.most_rotation) return;
     steps.push_back(
         {s.real, w, matrix(s.real), matrix(r0), position_of(s), position_of(w1) - position_of(w0), 1});
-  }
+  });
   return steps;
 }
 
@@ -76,20 +83,13 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
 std::vector<Step> steps_of_both(const Instants& instants, bool conjugated, int stride, std::size_t most,
                                 const DiagnosisOptions& options) {
   std::vector<Step> steps;
-  const std::size_t n = instants.size(), span = static_cast<std::size_t>(stride);
-  if (n <= span) return steps;
-  const std::size_t each = std::max<std::size_t>(1, (n - span) / most);
-  for (std::size_t i = 0; i + span < n; i += each) {
-    const std::size_t k = i + span;
-    if (instants.time(k) - instants.time(i) > options.motions.most_stretched * stride * instants.period)
-      continue;
-    const PosePair from = instants.at(i), to = instants.at(k);
+  for_each_motion(instants, stride, most, options, [&](const PosePair& from, const PosePair& to) {
     const QuaternionVector s = turn(from.a, to.a, conjugated), w = turn(from.b, to.b, conjugated);
-    if (2 * std::acos(std::min({1.0, s[0], w[0]})) > options.motions.most_rotation) continue;
+    if (2 * std::acos(std::min({1.0, s[0], w[0]})) > options.motions.most_rotation) return;
     steps.push_back({s, w, matrix(s), matrix(rotation(from.b, conjugated)), Vector3d::Zero(),
                      position_of(to.b) - position_of(from.b), 1, matrix(rotation(from.a, conjugated)),
                      position_of(to.a) - position_of(from.a)});
-  }
+  });
   return steps;
 }
 
