@@ -67,7 +67,7 @@ bool sums_strides(const problem_t& problem);
 /// "stride 4", "many strides".
 std::string stride_text(const problem_t& problem);
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max = 28);
-/// The same in so many cells: names that do not fit are cut in the middle.
+/// "a → b", at most this many cells wide: names that do not fit are cut in the middle.
 std::string pair_in(const std::string& a, const std::string& b, int cells, Charset charset);
 /// "fast" for "egocal-fast".
 std::string short_solver(const std::string& name, std::size_t max = 12);

@@ -25,8 +25,8 @@ struct PairingServiceOptions {
   /// What the network delays comes within this time [us]: a sender that goes over its messages again has
   /// sent all of them once. Study: egocal_simulation, seeds 10140070 and 10571754.
   std::int64_t latest_us = 100'000;
-  /// Gaps are looked at this often. A process that did not for twice as long was stopped (SIGSTOP, Ctrl-Z, a
-  /// machine that slept): what nobody could hear meanwhile was not silence.
+  /// Gaps are checked at this interval. If the process did not check for twice as long, it was stopped
+  /// (SIGSTOP, Ctrl-Z, a machine that slept). Senders were not silent in that time.
   std::chrono::milliseconds watch_period{100};
   /// After that a player counts as alive this long without a status [us]: it sends one a second.
   std::int64_t heard_again_us = 1'500'000;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A pairing process that is stopped and continued (Ctrl-Z and fg): what nobody could hear meanwhile was not
-// silence, and nothing counts as lost that is still in the socket or that the player sends again.
+// A pairing process that is stopped and continued (Ctrl-Z and fg): the time in which it was stopped does not
+// count as silence of the senders. Messages that wait in the socket, or that the player repeats, are not
+// lost.
 #include <gtest/gtest.h>
 
 #include <chrono>

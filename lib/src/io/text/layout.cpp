@@ -45,9 +45,8 @@ constexpr BinaryKind binary_kinds[] = {
     {"PAR1", "is a Parquet file: write it as csv"},
     {"ARROW1", "is a Feather file: write it as csv"},
     {"\xed\xa1\xda\x01",
-     "is an LCM log: the commands of egocal read it unless it is packed (unpack it), the library does not "
-     "(egocal "
-     "log export writes it as MCAP)"},
+     "is an LCM log: the commands of egocal read it unless it is packed (unpack it), "
+     "the library does not (egocal log export writes it as MCAP)"},
     {"ULog", "is a log of PX4: ulog2csv writes its topics as csv"},
     {"\xfd"
      "7zXZ",

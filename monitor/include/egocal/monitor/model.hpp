@@ -50,7 +50,8 @@ struct ModelOptions {
   /// No session lasts longer: a time beyond it is not drawn [s]. A leap year.
   double longest_session = 366 * 86400.0;
   std::size_t most_reasons = 64;  ///< for which a process rejects messages: a bound on memory
-  /// This process, which is there although a network that is away brings its own status to nobody; 0: none.
+  /// The monitor's own process: it is never listed as gone, though its status returns to nobody without a
+  /// network. 0: none.
   std::string own_host{};
   std::int32_t own_pid = 0;
 };
