@@ -203,6 +203,7 @@ void Pairing::watch_gaps() {
   if (catching_up_) return;
   be_patient_if_it_helps();
   const std::int64_t now = listened_us();
+  bool waits = false;
   for (std::size_t channel = 0; channel < arrivals_.size(); ++channel) {
     const auto i = static_cast<std::uint16_t>(channel);
     Arrivals& arrivals = arrivals_[i];
@@ -226,8 +227,12 @@ void Pairing::watch_gaps() {
                                              : now - arrivals.heard_at_us > options_.silence_us) {
       feed({Input::Kind::give_up, i});
     }
+    waits = waits || stream.waiting();
   }
   after_batch(true);
+  // a player sends again where it hears of something missing, and an acknowledgement may be lost
+  if (waits && patient_ && leads() && loop_.mono_us() - acknowledged_mono_us_ >= options_.ask_again_us)
+    heartbeat_.publish();
 }
 
 /// What everybody may know about this process, with what has just been learnt.

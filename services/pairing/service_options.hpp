@@ -22,6 +22,9 @@ struct PairingServiceOptions {
   std::int64_t silence_us = 500'000;
   /// What a player sends again comes within this time [us], on the lossy network of tests/e2e too.
   std::int64_t patience_us = 1'000'000;
+  /// While something is missing the acknowledgements go out this often at least [us]: several times within
+  /// patience_us.
+  std::int64_t ask_again_us = 300'000;
   /// What the network delays comes within this time [us]: a sender that goes over its messages again has
   /// sent all of them once. Study: egocal_simulation, seeds 10140070 and 10571754.
   std::int64_t latest_us = 100'000;

@@ -21,6 +21,9 @@ struct PaceOptions {
   /// What was not acknowledged is sent again after this time [us]: pairing acknowledges within
   /// milliseconds, or has lost it.
   std::int64_t stall_us = 500'000;
+  /// After this time where pairing was not heard meanwhile [us]: it sends a status a second, so that three
+  /// were lost, or it is stopped and has the messages in its socket.
+  std::int64_t unheard_us = 3'500'000;
   /// A message that could not be sent is tried again this often [us]. Study: tests/e2e/test_network.cpp.
   std::int64_t retry_us = 100'000;
   /// A message that cannot be sent for this time while the network is there is given up [us]. The loop looks

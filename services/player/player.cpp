@@ -66,6 +66,7 @@ void Player::hear(const status_t& status) {
   const std::int64_t now = loop_.mono_us();
   const bool first = !in_flight_.heard();
   const InFlight::Progress progress = in_flight_.acknowledged(status);
+  pairing_mono_us_ = now;
   if (progress.any) {
     progress_mono_us_ = now;
     alone_ = false;
@@ -287,8 +288,11 @@ void Player::watch_over() {
     if (next_) anchor(paused_ ? anchor_us_ : next_->time_us);
     play();
   }
-  if (in_flight_.count() > 0 && now - progress_mono_us_ > options_.pace.stall_us &&
-      heartbeat_.alive(bus::Role::pairing)) {
+  // what a process that is stopped has in its socket it need not get twice: it is asked for by its next
+  // status, which one that works sends every second
+  const bool heard_since = pairing_mono_us_ > progress_mono_us_;
+  const std::int64_t wait = heard_since ? options_.pace.stall_us : options_.pace.unheard_us;
+  if (in_flight_.count() > 0 && now - progress_mono_us_ > wait && heartbeat_.alive(bus::Role::pairing)) {
     send_again();
     progress_mono_us_ = now;
   }

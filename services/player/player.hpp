@@ -69,6 +69,7 @@ class Player {
   std::int64_t anchor_us_ = 0;       ///< recorded time that ...
   std::int64_t anchor_mono_us_ = 0;  ///< ... is played at this time of the clock
   std::int64_t started_mono_us_ = 0, progress_mono_us_ = 0, shown_mono_us_ = 0;
+  std::int64_t pairing_mono_us_ = 0;              ///< when a status of pairing was heard last
   std::optional<std::int64_t> refused_mono_us_;   ///< since when the next message cannot be sent
   std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported
   std::optional<bus::Loop::TimerId> timer_;

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The player beside a pairing process that is stopped or loses messages, in virtual time.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/convert.hpp"
+#include "egocal/bus/heartbeat.hpp"
+#include "egocal/bus/log_file.hpp"
+#include "egocal/bus/loop.hpp"
+#include "player/player.hpp"
+#include "support/virtual_time.hpp"
+
+namespace egocal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+class InStep : public ::testing::Test {
+ protected:
+  InStep()
+      : file_(std::filesystem::temp_directory_path() /
+              ("egocal_in_step_" + std::to_string(getpid()) + ".log")),
+        network_(clock_),
+        loop_(network_.transport(), clock_, {.handle_signals = false}),
+        other_(network_.transport(), clock_, {.handle_signals = false}),
+        pairing_(other_, {"egocal-pairing", bus::Role::pairing, "1.0", 1}, 3s),
+        heartbeat_(loop_, {"egocal-player", bus::Role::player, "1.0", 2}, 3s) {
+    bus::LogWriter log(file_.string());
+    for (std::int64_t i = 0; i <= messages; ++i) {
+      StampedPose pose;
+      // the last one an hour later: the player does not end meanwhile
+      pose.time_us = 1'600'000'000'000'000 + (i < messages ? 10'000 * i : 3'600'000'000);
+      log.write(pose.time_us, "LIDAR", bus::encode(bus::to_message(pose, i)));
+    }
+    log.close();
+    pairing_.set_state(bus::State::running);
+    other_.subscribe_bytes("LIDAR", [this](const bus::Arrival& arrival) { take(arrival.bytes); });
+    acknowledge(0, 0);
+  }
+  ~InStep() override { std::filesystem::remove(file_); }
+
+  void acknowledge(std::int64_t utime, std::int64_t count) {
+    acknowledgement_t entry{};
+    entry.channel = "LIDAR";
+    entry.utime = utime;
+    entry.count = count;
+    pairing_.acknowledgements() = {entry};
+    pairing_.publish();
+  }
+  void take(bus::Bytes bytes) {
+    odometry_t message{};
+    ASSERT_TRUE(bus::decode(bytes, message));
+    if (loses_ > 0) {
+      --loses_;
+      return;
+    }
+    ++heard_[message.seq];
+    newest_ = std::max(newest_, message.utime);
+    acknowledge(newest_, ++count_);
+  }
+  std::int64_t repeats() const {
+    std::int64_t sum = 0;
+    for (const auto& [number, times] : heard_) sum += times - 1;
+    return sum;
+  }
+
+  static constexpr std::int64_t messages = 400;
+  std::filesystem::path file_;
+  test::VirtualClock clock_;
+  test::VirtualNetwork network_;
+  bus::Loop loop_, other_;
+  bus::Heartbeat pairing_, heartbeat_;
+  std::map<std::int64_t, std::int64_t> heard_;  ///< how often each number
+  std::int64_t newest_ = 0, count_ = 0;
+  int loses_ = 0;
+};
+
+TEST_F(InStep, NothingIsSentAgainToAProcessThatIsStopped) {
+  Player player(loop_, heartbeat_, {.log = file_.string(), .range = {}});
+  test::run_for(clock_, {&loop_, &other_}, 2s);
+  EXPECT_GT(heard_.size(), 100u);
+  test::run_for(clock_, {&loop_}, 8s);  // what is sent meanwhile waits in the socket
+  test::run_for(clock_, {&loop_, &other_}, 5s);
+  EXPECT_EQ(heard_.size(), static_cast<std::size_t>(messages));
+  EXPECT_EQ(repeats(), 0);
+}
+
+TEST_F(InStep, WhatIsLostAtTheEndIsSentAgain) {
+  Player player(loop_, heartbeat_, {.log = file_.string(), .range = {}});
+  test::run_for(clock_, {&loop_, &other_}, 3950ms);
+  loses_ = 12;
+  test::run_for(clock_, {&loop_, &other_}, 12s);
+  EXPECT_EQ(heard_.size(), static_cast<std::size_t>(messages));
+}
+
+}  // namespace
+}  // namespace egocal::services
