@@ -256,6 +256,50 @@ TEST_F(Supervision, WhereNobodyIsHeardNobodyIsKilled) {
   EXPECT_EQ(read(path("said")), "");
 }
 
+// The network goes away between the statuses of two processes, or somebody stops all of them.
+TEST_F(Supervision, WhereAllFallSilentNoneIsBlamed) {
+  options.silent = 3000ms;
+  const auto begin = std::chrono::steady_clock::now();
+  options.silence = [this, begin](pid_t asked) -> std::optional<std::chrono::milliseconds> {
+    const auto all = lines(path("one.pids"));
+    const auto since =
+        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
+    return !all.empty() && std::stoi(all.back()) == asked ? since + 900ms : since;
+  };
+  start({waiting("one"), waiting("two")});
+  process("one");
+  std::this_thread::sleep_for(5s);
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+  EXPECT_EQ(read(path("said")), "");
+}
+
+// Ctrl-Z and fg, or a container that is frozen: the time in which the supervisor did not run is not theirs.
+TEST_F(Supervision, WhoWasStoppedTogetherWithTheSupervisorIsNotBlamed) {
+  options.silent = 3000ms;
+  options.silence = [this](pid_t asked) -> std::optional<std::chrono::milliseconds> {
+    const auto all = lines(path("two.pids"));
+    if (all.empty() || std::stoi(all.back()) != asked) return 10ms;
+    std::error_code none;
+    const auto since = std::filesystem::file_time_type::clock::now() -
+                       std::filesystem::last_write_time(path("two.heard"), none);
+    return none ? std::chrono::milliseconds(0) : std::chrono::duration_cast<std::chrono::milliseconds>(since);
+  };
+  start({waiting("one"),
+         script("two", "echo $$ >>$F/two.pids; while :; do echo >$F/two.heard; sleep 0.1; done")});
+  const pid_t two = process("two");
+  kill(two, SIGSTOP);
+  kill(pid, SIGSTOP);
+  std::this_thread::sleep_for(4s);
+  kill(pid, SIGCONT);
+  std::this_thread::sleep_for(300ms);
+  kill(two, SIGCONT);
+  std::this_thread::sleep_for(1s);
+  kill(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+  EXPECT_EQ(read(path("said")), "");
+}
+
 TEST_F(Supervision, LinesOfOthersAreReported) {
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0);

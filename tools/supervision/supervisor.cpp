@@ -31,6 +31,8 @@ using std::chrono::milliseconds;
 
 /// Between two questions for what is still awaited: people do not see it, and it costs nothing.
 constexpr milliseconds look_again{100};
+/// Two turns of the supervisor are no farther apart, unless it was stopped.
+constexpr milliseconds longest_turn{2000};
 /// A foreground program has given the terminal back by then.
 constexpr milliseconds gives_back{1000};
 
@@ -43,7 +45,8 @@ struct Child {
   bool finished = false;     ///< ended as it should
   std::string reported{};    ///< how it ended when that was reported last,
   Clock::time_point reported_at{};
-  std::optional<Clock::time_point> silent_since{};  ///< while others are heard; reported
+  milliseconds silent{0};         ///< while others are heard
+  bool silence_reported = false;  ///< and not over yet
 };
 
 /// In the child, between fork and exec: only what is safe there.
@@ -159,8 +162,16 @@ class Supervisor {
   }
 
  private:
-  void turn() {
+  /// The clock without the time in which this process was stopped: its turns are a second apart at most.
+  Clock::time_point awake() {
     const Clock::time_point now = Clock::now();
+    awake_ += std::min<Clock::duration>(now - looked_at_, longest_turn);
+    looked_at_ = now;
+    return awake_;
+  }
+
+  void turn() {
+    const Clock::time_point now = awake();
     if (ending_) {
       if (now >= kill_at_) kill_all();
     } else {
@@ -173,32 +184,35 @@ class Supervisor {
   }
 
   /// Silence is counted only while another process is heard: without a network, and after a machine has
-  /// slept, all of them are silent.
+  /// slept or all of them were stopped, all of them are silent.
   void watch_silence(Clock::time_point now) {
-    const auto silent = [this](const Child& child) {
+    const auto heard = [this](const Child& child) {
       return child.pid > 0 ? options_.silence(child.pid) : std::nullopt;
     };
     const bool any_heard = std::any_of(children_.begin(), children_.end(), [&](const Child& child) {
-      return silent(child).value_or(options_.silent) < options_.silent;
+      return heard(child).value_or(options_.heard) < options_.heard;
     });
+    const auto passed = std::chrono::duration_cast<milliseconds>(now - watched_at_);
+    watched_at_ = now;
     for (Child& child : children_) {
-      if (child.program.foreground) continue;
-      const std::optional<milliseconds> since = silent(child);
-      if (!any_heard || !since || *since < options_.silent) {
-        if (child.silent_since && since && *since < options_.silent)
-          messages_.report(fmt::format("{} is heard again", child.program.name));
-        child.silent_since.reset();
-      } else if (!child.silent_since) {
-        child.silent_since = now;
+      const std::optional<milliseconds> since = heard(child);
+      if (child.program.foreground || !since) continue;
+      child.silent = std::min(*since, any_heard ? child.silent + passed : child.silent);
+      if (child.silent < options_.silent) {
+        if (child.silence_reported) messages_.report(fmt::format("{} is heard again", child.program.name));
+        child.silence_reported = false;
+      } else if (!child.silence_reported) {
+        child.silence_reported = true;
         messages_.report(
             fmt::format("{} is silent for {:.1f} s: it hangs or was stopped; it is continued, and "
                         "killed where that does not help",
                         child.program.name, 1e-3 * static_cast<double>(since->count())));
         kill(child.pid, SIGCONT);
-      } else if (now - *child.silent_since > options_.hangs - options_.silent) {
+      } else if (child.silent > options_.hangs) {
         messages_.report(fmt::format("{} still hangs and is killed", child.program.name));
         kill(child.pid, SIGKILL);
-        child.silent_since.reset();
+        child.silence_reported = false;
+        child.silent = {};
       }
     }
   }
@@ -224,7 +238,7 @@ class Supervisor {
     for (std::string& argument : child.program.command) arguments.push_back(argument.data());
     arguments.push_back(nullptr);
     const pid_t parent = getpid();
-    child.started = Clock::now();
+    child.started = awake();
     child.pid = fork();
     if (child.pid == 0) become(child.program, arguments.data(), output, parent, old_mask_);
     const int reason = errno;
@@ -255,7 +269,7 @@ class Supervisor {
 
   /// Until a signal comes or something is to be done by the clock.
   void wait() {
-    Clock::time_point until = Clock::now() + std::chrono::seconds(1);
+    Clock::time_point until = awake() + std::chrono::seconds(1);
     if (ending_) {
       until = std::min(until, kill_at_);
     } else {
@@ -263,7 +277,7 @@ class Supervisor {
       for (const Child& child : children_)
         if (child.pid < 0 && !child.finished) until = std::min(until, child.start_at);
     }
-    const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now()).count();
+    const auto left = std::chrono::duration_cast<milliseconds>(until - awake()).count();
     pollfd waiting[] = {{signals_, POLLIN, 0}, {lines_, POLLIN, 0}};
     poll(waiting, std::size(waiting), static_cast<int>(std::clamp<long long>(left + 1, 0, 1000)));
     if (waiting[1].revents != 0) report_lines();
@@ -322,20 +336,21 @@ class Supervisor {
           std::find_if(children_.begin(), children_.end(), [pid](const Child& c) { return c.pid == pid; });
       if (child == children_.end()) continue;
       child->pid = -1;
-      child->silent_since.reset();
+      child->silence_reported = false;
+      child->silent = {};
       if (child->program.foreground) terminal_->restore();
       if (!ending_) ended(*child, status);
     }
   }
 
   void ended(Child& child, int status) {
-    const auto lived = std::chrono::duration_cast<milliseconds>(Clock::now() - child.started);
+    const auto lived = std::chrono::duration_cast<milliseconds>(awake() - child.started);
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     switch (child.restarts.ended(child.program, code, lived)) {
       case Restarts::Next::finished:
         child.finished = true;
         wanted_at_once_ = wanted_at_once_ || child.program.foreground;
-        end_at_ = Clock::now() + (wanted_at_once_ ? milliseconds(0) : options_.settle);
+        end_at_ = awake() + (wanted_at_once_ ? milliseconds(0) : options_.settle);
         return;
       case Restarts::Next::hopeless:
         messages_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
@@ -352,7 +367,7 @@ class Supervisor {
 
   /// After the pause that was decided.
   void start_again(Child& child, const std::string& reason) {
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = awake();
     child.start_at = now + child.restarts.pause();
     if (child.reported == reason && child.restarts.pauses_longest() &&
         now - child.reported_at < options_.repeat_report)
@@ -373,7 +388,7 @@ class Supervisor {
   void end_all(int signal, bool foreground_knows) {
     for (const Child& child : children_)
       if (child.pid > 0 && !(child.program.foreground && foreground_knows)) kill(child.pid, signal);
-    kill_at_ = Clock::now() + options_.patience;
+    kill_at_ = awake() + options_.patience;
     ending_ = true;
   }
 
@@ -383,7 +398,7 @@ class Supervisor {
       messages_.report(fmt::format("{} did not end and is killed", child.program.name));
       kill(child.pid, SIGKILL);
     }
-    kill_at_ = Clock::now() + options_.patience;
+    kill_at_ = awake() + options_.patience;
   }
 
   bool any_running() const {
@@ -395,6 +410,8 @@ class Supervisor {
 
   SupervisorOptions options_;
   std::vector<Child> children_;
+  Clock::time_point looked_at_ = Clock::now(), awake_ = looked_at_;  ///< see awake()
+  Clock::time_point watched_at_ = awake_;
   sigset_t old_mask_{};
   int signals_ = -1;
   Messages messages_{options_};

@@ -30,6 +30,8 @@ struct SupervisorOptions {
   /// never heard.
   std::function<std::optional<std::chrono::milliseconds>(pid_t)> silence{};
   std::chrono::milliseconds silent{5000}, hangs{20'000};
+  /// Another one is heard: within this time, in which each of them sends two statuses.
+  std::chrono::milliseconds heard{2500};
   int lines = -1;  ///< lines from this file descriptor are reported as well; it does not block. -1: none
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
