@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "egocal/moves/find_moves.hpp"
+#include "moves/linear_blocks.hpp"
+#include "moves/moving_pairs.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal {
 
@@ -33,17 +36,40 @@ bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_
   return !chance || *chance <= options.confirmation;
 }
 
+/// Noise of the rotations as a part of how far the motions turn, root mean squares without the tails.
+double noise_of_rotations(Pairs pairs, const Problem& problem, const MovesOptions& options) {
+  std::vector<MotionPair> kept;
+  const Pairs moving = detail::moving_pairs(pairs, options.least_motion, kept);
+  if (moving.size() < 2) return 0;
+  const DualQuaternion q =
+      detail::gated_blocks(moving, detail::weighted_by_noise(moving, problem, options.test), 1, options.test)
+          .q;
+  std::vector<double> noise;
+  double turns = 0;
+  for (const MotionPair& pair : moving) {
+    noise.push_back(detail::pair_residual(pair, q, {1, 0}));  // of half angles
+    turns += std::pow(0.5 * rotation_angle(pair.a), 2);
+  }
+  const auto count = static_cast<double>(noise.size());
+  return turns > 0 ? std::sqrt(detail::median(std::move(noise)) / (turns / count)) : 0;
+}
+
 }  // namespace
 
 MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strides, const Problem& problem,
                                   const MovesOptions& given) {
   MovesOptions options = given;
-  options.false_alarms /= static_cast<double>(std::max<std::size_t>(1, strides.size()));
+  std::size_t shortest = 0;
+  while (shortest + 1 < strides.size() &&
+         noise_of_rotations(strides[shortest], problem, options) > options.most_noise)
+    ++shortest;
+  options.false_alarms /= static_cast<double>(std::max<std::size_t>(1, strides.size() - shortest));
   MovesResult best;
+  best.stride = shortest;
   double least = 1, least_chance = 1;
-  for (std::size_t i = 0; i < strides.size(); ++i) {
+  for (std::size_t i = shortest; i < strides.size(); ++i) {
     MovesResult result = find_moves(strides[i], problem, options);
-    least_chance = std::min(least_chance, static_cast<double>(strides.size()) * result.chance);
+    least_chance = std::min(least_chance, static_cast<double>(strides.size() - shortest) * result.chance);
     double chance = 1;
     for (const Move& move : result.moves) chance = std::min(chance, move.false_alarm);
     const bool first = !best.tested && result.tested;
@@ -56,7 +82,7 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
   std::vector<Move> confirmed;
   for (std::size_t k = 0; k < best.moves.size(); ++k) {
     bool shown = true;
-    for (std::size_t i = 0; i < strides.size() && shown; ++i)
+    for (std::size_t i = shortest; i < strides.size() && shown; ++i)
       shown = i == best.stride ||
               shown_by(between_neighbours(strides[i], best.moves, k, strides[best.stride].front().begin_us),
                        problem, best.moves[k], strides[best.stride].front().begin_us, given);
