@@ -74,6 +74,28 @@ TEST(HiddenMistakes, PositionsThatAreLaterThanTheRotationsAreNamed) {
   EXPECT_LT(off_by(to_dual_quaternion(*finding->T_a_b)), 0.5 * off_by(to_dual_quaternion(calibration.T_a_b)));
 }
 
+/// A filter that delays the rotations alone looks like a clock that is off, and at that clock the positions
+/// are early.
+TEST(HiddenMistakes, RotationsThatAreLaterThanThePositionsAreNamed) {
+  testing::Streams streams = bounded_drive();
+  constexpr std::size_t late = 3;  // poses, of 10 a second
+  for (std::size_t i = streams.b.size() - 1; i >= late; --i) {
+    Pose pose = to_pose(streams.b[i].pose);
+    pose.rotation = to_pose(streams.b[i - late].pose).rotation;
+    streams.b[i].pose = canonical_sign(to_dual_quaternion(pose));
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_NE(calibration.verdict, Verdict::good) << calibration.reason;
+  const Finding *clock = find(calibration, "clock_offset"),
+                *positions = find(calibration, "late_positions_b");
+  ASSERT_NE(clock, nullptr) << calibration.reason;
+  ASSERT_NE(positions, nullptr) << calibration.reason;
+  EXPECT_NEAR(*clock->value, -0.3, 0.1);
+  EXPECT_NEAR(*positions->value, -0.3, 0.1);
+  ASSERT_TRUE(positions->T_a_b);
+  EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*positions->T_a_b)).rotation, 0.01);
+}
+
 /// Whatever moved the sensor between the poses that were measured is lost.
 TEST(HiddenMistakes, AStreamThatWasInterpolatedIsNamed) {
   testing::Streams streams = bounded_drive();

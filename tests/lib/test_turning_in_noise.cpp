@@ -63,5 +63,19 @@ TEST(TurningInNoise, OfTwoTrainsIsNotOfOne) {
   }
 }
 
+/// A parked car: whatever its sensors measure is noise, which contradicts every extrinsic.
+TEST(TurningInNoise, OfSensorsThatStandIsTooLittleMotion) {
+  testing::Random random(1);
+  testing::Streams streams;
+  for (int i = 0; i < 600; ++i)
+    for (Trajectory* stream : {&streams.a, &streams.b})
+      stream->push_back({static_cast<std::int64_t>(i) * 100'000,
+                         canonical_sign(testing::displacement(random.normal3(0.003), random.normal3(0.02)))});
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+  EXPECT_NE(find(calibration, "too_little_motion"), nullptr) << calibration.reason;
+  EXPECT_NE(calibration.reason.find("Record a longer drive"), std::string::npos) << calibration.reason;
+}
+
 }  // namespace
 }  // namespace egocal

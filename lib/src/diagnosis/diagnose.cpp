@@ -24,6 +24,7 @@
 #include "diagnosis/not_a_move.hpp"
 #include "diagnosis/pace.hpp"
 #include "diagnosis/planes.hpp"
+#include "diagnosis/standing_still.hpp"
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
@@ -164,8 +165,16 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unrelated(correlation));
     return;
   }
-  std::vector<Finding> moves = moves_or_else(moved_mount(evidence.instants, answered, options), pairing,
-                                             evidence, answered, has(findings, "inverted_both"), options);
+  std::optional<Finding> late;
+  if (answered.problem.mode != Mode::planar)
+    late = late_positions(evidence.instants, evidence.given.explained, options);
+  const auto explains_more = [&late](double improvement) { return !late || improvement > late->improvement; };
+  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
+  // where a filter delays positions, parts of the drive with other speeds have other extrinsics
+  if (!moves.empty() && late && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
+    moves.clear();
+  moves =
+      moves_or_else(std::move(moves), pairing, evidence, answered, has(findings, "inverted_both"), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
   if (!moves.empty()) {
     std::erase_if(findings, [](const Finding& one) {
@@ -175,7 +184,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     return;
   }
   if (fit.translation_relative_median > options.scale_change_misfit)
-    if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options)) {
+    if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options);
+        scale && explains_more(scale->improvement)) {
       findings.insert(findings.begin(), *std::move(scale));
       return;
     }
@@ -183,9 +193,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unexplained(*part));
     return;
   }
-  if (answered.problem.mode == Mode::planar) return;
-  if (std::optional<Finding> late = late_positions(evidence, options))
-    findings.insert(findings.begin(), *std::move(late));
+  if (late) findings.insert(findings.begin(), *std::move(late));
 }
 
 /// A mount that moved by much looks like other axes, another clock or another recording: it is named instead
@@ -288,6 +296,35 @@ void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& resu
     result.findings.push_back(*std::move(finding));
 }
 
+/// Where rotations alone are late, the clock that suits them is wrong for the positions: both are named, with
+/// the answer that suits both.
+void name_late_positions_by_clock(const Foreseen& foreseen, std::vector<Finding>& findings) {
+  if (foreseen.pairing.mode == Mode::planar) return;
+  const auto clock = std::find_if(findings.begin(), findings.end(), [](const Finding& one) {
+    return one.certain && one.code == "clock_offset" && one.value;
+  });
+  if (clock == findings.end()) return;
+  if (std::any_of(findings.begin(), findings.end(),
+                  [](const Finding& one) { return one.certain && one.code != "clock_offset"; }))
+    return;
+  const DiagnosisOptions& options = foreseen.options;
+  const Instants instants = synchronised(foreseen.a, foreseen.b, {*clock->value, 0, 0},
+                                         foreseen.pairing.max_gap, 1, options.motions);
+  Explained corrected;
+  corrected.motions =
+      motions_of(instants, {}, {}, foreseen.evidence.stride, options.motions.most, options.motions);
+  if (corrected.motions.all.empty()) return;
+  corrected.fit = robust_fit(corrected.motions, options.fit);
+  // filters delay: the stream whose rotations are behind those of the other one
+  std::optional<Finding> late =
+      late_positions(instants, corrected, options, *clock->value < 0 ? Side::b : Side::a);
+  if (!late) late = late_positions(instants, corrected, options);
+  if (!late) return;
+  late->message = "At this clock: " + late->message;
+  clock->T_a_b = late->T_a_b;
+  findings.insert(std::next(clock), *std::move(late));
+}
+
 Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                  const DiagnosisOptions& options) {
   Foreseen foreseen{a, b, pairing, options,
@@ -296,6 +333,8 @@ Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions&
   foreseen.findings = check_streams(a, b, foreseen.evidence.instants);
   if (pairing.mode == Mode::planar)  // level positions are what planar mode is for
     std::erase_if(foreseen.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
+  if (foreseen.findings.empty() && standing_still(foreseen.evidence.instants))
+    foreseen.findings = {too_little_motion(foreseen.evidence.given.explained.motions.all.size(), options)};
   // what is wrong with the streams themselves looks like other mistakes
   if (foreseen.findings.empty()) foreseen.findings = explain(foreseen.evidence, options);
   // of a million poses 8 MB that only explain() looks at
@@ -336,6 +375,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                          replace_by_moves(pairing, evidence, answered, options, result.findings) ||
                          std::any_of(result.findings.begin(), result.findings.end(),
                                      [&](const Finding& one) { return explains(one, options); });
+  if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);
   name_wrong_scale(evidence, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),
@@ -350,6 +390,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                  motions, evidence.stride * evidence.instants.period, evidence.instants.period, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
+  name_late_positions_by_clock(foreseen, result.findings);
   for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b))
     if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
   judge(result, answered, misfit, options);

@@ -133,6 +133,7 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
 /// The same wrong axes in both files, the one that fits best: what is left may agree nearly where both
 /// sensors stand alike.
 std::optional<Explanation> common_axes(const Evidence& evidence, const DiagnosisOptions& options) {
+  const CommonAxesOptions least;
   std::optional<Explanation> best;
   for (const PoseReading& reading :
        common_axes_readings(evidence.instants, evidence.stride, options.motions.first_look, options)) {
@@ -143,8 +144,8 @@ std::optional<Explanation> common_axes(const Evidence& evidence, const Diagnosis
     // as where both are inverted, noise alone may suit the wrong reading better, and far from the origin any
     // residual is a small part of its motions
     const Explained& given = evidence.given.explained;
-    if (reading.conjugate && (compare(given, here.explained).gain < decisive_loss ||
-                              loss_in_metres(given, here.explained) > -decisive_loss))
+    if (reading.conjugate && (compare(given, here.explained).gain < least.gain ||
+                              loss_in_metres(given, here.explained) > -least.gain_in_metres))
       continue;
     // simple readings come first
     if (!best || compare(best->explained, here.explained).gain > options.alike) best = std::move(here);

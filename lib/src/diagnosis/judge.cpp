@@ -199,7 +199,12 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
       }
   if (diagnosis.verdict >= Verdict::doubtful) return;
   const std::string unknown = unknown_directions(answered, options);
-  if (!unknown.empty()) {
+  const auto little = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                   [](const Finding& one) { return one.code == "too_little_motion"; });
+  if (little != diagnosis.findings.end()) {
+    diagnosis.verdict = Verdict::incomplete;
+    diagnosis.reason = little->message + " " + little->remedy;
+  } else if (!unknown.empty()) {
     diagnosis.verdict = Verdict::incomplete;
     diagnosis.reason =
         format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,

@@ -51,8 +51,7 @@ class Speeds {
 };
 
 /// The changes of the motions that motions_of() makes of the same instants, by their times.
-Changes changes_of(const Evidence& evidence, const Motions& motions, const LatePositionsOptions& late) {
-  const Instants& instants = evidence.instants;
+Changes changes_of(const Instants& instants, const Motions& motions, const LatePositionsOptions& late) {
   const Speeds speeds(instants, late);
   const auto span = static_cast<std::size_t>(motions.stride);
   Changes changes;
@@ -138,13 +137,14 @@ Late fitted(const Explained& given, const Changes& changes, Side side, const Dia
 
 }  // namespace
 
-std::optional<Finding> late_positions(const Evidence& evidence, const DiagnosisOptions& options,
+std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
+                                      const DiagnosisOptions& options, std::optional<Side> only,
                                       const LatePositionsOptions& late) {
-  const Explained& given = evidence.given.explained;
-  if (evidence.instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
-  const Changes changes = changes_of(evidence, given.motions, late);
+  if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
+  const Changes changes = changes_of(instants, given.motions, late);
   std::optional<Late> best;
   for (const Side side : {Side::b, Side::a}) {
+    if (only && side != *only) continue;
     Late here = fitted(given, changes, side, options);
     if (!std::isfinite(here.delay) || std::abs(here.delay) < late.least ||
         !(here.explained.fit.typical < options.explains * options.explains) ||

@@ -23,8 +23,10 @@ struct LatePositionsOptions {
 
 /// The stream whose positions are late, or early, the extrinsic without that, and by how much the motions
 /// then fit better, where they clearly do. Along a straight way at one speed, and in steady turns, this
-/// cannot be seen: it looks like a longer lever arm.
-std::optional<Finding> late_positions(const Evidence& evidence, const DiagnosisOptions& options,
+/// cannot be seen: it looks like a longer lever arm. instants, given: the drive, and its motions with the
+/// extrinsic that suits them as they are. only: of this stream; empty: of either.
+std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
+                                      const DiagnosisOptions& options, std::optional<Side> only = {},
                                       const LatePositionsOptions& late = {});
 
 }  // namespace egocal::detail
