@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "egocal/bus/plausible.hpp"
@@ -88,6 +89,33 @@ std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono
       lines.push_back({stream.is_odometry ? Severity::good : Severity::warning,
                        described(stream) + ", " + std::to_string(stream.messages) + " messages"});
   return lines;
+}
+
+std::string why_no_motion(const StreamWatch& watch, const std::string& a, const std::string& b,
+                          std::int64_t mono_us) {
+  const auto sends = [&](const std::string& name) -> const HeardStream* {
+    for (const SensorStream& stream : watch.sensors())
+      if (stream.sensor.name == name && stream.heard &&
+          mono_us - stream.heard->last_mono_us <= watch.options().silent_us)
+        return &*stream.heard;
+    return nullptr;
+  };
+  const HeardStream* const of_a = sends(a);
+  const HeardStream* const of_b = sends(b);
+  if (!of_a && !of_b) return {};
+  if (!of_a || !of_b) return (of_a ? b : a) + " sends nothing";
+  if (of_a->stamp_us == 0 || of_b->stamp_us == 0) return (of_a->stamp_us == 0 ? a : b) + " sends no poses";
+  // as doubles: stamps may be anything
+  const auto ahead_us = [](const HeardStream& stream) {
+    return static_cast<double>(stream.stamp_us) - static_cast<double>(stream.stamp_mono_us);
+  };
+  const double apart_us = ahead_us(*of_a) - ahead_us(*of_b);
+  if (std::abs(apart_us) <= static_cast<double>(watch.options().apart_us))
+    return "pairing rejects the poses, see its counters";
+  char seconds[64];
+  std::snprintf(seconds, sizeof seconds, "%.1f s", 1e-6 * std::abs(apart_us));
+  return "the stamps of the two streams do not overlap: those of " + (apart_us > 0 ? a : b) + " are " +
+         seconds + " ahead. Set the clocks that stamp them alike";
 }
 
 }  // namespace egocal::bus

@@ -60,6 +60,8 @@ std::optional<Refusal> StreamWatch::examine(HeardStream& stream, StreamClock& cl
     return add(stream, options_.most_refusals, odometry.pose.reason,
                cure_of(odometry.pose.reason, sensor.type, bytes));
   const StampedPose& pose = *odometry.pose.value;
+  stream.stamp_us = pose.time_us;
+  stream.stamp_mono_us = mono_us;
   const Eigen::Vector3d place = to_pose(pose.pose).translation;
   const std::optional<ClockFault> fault =
       clock.hear({pose.time_us, mono_us, odometry.seq, {place.x(), place.y(), place.z()}});

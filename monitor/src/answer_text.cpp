@@ -126,6 +126,9 @@ Label verdict_of(const PairState& pair, Charset charset) {
   // what came since may contradict it; what is contradictory stays that
   if (verdict <= Verdict::incomplete && pair.old > 0) return {"? old answer", Style::warning};
   if (verdict <= Verdict::incomplete && pair.verdict->old > 0) return {"? old verdict", Style::warning};
+  // the answer is right as far as it goes, and no longer follows what comes
+  if (verdict <= Verdict::incomplete && pair.standing > 0 && !pair.why_standing.empty())
+    return {"? no motion", Style::warning};
   // a monitor that came when pairing was gone already
   if (verdict <= Verdict::incomplete && !pair.counted_solver()->verified)
     return {"? not verified", Style::warning};
@@ -152,10 +155,21 @@ std::string goal_text(const Diagnosis& diagnosis) {
   return goal.next.empty() ? text : text + ". " + goal.next;
 }
 
+std::string standing_text(const PairState& pair) {
+  return "no new motion for " + age(pair.standing) + (pair.why_standing.empty() ? "" : ": ") +
+         pair.why_standing;
+}
+
 Label advice_of(const PairState& pair) {
   if (pair.old > 0)
     return {(pairing_is_silent(pair) ? "pairing is silent for " + age(pair.old)
                                      : "no solver answers what came in the last " + age(pair.old)) +
+                (pair.verdict ? ". Before: " + std::string(to_string(pair.verdict->diagnosis.verdict)) +
+                                    ". " + pair.verdict->diagnosis.reason
+                              : ""),
+            Style::warning};
+  if (pair.standing > 0 && !pair.why_standing.empty())
+    return {standing_text(pair) +
                 (pair.verdict ? ". Before: " + std::string(to_string(pair.verdict->diagnosis.verdict)) +
                                     ". " + pair.verdict->diagnosis.reason
                               : ""),

@@ -56,6 +56,8 @@ Label verdict_of(const PairState& pair, Charset charset);
 Label proof_of(const calibration_t& answer);
 /// What to do about it, or why, in one line: the first finding with its cure, else the goal, else the reason.
 Label advice_of(const PairState& pair);
+/// "no new motion for 12 s: camera sends nothing".
+std::string standing_text(const PairState& pair);
 /// "done", "weak: z yaw, about 2 min more; Take a ramp": empty without a goal.
 std::string goal_text(const Diagnosis& diagnosis);
 /// "0.12 deg, 1.3 cm (0.8 % of the way) a motion of 1.2 s, ..."; empty where it was not measured.

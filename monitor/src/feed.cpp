@@ -57,8 +57,14 @@ void Feed::watch_streams() {
   for (const bus::SensorStream& stream : streams_.sensors())
     loop_.subscribe_bytes(stream.sensor.channel, hear, queue_capacity);
   loop_.subscribe_others(hear, [this] { return streams_.misses_any(loop_.mono_us()); });
-  loop_.every(std::chrono::milliseconds(500),
-              [this] { model_.set_streams(bus::stream_lines(streams_, loop_.mono_us(), why_silent())); });
+  loop_.every(std::chrono::milliseconds(500), [this] {
+    const std::int64_t mono_us = loop_.mono_us();
+    model_.set_streams(bus::stream_lines(streams_, mono_us, why_silent()));
+    for (std::size_t i = 0; i < model_.pairs().size(); ++i) {
+      const PairState& pair = model_.pairs()[i];
+      model_.set_why_standing(i, bus::why_no_motion(streams_, pair.a, pair.b, mono_us));
+    }
+  });
 }
 
 /// Where a log is played, its sensors send when the player does, and that waits for pairing.

@@ -169,6 +169,12 @@ void Model::on_problem(const problem_t& message, Now now) {
       seconds(pair->paused_mono_us, now.mono_us) > options_.settle)
     pair->paused = false;  // it was resumed, or the command was lost
   if (pair->silent) note(Severity::good, name, "the stream is back", now);
+  if (!pair->has_problem || pair->problem.session != message.session || message.seq > pair->problem.seq) {
+    if (pair->standing_reported) note(Severity::good, name, "new motions come again", now);
+    pair->standing_reported = false;
+    pair->standing = 0;
+    pair->motion_mono_us = now.mono_us;
+  }
   const bool sum = sums_strides(message);
   const bool chosen_anew = pair->has_problem && (sums_strides(pair->problem) != sum ||
                                                  (!sum && pair->problem.stride != message.stride));
@@ -418,6 +424,7 @@ void Model::tick(Now now) {
     }
     watch_age_of_verdict(pair, now);
     watch_age_of_answer(pair, now);
+    watch_motions(pair, now);
     // a solver is missed only where there is something to solve, and only after it has had time to
     if (!pair.has_problem || pair.silent || pair_is_paused(*this, pair)) pair.idle_mono_us = now.mono_us;
     for (SolverTrack& track : pair.solvers) {

@@ -30,6 +30,17 @@ void Model::watch_age_of_answer(PairState& pair, Now now) {
          "the answer is old: no solver answers the motions that came since", now);
 }
 
+/// Pairing sends its problem every second, with new motions or without.
+void Model::watch_motions(PairState& pair, Now now) {
+  const double since = seconds(pair.motion_mono_us, now.mono_us);
+  const bool stands =
+      pair.has_problem && !pair.silent && !pair_is_paused(*this, pair) && since > options_.standing;
+  pair.standing = stands ? since : 0;
+  if (!stands || pair.standing_reported || pair.why_standing.empty()) return;
+  pair.standing_reported = true;
+  note(Severity::warning, pair_name(pair.a, pair.b), standing_text(pair), now);
+}
+
 bool is_good(const PairState& pair) {
   return pair.answer() && pair.answer()->status == 0 && pair.counted_solver()->verified && pair.shown.valid &&
          pair.old == 0 && pair.verdict && pair.verdict->diagnosis.verdict == Verdict::good &&

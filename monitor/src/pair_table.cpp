@@ -119,8 +119,9 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
     case PairColumn::gap:
       return {compact(answer.scaled_gap, charset), answer.scaled_gap <= 1 ? Style::normal : Style::warning};
     case PairColumn::age:
-      return {age(seconds(pair.counted_solver()->at.mono_us, now.mono_us)),
-              pair.silent ? Style::warning : Style::dim};
+      // of an answer that is sent again every second: since the motions that it is about
+      return {age(std::max(seconds(pair.counted_solver()->at.mono_us, now.mono_us), pair.standing)),
+              pair.silent || pair.standing > 0 ? Style::warning : Style::dim};
     case PairColumn::solve:
       return {solve_time(answer, charset)};
     case PairColumn::verify:

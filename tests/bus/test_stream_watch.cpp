@@ -71,6 +71,19 @@ TEST_F(Watch, ASilentSensorComesWithWhatIsHeardInstead) {
   EXPECT_EQ(paused[1].severity, StreamLine::Severity::bad);
 }
 
+TEST_F(Watch, WhyAPairHasNoNewMotion) {
+  EXPECT_EQ(why_no_motion(watch, "lidar", "camera", 11'000'000), "") << "nothing is known";
+  play("ODOMETRY_LIDAR", 10, 6);
+  EXPECT_EQ(why_no_motion(watch, "lidar", "camera", 11'000'000), "camera sends nothing");
+  play("ODOMETRY_CAMERA", 33, 6);
+  EXPECT_THAT(why_no_motion(watch, "lidar", "camera", 11'000'000), HasSubstr("pairing rejects the poses"));
+  odometry_t message = to_message(StampedPose{start_us + 3'606'000'000, {}}, 198);
+  hear("ODOMETRY_CAMERA", message, 11'000'000);
+  EXPECT_THAT(why_no_motion(watch, "lidar", "camera", 11'000'000),
+              HasSubstr("do not overlap: those of camera are 3600.0 s ahead"));
+  EXPECT_EQ(why_no_motion(watch, "lidar", "camera", 20'000'000), "") << "both are silent";
+}
+
 TEST_F(Watch, EveryFaultComesWithItsCureAndIsReportedOnce) {
   const auto refused = [&](const char* reason, const char* cure, auto change) {
     odometry_t message = to_message(StampedPose{start_us, {}}, 1);

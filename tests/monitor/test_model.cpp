@@ -258,6 +258,26 @@ TEST(ModelEvents, GapInAStreamAndSilence) {
   EXPECT_THAT(drive.fresh(), Contains("lidar -> camera: the stream is back"));
 }
 
+TEST(ModelEvents, NoNewMotionThoughPairingLives) {
+  PairDrive drive;
+  drive.run(30);
+  drive.fresh();
+  const std::int64_t newest = drive.pair().problem.seq;
+  drive.change_problem = [&](problem_t& p) { p.seq = newest; };  // sent again and again
+  drive.run(60);
+  EXPECT_NEAR(drive.pair().standing, 6, 0.2);
+  EXPECT_THAT(drive.fresh(), ElementsAre()) << "a log has ended, or nothing is known of the streams";
+  drive.model.set_why_standing(0, "camera sends nothing");
+  drive.run(1);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: no new motion for 6 s: camera sends nothing"));
+  drive.run(20);
+  EXPECT_THAT(drive.fresh(), ElementsAre());
+  drive.change_problem = [](problem_t&) {};
+  drive.run(1);
+  EXPECT_EQ(drive.pair().standing, 0);
+  EXPECT_THAT(drive.fresh(), Contains("lidar -> camera: new motions come again"));
+}
+
 TEST(ModelEvents, TheSameAgainIsCounted) {
   PairDrive drive;
   for (int i = 0; i < 5; ++i)

@@ -31,7 +31,8 @@ struct HeardStream {
   std::int64_t messages = 0;
   double rate = 0;  ///< over the last two to four seconds [1/s]
   std::int64_t last_mono_us = 0;
-  std::vector<Refusal> refusals;  ///< in the order in which they were first seen
+  std::int64_t stamp_us = 0, stamp_mono_us = 0;  ///< of the last pose: its time, and its arrival; 0: none yet
+  std::vector<Refusal> refusals;                 ///< in the order in which they were first seen
 };
 
 /// One sensor of the rig.
@@ -51,8 +52,10 @@ struct StreamWatchOptions {
   std::int64_t rate_window_us = 2'000'000;  ///< the rate is counted over this: two messages of 1 Hz [us]
   StreamClockOptions clock;
   std::int64_t silent_us = 2'000'000;  ///< a stream without messages for this long is silent [us]
-  std::size_t most_others = 64;        ///< channels that no sensor names: a bound on memory
-  std::size_t most_refusals = 16;      ///< kinds, of one channel: a bound on memory
+  /// Stamps of two streams that are farther apart overlap nowhere [us]: several times what a network delays.
+  std::int64_t apart_us = 2'000'000;
+  std::size_t most_others = 64;    ///< channels that no sensor names: a bound on memory
+  std::size_t most_refusals = 16;  ///< kinds, of one channel: a bound on memory
 };
 
 /// Watches the channels of a rig, and others that carry odometry where a sensor is missed. Bounded in memory
@@ -101,5 +104,10 @@ std::string cure_of_rejection(const std::string& reason);
 /// that were received before may be silent ("the player is paused"): no fault of a sensor. Empty: none.
 std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono_us,
                                      const std::string& why_silent = {});
+
+/// Why two sensors, by name, have no motion in common for a while, one of which sends: one is silent, or
+/// their stamps do not overlap. Empty: both are silent, or nothing is known of them.
+std::string why_no_motion(const StreamWatch& watch, const std::string& a, const std::string& b,
+                          std::int64_t mono_us);
 
 }  // namespace egocal::bus

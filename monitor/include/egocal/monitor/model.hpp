@@ -40,7 +40,9 @@ struct ModelOptions {
   /// diagnosis judges one pair after another, each in less than 0.1 s of its 4 % of a core.
   double judged_within = 10, judged_within_per_pair = 3;
   bus::AnswerAgeOptions answer_age;  ///< when an answer is old
-  double max_gap = 0.5;              ///< [s] of measured time between two problems; more is reported as a gap
+  /// Pairing lives, and has found no new motion for longer [s]: ten steps of the slowest sensors.
+  double standing = 5;
+  double max_gap = 0.5;  ///< [s] of measured time between two problems; more is reported as a gap
   // Study of these: tests/monitor/test_model.cpp.
   /// A certificate, a fallback or a pause must have lasted this long before its end is an event [s]: solvers
   /// alternate, people do not.
@@ -109,6 +111,10 @@ struct PairState {
   problem_t problem;  ///< the newest, without its blocks
   Now problem_at;
   bool silent = false;
+  std::int64_t motion_mono_us = 0;  ///< when the newest motion came
+  double standing = 0;              ///< for so long none came, though pairing lives [s]; 0: they come
+  std::string why_standing;         ///< the likely cause; empty: nothing is wrong, or nothing is known
+  bool standing_reported = false;
   std::int64_t session = 0;
   std::optional<PairVerdict> verdict;
   std::optional<bus::CheckedScale> scale;  ///< where the rig says scale = "auto" of one of the sensors
@@ -177,6 +183,8 @@ class Model {
   void on_command(const command_t& message, Now now);
   /// What is to be said of the sensors' streams now.
   void set_streams(std::vector<bus::StreamLine> lines) { streams_ = std::move(lines); }
+  /// Why a pair has no new motion, see bus::why_no_motion().
+  void set_why_standing(std::size_t pair, const std::string& why) { pairs_.at(pair).why_standing = why; }
 
   /// A line for the list of events from outside, e.g. captured standard error.
   void note(Severity severity, const std::string& subject, const std::string& text, Now now);
@@ -210,6 +218,7 @@ class Model {
   void watch_age_of_verdict(PairState& pair, Now now);
   void note_unanswered(PairState& pair, Now now);
   void watch_age_of_answer(PairState& pair, Now now);
+  void watch_motions(PairState& pair, Now now);
   void watch_loops(Now now);
   bool is_own(const ProcessState& process) const;
 
