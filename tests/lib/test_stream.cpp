@@ -70,6 +70,21 @@ TEST(Stream, DuplicatesAreCounted) {
   EXPECT_EQ(stream.counts().duplicate, 2);
 }
 
+TEST(Stream, AStampThatRepeatsUnderANewNumberIsOneDuplicateAndNoLoss) {
+  for (const bool patient : {false, true}) {
+    Stream stream;
+    stream.be_patient(patient);
+    EXPECT_THAT(feed(stream, {sample(0, 0), sample(1, 1), sample(1, 2), sample(2, 3), sample(3, 4)}),
+                ElementsAre(0, 1, 2, 3));
+    // behind a gap, twice
+    EXPECT_THAT(feed(stream, {sample(5, 6), sample(5, 7), sample(5, 8), sample(6, 9)}), ElementsAre());
+    EXPECT_THAT(feed(stream, {sample(4, 5), sample(7, 10)}), ElementsAre(4, 5, 6, 7));
+    EXPECT_FALSE(stream.waiting());
+    EXPECT_EQ(stream.counts().duplicate, 1 + 2);
+    EXPECT_EQ(stream.counts().lost + stream.counts().out_of_order + stream.counts().jump, 0);
+  }
+}
+
 TEST(Stream, OneDamagedTimeOrNumberEndsNothing) {
   Stream stream;
   EXPECT_THAT(feed(stream, {sample(0, 0), sample(1, 1), sample(-9000, 2), sample(2, 3), sample(5'000'000, 4),

@@ -61,6 +61,16 @@ Stream::Stream(const StreamOptions& options) : options_(options) {
   state_.recent.fill(no_time);
 }
 
+/// A new message with the stamp of the one before it. Its number has come, and is not missing.
+bool Stream::repeats_a_stamp(const NumberedPose& sample) const {
+  if (sample.seq < 0 || !state_.next_seq || sample.seq < *state_.next_seq) return false;
+  const auto next = state_.early.lower_bound(sample.seq);
+  if (next != state_.early.end() && next->first == sample.seq) return false;
+  const std::optional<std::int64_t> before =
+      next == state_.early.begin() ? state_.newest_us : std::prev(next)->second.pose.time_us;
+  return before == sample.pose.time_us && plausible(sample);
+}
+
 /// y may be the message after x, or a few later.
 bool Stream::follows(const NumberedPose& x, const NumberedPose& y) const {
   const std::int64_t step = y.pose.time_us - x.pose.time_us;
@@ -150,6 +160,10 @@ void Stream::reject_late(const NumberedPose& sample) {
 
 void Stream::release(NumberedPose sample, std::vector<NumberedPose>& out) {
   const bool late = state_.newest_us && sample.pose.time_us <= *state_.newest_us;
+  if (late && sample.seq >= 0 && sample.pose.time_us == *state_.newest_us) {
+    ++state_.counts.duplicate;  // its stamp came before under another number
+    return;
+  }
   if (late && sample.seq >= 0) return reject_late(sample);
   if (late) {
     // not numbered, so nothing waited for it: the synchroniser knows whether it can still use it
@@ -188,7 +202,7 @@ void Stream::release_early(std::vector<NumberedPose>& out, bool give_up) {
     state_.early.erase(first);
     // a damaged number may have put one far ahead that will not be of use there
     state_.counts.out_of_order += static_cast<std::int64_t>(std::erase_if(
-        state_.early, [this](const auto& entry) { return entry.second.pose.time_us <= *state_.newest_us; }));
+        state_.early, [this](const auto& entry) { return entry.second.pose.time_us < *state_.newest_us; }));
   }
 }
 
@@ -371,6 +385,7 @@ void Stream::pass_checked(std::vector<NumberedPose>& out) {
 }
 
 std::vector<NumberedPose> Stream::in_order(NumberedPose sample) {
+  if (repeats_a_stamp(sample)) return place(std::move(sample));
   if (known(sample.pose.time_us)) {
     ++state_.counts.duplicate;
     drop_late_candidates(sample.pose.time_us);

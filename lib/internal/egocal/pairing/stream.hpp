@@ -138,6 +138,7 @@ class Stream {
   bool too_many(std::size_t count) const { return count > static_cast<std::size_t>(options_.most_missing); }
   std::ptrdiff_t place_among_candidates(const NumberedPose& sample) const;
   bool known(std::int64_t time_us) const;
+  bool repeats_a_stamp(const NumberedPose& sample) const;
   std::int64_t newest_us_of_all() const;
   std::int64_t largest_jump_us() const;
   void drop_late_candidates(std::int64_t repeated_us);
