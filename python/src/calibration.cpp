@@ -8,6 +8,7 @@
 #include <string>
 
 #include "convert.hpp"
+#include "python_words.hpp"
 
 namespace egocal::python {
 
@@ -118,7 +119,8 @@ void bind_answer(py::class_<Calibration>& type) {
           "verdict", [](const Calibration& c) { return std::string(to_string(c.verdict)); },
           "'good', 'incomplete', 'doubtful' or 'contradictory': whether the answer can be used")
       .def_property_readonly(
-          "reason", [](const Calibration& c) { return c.reason; }, "of the verdict, one sentence")
+          "reason", [](const Calibration& c) { return in_python_words(c.reason); },
+          "of the verdict, one sentence")
       .def_property_readonly(
           "statistics", [](const Calibration& c) { return sum_blocks(c.problem.blocks); },
           "Statistics of all motions: those of several drives of one rig add up")

@@ -224,6 +224,14 @@ def test_hand_eye_finds_the_wrong_pose_and_the_target():
     assert np.allclose(details["t_target2base"], target[:3, 3], atol=1e-9)
 
 
+def test_messages_name_arguments_instead_of_options(drive):
+    a, b = (np.loadtxt(file, comments="#") for file in drive)
+    b[:, 0] += 3600
+    with pytest.raises(egocal.Error, match="time_offset='auto'") as failure:
+        egocal.solve(a, b)
+    assert "--" not in str(failure.value)
+
+
 def test_hand_eye_never_hides_what_it_cannot_know():
     """Poses that all turn about one axis leave a direction open; the answer is finite and says so."""
     rng = np.random.default_rng(5)
