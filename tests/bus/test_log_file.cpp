@@ -330,6 +330,22 @@ TEST_F(LogFile, WhatIsNoLogIsRefusedInOneLine) {
   EXPECT_THROW(LogReader((folder / "none").string()), Error);
 }
 
+TEST_F(LogFile, APackedLogIsRefusedWithTheCommandThatUnpacksIt) {
+  for (const auto& [begin, command] :
+       {std::pair<std::string, std::string>{"\x1f\x8b",
+                                            "packed by gzip, and a log is read unpacked: gunzip -k '"},
+        {"\x28\xb5\x2f\xfd", "unzstd '"},
+        {"BZh9", "bunzip2 -k '"},
+        {"\x04\x22\x4d\x18", "unlz4 '"},
+        {std::string("\xfd\x37zXZ\0", 6), "unxz -k '"}})
+    try {
+      read(begin + std::string(1000, 'x'));
+      ADD_FAILURE() << command;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(command));
+    }
+}
+
 TEST_F(LogFile, AWriterLeavesTheWholeFileOrNone) {
   const std::string out = folder / "out.log";
   { LogWriter(out).write(1, "A", {}); }
