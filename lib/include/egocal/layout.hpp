@@ -13,6 +13,11 @@
     "egocal: compile without -ffast-math, -Ofast and their parts: under them a wrong answer would be certified"
 #endif
 
+// pkg-config states no standard, which is the choice of a program: C++20 or newer.
+#if defined(__cplusplus) && __cplusplus <= 201703L
+#error "egocal needs C++20: compile with -std=c++20 $(pkg-config --cflags egocal)"
+#endif
+
 // Public types have one memory layout whatever the flags of their user: their Eigen members are unaligned
 // (Eigen::DontAlign), so -mavx or -march=native changes nothing. Flags that do change a layout
 // (-D_GLIBCXX_DEBUG, -fpack-struct, another version of the headers) end in an undefined reference that names
