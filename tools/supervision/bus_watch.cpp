@@ -121,13 +121,18 @@ class Listening {
   /// Reports errors of pairing and the diagnosis, such as a state that cannot be saved, which otherwise only
   /// a monitor shows. Those of solvers and the player pass by themselves.
   void hear_error(const status_t& status) {
-    if (status.last_error.empty() || reported_.size() >= most_errors ||
-        (status.role != bus::role_name(bus::Role::pairing) &&
-         status.role != bus::role_name(bus::Role::diagnosis)))
+    if (status.role != bus::role_name(bus::Role::pairing) &&
+        status.role != bus::role_name(bus::Role::diagnosis))
       return;
-    const std::string line =
-        bus::printable(status.name, 40) + ": " + bus::printable(status.last_error, 300) + "\n";
-    if (reported_.insert(line).second) errors_ += line;
+    const std::string name = bus::printable(status.name, 40), error = bus::printable(status.last_error, 300);
+    std::string& before = last_errors_[status.role];
+    if (error == before) return;
+    if (error.empty() && reported_.contains(name + ": " + before) &&
+        over_.insert(name + ": " + before).second)
+      errors_ += name + ": this is over: " + before + "\n";
+    before = error;
+    if (!error.empty() && reported_.size() < most_errors && reported_.insert(name + ": " + error).second)
+      errors_ += name + ": " + error + "\n";
   }
 
   int awaited() const {
@@ -173,7 +178,8 @@ class Listening {
   Answers answers_;
   ReadUntil read_until_;
   std::map<PairName, Unanswered> unanswered_;
-  std::set<std::string> reported_;
+  std::map<std::string, std::string> last_errors_;  ///< by role
+  std::set<std::string> reported_, over_;
   std::string errors_;  ///< that were not told yet
 };
 

@@ -378,10 +378,12 @@ class Supervisor {
                                  child.restarts.pause().count()));
   }
 
-  /// How it ended, and its last line of output.
+  /// How it ended, and its last line of output, unless somebody killed it, whatever it had said.
   std::string reason(const Child& child, int status) const {
-    const std::string said =
-        options_.output_dir.empty() || child.program.foreground ? "" : last_line(output_file(child));
+    const bool killed = WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
+    const std::string said = options_.output_dir.empty() || child.program.foreground || killed
+                                 ? ""
+                                 : last_line(output_file(child));
     return ending(status) + (said.empty() ? "" : ": " + said);
   }
 
