@@ -19,6 +19,8 @@ Heartbeat::Heartbeat(Loop& loop, Identity identity, std::chrono::nanoseconds tim
       options_(options),
       timeout_us_(std::chrono::duration_cast<std::chrono::microseconds>(timeout).count()),
       unsettled_us_(loop.mono_us()),
+      looked_at_us_(loop.mono_us()),
+      awake_us_(looked_at_us_),
       run_(loop.wall_us()) {
   if (identity_.pid == 0) identity_.pid = static_cast<std::int32_t>(getpid());
   loop_.subscribe<status_t>(status_channel, [this](const status_t& status, const Arrival&) { hear(status); });
@@ -69,7 +71,19 @@ void Heartbeat::change() {
   });
 }
 
+/// The loop's clock without the time in which this process was stopped: for how long others have been silent.
+std::int64_t Heartbeat::awake_us() const {
+  const std::int64_t longest_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(options_.stopped_periods * options_.period)
+          .count();
+  const std::int64_t now = loop_.mono_us();
+  awake_us_ += std::min(now - looked_at_us_, longest_us);
+  looked_at_us_ = now;
+  return awake_us_;
+}
+
 void Heartbeat::publish() {
+  awake_us();
   if (before_publish_) before_publish_();
   status_t message{};
   message.utime = loop_.wall_us();
@@ -114,7 +128,7 @@ void Heartbeat::hear(const status_t& status) {
   }
   const std::int64_t now = loop_.mono_us();
   const bool namesake = status.name == identity_.name && status.state != state_name(State::ended);
-  const bool is_new = peers_.hear(status, now);
+  const bool is_new = peers_.hear(status, awake_us());
   if (is_new && status.version != identity_.version) ++counters_["other versions heard"];
   if (namesake && now - published_us_ > options_.least_distance_us)
     publish();
@@ -128,11 +142,11 @@ bool Heartbeat::settled() const {
 }
 
 bool Heartbeat::alive(Role role) const {
-  return peers_.alive(role, loop_.mono_us(), timeout_us_);
+  return peers_.alive(role, awake_us(), timeout_us_);
 }
 
 std::optional<Peer> Heartbeat::senior_namesake() const {
-  return peers_.senior_namesake({identity_.name, loop_.host(), run_, identity_.pid, state_}, loop_.mono_us(),
+  return peers_.senior_namesake({identity_.name, loop_.host(), run_, identity_.pid, state_}, awake_us(),
                                 timeout_us_);
 }
 

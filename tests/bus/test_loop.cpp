@@ -158,6 +158,23 @@ TEST(Heartbeat, SurvivesANetworkThatIsAwayAndSaysSoAfterwards) {
   EXPECT_EQ(not_sent, 3600);
 }
 
+// Ctrl-Z and fg of all processes: nobody is gone, and who is gone is noticed afterwards.
+TEST(Heartbeat, TheTimeInWhichItWasStoppedIsNoSilenceOfOthers) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false, .host = "h1"});
+  Loop other(network.transport(), clock, {.handle_signals = false, .host = "h2"});
+  Heartbeat heartbeat(loop, {"egocal-fast", Role::fast, "1", 100}, 3s);
+  Heartbeat listener(other, {"egocal-global", Role::global, "1", 200}, 3s);
+  test::run_for(clock, {&loop, &other}, 5s);
+  clock.advance(1h);
+  EXPECT_TRUE(listener.alive(Role::fast));
+  test::run_for(clock, {&other}, 500ms);
+  EXPECT_TRUE(listener.alive(Role::fast));
+  test::run_for(clock, {&other}, 3s);
+  EXPECT_FALSE(listener.alive(Role::fast));
+}
+
 TEST(Loop, BadUrlIsOneClearError) {
   EXPECT_THROW(Loop("nonsense://"), Error);
   EXPECT_THROW(Loop("udpm://not.an.address:1"), Error);

@@ -33,6 +33,9 @@ struct HeartbeatOptions {
   /// Counters of one process; further reasons are counted as "rejected: other". A status of 60 fits one
   /// datagram.
   std::size_t most_counters = 60;
+  /// This process looks at the clock every period; after more of these it was stopped (SIGSTOP, Ctrl-Z), and
+  /// others were not silent in that time.
+  int stopped_periods = 2;
 };
 
 /// Sends status_t every period and on change (at most every least_distance_us), and receives those of the
@@ -80,12 +83,14 @@ class Heartbeat {
  private:
   void change();
   void hear(const status_t& status);
+  std::int64_t awake_us() const;
 
   Loop& loop_;
   Identity identity_;
   HeartbeatOptions options_;
   std::int64_t timeout_us_;
-  std::int64_t unsettled_us_;  ///< when the network was away last, or the start
+  std::int64_t unsettled_us_;                     ///< when the network was away last, or the start
+  mutable std::int64_t looked_at_us_, awake_us_;  ///< see awake_us()
   std::int64_t run_;
   State state_ = State::waiting;
   std::string error_;
