@@ -353,6 +353,31 @@ TEST(Explanations, TimesInAnotherUnitAreNamedByAnImpossiblePace) {
   EXPECT_EQ(calibration.verdict, Verdict::doubtful) << calibration.reason;
 }
 
+/// Jets are fast, and turn little.
+TEST(Explanations, AnAircraftIsNoWrongUnitOfTime) {
+  const auto streams_at = [](double speed) {
+    testing::Streams streams;
+    DualQuaternion a, b;
+    testing::Random random(1);
+    for (int i = 0; i < 1200; ++i) {
+      const double t = 0.1 * i;
+      const DualQuaternion step =
+          testing::displacement(0.1 * Eigen::Vector3d(0.1 * std::sin(0.3 * t), 0.02 * std::sin(0.21 * t),
+                                                      0.05 * std::sin(0.11 * t)),
+                                {0.1 * speed, 0, 0});
+      for (DualQuaternion* pose : {&a, &b})
+        *pose = *pose * step * testing::displacement(random.normal3(1e-5), random.normal3(1e-3));
+      const auto time_us = static_cast<std::int64_t>(i) * 100'000;
+      streams.a.push_back({time_us, canonical_sign(a)});
+      streams.b.push_back({time_us, canonical_sign(b)});
+    }
+    return streams;
+  };
+  const testing::Streams jet = streams_at(240), in_millimetres = streams_at(8000);
+  EXPECT_EQ(find(calibrate(jet.a, jet.b), "time_unit"), nullptr);
+  EXPECT_NE(find(calibrate(in_millimetres.a, in_millimetres.b), "time_unit"), nullptr);
+}
+
 /// With the coordinates of a map: a thousand kilometres from the origin.
 Trajectory on_a_map(Trajectory trajectory) {
   const DualQuaternion shift = to_dual_quaternion(Pose{Eigen::Quaterniond::Identity(), {5e5, 5.4e6, 300}});

@@ -107,6 +107,21 @@ TEST(HiddenMistakes, AStreamThatWasInterpolatedIsNamed) {
   EXPECT_EQ(find(calibration, "undersampled_a"), nullptr);
 }
 
+TEST(HiddenMistakes, PositionsAloneThatWereInterpolatedAreNamed) {
+  testing::Streams streams = bounded_drive();
+  const Trajectory lines = testing::interpolated(streams.a, 10);
+  for (std::size_t i = 0; i < streams.a.size(); ++i) {
+    Pose pose = to_pose(streams.a[i].pose);
+    pose.translation = to_pose(lines[i].pose).translation;
+    streams.a[i].pose = canonical_sign(to_dual_quaternion(pose));
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  const Finding* finding = find(calibration, "undersampled_a");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_NE(finding->message.find("between about 1.0 positions a second"), std::string::npos)
+      << finding->message;
+}
+
 /// Straight lines that both sensors drive are no interpolation.
 TEST(HiddenMistakes, SteadyMotionIsNoInterpolation) {
   testing::Streams streams;

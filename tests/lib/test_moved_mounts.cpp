@@ -42,6 +42,27 @@ TEST(MovedMount, AMovedMountIsFoundAtItsTime) {
   EXPECT_GE(calibration.verdict, Verdict::doubtful);
 }
 
+/// A loose bolt: another place in every second stretch of 7 s. The one answer lies between both.
+TEST(MovedMount, AMountThatGoesBackAndForthIsNamed) {
+  const DualQuaternion change = to_dual_quaternion(Pose{rotation_exp({0.03, 0.05, 0}), {0, 0.05, 0}});
+  testing::Streams streams = drive(Terrain::free);
+  EXPECT_LE(calibrate(streams.a, streams.b).verdict, Verdict::incomplete);
+  const std::int64_t begin_us = streams.b.front().time_us;
+  for (StampedPose& pose : streams.b)
+    if ((pose.time_us - begin_us) / 7'000'000 % 2 == 1)
+      pose.pose = canonical_sign(normalized(pose.pose * change));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+  const Finding* moved = find(calibration, "mount_moved");
+  ASSERT_NE(moved, nullptr) << calibration.reason;
+  EXPECT_TRUE(moved->certain);
+  EXPECT_NE(moved->message.find("back and forth between two places, 8 times"), std::string::npos)
+      << moved->message;
+  EXPECT_NEAR(*moved->time, 7, 2);
+  ASSERT_TRUE(moved->T_a_b);
+  EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*moved->T_a_b)).rotation, 0.005);
+}
+
 /// A car in town, two minutes at 10 Hz, whose sensors find their poses in a map: noise of 0.3 deg and 3 cm
 /// per axis on each pose, as much as a single step turns.
 testing::Streams noisy_poses(std::uint64_t seed) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/back_and_forth.hpp"
 #include "diagnosis/clock_check.hpp"
 #include "diagnosis/explanations.hpp"
 #include "diagnosis/fit.hpp"
@@ -193,6 +194,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unexplained(*part));
     return;
   }
+  if (!late && answered.problem.mode != Mode::planar)
+    late = back_and_forth(evidence.instants, answered, options);
   if (late) findings.insert(findings.begin(), *std::move(late));
 }
 

@@ -20,8 +20,13 @@ struct Lines {
   double rate() const { return seconds > 0 ? static_cast<double>(moving - straight) / seconds : 0; }
 };
 
-Lines lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options) {
-  Lines lines;
+/// Of whole poses, of positions alone and of rotations alone.
+struct Kinds {
+  Lines poses, positions, rotations;
+};
+
+Kinds lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options) {
+  Kinds kinds;
   const std::size_t n = poses.size(), count = std::min(n, options.most), first = (n - count) / 2;
   for (std::size_t i = first + 1; i + 1 < first + count; ++i) {
     const double before = 1e-6 * static_cast<double>(poses[i].time_us - poses[i - 1].time_us),
@@ -34,18 +39,24 @@ Lines lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options
                           turns = rotation_log(y.rotation.conjugate() * z.rotation);
     // digits of the three poses, and of coordinates of a map
     const double digits = options.digits * std::max(1.0, ratio) + options.rounding * y.translation.norm();
-    if (std::max(moved.norm(), turned.norm()) < 10 * digits) continue;  // at rest
     const auto alike = [&](const Eigen::Vector3d& here, const Eigen::Vector3d& next) {
       return (ratio * next - here).norm() < options.straight * here.norm() + digits;
     };
-    lines.seconds += before;
-    ++lines.moving;
+    const auto count_in = [&](Lines& lines, double motion, bool straight) {
+      if (motion < 10 * digits) return;  // at rest
+      lines.seconds += before;
+      ++lines.moving;
+      lines.straight += straight ? 1 : 0;
+    };
+    const bool evenly_moved = alike(moved, moves), evenly_turned = alike(turned, turns);
     // position and rotation by themselves, or along a screw
-    if (alike(turned, turns) &&
-        (alike(moved, moves) || alike(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves)))
-      ++lines.straight;
+    count_in(kinds.poses, std::max(moved.norm(), turned.norm()),
+             evenly_turned &&
+                 (evenly_moved || alike(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves)));
+    count_in(kinds.positions, moved.norm(), evenly_moved);
+    count_in(kinds.rotations, turned.norm(), evenly_turned);
   }
-  return lines;
+  return kinds;
 }
 
 }  // namespace
@@ -53,21 +64,27 @@ Lines lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options
 std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory& b,
                                           const InterpolatedStreamOptions& options) {
   if (std::min(a.size(), b.size()) < options.least) return {};
-  const Lines of_a = lines_of(a, options), of_b = lines_of(b, options);
-  for (const char which : {'a', 'b'}) {
-    const Lines &lines = which == 'a' ? of_a : of_b, &other = which == 'a' ? of_b : of_a;
-    if (lines.moving < options.least || lines.part() < options.part || other.part() > options.other_part)
-      continue;
-    Finding finding;
-    finding.code = std::string("undersampled_") + which;
-    finding.certain = true;
-    finding.message = format(
-        "Of the poses of %c %.0f %% lie on straight lines between about %.1f poses a second: it was "
-        "interpolated before, and what its sensor did between those is lost.",
-        which, 100 * lines.part(), lines.rate());
-    finding.remedy = format("Give the poses of %c as they were measured, at their own times.", which);
-    return {finding};
-  }
+  const Kinds of_a = lines_of(a, options), of_b = lines_of(b, options);
+  struct Kind {
+    Lines Kinds::*lines;
+    const char* name;
+  };
+  for (const auto& [kind, name] : {Kind{&Kinds::poses, "poses"}, Kind{&Kinds::positions, "positions"},
+                                   Kind{&Kinds::rotations, "rotations"}})
+    for (const char which : {'a', 'b'}) {
+      const Lines &lines = (which == 'a' ? of_a : of_b).*kind, &other = (which == 'a' ? of_b : of_a).*kind;
+      if (lines.moving < options.least || lines.part() < options.part || other.part() > options.other_part)
+        continue;
+      Finding finding;
+      finding.code = std::string("undersampled_") + which;
+      finding.certain = true;
+      finding.message = format(
+          "Of the %s of %c %.0f %% lie on straight lines between about %.1f %s a second: they were "
+          "interpolated before, and what its sensor did between those is lost.",
+          name, which, 100 * lines.part(), lines.rate(), name);
+      finding.remedy = format("Give the %s of %c as they were measured, at their own times.", name, which);
+      return {finding};
+    }
   return {};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // A stream that was interpolated before it was given: poses on straight lines, or along screws, between fewer
-// poses.
+// poses; or its positions alone, or its rotations alone.
 #pragma once
 
 #include <vector>

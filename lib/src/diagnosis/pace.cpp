@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "diagnosis/wording.hpp"
-#include "statistics/median.hpp"
+#include "statistics/order_statistic.hpp"
 
 namespace egocal::detail {
 
@@ -31,13 +31,21 @@ std::string taken_as(double factor) {
 std::optional<Finding> impossible_pace(const Motions& motions, double duration, double period,
                                        const PaceCheckOptions& options) {
   if (motions.all.empty() || !(duration > 0) || !(period > 0)) return std::nullopt;
-  std::vector<double> lengths, angles;
+  std::vector<double> speeds, turns, accelerations;
   for (const Motion& motion : motions.all) {
-    lengths.push_back(std::min(motion.t_a.norm(), motion.t_b.norm()));
-    angles.push_back(std::min(motion.angle_a, motion.angle_b));
+    speeds.push_back(std::min(motion.t_a.norm(), motion.t_b.norm()) / duration);
+    turns.push_back(std::min(motion.angle_a, motion.angle_b) / duration);
+    accelerations.push_back(speeds.back() * turns.back());
   }
-  const double speed = median(std::move(lengths)) / duration, turning = median(std::move(angles)) / duration;
-  const bool moves = speed > options.most_speed || turning > options.most_turning;
+  const auto quantile = [](std::vector<double>& values, double part) {
+    return order_statistic(
+        values,
+        std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size()))));
+  };
+  const double speed = quantile(speeds, 0.5), turning = quantile(turns, 0.5);
+  const bool fast =
+      speed > options.usual_speed && quantile(accelerations, options.accelerated) > options.most_acceleration;
+  const bool moves = fast || speed > options.most_speed || turning > options.most_turning;
   if (!moves && !(1 / period > options.most_rate)) return std::nullopt;
   Finding finding;
   finding.code = "time_unit";

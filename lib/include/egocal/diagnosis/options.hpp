@@ -88,8 +88,11 @@ struct ScaleCheckOptions {
 /// What no sensor does: the times, or the lengths of both streams, are in another unit.
 struct PaceCheckOptions {
   double most_rate = 2000;   ///< poses a second; inertial sensors have up to 1 kHz
-  double most_speed = 150;   ///< [m/s] in the median of both streams: cars and drones stay below 100
+  double most_speed = 1000;  ///< [m/s] in the median of both streams: no aircraft is faster
   double most_turning = 50;  ///< [rad/s] in the median: eight turns a second
+  /// Cars and drones stay below the usual speed [m/s]. What is faster flies, and turns with less than ten
+  /// times its weight: speed times turning is below most_acceleration [m/s^2] in this part of the motions.
+  double usual_speed = 150, most_acceleration = 100, accelerated = 0.8;
   /// Usual distance of poses [s], in the middle of 1 kHz and 1 Hz: the unit that comes nearest is the likely
   /// one, as where text files are read.
   double usual_period = 0.06;

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/back_and_forth.hpp"
+
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/mount_pairs.hpp"
+#include "diagnosis/wording.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "moves/switching.hpp"
+
+namespace egocal::detail {
+
+std::optional<Finding> back_and_forth(const Instants& instants, const Answered& answered,
+                                      const DiagnosisOptions& options) {
+  std::optional<Switching> found;
+  double begin = 0;
+  for (const std::vector<MotionPair>& pairs : strides_of(instants, answered, options, {})) {
+    std::optional<Switching> here = find_switching(pairs, answered.problem);
+    if (!here || (found && found->left <= here->left)) continue;
+    found = std::move(here);
+    begin = 1e-6 * static_cast<double>(pairs.front().begin_us);
+  }
+  if (!found) return std::nullopt;
+  const ExtrinsicError apart = extrinsic_error(found->first, found->second);
+  Finding finding;
+  finding.code = "mount_moved";
+  finding.certain = true;
+  finding.improvement = 1 / found->left;
+  finding.time = begin + found->time;
+  finding.T_a_b = to_pose(found->first);
+  finding.message = format(
+      "The mounting goes back and forth between two places, %zu times, first about %.0f s after the start. "
+      "They "
+      "are %.2g deg and %.2g cm apart.",
+      found->switches, *finding.time, apart.rotation * 180 / std::numbers::pi, 100 * apart.translation);
+  finding.remedy = "Fasten the mounting, and record again.";
+  return finding;
+}
+
+}  // namespace egocal::detail
