@@ -97,6 +97,9 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   std::optional<Explanation> twin;
   for (Ranked& here : best_readings(evidence, options)) {
     if (!better(compare(evidence.scaled.explained, here.scaled.explained), 0.01, options)) continue;
+    // far from the origin any residual is a small part of an inverse motion
+    if (inverts_one(here.as_is) && loss_in_metres(evidence.given.explained, here.scaled.explained) > 0)
+      continue;
     const Comparison against = compare(best.scaled.explained, here.scaled.explained);
     const bool first = best.as_is.code.empty();
     const bool alike = !first && std::abs(against.gain) < options.alike;

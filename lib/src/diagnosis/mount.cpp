@@ -21,10 +21,14 @@ namespace {
 constexpr const char* before_it = ". Before it the answer is ";
 
 /// observable: of the answer; the size of a change in another direction is noise.
-std::string size_of(Move move, const std::array<bool, 6>& observable) {
+ShownChange known_change(Move move, const std::array<bool, 6>& observable) {
   for (std::size_t i = 0; i < 6; ++i)
     if (!observable[i]) move.stddev[i] = INFINITY;
-  const auto [turn, shift] = shown_change(move);
+  return shown_change(move);
+}
+
+std::string size_of(const Move& move, const std::array<bool, 6>& observable) {
+  const auto [turn, shift] = known_change(move, observable);
   std::string text;
   if (turn > 0) text = format("%.2f deg", turn * 180 / std::numbers::pi);
   if (shift > 0) text += format("%s%.1f cm", turn > 0 ? " and " : "", 100 * shift);
@@ -156,6 +160,12 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
   if (result.moves.empty()) return findings;
   if (options.mount.shown_before > 0) keep_those_shown_before(strides, answered, options, result);
   leave_out_corrections(strides, answered, options, result);
+  // as large as odometry errs, where the answer is known at all
+  std::erase_if(result.moves, [&](const Move& move) {
+    const auto [turn, shift] = known_change(move, answered.observability.observable);
+    const MovesOptions least;
+    return turn > 0 && turn < least.least_rotation && shift < least.least_translation;
+  });
   if (result.moves.empty()) return findings;
   const double begin = 1e-6 * static_cast<double>(begin_of(strides, result));
   for (const Move& move : result.moves) {
