@@ -246,6 +246,37 @@ TEST(Explanations, AStreamThatStandsStillIsNamed) {
   EXPECT_NE(find(calibrate(streams.a, streams.b), "frozen_b"), nullptr);
 }
 
+/// An arm whose encoders repeat each pose for two of five seconds; the other sensor has noise.
+testing::Streams stopping_arm() {
+  testing::Random random(2);
+  const Pose T_b{rotation_exp({0.3, -0.2, 0.9}), {0.1, 0.05, 0.2}};
+  testing::Streams streams;
+  streams.T = to_dual_quaternion(T_b);
+  for (int i = 0; i < 1500; ++i) {
+    const double t = 0.05 * i, u = 3 * std::floor(t / 5) + std::min(3.0, std::fmod(t, 5));
+    const Pose arm{
+        rotation_exp({0.6 * std::sin(0.9 * u), 0.5 * std::sin(0.7 * u + 1), 0.8 * std::sin(0.4 * u)}),
+        {0.4 * std::sin(0.5 * u), 0.3 * std::sin(0.8 * u + 2), 0.2 * std::sin(1.1 * u)}};
+    const auto time_us = static_cast<std::int64_t>(i) * 50'000;
+    streams.a.push_back({time_us, canonical_sign(to_dual_quaternion(arm))});
+    streams.b.push_back(
+        {time_us, canonical_sign(to_dual_quaternion(arm * T_b) *
+                                 testing::displacement(random.normal3(1e-3), random.normal3(5e-4)))});
+  }
+  return streams;
+}
+
+TEST(Explanations, AStreamThatStandsStillAtTimesHidesNoOtherMistake) {
+  testing::Streams streams = stopping_arm();
+  EXPECT_LE(calibrate(streams.a, streams.b).verdict, Verdict::incomplete);
+  streams.b = testing::late(streams.b, 2);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+  const Finding* clock = find(calibration, "clock_offset");
+  ASSERT_NE(clock, nullptr) << calibration.reason;
+  EXPECT_NEAR(*clock->value, -2, 0.05);
+}
+
 TEST(Explanations, APositionWithoutHeightIsNamedAndNotGood) {
   testing::Streams streams = drive(Terrain::free);
   streams.b = testing::with_position_columns(streams.b, Eigen::Vector3d(1, 1, 0).asDiagonal());

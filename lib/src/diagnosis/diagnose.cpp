@@ -42,6 +42,8 @@ struct detail::Foreseen {
   DiagnosisOptions options;
   Evidence evidence;
   std::vector<Finding> findings{};  ///< about the streams, where there are enough motions
+  /// What else explains streams of which one stops at times: an arm holds still, and may be misread besides.
+  std::vector<Finding> beside_frozen{};
   bool has_offset = false;
   std::optional<TimeOffset> offset{};  ///< offset_by_turning(), where it was looked for already
 };
@@ -261,6 +263,10 @@ bool of_clock(const Finding& finding) {
   return finding.code.starts_with("clock_");
 }
 
+bool of_frozen_stream(const Finding& finding) {
+  return finding.code.starts_with("frozen_");
+}
+
 /// What clocks that differ and interpolation change. Of streams that are understood otherwise: a wrong answer
 /// has no standard deviation that could be right.
 void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& result) {
@@ -339,7 +345,10 @@ Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions&
   if (foreseen.findings.empty() && standing_still(foreseen.evidence.instants))
     foreseen.findings = {too_little_motion(foreseen.evidence.given.explained.motions.all.size(), options)};
   // what is wrong with the streams themselves looks like other mistakes
-  if (foreseen.findings.empty()) foreseen.findings = explain(foreseen.evidence, options);
+  if (foreseen.findings.empty())
+    foreseen.findings = explain(foreseen.evidence, options);
+  else if (std::all_of(foreseen.findings.begin(), foreseen.findings.end(), of_frozen_stream))
+    foreseen.beside_frozen = explain(foreseen.evidence, options);
   // of a million poses 8 MB that only explain() looks at
   foreseen.evidence.streams.turning_a = foreseen.evidence.streams.turning_b = {};
   foreseen.evidence.turning_a = foreseen.evidence.turning_b = std::vector<float>();
@@ -374,10 +383,17 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
       result.findings.push_back(std::move(finding));
   Misfit misfit{detail::misfit(motions, at_answer), detail::misfit(motions, evidence.given.explained.fit),
                 median_misfit(motions, at_answer)};
+  // pairing rejects the motions of a frozen stream: what contradicts the answer is something else
+  const bool more_than_frozen = misfit.at_answer > options.doubtful_misfit;
+  if (more_than_frozen)
+    result.findings.insert(result.findings.begin(), foreseen.beside_frozen.begin(),
+                           foreseen.beside_frozen.end());
+  const auto is_explanation = [&](const Finding& one) {
+    return explains(one, options) && !(more_than_frozen && of_frozen_stream(one));
+  };
   const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
                          replace_by_moves(pairing, evidence, answered, options, result.findings) ||
-                         std::any_of(result.findings.begin(), result.findings.end(),
-                                     [&](const Finding& one) { return explains(one, options); });
+                         std::any_of(result.findings.begin(), result.findings.end(), is_explanation);
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);
   name_wrong_scale(evidence, options, result.findings);

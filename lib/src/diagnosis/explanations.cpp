@@ -62,6 +62,11 @@ std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptio
   return ranked;
 }
 
+/// What leaves most of the motion unexplained explains nothing.
+bool explains(const Explained& explained, const DiagnosisOptions& options) {
+  return explained.fit.typical < options.explains * options.explains;
+}
+
 bool inverts_one(const Explanation& explanation) {
   return explanation.code == "inverted_a" || explanation.code == "inverted_b";
 }
@@ -97,8 +102,9 @@ BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& optio
   std::optional<Explanation> twin;
   for (Ranked& here : best_readings(evidence, options)) {
     if (!better(compare(evidence.scaled.explained, here.scaled.explained), 0.01, options)) continue;
-    // far from the origin any residual is a small part of an inverse motion
-    if (inverts_one(here.as_is) && loss_in_metres(evidence.given.explained, here.scaled.explained) > 0)
+    // where the streams as given agree: far from the origin any residual is a small part of an inverse motion
+    if (inverts_one(here.as_is) && explains(evidence.given.explained, options) &&
+        loss_in_metres(evidence.given.explained, here.scaled.explained) > 0)
       continue;
     const Comparison against = compare(best.scaled.explained, here.scaled.explained);
     const bool first = best.as_is.code.empty();
@@ -141,9 +147,7 @@ std::optional<Explanation> common_axes(const Evidence& evidence, const Diagnosis
   for (const PoseReading& reading :
        common_axes_readings(evidence.instants, evidence.stride, options.motions.first_look, options)) {
     Explanation here = explained(evidence, "axes_both", reading, reading, options);
-    if (here.explained.motions.all.empty() ||
-        !(here.explained.fit.typical < options.explains * options.explains))
-      continue;
+    if (here.explained.motions.all.empty() || !explains(here.explained, options)) continue;
     // as where both are inverted, noise alone may suit the wrong reading better, and far from the origin any
     // residual is a small part of its motions
     const Explained& given = evidence.given.explained;
@@ -171,11 +175,8 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     return better(compare(*against, without_lever_arms(here.explained, length)), options.least_gain,
                   LeverArmOptions{}.sigmas);
   };
-  const auto explains = [&](const Explained& here) {
-    return here.fit.typical < options.explains * options.explains;
-  };
   // the lengths of b may be wrong besides
-  const bool with_scale_too = given.best.scale != 1 || !explains(given.best.explained);
+  const bool with_scale_too = given.best.scale != 1 || !explains(given.best.explained, options);
   const auto fits_better = [](const std::optional<Explanation>& x, const Explanation& y) {
     return !x || compare(x->explained, y.explained).gain > 0;
   };
@@ -186,9 +187,9 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
       const bool in_b = wrong == Side::b;
       Explanation here = explained(evidence, in_b ? "axes_b" : "axes_a", in_b ? PoseReading{} : reading,
                                    in_b ? reading : PoseReading{}, options);
-      if (with_scale_too && !explains(here.explained)) {
+      if (with_scale_too && !explains(here.explained, options)) {
         Ranked two{here, with_scale(here, options)};
-        if (!explains(two.scaled.explained) || !shows_scale(evidence, two, options)) continue;
+        if (!explains(two.scaled.explained, options) || !shows_scale(evidence, two, options)) continue;
         here = std::move(two.scaled);
       }
       if (!better(compare(given.best.explained, here.explained), options.least_gain, options) ||
@@ -321,7 +322,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
 
   const Explained& final = clocks.empty() ? best.explained : clocks.back().explained;
   // an explanation under which the motions still do not agree explains nothing
-  if (!(final.fit.typical < options.explains * options.explains)) return findings;
+  if (!explains(final, options)) return findings;
   const Comparison overall = compare(given, final);
   const bool certain = overall.gain >= options.gain;
   // of which stream the axes are wrong may be open, not that they are
@@ -362,7 +363,7 @@ std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOpti
   const Explanation& scaled = evidence.scaled;
   const double size = std::abs(std::log(scaled.scale));
   if (!(size >= options.scale_check.least)) return std::nullopt;
-  if (!(scaled.explained.fit.typical < options.explains * options.explains)) return std::nullopt;
+  if (!explains(scaled.explained, options)) return std::nullopt;
   // a scale fitted to outliers leaves the other motions worse off
   const Comparison comparison = compare(evidence.given.explained, scaled.explained);
   if (!(comparison.gain >= options.least_gain)) return std::nullopt;
