@@ -82,7 +82,7 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
   std::vector<Move> confirmed;
   for (std::size_t k = 0; k < best.moves.size(); ++k) {
     bool shown = true;
-    for (std::size_t i = shortest; i < strides.size() && shown; ++i)
+    for (std::size_t i = 0; i < strides.size() && shown; ++i)
       shown = i == best.stride ||
               shown_by(between_neighbours(strides[i], best.moves, k, strides[best.stride].front().begin_us),
                        problem, best.moves[k], strides[best.stride].front().begin_us, given);

@@ -92,10 +92,10 @@ struct MovesOptions {
   /// The parts before and after it agree, or differ by less than this part of the change: less is left of two
   /// moves than each of them is.
   double most_left = 0.5;
-  /// Noise of the rotations as a part of how far motions turn, at most: a shorter stride with more is left to
-  /// the longer ones. The test is linear, and noise of poses, which the motions on either side of a pose
-  /// share, pulls the extrinsic of slow and of fast parts differently. Noise of 0.1 to 1 degree on the poses
-  /// of 84 clean drives: chances below 1e-6 from 0.22 on, none below 0.009 at less than 0.15.
+  /// Noise of the rotations as a part of how far motions turn, at most: a shorter stride with more of it only
+  /// confirms what longer ones show. The test is linear, and noise of poses, which the motions on either side
+  /// of a pose share, pulls the extrinsic of slow and of fast parts differently. Noise of 0.1 to 1 degree on
+  /// the poses of 84 clean drives: chances below 1e-6 from 0.22 on, none below 0.005 at less than 0.15.
   double most_noise = 0.15;
   std::size_t most_moves = 16;  ///< a limit on time
   /// Chance of what the motions of the other strides show at the time of a move, at most. EuRoC's drone at
