@@ -151,8 +151,10 @@ std::optional<Explanation> common_axes(const Evidence& evidence, const Diagnosis
     // as where both are inverted, noise alone may suit the wrong reading better, and far from the origin any
     // residual is a small part of its motions
     const Explained& given = evidence.given.explained;
-    if (reading.conjugate && (compare(given, here.explained).gain < least.gain ||
-                              loss_in_metres(given, here.explained) > -least.gain_in_metres))
+    const bool turned_too = !reading.axes.isIdentity(0);
+    if (reading.conjugate &&
+        (compare(given, here.explained).gain < (turned_too ? decisive_loss : least.gain) ||
+         loss_in_metres(given, here.explained) > -(turned_too ? decisive_loss : least.gain_in_metres)))
       continue;
     // simple readings come first
     if (!best || compare(best->explained, here.explained).gain > options.alike) best = std::move(here);
