@@ -25,6 +25,9 @@ std::optional<Finding> back_and_forth(const Instants& instants, const Answered& 
   }
   if (!found) return std::nullopt;
   const ExtrinsicError apart = extrinsic_error(found->first, found->second);
+  const MovesOptions least;  // as large as odometry errs
+  if (apart.rotation < least.least_rotation && apart.translation < least.least_translation)
+    return std::nullopt;
   Finding finding;
   finding.code = "mount_moved";
   finding.certain = true;
