@@ -158,7 +158,7 @@ TEST(Heartbeat, SurvivesANetworkThatIsAwayAndSaysSoAfterwards) {
   EXPECT_EQ(not_sent, 3600);
 }
 
-// Ctrl-Z and fg of all processes: nobody is gone, and who is gone is noticed afterwards.
+// After Ctrl-Z and fg of all processes none counts as gone; one that is gone afterwards is noticed.
 TEST(Heartbeat, TheTimeInWhichItWasStoppedIsNoSilenceOfOthers) {
   test::VirtualClock clock;
   test::VirtualNetwork network(clock);

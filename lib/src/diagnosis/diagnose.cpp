@@ -21,6 +21,7 @@
 #include "diagnosis/judge.hpp"
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/late_positions.hpp"
+#include "diagnosis/late_rotations.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/not_a_move.hpp"
 #include "diagnosis/pace.hpp"
@@ -305,35 +306,6 @@ void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& resu
     result.findings.push_back(*std::move(finding));
 }
 
-/// Where rotations alone are late, the clock that suits them is wrong for the positions: both are named, with
-/// the answer that suits both.
-void name_late_positions_by_clock(const Foreseen& foreseen, std::vector<Finding>& findings) {
-  if (foreseen.pairing.mode == Mode::planar) return;
-  const auto clock = std::find_if(findings.begin(), findings.end(), [](const Finding& one) {
-    return one.certain && one.code == "clock_offset" && one.value;
-  });
-  if (clock == findings.end()) return;
-  if (std::any_of(findings.begin(), findings.end(),
-                  [](const Finding& one) { return one.certain && one.code != "clock_offset"; }))
-    return;
-  const DiagnosisOptions& options = foreseen.options;
-  const Instants instants = synchronised(foreseen.a, foreseen.b, {*clock->value, 0, 0},
-                                         foreseen.pairing.max_gap, 1, options.motions);
-  Explained corrected;
-  corrected.motions =
-      motions_of(instants, {}, {}, foreseen.evidence.stride, options.motions.most, options.motions);
-  if (corrected.motions.all.empty()) return;
-  corrected.fit = robust_fit(corrected.motions, options.fit);
-  // filters delay: the stream whose rotations are behind those of the other one
-  std::optional<Finding> late =
-      late_positions(instants, corrected, options, *clock->value < 0 ? Side::b : Side::a);
-  if (!late) late = late_positions(instants, corrected, options);
-  if (!late) return;
-  late->message = "At this clock: " + late->message;
-  clock->T_a_b = late->T_a_b;
-  findings.insert(std::next(clock), *std::move(late));
-}
-
 Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                  const DiagnosisOptions& options) {
   Foreseen foreseen{a, b, pairing, options,
@@ -409,7 +381,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                  motions, evidence.stride * evidence.instants.period, evidence.instants.period, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
-  name_late_positions_by_clock(foreseen, result.findings);
+  if (pairing.mode != Mode::planar) name_late_rotations(evidence, pairing.max_gap, options, result.findings);
   for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b))
     if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
   judge(result, answered, misfit, options);
