@@ -45,7 +45,7 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
                       longer_way(evidence.given.explained.motions, both.explained.motions)) ||
                      too_fast_unless_inverted(evidence, both, options);
   // whatever errs by its rotations errs by metres under the wrong reading, far from the origin
-  const bool metres_say_given = both.explained.fit.typical < options.explains * options.explains &&
+  const bool metres_say_given = explains(both.explained, options) &&
                                 loss_in_metres(evidence.given.explained, both.explained) > decisive_loss;
   const bool line_says_given =
       along_one_line(as_given, options.heading) && !along_one_line(as_inverted, options.heading);
@@ -67,7 +67,7 @@ std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOpti
     if (std::string_view(candidate.code) != "quaternion_order_both") continue;
     const Explanation here = explained(evidence, brief, candidate.code, candidate.a, candidate.b, options);
     if (given.explained.motions.all.empty() || here.explained.motions.all.empty()) continue;
-    if (!(here.explained.fit.typical < options.explains * options.explains)) continue;
+    if (!explains(here.explained, options)) continue;
     const Comparison comparison = compare(given.explained, here.explained);
     if (!better(comparison, 0, options) || (best && best->improvement > std::exp(comparison.gain))) continue;
     best = worded_reading(finding_of(here, comparison, false), candidate.a, candidate.b);

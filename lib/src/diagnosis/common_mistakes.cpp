@@ -46,6 +46,10 @@ Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& o
   return result;
 }
 
+bool explains(const Explained& explained, const DiagnosisOptions& options) {
+  return explained.fit.typical < options.explains * options.explains;
+}
+
 bool better(const Comparison& comparison, double least_log_ratio, double sigmas) {
   return comparison.sigmas >= std::min(sigmas, 0.95 * comparison.most) && comparison.gain >= least_log_ratio;
 }

@@ -26,6 +26,10 @@ Explanation explained(const Evidence& evidence, const char* code, const PoseRead
 /// The same with a free scale of b.
 Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& options);
 
+/// What leaves more than a part of the typical motion unexplained (DiagnosisOptions::explains) explains
+/// nothing.
+bool explains(const Explained& explained, const DiagnosisOptions& options);
+
 /// Better by `sigmas` standard deviations, or by nearly all that the blocks can show where those are few.
 bool better(const Comparison& comparison, double least_log_ratio, double sigmas);
 /// Clearly better by the stated test.

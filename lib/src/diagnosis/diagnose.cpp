@@ -197,9 +197,10 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unexplained(*part));
     return;
   }
-  if (!late && answered.problem.mode != Mode::planar)
-    late = back_and_forth(evidence.instants, answered, options);
-  if (late) findings.insert(findings.begin(), *std::move(late));
+  std::optional<Finding> last = std::move(late);
+  if (!last && answered.problem.mode != Mode::planar)
+    last = back_and_forth(evidence.instants, answered, options);
+  if (last) findings.insert(findings.begin(), *std::move(last));
 }
 
 /// A mount that moved by much looks like other axes, another clock or another recording: it is named instead

@@ -62,11 +62,6 @@ std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptio
   return ranked;
 }
 
-/// What leaves most of the motion unexplained explains nothing.
-bool explains(const Explained& explained, const DiagnosisOptions& options) {
-  return explained.fit.typical < options.explains * options.explains;
-}
-
 bool inverts_one(const Explanation& explanation) {
   return explanation.code == "inverted_a" || explanation.code == "inverted_b";
 }

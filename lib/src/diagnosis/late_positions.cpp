@@ -147,8 +147,7 @@ std::optional<Finding> late_positions(const Instants& instants, const Explained&
     if (only && side != *only) continue;
     Late here = fitted(given, changes, side, options);
     if (!std::isfinite(here.delay) || std::abs(here.delay) < late.least ||
-        !(here.explained.fit.typical < options.explains * options.explains) ||
-        !better(here.comparison, options.gain, options))
+        !explains(here.explained, options) || !better(here.comparison, options.gain, options))
       continue;
     if (!best || here.comparison.gain > best->comparison.gain) best = std::move(here);
   }
