@@ -11,9 +11,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <string_view>
 
 #include "egocal/error.hpp"
+#include "egocal/io/packing.hpp"
 
 namespace egocal::bus {
 
@@ -60,25 +60,6 @@ std::string first_bytes(std::FILE* stream) {
   std::array<char, 6> bytes{};
   const ssize_t n = pread(fileno(stream), bytes.data(), bytes.size(), 0);
   return {bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0))};
-}
-
-/// Of a packed file; empty: it is none. A log is read at any place of it: it is played from there, and read
-/// on behind damage. So it is not unpacked on the way, as tables and bags are.
-std::string how_to_unpack(const std::string& file, const std::string& first) {
-  struct Packing {
-    std::string_view begin, name, command;
-  };
-  using namespace std::string_view_literals;
-  constexpr Packing packings[] = {{"\x1f\x8b"sv, "gzip", "gunzip -k"},
-                                  {"\x28\xb5\x2f\xfd"sv, "zstd", "unzstd"},
-                                  {"BZh"sv, "bzip2", "bunzip2 -k"},
-                                  {"\x04\x22\x4d\x18"sv, "lz4", "unlz4"},
-                                  {"\xfd\x37zXZ\0"sv, "xz", "unxz -k"}};
-  for (const Packing& packing : packings)
-    if (first.starts_with(packing.begin))
-      return "is packed by " + std::string(packing.name) +
-             ", and a log is read unpacked: " + std::string(packing.command) + " '" + file + "'";
-  return {};
 }
 
 /// Damaged numbers may be the largest there are.
@@ -165,8 +146,10 @@ LogReader::LogReader(const std::string& file) : file_(file), stream_(open_file(f
   size_ = static_cast<std::uint64_t>(status.st_size);
   rewind();
   if (!next()) {
-    const std::string packed = how_to_unpack(file, first_bytes(stream_.get()));
-    throw error_at(file, 0, "", packed.empty() ? "is not an LCM log: there is no event in it" : packed);
+    const std::optional<Packing> packing = packing_of(first_bytes(stream_.get()));
+    throw error_at(
+        file, 0, "",
+        packing ? packed_log_refused(*packing, file) : "is not an LCM log: there is no event in it");
   }
   rewind();
 }

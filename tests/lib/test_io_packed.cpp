@@ -13,6 +13,8 @@
 #include "../support/bag_writer.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/scratch_folder.hpp"
+#include "egocal/error.hpp"
+#include "egocal/io/packing.hpp"
 #include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
@@ -71,6 +73,14 @@ class Packed : public ::testing::Test {
  protected:
   TrajectoryReading read(const std::string& content) const {
     return read_trajectory_file(folder_.file("file", content));
+  }
+  std::string refusal(const std::string& content) const {
+    try {
+      read(content);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "none";
   }
   testing::ScratchFolder folder_;
   std::string plain_ = tum();
@@ -135,6 +145,27 @@ TEST_F(Packed, FilesThatWereJoinedAreReadToTheEnd) {
     EXPECT_EQ(reading.trajectory.size(), poses) << kind;
     EXPECT_FALSE(reading.losses.any()) << kind;
   }
+}
+
+// As egocal's log reader says it: whatever reads such a file first, people learn what to do.
+TEST_F(Packed, ALogOfLcmIsRefusedWithTheCommandThatUnpacksIt) {
+  const std::string log = std::string("\xed\xa1\xda\x01", 4) + std::string(100, '\0');
+  const std::string file = folder_.path("file"), whole = ", and a log is read unpacked: ";
+  for (const auto& [kind, said] : {std::pair<std::string, std::string>{"gz", "gzip" + whole + "gunzip -k '"},
+                                   {"zst", "zstd" + whole + "unzstd '"},
+                                   {"bz2", "bzip2" + whole + "bunzip2 -k '"},
+                                   {"lz4", "lz4" + whole + "unlz4 '"}})
+    EXPECT_EQ(refusal(packed(kind, log)), file + ": is packed by " + said + file + "'");
+  EXPECT_THAT(refusal(log), HasSubstr("is an LCM log: the commands of egocal read it, the library does not"));
+}
+
+TEST_F(Packed, WhatIsNotUnpackedOnTheWayIsRefusedWithTheCommandToo) {
+  const std::string file = folder_.path("file");
+  EXPECT_EQ(refusal(std::string("\xfd\x37zXZ\0", 6) + std::string(100, '\0')),
+            file + ": is packed by xz, unpack it first: unxz -k '" + file + "'");
+  EXPECT_EQ(refusal(packed("gz", packed("gz", plain_))),
+            file + ": is packed by gzip, unpack it first: gunzip -k '" + file + "'");
+  EXPECT_EQ(unpacking_command({"gzip", "gunzip -k"}, "it's"), "gunzip -k 'it'\\''s'");
 }
 
 }  // namespace

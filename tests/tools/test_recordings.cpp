@@ -250,5 +250,26 @@ TEST_F(Recordings, RosShapedTypesOfLcmAreRead) {
   EXPECT_NEAR(info["streams"][0]["rate_hz"].get<double>(), 100, 1e-3);
 }
 
+// Commands that take FILE:CHANNEL as those that take a log: it was the line of the library.
+TEST_F(Recordings, APackedLogOfLcmIsRefusedByEveryCommandWithTheSameLine) {
+  const std::string log = folder.path("drive.log"), rig = folder.path("rig.toml");
+  ASSERT_EQ(egocal("simulate --poses 20 --out " + log + " --rig-out " + rig).code, 0);
+  const std::string file = folder.file("drive.log.zst", testing::packed("zstd", read("drive.log")));
+  const std::string a = file + ":ODOMETRY_LIDAR ", b = file + ":ODOMETRY_CAMERA ", named = "--log " + file;
+  for (const std::string& command :
+       {"solve " + a + b, "check " + a + b, "align " + a + b, "compare " + a + b, "info " + file,
+        "report " + a + b + "--out " + folder.path("page.html"),
+        "log create " + rig + " --from lidar=" + a + "--from camera=" + b + "--out " + folder.path("new.log"),
+        "solve " + named + " ODOMETRY_LIDAR ODOMETRY_CAMERA", "solve --rig " + rig + " " + named,
+        "log info " + file, "export " + named, "up " + rig + " " + named}) {
+    const Outcome run = egocal(command);
+    EXPECT_EQ(run.code, 1) << command;
+    EXPECT_EQ(run.out, "") << command;
+    EXPECT_EQ(run.err,
+              "egocal: " + file + ": is packed by zstd, and a log is read unpacked: unzstd '" + file + "'\n")
+        << command;
+  }
+}
+
 }  // namespace
 }  // namespace egocal

@@ -35,6 +35,7 @@ ByteSource::ByteSource(const std::string& file) : file_(file) {
   size_ = seekable_ ? static_cast<std::uint64_t>(status.st_size) : 0;
   window_.resize(size_ > 0 ? std::clamp<std::uint64_t>(size_, smallest_window, window_size) : window_size);
   fill(8);
+  packing_ = packing_of({reinterpret_cast<const char*>(window_.data()), filled_});
   unpacker_ = make_unpacker({window_.data(), filled_});
   if (!unpacker_) return;
   packed_.assign(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(filled_));

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "egocal/io/packing.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "io/bytes/unpacker.hpp"
 
@@ -27,6 +29,8 @@ class ByteSource {
   ByteSource& operator=(const ByteSource&) = delete;
 
   const std::string& file() const { return file_; }
+  /// Also of a file that is not unpacked on the way (xz). Nothing: a plain file.
+  const std::optional<Packing>& packing() const { return packing_; }
 
   /// The next `size` bytes, fewer only at the end. Valid until the next call of peek() or skip().
   ByteSpan peek(std::size_t size);
@@ -52,6 +56,7 @@ class ByteSource {
   int descriptor_ = -1;
   bool seekable_ = false;
   std::uint64_t size_ = 0;
+  std::optional<Packing> packing_;
   std::unique_ptr<Unpacker> unpacker_;
   std::vector<unsigned char> packed_;           ///< input of the unpacker
   std::size_t packed_at_ = 0, packed_end_ = 0;  ///< what of it is still to be unpacked

@@ -38,24 +38,30 @@ struct BinaryKind {
   std::string_view begin;
   const char* words;
 };
+constexpr std::string_view lcm_log_begin = "\xed\xa1\xda\x01";
 constexpr BinaryKind binary_kinds[] = {
     {"PK\x03\x04", "is a zip archive: unpack it (an .npz of numpy: numpy.savetxt)"},
     {"\x93NUMPY", "is an array of numpy: write it as text by numpy.savetxt"},
     {"\x89HDF", "is an HDF5 file: write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw"},
     {"PAR1", "is a Parquet file: write it as csv"},
     {"ARROW1", "is a Feather file: write it as csv"},
-    {"\xed\xa1\xda\x01",
-     "is an LCM log: the commands of egocal read it unless it is packed (unpack it), "
-     "the library does not (egocal log export writes it as MCAP)"},
+    {lcm_log_begin,
+     "is an LCM log: the commands of egocal read it, the library does not (egocal log export writes it as "
+     "MCAP)"},
     {"ULog", "is a log of PX4: ulog2csv writes its topics as csv"},
-    {"\xfd"
-     "7zXZ",
-     "is compressed by xz: unpack it"},
     {"7z\xbc\xaf", "is a 7z archive: unpack it"},
     {"\xff\xfe", "is text of two bytes a character (UTF-16): save it as UTF-8"},
     {"\xfe\xff", "is text of two bytes a character (UTF-16): save it as UTF-8"}};
 
-[[noreturn]] void refuse_binary(const std::string& file, std::string_view bytes) {
+[[noreturn]] void refuse_binary(const ByteSource& source, std::string_view bytes) {
+  const std::string& file = source.file();
+  const std::optional<Packing>& packing = source.packing();
+  if (packing && bytes.starts_with(lcm_log_begin))
+    throw error_at(file, 0, "", packed_log_refused(*packing, file));
+  if (packing && packing_of(bytes))  // by xz, or twice
+    throw error_at(file, 0, "",
+                   "is packed by " + std::string(packing->name) +
+                       ", unpack it first: " + unpacking_command(*packing, file));
   for (const BinaryKind& kind : binary_kinds)
     if (bytes.substr(0, kind.begin.size()) == kind.begin) throw error_at(file, 0, "", kind.words);
   throw error_at(file, 0, "",
@@ -77,7 +83,7 @@ Sniffed sniff(ByteSource& source) {
   ByteSpan bytes = source.peek(sniffed_bytes);
   const bool all = bytes.size() < sniffed_bytes;
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.find('\0') != std::string_view::npos) refuse_binary(source.file(), text);
+  if (text.find('\0') != std::string_view::npos) refuse_binary(source, text);
   if (text.rfind("version https://git-lfs", 0) == 0)
     throw error_at(source.file(), 0, "", "is a pointer of git-lfs, not the file itself: run `git lfs pull`");
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
