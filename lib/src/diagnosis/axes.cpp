@@ -237,12 +237,16 @@ bool is_permutation(const Matrix3d& axes) {
   return (axes.array() == axes.array().round()).all();
 }
 
-std::vector<PoseReading> common_axes_readings(const Instants& instants, int stride, std::size_t most,
-                                              const DiagnosisOptions& options) {
+std::vector<PoseReading> inverse_rotation_readings() {
   PoseReading inverse_rotation, inverse_position;
   inverse_rotation.conjugate = true;
   inverse_position.invert = inverse_position.conjugate = true;
-  std::vector<PoseReading> readings = {inverse_rotation, inverse_position};
+  return {inverse_rotation, inverse_position};
+}
+
+std::vector<PoseReading> common_axes_readings(const Instants& instants, int stride, std::size_t most,
+                                              const DiagnosisOptions& options) {
+  std::vector<PoseReading> readings = inverse_rotation_readings();
   for (const bool conjugated : {false, true}) {
     std::vector<Step> steps = steps_of_both(instants, conjugated, stride, most, options);
     if (steps.size() < options.motions.least) continue;

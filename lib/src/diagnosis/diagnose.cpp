@@ -177,13 +177,10 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   // where a filter delays positions, parts of the drive with other speeds have other extrinsics
   if (!moves.empty() && late && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
     moves.clear();
-  moves =
-      moves_or_else(std::move(moves), pairing, evidence, answered, has(findings, "inverted_both"), options);
+  moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
   if (!moves.empty()) {
-    std::erase_if(findings, [](const Finding& one) {
-      return one.code != "inverted_both" && one.code != "quaternion_order_both";
-    });
+    std::erase_if(findings, [](const Finding& one) { return !one.code.ends_with("_both"); });
     findings.insert(findings.begin(), moves.begin(), moves.end());
     return;
   }
@@ -215,11 +212,11 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   if (!move) return false;
   for (const Finding& finding : findings)
     if (finding.code != "inverted_both" && finding.improvement > move->improvement) return false;
-  const bool inverted_both = has(findings, "inverted_both");
+  const std::vector<PoseReading> of_both = readings_of_both(findings);
   // its time is more exact where it is small enough for the linear test
   findings = moved_mount(evidence.instants, answered, options);
   if (!one_move(findings)) findings = {*std::move(move)};
-  findings = moves_or_else(std::move(findings), pairing, evidence, answered, inverted_both, options);
+  findings = moves_or_else(std::move(findings), pairing, evidence, answered, of_both, options);
   return true;
 }
 
@@ -233,8 +230,7 @@ bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, c
   if (axes == findings.end()) return false;
   std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
   if (moves.empty() || std::exp(gain_of_parts(evidence, moves, options)) <= axes->improvement) return false;
-  moves =
-      moves_or_else(std::move(moves), pairing, evidence, answered, has(findings, "inverted_both"), options);
+  moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
   if (moves.empty()) return false;
   findings = std::move(moves);
   return true;

@@ -347,9 +347,11 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     add(worded_clock(std::move(finding), clock.clock));
   }
   name_part(final, findings);
-  if (findings.empty())
-    if (std::optional<Finding> orders = both_orders(evidence, options))
-      findings.push_back(std::move(*orders));
+  if (!findings.empty()) return findings;
+
+  // the same mistake in both files may leave nearly no trace: all that fits is named
+  for (const auto of_both : {both_orders, both_rotations_inverse})
+    if (std::optional<Finding> finding = of_both(evidence, options)) findings.push_back(*std::move(finding));
   if (findings.empty())
     if (std::optional<Finding> both = both_inverted(evidence, options))
       findings.push_back(worded_reading(std::move(*both), {}, {}));

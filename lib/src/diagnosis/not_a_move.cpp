@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/axes.hpp"
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/wandering_scale.hpp"
@@ -145,14 +146,13 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
 
 namespace {
 
-/// No mount moves where both streams are world-to-sensor, and one extrinsic fits about as well as one a part.
-bool explained_by_inverting_both(const Evidence& evidence, const std::vector<Finding>& moves,
-                                 const Answered& answered, const DiagnosisOptions& options) {
-  PoseReading inverted;
-  inverted.invert = true;
-  const Motions motions = motions_of(evidence.instants, inverted, inverted, evidence.stride,
-                                     options.motions.most, options.motions);
-  if (motions.all.empty() || !moved_mount(evidence.instants, answered, options, inverted).empty())
+/// No mount moves where both streams are read like this, and one extrinsic fits about as well as one a part.
+bool explained_by_reading(const PoseReading& of_both, const Evidence& evidence,
+                          const std::vector<Finding>& moves, const Answered& answered,
+                          const DiagnosisOptions& options) {
+  const Motions motions =
+      motions_of(evidence.instants, of_both, of_both, evidence.stride, options.motions.most, options.motions);
+  if (motions.all.empty() || !moved_mount(evidence.instants, answered, options, of_both).empty())
     return false;
   const Explained both{motions, robust_fit(motions, options.fit)};
   const Explained parts = in_parts(evidence.given.explained, moves, options);
@@ -179,9 +179,20 @@ double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves
   return compare(given, in_parts(given, moves, options)).gain;
 }
 
+std::vector<PoseReading> readings_of_both(const std::vector<Finding>& findings) {
+  std::vector<PoseReading> readings;
+  for (const Finding& finding : findings) {
+    if (finding.code == "inverted_both") readings.emplace_back().invert = true;
+    if (finding.code != "axes_both" || finding.certain) continue;
+    const std::vector<PoseReading> inverse = inverse_rotation_readings();
+    readings.insert(readings.end(), inverse.begin(), inverse.end());
+  }
+  return readings;
+}
+
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
-                                   const Evidence& evidence, const Answered& answered, bool inverted_both,
-                                   const DiagnosisOptions& options) {
+                                   const Evidence& evidence, const Answered& answered,
+                                   const std::vector<PoseReading>& of_both, const DiagnosisOptions& options) {
   if (moves.empty()) return moves;
   std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options, moves);
   // a sensor that was turned aside goes another way by its own axes: that is a scale only as far as it fits
@@ -189,7 +200,9 @@ std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOpti
                            [&](const Finding& move) { return move.improvement <= scale->improvement; }))
     return {*std::move(scale)};
   if (moves_with_the_scale(pairing, evidence, answered, moves, options)) return {};
-  if (inverted_both && explained_by_inverting_both(evidence, moves, answered, options))
+  if (std::any_of(of_both.begin(), of_both.end(), [&](const PoseReading& reading) {
+        return explained_by_reading(reading, evidence, moves, answered, options);
+      }))
     for (Finding& move : moves) move.certain = false;
   return moves;
 }

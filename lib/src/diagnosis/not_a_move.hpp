@@ -22,12 +22,15 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
 double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves,
                      const DiagnosisOptions& options);
 
+/// Readings of both streams alike that the findings call possible: world-to-sensor, or inverse rotations.
+std::vector<PoseReading> readings_of_both(const std::vector<Finding>& findings);
+
 /// Findings mount_moved as they are; or scale_change instead; or none, where a scale that wanders as those of
-/// odometries do explains the motions as well; or uncertain, where both streams may be
-/// world-to-sensor (inverted_both): no mount moves then, and one extrinsic explains the motions about as well
-/// as one for each part between the moves.
+/// odometries do explains the motions as well; or uncertain, where no mount moves under one of these readings
+/// of both streams, and one extrinsic explains the motions about as well as one for each part between the
+/// moves.
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
-                                   const Evidence& evidence, const Answered& answered, bool inverted_both,
-                                   const DiagnosisOptions& options);
+                                   const Evidence& evidence, const Answered& answered,
+                                   const std::vector<PoseReading>& of_both, const DiagnosisOptions& options);
 
 }  // namespace egocal::detail
