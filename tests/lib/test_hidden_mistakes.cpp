@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <utility>
 
 #include "../support/bounded_drive.hpp"
@@ -43,7 +44,8 @@ TEST(HiddenMistakes, TheSameWrongAxesInBothStreamsAreNamed) {
   }
 }
 
-/// With noise of 1 % half a minute on rough ground shows inverse rotations of both files, but does not prove them.
+/// With noise of 1 % half a minute on rough ground shows inverse rotations of both files, but does not prove
+/// them.
 TEST(HiddenMistakes, InverseRotationsOfBothFilesThatAreOnlyProbableMakeTheAnswerDoubtful) {
   testing::Streams right = drive(Terrain::rough);
   right.a.resize(right.a.size() / 2);
@@ -57,6 +59,29 @@ TEST(HiddenMistakes, InverseRotationsOfBothFilesThatAreOnlyProbableMakeTheAnswer
   EXPECT_FALSE(finding->certain);
   ASSERT_TRUE(finding->T_a_b);
   EXPECT_LT(extrinsic_error(right.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.02);
+}
+
+/// Positions in another world frame: twelve linear unknowns and what noise makes of them are only the start.
+TEST(HiddenMistakes, PositionsThatAreTurnedByAnyAngleHaveAnAnswerOfTheirOwn) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.3, -0.2, 0.9).normalized()).toRotationMatrix();
+  for (const Terrain terrain : {Terrain::free, Terrain::rough}) {
+    testing::Streams streams = drive(terrain);
+    const ExtrinsicError without =
+        extrinsic_error(streams.T, to_dual_quaternion(calibrate(streams.a, streams.b).T_a_b));
+    streams.b = testing::with_position_columns(streams.b, turn);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    const Finding* finding = find(calibration, "axes_b");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    ASSERT_TRUE(finding->T_a_b);
+    const ExtrinsicError with = extrinsic_error(streams.T, to_dual_quaternion(*finding->T_a_b));
+    EXPECT_LT(with.rotation, without.rotation + 0.01);
+    const std::string words = "positions turned by ";
+    const std::size_t at = finding->message.find(words);
+    ASSERT_NE(at, std::string::npos) << finding->message;
+    const double degrees = std::stod(finding->message.substr(at + words.size()));
+    EXPECT_NEAR(degrees, 40.1, 1) << finding->message;
+  }
 }
 
 /// A file whose convention changes on its way: the option alone cures nothing.

@@ -5,20 +5,17 @@
 
 #include "baselines/usable.hpp"
 #include "egocal/baselines/baselines.hpp"
+#include "linear_algebra/cross_matrix.hpp"
 
 namespace egocal {
 namespace {
+
+using detail::cross_matrix;
 
 // Tangent vectors are (rotation vector [rad], translation [m]), the logarithm of a unit dual quaternion times
 // two.
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d M;
-  M << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return M;
-}
 
 /// exp of half the tangent, as dual numbers: with dual angle theta + eps s about the axis,
 /// cos(theta/2) + axis sin(theta/2).

@@ -11,7 +11,9 @@
 
 #include "diagnosis/reading.hpp"
 #include "diagnosis/robust_fit.hpp"
+#include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "solvers/tangent.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -23,6 +25,7 @@ using Eigen::Vector3d;
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
 using Rows = Eigen::Matrix<double, 3, 12>;
+using TurnRows = Eigen::Matrix<double, 3, 6>;
 
 /// One motion of the right stream s, and of the wrong one w as its file has it.
 struct Step {
@@ -219,12 +222,44 @@ std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
   return {one, U * Vector3d(1, 1, -1).asDiagonal() * V.transpose()};
 }
 
-/// The signed permutation within about 20 degrees, if there is one.
+/// The orthogonal matrix, mirrored as W is, that suits the steps best: from W, which has six unknowns more
+/// and what noise makes of them. Gauss-Newton for it and the lever arm t: (R_s - 1) t + t_s + R_world_s' W
+/// d_s - R R_world' W d = 0.
+Matrix3d refined(std::vector<Step>& steps, const Matrix3d& R, Matrix3d W, int rounds) {
+  Vector6d x = Vector6d::Zero();  // t, and the turn of W
+  const auto jacobian = [&R, &W](const Step& step) {
+    TurnRows J;
+    J.leftCols<3>() = step.R_s - Matrix3d::Identity();
+    J.rightCols<3>() = R * step.R_world.transpose() * W * cross_matrix(step.d) -
+                       step.R_world_s.transpose() * W * cross_matrix(step.d_s);
+    return J;
+  };
+  const auto residual = [&R, &W](const Step& step) -> Vector3d {
+    return step.t_s + step.R_world_s.transpose() * W * step.d_s - R * step.R_world.transpose() * W * step.d;
+  };
+  for (int round = 0; round < rounds; ++round) {
+    Matrix6d A = Matrix6d::Zero();
+    Vector6d g = Vector6d::Zero();
+    for (const Step& step : steps) {
+      const TurnRows J = jacobian(step);
+      A += step.weight * J.transpose() * J;
+      g -= step.weight * J.transpose() * residual(step);
+    }
+    A.diagonal().head<3>().array() += 1e-6 * A.diagonal().head<3>().sum() + 1e-300;
+    A.diagonal().tail<3>().array() += 1e-6 * A.diagonal().tail<3>().sum() + 1e-300;
+    x = A.ldlt().solve(g);
+    if (!x.allFinite()) break;
+    W = W * rotation_exp(x.tail<3>()).toRotationMatrix();
+  }
+  return W;
+}
+
+/// The signed permutation within about 40 degrees, if there is one: noise of 10 % turns what is found by 30.
 std::optional<Matrix3d> nearest_permutation(const Matrix3d& W) {
   Matrix3d result = Matrix3d::Zero();
   for (int row = 0; row < 3; ++row) {
     Eigen::Index column = 0;
-    if (W.row(row).cwiseAbs().maxCoeff(&column) < 0.94) return std::nullopt;
+    if (W.row(row).cwiseAbs().maxCoeff(&column) < 0.77) return std::nullopt;
     result(row, column) = W(row, column) < 0 ? -1 : 1;
   }
   if (std::abs(std::abs(result.determinant()) - 1) > 1e-12) return std::nullopt;
@@ -252,7 +287,8 @@ std::vector<PoseReading> common_axes_readings(const Instants& instants, int stri
     if (steps.size() < options.motions.least) continue;
     const Matrix3d R = orientation(steps, options.fit);
     for (const Matrix3d& W : nearest_orthogonal(common_map(steps, R, options.fit)))
-      for (const std::optional<Matrix3d>& axes : {nearest_permutation(W), std::optional(W)}) {
+      for (const std::optional<Matrix3d>& axes :
+           {nearest_permutation(W), std::optional(refined(steps, R, W, options.fit.rounds))}) {
         // mirrored at the origin both streams have the same motions, but for the sign of the lever arm
         if (!axes || axes->isIdentity(1e-12) || (-*axes).isIdentity(1e-12)) continue;
         PoseReading reading;
@@ -280,7 +316,7 @@ std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int
     const Matrix3d R = orientation(steps, options.fit);
     for (const Matrix3d& W : nearest_orthogonal(linear_map(steps, R, options.fit))) {
       if (const std::optional<Matrix3d> permutation = nearest_permutation(W)) add(*permutation, conjugated);
-      add(W, conjugated);
+      add(refined(steps, R, W, options.fit.rounds), conjugated);
     }
   }
   // the position of the inverse pose beside the right rotation: inverse of what the inverse rotation gives

@@ -204,9 +204,16 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options)};
   if (turned && better(compare(result.best.explained, turned->explained), options.gain, options))
     result = {*turned, turned_other};
-  if (std::optional<Explanation> both = common_axes(evidence, options))
-    if (better(compare(result.best.explained, both->explained), options.gain, options))
+  if (std::optional<Explanation> both = common_axes(evidence, options)) {
+    const Comparison comparison = compare(result.best.explained, both->explained);
+    // columns that one program exchanged in both files are simpler than axes of one file that are turned
+    const bool simpler = is_permutation(both->read_b.axes) && turned && result.best.code == turned->code &&
+                         !is_permutation(result.best.read_a.axes * result.best.read_b.axes);
+    if (better(comparison, options.gain, options))
       result = {*std::move(both), {}};
+    else if (simpler && comparison.gain > -options.alike)
+      result = {*std::move(both), result.best};
+  }
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
+#include "linear_algebra/cross_matrix.hpp"
 
 namespace egocal::detail {
 
@@ -69,12 +70,6 @@ Changes changes_of(const Instants& instants, const Motions& motions, const LateP
   return changes;
 }
 
-Matrix3d cross(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 void set_translation(DualQuaternion& motion, const Vector3d& t) {
   motion = canonical_sign(to_dual_quaternion(Pose{to_pose(motion).rotation, t}));
 }
@@ -108,7 +103,7 @@ double best_delay(const Explained& given, const Changes& changes, Side side) {
     const Vector3d residual = motion.R_a * T.translation + motion.t_a - there - T.translation;
     Eigen::Matrix<double, 3, 7> rows;
     rows.leftCols<3>() = motion.R_a - Matrix3d::Identity();
-    rows.middleCols<3>(3) = cross(there);
+    rows.middleCols<3>(3) = cross_matrix(there);
     rows.col(6) = side == Side::a ? changes.a[i] : Vector3d(-(R * changes.b[i]));
     sum += weight * rows.transpose() * rows;
     right -= weight * rows.transpose() * residual;
