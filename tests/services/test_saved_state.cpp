@@ -12,7 +12,9 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <utility>
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/odometry.hpp"
@@ -319,24 +321,38 @@ TEST_F(SavedStates, ARefusedOneThatCannotBeKeptAsideEndsNothingAndIsNotOverwritt
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(aside), {}), before);
 }
 
-TEST_F(SavedStates, AFolderThatIsRemovedWhileRunningCostsNothing) {
+// By people who tidy up, make copies, or rotate what they take for logs.
+TEST_F(SavedStates, WhateverIsDoneToTheFileWhileRunningCostsNothing) {
   const bus::Rig config = rig("egocal.odometry_t");
   const auto messages = drive("egocal.odometry_t", 50);
-  std::filesystem::create_directories(folder + "/gone");
-  auto saved = std::make_unique<SavedState>(folder + "/gone/state", config);
-  Accumulation accumulation = saved->restore();
-  for (const Message& message : messages) {
-    const Input input{Input::Kind::message, message.channel, message.bytes};
-    saved->note(input);
-    accumulation.apply(input);
-    if (&message == &messages[60]) std::filesystem::remove_all(folder + "/gone");
-    saved->save(accumulation);
+  const std::string place = folder + "/place", state = place + "/state", copy = folder + "/copy";
+  using std::filesystem::rename;
+  const std::pair<const char*, std::function<void()>> deeds[] = {
+      {"the folder is removed", [&] { std::filesystem::remove_all(place); }},
+      {"the folder is moved", [&] { rename(place, folder + "/other"); }},
+      {"the file is moved", [&] { rename(state, copy); }},
+      {"a copy takes its place", [&] { std::filesystem::copy_file(state, copy), rename(copy, state); }},
+      {"the file is emptied", [&] { std::filesystem::resize_file(state, 0); }},
+      {"the file is cut off",
+       [&] { std::filesystem::resize_file(state, file_size(std::filesystem::path(state)) - 1); }}};
+  for (const auto& [what, deed] : deeds) {
+    for (const std::string& left : {place, folder + "/other", copy}) std::filesystem::remove_all(left);
+    std::filesystem::create_directories(place);
+    auto saved = std::make_unique<SavedState>(state, config);
+    Accumulation accumulation = saved->restore();
+    for (const Message& message : messages) {
+      const Input input{Input::Kind::message, message.channel, message.bytes};
+      saved->note(input);
+      accumulation.apply(input);
+      if (&message == &messages[60]) deed();
+      saved->save(accumulation);
+    }
+    saved.reset();
+    SavedState again(state, config);
+    const Accumulation restored = again.restore();
+    EXPECT_TRUE(again.restored()) << what << ": " << again.refused();
+    EXPECT_EQ(restored.pairs()[0].state().seq, accumulation.pairs()[0].state().seq) << what;
   }
-  saved.reset();
-  SavedState again(folder + "/gone/state", config);
-  const Accumulation restored = again.restore();
-  EXPECT_TRUE(again.restored());
-  EXPECT_EQ(restored.pairs()[0].state().seq, accumulation.pairs()[0].state().seq);
 }
 
 TEST_F(SavedStates, ThatAreNoFilesAreRefusedAtOnce) {

@@ -92,12 +92,14 @@ class StateInFileSystem final : public StateMedium {
     whole.commit();
     if (out_ >= 0) close(out_);
     out_ = whole.release_descriptor();
+    size_ = static_cast<std::int64_t>(bytes.size());
   }
 
   void add(std::span<const std::byte> bytes) override {
     if (out_ < 0) throw error_at(file_, 0, "", "has no snapshot to add to");
     try {
       write_all(out_, bytes);
+      size_ += static_cast<std::int64_t>(bytes.size());
     } catch (const Error& error) {
       // behind an unfinished part nothing may follow
       close(std::exchange(out_, -1));
@@ -106,8 +108,10 @@ class StateInFileSystem final : public StateMedium {
   }
 
   bool in_place() const override {
-    struct stat status {};
-    return out_ >= 0 && fstat(out_, &status) == 0 && status.st_nlink > 0;
+    struct stat ours {
+    }, there{};
+    return out_ >= 0 && fstat(out_, &ours) == 0 && stat(file_.c_str(), &there) == 0 &&
+           ours.st_ino == there.st_ino && ours.st_dev == there.st_dev && ours.st_size == size_;
   }
 
   std::string keep_aside() override {
@@ -126,6 +130,7 @@ class StateInFileSystem final : public StateMedium {
   std::string file_;
   StateLock lock_;
   int out_ = -1;
+  std::int64_t size_ = 0;  ///< of what was written [bytes]
 };
 
 }  // namespace

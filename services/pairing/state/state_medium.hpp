@@ -51,7 +51,7 @@ class StateMedium {
   /// Only after replace(). Throws Error likewise; a part of the bytes may have been written then, and only
   /// another replace() helps.
   virtual void add(std::span<const std::byte> bytes) = 0;
-  /// False: nothing has been written yet, or the file was removed since then.
+  /// False: nothing has been written yet, or the file was removed, moved, replaced or cut off since then.
   virtual bool in_place() const = 0;
   /// Renames the file so that it stays; its new name. Throws Error where that is not possible.
   virtual std::string keep_aside() = 0;
