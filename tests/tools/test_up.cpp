@@ -196,6 +196,58 @@ TEST_F(Up, AStateThatCannotBeSavedIsReported) {
               HasSubstr("egocal up: egocal-pairing: " + path("kept") + ": cannot be written"));
 }
 
+TEST_F(Up, AnErrorThatIsOverIsReportedAsOver) {
+  const std::string disk = path("disk"), away = path("away");
+  std::filesystem::create_directories(disk);
+  ChildProcess egocal = up({"--log", log, "--speed", "2", "--state", disk + "/kept"});
+  const auto said = [&](const std::string& text) {
+    return until([&] { return read(path("said")).find(text) != std::string::npos; });
+  };
+  ASSERT_TRUE(until([&] { return std::filesystem::exists(disk + "/kept"); }));
+  std::filesystem::rename(disk, away);
+  std::ofstream(disk) << "no folder";
+  const std::string error = disk + "/kept";
+  EXPECT_TRUE(said("egocal up: egocal-pairing: " + error)) << read(path("said"));
+  std::filesystem::remove(disk);
+  std::filesystem::create_directories(disk);
+  EXPECT_TRUE(said("egocal up: egocal-pairing: this is over: " + error)) << read(path("said"));
+  egocal.signal(SIGINT);
+  EXPECT_EQ(egocal.wait(30s), 3) << "in the middle of the log";
+}
+
+// A driver that dies. The answer stays, and nobody would know that it is not one of the present.
+TEST_F(Up, APairWithoutNewMotionsIsReportedAndThatTheyComeAgain) {
+  const std::string url = "udpm://239.255.76.67:7755?ttl=0";
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  ChildProcess egocal = up({"--lcm-url", url});
+  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
+  bus::LogReader drive(log);
+  const std::int64_t begin_us = drive.next()->time_us, started_us = loop.mono_us();
+  bool camera = true;
+  // the log as a drive that is twice as fast
+  const auto drives_until = [&](const std::function<bool(double)>& condition) {
+    while (const auto event = drive.next()) {
+      const std::int64_t due_us = started_us + (event->time_us - begin_us) / 2;
+      while (loop.mono_us() < due_us) loop.run_once(std::chrono::microseconds(due_us - loop.mono_us()));
+      if (camera || event->channel != "ODOMETRY_CAMERA") loop.publish_bytes(event->channel, event->data);
+      if (condition(1e-6 * static_cast<double>(event->time_us - begin_us))) return true;
+    }
+    return false;
+  };
+  const auto said = [&](const std::string& text) {
+    return drives_until([&](double) { return read(path("said")).find(text) != std::string::npos; });
+  };
+  ASSERT_TRUE(drives_until([](double seconds) { return seconds > 12; }));
+  EXPECT_THAT(read(path("said")), Not(HasSubstr("motion")));
+  camera = false;
+  EXPECT_TRUE(said("egocal up: lidar -> camera: no new motion for 5 s: camera sends nothing\n"))
+      << read(path("said"));
+  camera = true;
+  EXPECT_TRUE(said("egocal up: lidar -> camera: new motions come again\n")) << read(path("said"));
+  egocal.signal(SIGINT);
+  EXPECT_EQ(egocal.wait(30s), 0);
+}
+
 TEST_F(Up, AProcessThatWasStoppedIsContinuedAndNothingIsLost) {
   ChildProcess egocal = up({"--log", log, "--speed", "10"});
   ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));

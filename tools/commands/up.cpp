@@ -150,7 +150,9 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  BusWatch watch(rig, url, options.log);
+  BusWatchOptions watched;
+  watched.news.live = options.log.empty();
+  BusWatch watch(rig, url, options.log, watched);
   supervisor.silence = [&watch](pid_t pid) { return watch.silence(pid); };
   supervisor.lines = watch.lines();
   if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };

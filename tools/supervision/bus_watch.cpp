@@ -15,9 +15,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <map>
 #include <new>
-#include <set>
 #include <utility>
 
 #include "answers/answers.hpp"
@@ -26,6 +24,7 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/error.hpp"
+#include "supervision/bus_news.hpp"
 
 namespace egocal::tools {
 
@@ -93,16 +92,27 @@ namespace {
 class Listening {
  public:
   Listening(const bus::Rig& rig, const std::string& url, const BusWatchOptions& options)
-      : rig_(rig), options_(options), loop_(url, {.require_network = false}) {
+      : rig_(rig), options_(options), loop_(url, {.require_network = false}), news_(rig, options.news) {
     answers_.expect_scales(rig);
     const auto hear = [this](const auto& message, const bus::Arrival&) { answers_.hear(message); };
     for (const bus::PairConfig& pair : rig.pairs) {
-      loop_.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b), hear);
+      loop_.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b),
+                                 [this](const problem_t& problem, const bus::Arrival& arrival) {
+                                   answers_.hear(problem);
+                                   news_.hear(problem, arrival.mono_us);
+                                 });
       loop_.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b), hear);
       loop_.subscribe<verdict_t>(bus::verdict_channel(pair.a, pair.b), hear);
       loop_.subscribe<scale_problem_t>(bus::scale_problem_channel(pair.a, pair.b), hear);
       loop_.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b), hear);
     }
+    loop_.subscribe<command_t>(bus::command_channel, [this](const command_t& command, const bus::Arrival&) {
+      news_.hear(command, loop_.mono_us());
+    });
+    for (const bus::Sensor& sensor : rig.sensors)
+      loop_.subscribe_bytes(sensor.channel, [this](const bus::Arrival& arrival) {
+        news_.hear(arrival.channel, arrival.bytes, arrival.mono_us);
+      });
   }
   bus::Loop& loop() { return loop_; }
   Outcome outcome(const std::string& log) const {
@@ -110,29 +120,12 @@ class Listening {
   }
 
   void hear(const status_t& status) {
-    hear_error(status);
+    news_.hear(status, loop_.mono_us());
     if (status.role == bus::role_name(bus::Role::pairing) &&
         status.state != bus::state_name(bus::State::waiting))
       for (const acknowledgement_t& entry : status.acknowledgements)
         if (read_until_.size() < most_channels || read_until_.contains(entry.channel))
           read_until_[entry.channel] = entry.utime;
-  }
-
-  /// Reports errors of pairing and the diagnosis, such as a state that cannot be saved, which otherwise only
-  /// a monitor shows. Those of solvers and the player pass by themselves.
-  void hear_error(const status_t& status) {
-    if (status.role != bus::role_name(bus::Role::pairing) &&
-        status.role != bus::role_name(bus::Role::diagnosis))
-      return;
-    const std::string name = bus::printable(status.name, 40), error = bus::printable(status.last_error, 300);
-    std::string& before = last_errors_[status.role];
-    if (error == before) return;
-    if (error.empty() && reported_.contains(name + ": " + before) &&
-        over_.insert(name + ": " + before).second)
-      errors_ += name + ": this is over: " + before + "\n";
-    before = error;
-    if (!error.empty() && reported_.size() < most_errors && reported_.insert(name + ": " + error).second)
-      errors_ += name + ": " + error + "\n";
   }
 
   int awaited() const {
@@ -144,43 +137,18 @@ class Listening {
         }));
   }
 
-  /// Lines about pairs that have not been answered for a while, and are again, and errors of processes.
-  std::string news(std::int64_t now_us) {
-    std::string text = std::exchange(errors_, {});
-    for (const bus::PairConfig& config : rig_.pairs) {
-      const PairName pair{config.a, config.b};
-      const Answers::Best* const best = answers_.best(pair);
-      const auto number = best ? bus::AnswerAge::Number{best->message.session, best->message.seq}
-                               : bus::AnswerAge::Number{-1, -1};
-      Unanswered& of = unanswered_[pair];
-      of.age.note(number, !answers_.answered_to_the_end(pair), now_us);
-      const bool old = of.age.old(now_us, options_.answer_age) > 0;
-      if (old != of.reported)
-        text += pair.first + " -> " + pair.second + ": " +
-                (old ? fmt::format("no solver answers the motions of the last {:g} s\n",
-                                   options_.answer_age.answered_within)
-                     : "a solver answers again\n");
-      of.reported = old;
-    }
-    return text;
-  }
+  /// Lines for people.
+  std::string news() { return news_.lines(answers_, loop_.mono_us()); }
 
  private:
-  static constexpr std::size_t most_channels = 1000, most_errors = 100;  // limits on memory
-  struct Unanswered {
-    bus::AnswerAge age;
-    bool reported = false;
-  };
+  static constexpr std::size_t most_channels = 1000;  // a limit on memory
 
   const bus::Rig& rig_;
   const BusWatchOptions& options_;
   bus::Loop loop_;
   Answers answers_;
   ReadUntil read_until_;
-  std::map<PairName, Unanswered> unanswered_;
-  std::map<std::string, std::string> last_errors_;  ///< by role
-  std::set<std::string> reported_, over_;
-  std::string errors_;  ///< that were not told yet
+  BusNews news_;
 };
 
 }  // namespace
@@ -197,7 +165,7 @@ void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::st
     loop.every(milliseconds(100), [&] {
       shared.awaited = listening.awaited();
       // does not block: where the supervisor does not read them, lines are dropped
-      write_all(lines, listening.news(1000 * mono_ms()));
+      write_all(lines, listening.news());
     });
     loop.run();
     if (!log.empty()) {

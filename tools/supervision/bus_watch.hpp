@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "egocal/bus/answer_age.hpp"
 #include "egocal/bus/rig.hpp"
+#include "supervision/bus_news.hpp"
 #include "supervision/outcome.hpp"
 
 namespace egocal::tools {
@@ -18,7 +18,7 @@ namespace egocal::tools {
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
 
 struct BusWatchOptions {
-  bus::AnswerAgeOptions answer_age;
+  BusNewsOptions news;
   OutcomeOptions outcome;
 };
 
@@ -37,8 +37,7 @@ class BusWatch {
   std::optional<std::chrono::milliseconds> silence(pid_t pid) const;
   /// Pairs whose newest answer or verdict is not about the newest motions: those of a drive's end still come.
   int awaited() const;
-  /// Readable, without blocking: lines of text about pairs that no solver answers, and that are answered
-  /// again, and what pairing and the diagnosis report as errors, each once.
+  /// Readable, without blocking: lines of text, see BusNews.
   int lines() const { return lines_; }
   /// Stops listening and reads the log for what is missing in the answers. Once.
   Outcome outcome();

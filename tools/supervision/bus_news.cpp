@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "supervision/bus_news.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "egocal/bus/plausible.hpp"
+#include "egocal/bus/process.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+/// As doubles: the clock may be anybody's.
+double seconds(std::int64_t from_us, std::int64_t to_us) {
+  return 1e-6 * (static_cast<double>(to_us) - static_cast<double>(from_us));
+}
+
+std::string begin_of(const PairName& pair) {
+  return pair.first + " -> " + pair.second + ": ";
+}
+
+}  // namespace
+
+BusNews::BusNews(const bus::Rig& rig, const BusNewsOptions& options)
+    : rig_(rig), options_(options), streams_(rig.sensors) {
+  for (const bus::PairConfig& pair : rig.pairs) pairs_[{pair.a, pair.b}];
+}
+
+void BusNews::hear(const status_t& status, std::int64_t now_us) {
+  hear_error(status, now_us);
+  if (status.role != bus::role_name(bus::Role::pairing) ||
+      status.state == bus::state_name(bus::State::waiting))
+    return;
+  const bool paused = status.state == bus::state_name(bus::State::paused);
+  if (pairing_.empty() || paused != pairing_paused_)
+    for (auto& [name, pair] : pairs_) motions_may_come(pair, now_us);
+  pairing_ = status.name;
+  pairing_paused_ = paused;
+}
+
+/// Such as a state that cannot be saved, which otherwise only a monitor shows. Errors of solvers and the
+/// player pass by themselves.
+void BusNews::hear_error(const status_t& status, std::int64_t now_us) {
+  if (status.role != bus::role_name(bus::Role::pairing) &&
+      status.role != bus::role_name(bus::Role::diagnosis))
+    return;
+  // one that lets its namesake work says nothing of that one's errors
+  if (status.last_error.empty() && status.state == bus::state_name(bus::State::waiting)) return;
+  Error& error = errors_[status.role];
+  const std::string line = status.last_error.empty() ? ""
+                                                     : bus::printable(status.name, 40) + ": " +
+                                                           bus::printable(status.last_error, 300);
+  if (line == error.now) return;
+  error.now = line;
+  error.since_us = now_us;
+}
+
+std::string BusNews::errors(std::int64_t now_us) {
+  std::string text;
+  for (auto& [role, error] : errors_) {
+    if (error.now == error.reported) continue;
+    if (error.now.empty()) {
+      if (seconds(error.since_us, now_us) < options_.over_after) continue;
+      const std::size_t name_end = error.reported.find(": ");
+      text += error.reported.substr(0, name_end) + ": this is over" + error.reported.substr(name_end) + "\n";
+    } else {
+      const auto before = reported_us_.find(error.now);
+      if (before == reported_us_.end() ? reported_us_.size() >= most_errors
+                                       : seconds(before->second, now_us) < options_.repeat_report)
+        continue;
+      reported_us_[error.now] = now_us;
+      text += error.now + "\n";
+    }
+    error.reported = error.now;
+  }
+  return text;
+}
+
+/// What was missed until now is nobody's fault.
+void BusNews::motions_may_come(Pair& of, std::int64_t now_us) const {
+  of.motion_us = now_us;
+}
+
+void BusNews::hear(const problem_t& problem, std::int64_t now_us) {
+  const auto found = pairs_.find({problem.sensor_a, problem.sensor_b});
+  if (found == pairs_.end()) return;
+  Pair& pair = found->second;
+  const std::pair number(problem.session, problem.seq);
+  const bool first_or_back = seconds(pair.problem_us, now_us) > options_.pairing_silent;
+  const bool is_new =
+      !pair.newest || pair.newest->first != number.first || pair.newest->second < number.second;
+  if (is_new || first_or_back) motions_may_come(pair, now_us);
+  if (is_new && pair.paused_us && seconds(*pair.paused_us, now_us) > options_.settle)
+    pair.paused_us.reset();  // it was resumed, or the command was lost
+  if (is_new && std::exchange(pair.standing_reported, false))
+    told_ += begin_of(found->first) + "new motions come again\n";
+  pair.newest = number;
+  pair.problem_us = now_us;
+}
+
+void BusNews::hear(const command_t& command, std::int64_t now_us) {
+  if (command.to != "*" && command.to != pairing_) return;
+  const bool pause = command.verb == "pause";
+  if (!pause && command.verb != "resume") return;
+  for (auto& [name, pair] : pairs_) {
+    const bool all = command.sensor_a.empty() && command.sensor_b.empty();
+    if (!all && (command.sensor_a != name.first || command.sensor_b != name.second)) continue;
+    pair.paused_us = pause ? std::optional(now_us) : std::nullopt;
+    motions_may_come(pair, now_us);
+  }
+}
+
+void BusNews::hear(const std::string& channel, bus::Bytes bytes, std::int64_t now_us) {
+  streams_.hear(channel, bytes, now_us);
+}
+
+std::string BusNews::lines(const Answers& answers, std::int64_t now_us) {
+  std::string text = errors(now_us) + std::exchange(told_, {});
+  for (const bus::PairConfig& config : rig_.pairs) {
+    const PairName name{config.a, config.b};
+    Pair& pair = pairs_[name];
+    text += unanswered(pair, name, answers, now_us) + standing(pair, name, now_us);
+  }
+  return text;
+}
+
+std::string BusNews::unanswered(Pair& of, const PairName& pair, const Answers& answers,
+                                std::int64_t now_us) const {
+  const Answers::Best* const best = answers.best(pair);
+  const auto number = best ? bus::AnswerAge::Number{best->message.session, best->message.seq}
+                           : bus::AnswerAge::Number{-1, -1};
+  of.age.note(number, !answers.answered_to_the_end(pair), now_us);
+  const bool old = of.age.old(now_us, options_.answer_age) > 0;
+  if (old == std::exchange(of.unanswered_reported, old)) return {};
+  return begin_of(pair) + (old ? fmt::format("no solver answers the motions of the last {:g} s\n",
+                                             options_.answer_age.answered_within)
+                               : "a solver answers again\n");
+}
+
+std::string BusNews::standing(Pair& of, const PairName& pair, std::int64_t now_us) const {
+  const double since = seconds(of.motion_us, now_us);
+  if (of.standing_reported || since <= options_.standing) return {};
+  if (of.standing_reported_us && seconds(*of.standing_reported_us, now_us) < options_.repeat_report)
+    return {};
+  const std::string why = why_standing(of, pair, now_us);
+  if (why.empty()) return {};
+  of.standing_reported = true;
+  of.standing_reported_us = now_us;
+  return begin_of(pair) +
+         (of.newest ? fmt::format("no new motion for {:.0f} s: ", since) : std::string("no motion yet: ")) +
+         why + "\n";
+}
+
+/// Empty: that is how it should be, or it is not known.
+std::string BusNews::why_standing(const Pair& of, const PairName& pair, std::int64_t now_us) const {
+  if (pairing_.empty() || pairing_paused_ || of.paused_us) return {};
+  const auto silent = [&](const std::string& name) {
+    return std::none_of(streams_.sensors().begin(), streams_.sensors().end(),
+                        [&](const bus::SensorStream& stream) {
+                          return stream.sensor.name == name && stream.heard &&
+                                 now_us - stream.heard->last_mono_us <= streams_.options().silent_us;
+                        });
+  };
+  const bool both = silent(pair.first) && silent(pair.second);
+  if (both && !options_.live) return {};
+  // the first motion takes as long as it takes: the stride is chosen from some dozens of poses
+  if (!of.newest && !silent(pair.first) && !silent(pair.second)) return {};
+  if (of.newest && seconds(of.problem_us, now_us) > options_.pairing_silent) return {};
+  std::string why = both ? pair.first + " and " + pair.second + " send nothing"
+                         : bus::why_no_motion(streams_, pair.first, pair.second, now_us);
+  if (!of.newest) why += "; `egocal listen` shows what is sent instead";
+  return why;
+}
+
+}  // namespace egocal::tools

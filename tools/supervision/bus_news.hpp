@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "answers/answers.hpp"
+#include "egocal/bus/answer_age.hpp"
+#include "egocal/bus/rig.hpp"
+#include "egocal/bus/stream_watch.hpp"
+
+namespace egocal::tools {
+
+/// Study: tests/tools/test_bus_news.cpp.
+struct BusNewsOptions {
+  bus::AnswerAgeOptions answer_age;
+  /// Pairing lives, and has found no new motion for longer [s]: as the monitor, ten steps of the slowest
+  /// sensors.
+  double standing = 5;
+  /// Pairing sends its problems every second. Where none has come for longer, it is silent itself [s].
+  double pairing_silent = 2;
+  /// A new motion may overtake the command that pauses its pair [s].
+  double settle = 1;
+  /// An error is over where none has been reported for so long [s]: a process that was restarted meets the
+  /// same one within its first second.
+  double over_after = 2;
+  /// What comes again and again is reported this often [s], as a process that ends again and again is.
+  double repeat_report = 60;
+  /// Both sensors of a pair may be silent: a log has gaps, and an end. Live they never should.
+  bool live = true;
+};
+
+/// What a person is told who watches nothing: errors of pairing and the diagnosis, pairs that no solver
+/// answers, pairs that find no new motion, once when it begins, and once when it is over. Times are those of
+/// the loop's clock [us].
+class BusNews {
+ public:
+  BusNews(const bus::Rig& rig, const BusNewsOptions& options);
+
+  void hear(const status_t& status, std::int64_t now_us);
+  void hear(const problem_t& problem, std::int64_t now_us);
+  void hear(const command_t& command, std::int64_t now_us);
+  /// A message of a sensor.
+  void hear(const std::string& channel, bus::Bytes bytes, std::int64_t now_us);
+
+  /// The lines since the last call, each with its end.
+  std::string lines(const Answers& answers, std::int64_t now_us);
+
+ private:
+  static constexpr std::size_t most_errors = 100;  // a limit on memory
+  struct Pair {
+    bus::AnswerAge age;
+    bool unanswered_reported = false;
+    std::optional<std::pair<std::int64_t, std::int64_t>> newest;  ///< session and number of a problem,
+    std::int64_t problem_us = 0, motion_us = 0;                   ///< when one came, and a new one
+    std::optional<std::int64_t> paused_us;
+    bool standing_reported = false;
+    std::optional<std::int64_t> standing_reported_us;
+  };
+
+  /// Of the processes of a role.
+  struct Error {
+    std::string now, reported;  ///< lines; empty: none
+    std::int64_t since_us = 0;
+  };
+
+  void hear_error(const status_t& status, std::int64_t now_us);
+  std::string errors(std::int64_t now_us);
+  void motions_may_come(Pair& of, std::int64_t now_us) const;
+  std::string why_standing(const Pair& of, const PairName& pair, std::int64_t now_us) const;
+  std::string unanswered(Pair& of, const PairName& pair, const Answers& answers, std::int64_t now_us) const;
+  std::string standing(Pair& of, const PairName& pair, std::int64_t now_us) const;
+
+  const bus::Rig& rig_;
+  BusNewsOptions options_;
+  bus::StreamWatch streams_;
+  std::map<PairName, Pair> pairs_;
+  std::string pairing_;  ///< name of the process that sends the problems; empty: not heard yet
+  bool pairing_paused_ = false;
+  std::map<std::string, Error> errors_;              ///< by role
+  std::map<std::string, std::int64_t> reported_us_;  ///< of each line about an error
+  std::string told_;                                 ///< that were not asked for yet
+};
+
+}  // namespace egocal::tools
