@@ -110,6 +110,39 @@ std::string gaps_in_words(const Trajectory& a, const Trajectory& b, const Pairin
   return text;
 }
 
+/// A pose that is computed once a second and sent ten times, where that left no motions: the repeats are
+/// rejected, and the new ones have no neighbour.
+std::string repeats_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts) {
+  if (counts.rejected[static_cast<std::size_t>(Rejection::frozen)] == 0) return "";
+  const auto repeats = [](const StampedPose& x, const StampedPose& y) {
+    return x.pose.real == y.pose.real && x.pose.dual == y.pose.dual;
+  };
+  std::string text;
+  for (const auto& [name, stream] : {std::pair("a", &a), std::pair("b", &b)}) {
+    std::size_t differ = 1;
+    for (std::size_t i = 1; i < stream->size(); ++i)
+      differ += !repeats((*stream)[i - 1], (*stream)[i]) ? 1 : 0;
+    if (2 * differ > stream->size()) continue;  // as many are whole motions, and reject none of the others
+    const double lasts =
+        1e-6 * (static_cast<double>(stream->back().time_us) - static_cast<double>(stream->front().time_us));
+    char line[256];
+    if (differ == 1)
+      std::snprintf(line, sizeof line,
+                    "; the poses of %s are all the same while the other sensor moves: it does not work, or "
+                    "other columns are its poses",
+                    name);
+    else
+      std::snprintf(
+          line, sizeof line,
+          "; %s repeats its poses: of its %zu only %zu differ from the one before, one every %.3g s. "
+          "Keep the first of each and leave out its repeats, or record the odometry before it is "
+          "sent again at a fixed rate",
+          name, stream->size(), differ, lasts / static_cast<double>(differ - 1));
+    text += line;
+  }
+  return text;
+}
+
 /// Mode, planes, balance and prior; no motions yet.
 Problem formulation(const PairingOptions& options) {
   Problem problem;
@@ -228,7 +261,8 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   if (problem.blocks.empty())
     throw Error("no motion pairs; a: " + span_in_words(a) + ", b: " + span_in_words(b) + "; " +
                 rejections_in_words(pairing.counts()) + times_in_words(a, b) +
-                gaps_in_words(a, b, pairing.counts(), pairing_options.max_gap));
+                gaps_in_words(a, b, pairing.counts(), pairing_options.max_gap) +
+                repeats_in_words(a, b, pairing.counts()));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;

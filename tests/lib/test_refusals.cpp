@@ -48,5 +48,25 @@ TEST(Refusals, StreamsThatAreTooSlowAreToldOfTheLongestGap) {
   EXPECT_EQ(refusal(a, later, 0.5).find("--max-gap"), std::string::npos);
 }
 
+// A filter that publishes at 10 Hz what comes once a second.
+TEST(Refusals, AStreamThatRepeatsItsPosesIsToldSoAndWhatToDo) {
+  const testing::Streams data =
+      testing::simulated_drive({.terrain = Terrain::free, .poses = 600, .rate = 10, .seed = 3});
+  Trajectory held = data.b;
+  for (std::size_t i = 0; i < held.size(); ++i) held[i].pose = data.b[i - i % 10].pose;
+  const std::string said = refusal(data.a, held, 0.5);
+  EXPECT_NE(
+      said.find("; b repeats its poses: of its 600 only 60 differ from the one before, one every 1.02 s. "
+                "Keep the first of each and leave out its repeats"),
+      std::string::npos)
+      << said;
+  EXPECT_NE(refusal(held, data.a, 0.5).find("; a repeats its poses"), std::string::npos);
+  EXPECT_EQ(refusal(data.a, every(held, 0, 10), 0.5), "") << "what it says helps";
+  for (StampedPose& pose : held) pose.pose = held.front().pose;
+  EXPECT_NE(refusal(data.a, held, 0.5).find("; the poses of b are all the same while the other sensor moves"),
+            std::string::npos)
+      << refusal(data.a, held, 0.5);
+}
+
 }  // namespace
 }  // namespace egocal
