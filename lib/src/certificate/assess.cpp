@@ -31,21 +31,28 @@ Eigen::Matrix4d basis_at(const Column<4>& v) {
   return T;
 }
 
-/// From the curvature in these directions, in double: a guess, to be proven.
+/// T'ZT of this basis.
 template <int N>
-Curvatures guessed_curvatures(const Subject<N>& subject, const ProvenBound& proven, double lift) {
-  // degrees of freedom of the problem
-  constexpr int rotations = N == 8 ? 3 : 1, translations = N == 8 ? 3 : 2, free = rotations + translations;
-  Square<N> Z = subject.Q;
+using Form = Eigen::Matrix<double, N, N>;
+template <int N>
+Form<N> form_at(const Square<N>& Q, const Column<N>& v, const ProvenBound& proven, double lift) {
+  Square<N> Z = Q;
   for (int i = 0; i < N / 2; ++i) {
     Z(i, i) -= proven.bound;
     Z(i, i + N / 2) += proven.orthogonal;
     Z(i + N / 2, i) += proven.orthogonal;
     Z(i + N / 2, i + N / 2) += lift;
   }
-  const auto T = basis_at(subject.v);
+  const auto T = basis_at(v);
   const auto ZT = Z.lazyProduct(T).eval();
-  auto M = T.transpose().lazyProduct(ZT).eval();
+  return T.transpose().lazyProduct(ZT);
+}
+
+/// From the curvature in these directions, in double: a guess, to be proven.
+template <int N>
+Curvatures guessed_curvatures(const Subject<N>& subject, Form<N> M) {
+  // degrees of freedom of the problem
+  constexpr int rotations = N == 8 ? 3 : 1, translations = N == 8 ? 3 : 2, free = rotations + translations;
   for (int out = free; out < N; ++out) {
     if (!(M(out, out) > 0)) continue;
     const Eigen::Matrix<double, N, 1> column = M.col(out);
@@ -68,8 +75,26 @@ Curvatures guessed_curvatures(const Subject<N>& subject, const ProvenBound& prov
 
 template <int N>
 Reach reach_of(const Subject<N>& subject, double cost, const ProvenBound& proven, double lift) {
-  const Curvatures guess = guessed_curvatures<N>(subject, proven, lift);
-  return proven_reach<N>(subject.Q, subject.v, cost, proven.bound, proven.orthogonal, lift, guess);
+  const Curvatures guess = guessed_curvatures<N>(subject, form_at<N>(subject.Q, subject.v, proven, lift));
+  const Curvatures c =
+      proven_curvatures<N>(subject.Q, subject.v, proven.bound, proven.orthogonal, lift, guess);
+  return proven_reach<N>(subject.v, cost, proven.bound, lift, c);
+}
+
+/// The reach of an ordinary answer with this proposal of a bound, which it proves. What it does not prove may
+/// be true.
+template <int N>
+std::optional<Reach> reach_in_double(const Subject<N>& subject, double cost, const ProvenBound& proposal) {
+  if constexpr (N == 8) {
+    const LocalForm form = form_at<N>(subject.Q, subject.v, proposal, 0);
+    Curvatures c = guessed_curvatures<N>(subject, form);
+    if (!(c.rotation > 0)) return std::nullopt;
+    c.rotation *= parts_of_guess[0];
+    c.translation *= parts_of_guess[0];
+    const DoubleProof proof(subject.Q, subject.v, cost, proposal.bound, proposal.orthogonal, form);
+    if (proof.curvatures(c)) return proven_reach<N>(subject.v, cost, proposal.bound, 0, c);
+  }
+  return std::nullopt;
 }
 
 /// Gap and verdict from the bound and the reach.
@@ -94,6 +119,11 @@ void conclude(const Subject<N>& subject, double bound, const Reach& reach, const
 
 }  // namespace
 
+bool proven_in_double(const Square<8>& Q, const Column<8>& v, double cost, const ProvenBound& proposal) {
+  const LocalForm form = form_at<8>(Q, v, proposal, 0);
+  return DoubleProof(Q, v, cost, proposal.bound, proposal.orthogonal, form).bound();
+}
+
 template <int N>
 void set_bound(const Subject<N>& subject, const ProvenBound& proven, const CertificateOptions& options,
                Certificate& certificate) {
@@ -115,9 +145,12 @@ Certificate assess(const Subject<N>& subject, const CertificateOptions& options,
 
   double bound = -infinity;
   Reach reach;
-  const std::optional<ProvenBound> plain =
-      known ? known : best_bound<N>(subject.Q, J, rounding, subject.orthogonal, 0);
-  if (plain) {
+  const ProvenBound proposal = known ? *known : ProvenBound{first_proposal(J, rounding), subject.orthogonal};
+  if (const auto at_once = reach_in_double(subject, J, proposal)) {
+    bound = proposal.bound;
+    reach = *at_once;
+  } else if (const std::optional<ProvenBound> plain =
+                 known ? known : best_bound<N>(subject.Q, J, rounding, subject.orthogonal, 0)) {
     bound = plain->bound;
     reach = reach_of(subject, J, *plain, 0);
   }

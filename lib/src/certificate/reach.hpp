@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "certificate/proof.hpp"
+#include "certificate/double_proof.hpp"
 
 // How far an extrinsic that is at least as good can be: docs/method.md, "Reach".
 namespace egocal::detail {
@@ -51,17 +51,15 @@ inline Displacement<4> displacement_from(const Column<4>& v) {
   return {{{{-s, c, 0, 0}}}, {{{-x, -y, c, s}, {-y, x, -s, c}}}};
 }
 
-/// Guesses of the least curvature of the cost over |p_v| and over |p_dv|; zero where it is flat.
-struct Curvatures {
-  double rotation = 0, translation = 0;
-};
-
 struct Reach {
   double translation = std::numeric_limits<double>::infinity();  ///< [units of length]
   double rotation = std::numeric_limits<double>::infinity();     ///< [rad]
   /// The proof holds for competitors within this distance of the answer [units of length].
   double domain = std::numeric_limits<double>::infinity();
 };
+
+/// Parts of a guess that are tried. The guess itself is not less than the truth.
+inline constexpr std::array<double, 3> parts_of_guess = {0.99, 0.5, 0.05};
 
 /// A part of the guess that is proven: Z - c P'P >= 0, so J(q') - bound >= c |P v'|^2. Zero where none is.
 /// The entries of the difference are rounded by less than 8 u sqrt(z_ii z_jj), u = epsilon / 2, which is at
@@ -70,7 +68,7 @@ template <int N, std::size_t Rows>
 double proven_curvature(const ExtendedSquare<N>& Z, const Forms<N, Rows>& P, double guess) {
   if (!(guess > 0)) return 0;
   const Extended rounding = 4 * N * extended_epsilon();
-  for (const double part : {0.99, 0.5, 0.05}) {
+  for (const double part : parts_of_guess) {
     const double c = part * guess;
     ExtendedSquare<N> M = Z;
     for (std::size_t i = 0; i < N; ++i) {
@@ -94,19 +92,28 @@ struct ReachOptions {
   double least_domain = 1e4;
 };
 
-/// The reach of competitors with a cost at most J. `bound` is proven with this multiplier and lift. Where D
-/// is singular up to rounding the domain has to be at least options.least_domain.
+/// Parts of the guesses that are proven, with a bound that is proven with this multiplier and lift. Zero
+/// where none is; without a rotation none of the translation is looked for.
 template <int N>
-Reach proven_reach(const Square<N>& Q, const Column<N>& v, double J, double bound, double orthogonal,
-                   double lift, const Curvatures& guess, const ReachOptions& options = {}) {
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+Curvatures proven_curvatures(const Square<N>& Q, const Column<N>& v, double bound, double orthogonal,
+                             double lift, const Curvatures& guess) {
   const ExtendedSquare<N> Z = reordered_lagrangian<N>(Q, bound, orthogonal, lift);
   const Displacement<N> p = displacement_from(v);
+  Curvatures c;
+  c.rotation = proven_curvature<N>(Z, p.rotation, guess.rotation);
+  if (c.rotation > 0) c.translation = proven_curvature<N>(Z, p.translation, guess.translation);
+  return c;
+}
+
+/// The reach of competitors with a cost at most J. `bound` and the curvatures are proven, with this lift.
+/// Where D is singular up to rounding the domain has to be at least options.least_domain.
+template <int N>
+Reach proven_reach(const Column<N>& v, double J, double bound, double lift, const Curvatures& proven,
+                   const ReachOptions& options = {}) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double c_r = proven.rotation, c_t = proven.translation;
   Reach reach;
-  const double c_r = proven_curvature<N>(Z, p.rotation, guess.rotation);
-  if (!(c_r > 0)) return reach;
-  const double c_t = proven_curvature<N>(Z, p.translation, guess.translation);
-  if (!(c_t > 0)) return reach;
+  if (!(c_r > 0) || !(c_t > 0)) return reach;
 
   // the rounding of P'P, of J and of the answer, which is a unit dual quaternion to epsilon only
   const double slack = 64 * static_cast<double>(extended_epsilon());

@@ -65,6 +65,7 @@ Vector4d orthogonal_combination(const DualFunction& phi, const Vector4d& r1, con
 struct Search {
   Matrix8d Q;
   detail::Sizes sizes;
+  bool symmetric = false;  ///< exactly: proofs read one triangle or both
   Solution best;
   std::optional<detail::ProvenBound> proven;
 };
@@ -75,7 +76,8 @@ bool proven_optimal(Search& search) {
   const double rounding = detail::rounding_of<8>(search.sizes, v);
   const double cost = detail::extended_cost<8>(search.Q, v);
   const double bound = detail::first_proposal(cost, rounding), orthogonal = search.best.lambda.orthogonal;
-  if (detail::proven_bound<8>(search.Q, bound, orthogonal, 0)) {
+  if ((search.symmetric && detail::proven_in_double(search.Q, v, cost, {bound, orthogonal})) ||
+      detail::proven_bound<8>(search.Q, bound, orthogonal, 0)) {
     search.proven = {bound, orthogonal};
     return true;
   }
@@ -184,6 +186,7 @@ detail::ProvenSolution detail::solve_dual_with_proof(const Matrix8d& Q_in) {
   Search search;
   search.Q = in_units_of(length, Q_in);
   search.sizes = sizes_of<8>(search.Q);
+  search.symmetric = search.Q == search.Q.transpose();
   search.best.cost = std::numeric_limits<double>::infinity();
   // The first attempt is nearly always the last. The others are for problems where Newton's basin is small or
   // D is nearly singular in a way that matters.
