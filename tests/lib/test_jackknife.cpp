@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
@@ -139,31 +139,65 @@ TEST(Jackknife, WithoutNoiseSingleStepsWithEqualWeightsAreChosen) {
   }
 }
 
-/// Two blocks at once are the same as one after the other, also where a curvature is not positive definite.
-TEST(Jackknife, TwoAtATimeIsOneAfterTheOther) {
+/// Four blocks at once are the same as one after the other, in wide lanes and in pairs, also where a
+/// curvature is not positive definite.
+TEST(Jackknife, FourAtATimeAreOneAfterTheOther) {
+  Random random(1);
   const Problem problem = noisy_problem(7, {1, 0.3});
   const DualQuaternion q = solve(problem, Method::dual).T_a_b;
-  const detail::TangentSpace space(q, 1, detail::frame_a_basis(q), problem.balance);
-  for (std::size_t i = 0; i + 1 < problem.blocks.size(); ++i) {
-    const auto& first = problem.blocks[i];
-    const auto& second = problem.blocks[i + 1];
-    const std::array<detail::TangentForm, 2> both = space.forms(first, second);
-    for (const auto& [one, block] : {std::pair{both[0], first}, {both[1], second}}) {
-      const detail::TangentForm expected = space.form(block);
+  const detail::TangentSpace space(q, 1.25, detail::frame_a_basis(q), problem.balance);
+  ASSERT_TRUE(space.starts_with_translations());
+  for (std::size_t i = 0; i + 3 < problem.blocks.size(); ++i) {
+    std::array<const Statistics*, 4> blocks;
+    for (std::size_t k = 0; k < 4; ++k) blocks[k] = &problem.blocks[i + (k * 3) % 4];
+    const detail::FourForms forms = space.forms(blocks), in_pairs = space.forms(blocks, true);
+    EXPECT_EQ(forms.curvature, in_pairs.curvature);
+    EXPECT_EQ(forms.gradient, in_pairs.gradient);
+    detail::TangentForm all;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const detail::TangentForm expected = space.form(*blocks[k]), one = forms.form(k);
       EXPECT_LT((one.curvature - expected.curvature).norm(), 1e-13 * expected.curvature.norm());
-      EXPECT_LT((one.gradient - expected.gradient).norm(), 1e-13 * block.dual_rows.norm());
+      EXPECT_LT((one.gradient - expected.gradient).norm(), 1e-13 * blocks[k]->dual_rows.norm());
       EXPECT_EQ(one.curvature, one.curvature.transpose());
+      all += one;
     }
-    detail::TangentForm all = both[0];
-    all += both[1];
+    detail::FourForms with_too_much = forms;
     detail::TangentForm too_much = all;
     too_much.curvature *= 2;
-    for (const detail::TangentForm& other : {both[1], too_much}) {
-      const std::array<Vector6d, 2> steps = detail::TangentSpace::newton_steps_without(all, both[0], other);
-      EXPECT_EQ(steps[0], detail::TangentSpace::newton_step(all - both[0]));
-      EXPECT_EQ(steps[1], detail::TangentSpace::newton_step(all - other));
+    with_too_much.set(i % 4, too_much);
+    for (const detail::FourForms& parts : {forms, with_too_much}) {
+      const detail::Fours<6> steps = detail::TangentSpace::newton_steps_without(all, parts);
+      EXPECT_EQ(steps, detail::TangentSpace::newton_steps_without(all, parts, true));
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Vector6d expected = detail::TangentSpace::newton_step(all - parts.form(k));
+        for (std::size_t row = 0; row < 6; ++row)
+          EXPECT_EQ(steps[row][k], expected[static_cast<Eigen::Index>(row)]);
+      }
+    }
+    const detail::TriangleProducts products =
+        detail::TriangleProducts::NullaryExpr([&] { return random.normal(); });
+    const detail::Fours<6> sums = detail::sums_of_products(forms, products);
+    EXPECT_EQ(sums, detail::sums_of_products(forms, products, true));
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Matrix6d curvature = forms.form(k).curvature;
+      Vector6d expected = Vector6d::Zero();
+      for (int column = 0, entry = 0; column < 6; ++column)
+        for (int row = 0; row <= column; ++row) expected += curvature(row, column) * products.col(entry++);
+      for (std::size_t row = 0; row < 6; ++row)
+        EXPECT_EQ(sums[row][k], std::max(0.0, expected[static_cast<Eigen::Index>(row)]));
     }
   }
+}
+
+/// The sum of blocks is that of one after the other, whatever is kept in registers.
+TEST(SumBlocks, HasTheBitsOfOneAfterTheOther) {
+  const Problem problem = noisy_problem(8, {1, 1});
+  Statistics expected;
+  for (const Statistics& block : problem.blocks) expected += block;
+  const Statistics sum = sum_blocks(problem.blocks);
+  EXPECT_EQ(sum.dual_rows, expected.dual_rows);
+  EXPECT_EQ(sum.weight, expected.weight);
+  EXPECT_EQ(sum.count, expected.count);
 }
 
 }  // namespace

@@ -35,21 +35,22 @@ std::vector<Vector6d> spatial_differences(const Problem& problem, const Matrix8d
   const DualQuaternion q = detail::in_units_of(length, T_a_b);
   const detail::TangentSpace space(q, length, detail::frame_a_basis(q), problem.balance);
   detail::TangentForm all;
-  std::vector<detail::TangentForm> forms;
-  forms.reserve(problem.blocks.size());
+  std::vector<detail::FourForms> forms;
+  std::size_t count = 0;
   for (const Statistics& block : problem.blocks) {
     const detail::TangentForm form = space.form(block);
     all += form;
-    if (!detail::takes_off(block)) forms.push_back(form);
+    if (detail::takes_off(block)) continue;
+    const std::size_t place = count++ % detail::FourForms::count;
+    if (place == 0) forms.emplace_back();
+    // until others come
+    for (std::size_t k = place; k < detail::FourForms::count; ++k) forms.back().set(k, form);
   }
-  std::vector<Vector6d> differences;
-  differences.reserve(forms.size());
-  for (std::size_t i = 0; i < forms.size(); i += 2) {
-    const bool last = i + 1 == forms.size();
-    const auto steps =
-        detail::TangentSpace::newton_steps_without(all, forms[i], last ? forms[i] : forms[i + 1]);
-    differences.push_back(steps[0]);
-    if (!last) differences.push_back(steps[1]);
+  std::vector<Vector6d> differences(count);
+  for (std::size_t i = 0; i < count; i += detail::FourForms::count) {
+    const auto steps = detail::TangentSpace::newton_steps_without(all, forms[i / detail::FourForms::count]);
+    for (std::size_t k = 0; k < detail::FourForms::count && i + k < count; ++k)
+      for (int row = 0; row < 6; ++row) differences[i + k][row] = steps[static_cast<std::size_t>(row)][k];
   }
   for (Vector6d& difference : differences) difference.head<3>() *= length;
   return differences;

@@ -3,7 +3,19 @@
 #include "uncertainty/tangent_form.hpp"
 
 #include <limits>
-#include <type_traits>
+
+#include "problem/wide_lanes.hpp"
+
+#ifdef EGOCAL_WIDE_LANES
+#include <immintrin.h>
+#endif
+
+// loops of a few numbers cost more than the arithmetic
+#if defined(__GNUC__) && !defined(__clang__)
+#define EGOCAL_STRAIGHT _Pragma("GCC unroll 21")
+#else
+#define EGOCAL_STRAIGHT
+#endif
 
 namespace egocal::detail {
 
@@ -19,9 +31,31 @@ TangentSpace::TangentSpace(const DualQuaternion& q, double length, const Matrix8
   norm_ = real.transpose() * real;
   orthogonal_ = real.transpose() * dual;
   orthogonal_ += Matrix6d(orthogonal_.transpose());
-  for (int i = 0; i < 8; ++i) {
-    const Multipliers lambda = least_squares_multipliers(q, Vector8d::Unit(i));
-    multipliers_.row(i) << lambda.norm, lambda.orthogonal;
+  // least_squares_multipliers() of q and the unit vectors
+  const double rr = q.real.squaredNorm(), rd = q.real.dot(q.dual), all = rr + q.dual.squaredNorm();
+  const double determinant = rr * all - rd * rd;
+  for (int i = 0; i < 4; ++i) {
+    const double r = q.real[i], d = q.dual[i];
+    multipliers_.row(i) << (all * r - rd * d) / determinant, (rd * r - rr * d) / determinant;
+    multipliers_.row(i + 4) << -rd * r / determinant, -rr * r / determinant;
+  }
+  numbers_.rotation = balance.rotation;
+  numbers_.translation = balance.translation;
+  for (int c = 0; c < 7; ++c)
+    for (int i = 0; i < 4; ++i) {
+      numbers_.upper[c][i] = upper_(i, c);
+      numbers_.lower[c][i] = lower_(i, c);
+    }
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 6; ++i) {
+      numbers_.norm[j][i] = norm_(i, j);
+      numbers_.orthogonal[j][i] = orthogonal_(i, j);
+    }
+  for (int i = 0; i < 4; ++i) {
+    numbers_.norm_of_real[i] = multipliers_(i, 0);
+    numbers_.norm_of_dual[i] = length_ * multipliers_(i + 4, 0);
+    numbers_.orthogonal_of_real[i] = multipliers_(i, 1);
+    numbers_.orthogonal_of_dual[i] = length_ * multipliers_(i + 4, 1);
   }
 }
 
@@ -51,124 +85,170 @@ TangentForm TangentSpace::form(const Statistics& statistics) const {
 
 namespace {
 
-/// Numbers of two problems side by side.
-using Both = Eigen::Array2d;
+namespace single {
+
+using Number = double;
 
 bool positive(double x) {
   return x > 0;
 }
-bool positive(const Both& x) {
+
+/// In a Matrix6d.
+constexpr int place(int i, int j) {
+  return 6 * j + i;
+}
+
+#include "uncertainty/factor_numbers.hpp"
+
+}  // namespace single
+
+/// Of any processor: pairs.
+namespace narrow {
+
+using Lanes [[gnu::vector_size(16)]] = double;
+constexpr int lane_count = 2;  // numbers in 16 bytes
+
+[[gnu::always_inline]] inline bool positive(const Lanes& x) {
   return x[0] > 0 && x[1] > 0;
 }
 
-/// n: a number that is known when this is compiled makes straight code of the loops.
-template <typename Number, typename N>
-bool factorise_leading(Number* const a, N n) {
-  for (int j = 0; j < n; ++j) {
-    const Number pivot = a[7 * j];
-    if (!positive(pivot)) return false;
-    const Number inverse = 1 / pivot;
-    for (int k = j + 1; k < n; ++k) {
-      const Number scaled = a[6 * j + k] * inverse;
-      for (int i = k; i < n; ++i) a[6 * k + i] -= a[6 * j + i] * scaled;
-      a[6 * j + k] = scaled;
-    }
-    a[7 * j] = inverse;
-  }
-  return true;
+/// The four numbers of each lane.
+[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
+  w = Lanes{from[0][0], from[1][0]};
+  x = Lanes{from[0][1], from[1][1]};
+  y = Lanes{from[0][2], from[1][2]};
+  z = Lanes{from[0][3], from[1][3]};
 }
 
-template <typename Number, typename N>
-void solve_leading(const Number* const a, Number* const x, N n) {
-  for (int j = 0; j < n; ++j)
-    for (int i = j + 1; i < n; ++i) x[i] -= a[6 * j + i] * x[j];
-  for (int j = n - 1; j >= 0; --j) {
-    x[j] *= a[7 * j];
-    for (int i = j + 1; i < n; ++i) x[j] -= a[6 * j + i] * x[i];
-  }
+#include "uncertainty/tangent_lanes.hpp"
+
+}  // namespace narrow
+
+#ifdef EGOCAL_WIDE_LANES
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+
+namespace wide {
+
+using Lanes [[gnu::vector_size(32)]] = double;
+constexpr int lane_count = 4;  // numbers in 32 bytes
+
+[[gnu::always_inline]] inline bool positive(const Lanes& x) {
+  return _mm256_movemask_pd(_mm256_cmp_pd(x, _mm256_setzero_pd(), _CMP_GT_OQ)) == 15;
 }
 
-using All = std::integral_constant<int, 6>;
+[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
+  const __m256d row_0 = _mm256_loadu_pd(from[0]), row_1 = _mm256_loadu_pd(from[1]),
+                row_2 = _mm256_loadu_pd(from[2]), row_3 = _mm256_loadu_pd(from[3]);
+  const __m256d low_01 = _mm256_unpacklo_pd(row_0, row_1), high_01 = _mm256_unpackhi_pd(row_0, row_1),
+                low_23 = _mm256_unpacklo_pd(row_2, row_3), high_23 = _mm256_unpackhi_pd(row_2, row_3);
+  w = _mm256_permute2f128_pd(low_01, low_23, 0x20);
+  x = _mm256_permute2f128_pd(high_01, high_23, 0x20);
+  y = _mm256_permute2f128_pd(low_01, low_23, 0x31);
+  z = _mm256_permute2f128_pd(high_01, high_23, 0x31);
+}
+
+#include "uncertainty/tangent_lanes.hpp"
+
+}  // namespace wide
+
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif
 
 }  // namespace
 
 bool factorise(Matrix6d& A, int n) {
-  return n == 6 ? factorise_leading(A.data(), All()) : factorise_leading(A.data(), n);
+  return n == 6 ? single::factorise_leading(A.data(), 6) : single::factorise_leading(A.data(), n);
 }
 
 void solve_factorised(const Matrix6d& factors, Vector6d& x, int n) {
-  n == 6 ? solve_leading(factors.data(), x.data(), All()) : solve_leading(factors.data(), x.data(), n);
+  n == 6 ? single::solve_leading(factors.data(), x.data(), 6)
+         : single::solve_leading(factors.data(), x.data(), n);
 }
 
-/// As form(), number by number: matrices of two problems have no packets of their own.
-std::array<TangentForm, 2> TangentSpace::forms(const Statistics& first, const Statistics& second) const {
-  if (!starts_with_translations_) return {form(first), form(second)};
-  const Matrix8d &x = first.dual_rows, &y = second.dual_rows;
-  const double rotation = balance_.rotation, translation = balance_.translation;
-  Both A[4][4], B[4][4], D[4][4];
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i) {
-      const Both real{x(i + 4, j + 4), y(i + 4, j + 4)};
-      A[i][j] = translation * Both{x(i, j), y(i, j)} + rotation * real;
-      B[i][j] = translation * Both{x(i, j + 4), y(i, j + 4)};
-      D[i][j] = translation * real;
-    }
-  const auto &U = upper_, &L = lower_;
-  Both upper[4][7], lower[4][7];  // S [T, q]; the translations' columns of the upper one are not needed
-  for (int i = 0; i < 4; ++i)
-    for (int c = 0; c < 7; ++c) {
-      lower[i][c] = D[i][0] * L(0, c) + D[i][1] * L(1, c) + D[i][2] * L(2, c) + D[i][3] * L(3, c);
-      if (c < 3) continue;
-      lower[i][c] += B[0][i] * U(0, c) + B[1][i] * U(1, c) + B[2][i] * U(2, c) + B[3][i] * U(3, c);
-      upper[i][c] = B[i][0] * L(0, c) + B[i][1] * L(1, c) + B[i][2] * L(2, c) + B[i][3] * L(3, c);
-      upper[i][c] += A[i][0] * U(0, c) + A[i][1] * U(1, c) + A[i][2] * U(2, c) + A[i][3] * U(3, c);
-    }
-  Both norm = Both::Zero(), orthogonal = Both::Zero();
-  for (int i = 0; i < 4; ++i) {
-    norm += multipliers_(i, 0) * upper[i][6] + length_ * multipliers_(i + 4, 0) * lower[i][6];
-    orthogonal += multipliers_(i, 1) * upper[i][6] + length_ * multipliers_(i + 4, 1) * lower[i][6];
+FourForms TangentSpace::forms(const std::array<const Statistics*, 4>& statistics,
+                              [[maybe_unused]] bool in_pairs) const {
+  FourForms result;
+  const double* rows[FourForms::count];
+  for (std::size_t k = 0; k < FourForms::count; ++k) rows[k] = statistics[k]->dual_rows.data();
+  double *curvature = result.curvature.front().data(), *gradient = result.gradient.front().data();
+#ifdef EGOCAL_WIDE_LANES
+  if (!in_pairs && has_wide_lanes()) {
+    wide::set_forms(numbers_, rows, curvature, gradient);
+    return result;
   }
-  std::array<TangentForm, 2> result;
-  const auto product = [&](int row, int column) {
-    Both sum = L(0, row) * lower[0][column] + L(1, row) * lower[1][column] + L(2, row) * lower[2][column] +
-               L(3, row) * lower[3][column];
-    if (row >= 3)
-      sum += U(0, row) * upper[0][column] + U(1, row) * upper[1][column] + U(2, row) * upper[2][column] +
-             U(3, row) * upper[3][column];
-    return sum;
-  };
-  for (int j = 0; j < 6; ++j) {
-    for (int i = j; i < 6; ++i) {
-      // T'ST is symmetric: the rows of the translations are the shorter ones
-      const Both sum = i >= 3 && j < 3 ? product(j, i) : product(i, j);
-      const Both curvature = sum - norm * norm_(i, j) + orthogonal * orthogonal_(i, j);
-      for (std::size_t k = 0; k < 2; ++k)
-        result[k].curvature(i, j) = result[k].curvature(j, i) = curvature[static_cast<Eigen::Index>(k)];
-    }
-    const Both gradient = product(j, 6);
-    for (std::size_t k = 0; k < 2; ++k) result[k].gradient[j] = gradient[static_cast<Eigen::Index>(k)];
-  }
+#endif
+  for (int first = 0; first < 4; first += narrow::lane_count)
+    narrow::set_forms(numbers_, rows + first, curvature + first, gradient + first);
   return result;
 }
 
-std::array<Vector6d, 2> TangentSpace::newton_steps_without(const TangentForm& all, const TangentForm& first,
-                                                           const TangentForm& second) {
-  std::array<Both, 36> factors;  // the lower triangle
-  std::array<Both, 6> x;
-  for (int j = 0; j < 6; ++j)
-    for (int i = j; i < 6; ++i)
-      factors[static_cast<std::size_t>(6 * j + i)] =
-          all.curvature(i, j) - Both{first.curvature(i, j), second.curvature(i, j)};
-  for (int i = 0; i < 6; ++i)
-    x[static_cast<std::size_t>(i)] = -(all.gradient[i] - Both{first.gradient[i], second.gradient[i]});
-  if (!factorise_leading(factors.data(), All())) return {newton_step(all - first), newton_step(all - second)};
-  solve_leading(factors.data(), x.data(), All());
-  std::array<Vector6d, 2> steps;
-  for (int i = 0; i < 6; ++i) {
-    steps[0][i] = x[static_cast<std::size_t>(i)][0];
-    steps[1][i] = x[static_cast<std::size_t>(i)][1];
+Fours<6> TangentSpace::newton_steps_without(const TangentForm& all, const FourForms& parts,
+                                            [[maybe_unused]] bool in_pairs) {
+  Fours<6> steps;
+  double sum[21];  // the lower triangle
+  for (int j = 0, k = 0; j < 6; ++j)
+    for (int i = j; i < 6; ++i) sum[k++] = all.curvature(i, j);
+  const double *sum_gradient = all.gradient.data(), *curvature = parts.curvature.front().data(),
+               *gradient = parts.gradient.front().data();
+  double* const to = steps.front().data();
+  bool definite = true;
+#ifdef EGOCAL_WIDE_LANES
+  if (!in_pairs && has_wide_lanes())
+    definite = wide::set_steps_without(sum, sum_gradient, curvature, gradient, to);
+  else
+#endif
+    for (int first = 0; first < 4; first += narrow::lane_count)
+      definite = definite && narrow::set_steps_without(sum, sum_gradient, curvature + first, gradient + first,
+                                                       to + first);
+  if (definite) return steps;
+  for (std::size_t k = 0; k < FourForms::count; ++k) {
+    const Vector6d step = newton_step(all - parts.form(k));
+    for (int i = 0; i < 6; ++i) steps[static_cast<std::size_t>(i)][k] = step[i];
   }
   return steps;
+}
+
+Fours<6> sums_of_products(const FourForms& forms, const TriangleProducts& products,
+                          [[maybe_unused]] bool in_pairs) {
+  Fours<6> sums;
+  const double* const curvature = forms.curvature.front().data();
+  double* const to = sums.front().data();
+#ifdef EGOCAL_WIDE_LANES
+  if (!in_pairs && has_wide_lanes()) {
+    wide::set_sums_of_products(curvature, products.data(), to);
+    return sums;
+  }
+#endif
+  for (int first = 0; first < 4; first += narrow::lane_count)
+    narrow::set_sums_of_products(curvature + first, products.data(), to + first);
+  return sums;
+}
+
+void FourForms::set(std::size_t k, const TangentForm& form) {
+  std::size_t entry = 0;
+  for (int j = 0; j < 6; ++j) {
+    for (int i = j; i < 6; ++i) curvature[entry++][k] = form.curvature(i, j);
+    gradient[static_cast<std::size_t>(j)][k] = form.gradient[j];
+  }
+}
+
+TangentForm FourForms::form(std::size_t k) const {
+  TangentForm form;
+  std::size_t entry = 0;
+  for (int j = 0; j < 6; ++j) {
+    for (int i = j; i < 6; ++i) form.curvature(i, j) = form.curvature(j, i) = curvature[entry++][k];
+    form.gradient[j] = gradient[static_cast<std::size_t>(j)][k];
+  }
+  return form;
 }
 
 Vector6d TangentSpace::newton_step(const TangentForm& form, int directions) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include <Eigen/Core>
 
@@ -31,6 +32,29 @@ struct TangentForm {
   friend TangentForm operator-(TangentForm x, const TangentForm& y) { return x -= y; }
 };
 
+/// Of four problems, number by number, as four of them are computed at the cost of one.
+template <std::size_t n>
+using Fours = std::array<std::array<double, 4>, n>;
+
+/// Forms of four blocks. Of the curvatures the lower triangles, by columns.
+struct FourForms {
+  static constexpr std::size_t count = 4;  // numbers in 32 bytes, the width of AVX2
+  Fours<21> curvature{};
+  Fours<6> gradient{};
+
+  void set(std::size_t k, const TangentForm& form);
+  TangentForm form(std::size_t k) const;  ///< symmetric
+};
+
+/// What a TangentSpace keeps, as plain numbers: columns of 4 or of 6.
+struct TangentNumbers {
+  double rotation = 1, translation = 1;
+  double upper[7][4], lower[7][4];      ///< [tangent, q], the dual rows counted in metres
+  double norm[6][6], orthogonal[6][6];  ///< T'[I 0; 0 0]T and T'[0 I; I 0]T
+  /// lambda' = (Sq)' times these; the lower half of Sq counted in metres
+  double norm_of_real[4], norm_of_dual[4], orthogonal_of_real[4], orthogonal_of_dual[4];
+};
+
 /// Coordinates x in R^6 of the extrinsics around q: directions are the columns of `tangent`, tangent to the
 /// constraints (17). Lengths of q and of the directions are counted in `length` [m].
 class TangentSpace {
@@ -40,15 +64,17 @@ class TangentSpace {
   /// Its curvature is that of Z = S - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0] at the least squares
   /// multipliers, which are linear in S as well.
   TangentForm form(const Statistics& statistics) const;
-  /// Of two, up to rounding, at little more than the cost of one.
-  std::array<TangentForm, 2> forms(const Statistics& first, const Statistics& second) const;
+  /// Whether the first three directions do not rotate.
+  bool starts_with_translations() const { return starts_with_translations_; }
+  /// Of four, up to rounding, at little more than the cost of one, in a space that starts with translations.
+  /// in_pairs: as on processors without AVX2, with the same bits (for tests).
+  FourForms forms(const std::array<const Statistics*, 4>& statistics, bool in_pairs = false) const;
   /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
   /// Infinite where the curvature is not positive definite.
   static Vector6d newton_step(const TangentForm& form, int directions = 6);
-  /// Without one of two parts of a sum, in all six coordinates: the same bits as newton_step() of the
+  /// Without one of four parts of a sum, in all six coordinates: the same bits as newton_step() of the
   /// differences, at little more than the cost of one.
-  static std::array<Vector6d, 2> newton_steps_without(const TangentForm& all, const TangentForm& first,
-                                                      const TangentForm& second);
+  static Fours<6> newton_steps_without(const TangentForm& all, const FourForms& parts, bool in_pairs = false);
 
  private:
   Balance balance_;
@@ -58,7 +84,13 @@ class TangentSpace {
   Matrix6d norm_, orthogonal_;                                 ///< T'[I 0; 0 0]T and T'[0 I; I 0]T
   Eigen::Matrix<double, 8, 2> multipliers_;                    ///< lambda' = (Sq)' times this
   double length_;
+  TangentNumbers numbers_;
 };
+
+/// Of each of four symmetric matrices the sums of its numbers, column by column of the upper triangle, times
+/// the columns of this; zero where they are negative.
+using TriangleProducts = Eigen::Matrix<double, 6, 21>;
+Fours<6> sums_of_products(const FourForms& forms, const TriangleProducts& products, bool in_pairs = false);
 
 /// L D L' of the leading n x n block in place (unit L below the diagonal, the inverse of D on it), from the
 /// lower triangle. False where a pivot is not positive.

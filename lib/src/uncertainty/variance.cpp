@@ -17,24 +17,50 @@ using namespace detail;
 
 namespace {
 
-/// A block around the minimiser.
-struct BlockForm {
-  TangentForm form;
-  double pairs = 0;
-  Vector6d information = Vector6d::Zero();  ///< see Jackknife::leave_out
+constexpr std::size_t four = FourForms::count;
 
-  BlockForm& operator+=(const BlockForm& other) {
-    form += other.form;
-    pairs += other.pairs;
-    information += other.information;
-    return *this;
-  }
+std::size_t fours(std::size_t count) {
+  return (count + four - 1) / four;
+}
+
+/// Blocks around the minimiser, by fours; nothing is said of the places behind the last one.
+struct Blocks {
+  std::vector<double> pairs;  ///< of each
+  std::vector<FourForms> forms;
+  std::vector<Fours<6>> information;  ///< see Jackknife::leave_out
 };
 
+/// The sums of neighbours among the first `count` of four, to two places from `first` on. One that has none
+/// stays as it is.
+template <std::size_t n>
+void join(const Fours<n>& from, std::size_t count, std::size_t first, Fours<n>& to) {
+  for (std::size_t row = 0; row < n; ++row) {
+    to[row][first] = count > 1 ? from[row][0] + from[row][1] : from[row][0];
+    to[row][first + 1] = count > 3 ? from[row][2] + from[row][3] : from[row][2];
+  }
+}
+
 /// Neighbours joined, two by two.
-template <typename Block>
-std::vector<Block> doubled(const std::vector<Block>& blocks) {
-  std::vector<Block> result;
+Blocks doubled(const Blocks& blocks) {
+  Blocks result;
+  const std::size_t count = blocks.pairs.size();
+  result.pairs.reserve((count + 1) / 2);
+  for (std::size_t i = 0; i < count; i += 2)
+    result.pairs.push_back(i + 1 < count ? blocks.pairs[i] + blocks.pairs[i + 1] : blocks.pairs[i]);
+  result.forms.resize(fours(result.pairs.size()));
+  result.information.resize(result.forms.size());
+  for (std::size_t i = 0; i < blocks.forms.size(); ++i) {
+    const std::size_t left = count - four * i, first = i % 2 * 2;
+    FourForms& to = result.forms[i / 2];
+    join(blocks.forms[i].curvature, left, first, to.curvature);
+    join(blocks.forms[i].gradient, left, first, to.gradient);
+    join(blocks.information[i], left, first, result.information[i / 2]);
+  }
+  return result;
+}
+
+std::vector<Statistics> doubled(const std::vector<Statistics>& blocks) {
+  std::vector<Statistics> result;
   result.reserve((blocks.size() + 1) / 2);
   for (std::size_t i = 0; i < blocks.size(); ++i)
     if (i % 2 == 0)
@@ -51,8 +77,10 @@ bool looks_at_double_blocks(const Problem& problem, ErrorCorrelation errors,
 }
 
 /// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
-void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
+/// transposed: forms of the blocks with the other triangle, where that is not the same.
+void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, const TangentForm& all,
                      const ShownDirections& directions) {
+  blocks.information.resize(blocks.forms.size());
   Matrix6d factors = all.curvature;
   if (!factorise(factors, directions.shown)) return;
   Matrix6d inverse = Matrix6d::Zero();  // H^-1 e_i
@@ -62,36 +90,99 @@ void set_information(std::vector<BlockForm>& blocks, const TangentForm& all,
     solve_factorised(factors, column, directions.shown);
     inverse.col(i) = column;
   }
-  // x'Hx as the sum over the upper triangle of H, its entries beside the diagonal twice
-  Eigen::Matrix<double, 6, 21> products;
+  // x'Hx as the sum over a triangle of H, its entries beside the diagonal twice
+  TriangleProducts products;
   for (int j = 0, k = 0; j < 6; ++j)
     for (int i = 0; i <= j; ++i)
       products.col(k++) = (i == j ? 1.0 : 2.0) * inverse.row(i).cwiseProduct(inverse.row(j)).transpose();
-  for (BlockForm& block : blocks) {
-    Vector6d information = Vector6d::Zero();
-    for (int j = 0, k = 0; j < 6; ++j)
-      for (int i = 0; i <= j; ++i) information += block.form.curvature(i, j) * products.col(k++);
-    block.information = information.cwiseMax(0.0);
-  }
+  for (std::size_t i = 0; i < blocks.forms.size(); ++i)
+    blocks.information[i] = sums_of_products(transposed.empty() ? blocks.forms[i] : transposed[i], products);
+}
+
+/// The number of each row at place k.
+Vector6d column(const Fours<6>& numbers, std::size_t k) {
+  return {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k], numbers[4][k], numbers[5][k]};
 }
 
 /// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
-Jackknife jackknife_of(const std::vector<BlockForm>& blocks, const TangentForm& all, double pairs,
+Jackknife jackknife_of(const Blocks& blocks, const TangentForm& all, double pairs,
                        const ShownDirections& directions) {
   Jackknife jackknife(pairs);
-  std::size_t i = 0;
-  for (; directions.shown == 6 && i + 1 < blocks.size(); i += 2) {
-    const auto steps = TangentSpace::newton_steps_without(all, blocks[i].form, blocks[i + 1].form);
-    jackknife.leave_out(blocks[i].pairs, steps[0], blocks[i].information);
-    jackknife.leave_out(blocks[i + 1].pairs, steps[1], blocks[i + 1].information);
-  }
-  for (; i < blocks.size(); ++i) {
-    const Vector6d step = TangentSpace::newton_step(all - blocks[i].form, directions.shown);
-    const bool as_they_are = directions.shown == 6;
-    jackknife.leave_out(blocks[i].pairs, as_they_are ? step : Vector6d(directions.basis.lazyProduct(step)),
-                        blocks[i].information);
+  Fours<6> steps{};
+  for (std::size_t i = 0; i < blocks.pairs.size(); ++i) {
+    const FourForms& forms = blocks.forms[i / four];
+    const std::size_t k = i % four;
+    Vector6d step;
+    if (directions.shown == 6) {
+      if (k == 0) steps = TangentSpace::newton_steps_without(all, forms);
+      step = column(steps, k);
+    } else {
+      step = directions.basis.lazyProduct(TangentSpace::newton_step(all - forms.form(k), directions.shown));
+    }
+    jackknife.leave_out(blocks.pairs[i], step, column(blocks.information[i / four], k));
   }
   return jackknife;
+}
+
+/// Adds some of four to a sum, one after the other.
+void add(const FourForms& forms, std::size_t first, std::size_t count, TangentForm& sum) {
+  std::size_t entry = 0;
+  for (int j = 0; j < 6; ++j) {
+    for (int i = j; i < 6; ++i, ++entry) {
+      double total = sum.curvature(i, j);
+      for (std::size_t k = first; k < first + count; ++k) total += forms.curvature[entry][k];
+      sum.curvature(i, j) = sum.curvature(j, i) = total;
+    }
+    for (std::size_t k = first; k < first + count; ++k)
+      sum.gradient[j] += forms.gradient[static_cast<std::size_t>(j)][k];
+  }
+}
+
+/// Forms of blocks, by fours. transposed: with the other triangle of their curvatures.
+std::vector<FourForms> forms_of(const std::vector<const Statistics*>& blocks, const TangentSpace& space,
+                                bool transposed = false) {
+  std::vector<FourForms> forms(fours(blocks.size()));
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    std::array<const Statistics*, four> of;
+    for (std::size_t k = 0; k < four; ++k) of[k] = blocks[std::min(four * i + k, blocks.size() - 1)];
+    if (space.starts_with_translations()) {
+      forms[i] = space.forms(of);
+      continue;
+    }
+    for (std::size_t k = 0; k < four; ++k) {
+      TangentForm form = space.form(*of[k]);
+      if (transposed) form.curvature.transposeInPlace();
+      forms[i].set(k, form);
+    }
+  }
+  return forms;
+}
+
+/// All blocks but those that take off, around the minimiser. sum: of all, in their order.
+Blocks blocks_around(const Problem& problem, const ShownDirections& directions, TangentForm& sum) {
+  std::vector<const Statistics*> staying, taking_off;
+  staying.reserve(problem.blocks.size());
+  for (const Statistics& block : problem.blocks) (takes_off(block) ? taking_off : staying).push_back(&block);
+  Blocks blocks;
+  blocks.pairs.reserve(staying.size());
+  for (const Statistics* block : staying) blocks.pairs.push_back(static_cast<double>(block->count));
+  blocks.forms = forms_of(staying, directions.space);
+  const std::vector<FourForms> others = forms_of(taking_off, directions.space);
+  for (std::size_t i = 0, k = 0; i + k < problem.blocks.size();) {
+    if (takes_off(problem.blocks[i + k])) {
+      add(others[k / four], k % four, 1, sum);
+      ++k;
+    } else {
+      const std::size_t count = others.empty() ? std::min(four, staying.size() - i) : 1;
+      add(blocks.forms[i / four], i % four, count, sum);
+      i += count;
+    }
+  }
+  set_information(blocks,
+                  directions.space.starts_with_translations() ? std::vector<FourForms>()
+                                                              : forms_of(staying, directions.space, true),
+                  sum, directions);
+  return blocks;
 }
 
 /// How much more parts of four blocks scatter than single and double ones say, all directions together: one
@@ -112,24 +203,12 @@ double scatter_of_long_parts(const Jackknife& of_four, const Vector6d& spread) {
 
 Vector6d detail::spatial_variance(const Problem& problem, double pairs, const ShownDirections& directions,
                                   ErrorCorrelation errors, const ObservabilityOptions& options) {
-  std::vector<BlockForm> blocks;
-  blocks.reserve(problem.blocks.size());
   TangentForm sum;
-  const auto take = [&](const Statistics& block, const TangentForm& form) {
-    sum += form;
-    if (!takes_off(block)) blocks.push_back({form, static_cast<double>(block.count), Vector6d::Zero()});
-  };
-  for (std::size_t i = 0; i < problem.blocks.size(); i += 2) {
-    const Statistics& next = problem.blocks[std::min(i + 1, problem.blocks.size() - 1)];
-    const std::array<TangentForm, 2> forms = directions.space.forms(problem.blocks[i], next);
-    take(problem.blocks[i], forms[0]);
-    if (i + 1 < problem.blocks.size()) take(next, forms[1]);
-  }
-  set_information(blocks, sum, directions);
+  const Blocks blocks = blocks_around(problem, directions, sum);
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
   Vector6d variance = single.variance();
   if (looks_at_double_blocks(problem, errors, options)) {
-    const std::vector<BlockForm> twos = doubled(blocks);
+    const Blocks twos = doubled(blocks);
     const Jackknife of_twos = jackknife_of(twos, sum, pairs, directions);
     variance = variance.cwiseMax(of_twos.variance());
     variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
