@@ -92,7 +92,7 @@ std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono
 }
 
 std::string why_no_motion(const StreamWatch& watch, const std::string& a, const std::string& b,
-                          std::int64_t mono_us) {
+                          std::int64_t mono_us, const std::string& rejected) {
   const auto sends = [&](const std::string& name) -> const HeardStream* {
     for (const SensorStream& stream : watch.sensors())
       if (stream.sensor.name == name && stream.heard &&
@@ -111,7 +111,7 @@ std::string why_no_motion(const StreamWatch& watch, const std::string& a, const 
   };
   const double apart_us = ahead_us(*of_a) - ahead_us(*of_b);
   if (std::abs(apart_us) <= static_cast<double>(watch.options().apart_us))
-    return "pairing rejects the poses, see its counters";
+    return "pairing rejects the poses" + (rejected.empty() ? ", see its counters" : ": " + rejected);
   char seconds[64];
   std::snprintf(seconds, sizeof seconds, "%.1f s", 1e-6 * std::abs(apart_us));
   return "the stamps of the two streams do not overlap: those of " + (apart_us > 0 ? a : b) + " are " +

@@ -117,6 +117,21 @@ TEST_F(BusNewsTest, ASensorThatNeverSendsIsNamed) {
 TEST_F(BusNewsTest, TheFirstMotionTakesItsTime) {
   pairs = false;
   EXPECT_EQ(run(60), "");
+  EXPECT_EQ(run(20), "left -> right: no motion yet: pairing rejects the poses, see its counters\n");
+}
+
+TEST_F(BusNewsTest, WhatPairingRejectsIsNamedWithItsCure) {
+  pairing.counters = {{"rejected: duplicate", 7}, {"rejected: gap", 1}, {"rejected: frozen", 0}};
+  run(10);
+  pairs = false;
+  std::string text;
+  for (int i = 0; i < 10; ++i) {
+    pairing.counters[1].value += 1;
+    pairing.counters[2].value += 9;
+    text += run(1);
+  }
+  EXPECT_THAT(text,
+              HasSubstr("no new motion for 5 s: pairing rejects the poses: frozen: one odometry repeats"));
 }
 
 TEST_F(BusNewsTest, WhatComesAndGoesIsReportedOnceAMinute) {

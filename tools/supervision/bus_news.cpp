@@ -40,6 +40,35 @@ void BusNews::hear(const status_t& status, std::int64_t now_us) {
     for (auto& [name, pair] : pairs_) motions_may_come(pair, now_us);
   pairing_ = status.name;
   pairing_paused_ = paused;
+  count_rejections(status, now_us);
+}
+
+void BusNews::count_rejections(const status_t& status, std::int64_t now_us) {
+  const std::string prefix = "rejected: ";
+  for (const counter_t& counter : status.counters) {
+    if (!counter.name.starts_with(prefix)) continue;
+    const std::string reason = bus::printable(counter.name.substr(prefix.size()), 100);
+    if (rejected_.size() >= most_reasons && !rejected_.contains(reason)) continue;
+    Rejected& rejected = rejected_[reason];
+    // less than before: pairing was started anew. Counts may be anything.
+    if (counter.value > rejected.count) {
+      rejected.growth = counter.value - std::max<std::int64_t>(rejected.count, 0);
+      rejected.grown_us = now_us;
+    }
+    rejected.count = counter.value;
+  }
+}
+
+/// What pairing rejects most of at present, and what to do about it; empty: nothing.
+std::string BusNews::mostly_rejected(std::int64_t now_us) const {
+  const std::pair<const std::string, Rejected>* most = nullptr;
+  for (const auto& entry : rejected_)
+    if (entry.second.growth > (most ? most->second.growth : 0) &&
+        seconds(entry.second.grown_us, now_us) < options_.pairing_silent)
+      most = &entry;
+  if (!most) return {};
+  const std::string cure = bus::cure_of_rejection(most->first);
+  return most->first + (cure.empty() ? "" : ": " + cure);
 }
 
 /// Such as a state that cannot be saved, which otherwise only a monitor shows. Errors of solvers and the
@@ -167,12 +196,13 @@ std::string BusNews::why_standing(const Pair& of, const PairName& pair, std::int
   };
   const bool both = silent(pair.first) && silent(pair.second);
   if (both && !options_.live) return {};
-  // the first motion takes as long as it takes: the stride is chosen from some dozens of poses
-  if (!of.newest && !silent(pair.first) && !silent(pair.second)) return {};
+  const bool none = silent(pair.first) || silent(pair.second);
+  if (!of.newest && !none && seconds(of.motion_us, now_us) <= options_.first_motion) return {};
   if (of.newest && seconds(of.problem_us, now_us) > options_.pairing_silent) return {};
-  std::string why = both ? pair.first + " and " + pair.second + " send nothing"
-                         : bus::why_no_motion(streams_, pair.first, pair.second, now_us);
-  if (!of.newest) why += "; `egocal listen` shows what is sent instead";
+  std::string why =
+      both ? pair.first + " and " + pair.second + " send nothing"
+           : bus::why_no_motion(streams_, pair.first, pair.second, now_us, mostly_rejected(now_us));
+  if (!of.newest && none) why += "; `egocal listen` shows what is sent instead";
   return why;
 }
 

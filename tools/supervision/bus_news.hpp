@@ -22,6 +22,9 @@ struct BusNewsOptions {
   /// Pairing lives, and has found no new motion for longer [s]: as the monitor, ten steps of the slowest
   /// sensors.
   double standing = 5;
+  /// A pair whose sensors both send has its first motion within this [s]: the stride is chosen from some
+  /// dozens of poses, and slow sensors send one a second.
+  double first_motion = 60;
   /// Pairing sends its problems every second. Where none has come for longer, it is silent itself [s].
   double pairing_silent = 2;
   /// A new motion may overtake the command that pauses its pair [s].
@@ -52,7 +55,7 @@ class BusNews {
   std::string lines(const Answers& answers, std::int64_t now_us);
 
  private:
-  static constexpr std::size_t most_errors = 100;  // a limit on memory
+  static constexpr std::size_t most_errors = 100, most_reasons = 100;  // limits on memory
   struct Pair {
     bus::AnswerAge age;
     bool unanswered_reported = false;
@@ -63,6 +66,10 @@ class BusNews {
     std::optional<std::int64_t> standing_reported_us;
   };
 
+  /// A counter of pairing.
+  struct Rejected {
+    std::int64_t count = 0, growth = 0, grown_us = 0;
+  };
   /// Of the processes of a role.
   struct Error {
     std::string now, reported;  ///< lines; empty: none
@@ -71,6 +78,8 @@ class BusNews {
 
   void hear_error(const status_t& status, std::int64_t now_us);
   std::string errors(std::int64_t now_us);
+  void count_rejections(const status_t& status, std::int64_t now_us);
+  std::string mostly_rejected(std::int64_t now_us) const;
   void motions_may_come(Pair& of, std::int64_t now_us) const;
   std::string why_standing(const Pair& of, const PairName& pair, std::int64_t now_us) const;
   std::string unanswered(Pair& of, const PairName& pair, const Answers& answers, std::int64_t now_us) const;
@@ -82,6 +91,7 @@ class BusNews {
   std::map<PairName, Pair> pairs_;
   std::string pairing_;  ///< name of the process that sends the problems; empty: not heard yet
   bool pairing_paused_ = false;
+  std::map<std::string, Rejected> rejected_;         ///< by reason
   std::map<std::string, Error> errors_;              ///< by role
   std::map<std::string, std::int64_t> reported_us_;  ///< of each line about an error
   std::string told_;                                 ///< that were not asked for yet

@@ -106,8 +106,9 @@ std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono
                                      const std::string& why_silent = {});
 
 /// Why two sensors, by name, have no motion in common for a while, one of which sends: one is silent, or
-/// their stamps do not overlap. Empty: both are silent, or nothing is known of them.
+/// their stamps do not overlap. Empty: both are silent, or nothing is known of them. rejected: what pairing
+/// rejects, where that is known.
 std::string why_no_motion(const StreamWatch& watch, const std::string& a, const std::string& b,
-                          std::int64_t mono_us);
+                          std::int64_t mono_us, const std::string& rejected = {});
 
 }  // namespace egocal::bus
