@@ -107,11 +107,23 @@ TEST_F(OutcomeTest, TheExtentOfALogIsInTheSensorsTime) {
     writer.write(5, "LEFT", bus::encode(damaged));
     writer.close();
   }
-  const LogExtent found = log_extent(log, rig);
+  bus::LogReader reader(log);
+  ASSERT_TRUE(reader.next());
+  std::filesystem::remove(log);  // held open
+  const LogExtent found = log_extent(reader, rig);
   ASSERT_EQ(found.sensors.size(), 1u);
   EXPECT_EQ(found.sensors.at("left").first_us, begin_us);
   EXPECT_EQ(found.sensors.at("left").last_us, begin_us + 4 * second);
   EXPECT_FALSE(found.damage.any());
+}
+
+// It was "no solver answered".
+TEST_F(OutcomeTest, OfALogThatWasEmptiedMeanwhileIsUnusableAndIsPrinted) {
+  extent = {};
+  EXPECT_TRUE(outcome().answered);
+  EXPECT_TRUE(outcome().unusable);
+  EXPECT_THAT(outcome().text, StartsWith("left -> right: good: "));
+  EXPECT_THAT(outcome().text, HasSubstr("the log holds no poses any more"));
 }
 
 }  // namespace

@@ -215,6 +215,26 @@ TEST_F(Up, AnErrorThatIsOverIsReportedAsOver) {
   EXPECT_EQ(egocal.wait(30s), 3) << "in the middle of the log";
 }
 
+// As a recorder that rotates its logs does. It was "nothing was calibrated: no solver answered".
+TEST_F(Up, ALogThatIsRemovedWhileItIsPlayedIsStillPlayedAndJudged) {
+  ChildProcess egocal = up({"--log", log, "--speed", "10"});
+  ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
+  std::this_thread::sleep_for(1s);
+  std::filesystem::remove(log);
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: good: "));
+  EXPECT_THAT(read(path("said")), HasSubstr(", 400 motion pairs; "));
+}
+
+TEST_F(Up, SaysThatItsOwnListenerWasKilled) {
+  ChildProcess egocal = up({"--log", log, "--speed", "10"});
+  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
+  kill(child(egocal.pid(), "egocal"), SIGKILL);
+  EXPECT_EQ(egocal.wait(60s), 1);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal up: the process that listens to the bus was killed"));
+  EXPECT_THAT(read(path("said")), HasSubstr("what was calibrated is not known; egocal solve --rig "));
+}
+
 // A driver that dies. The answer stays, and nobody would know that it is not one of the present.
 TEST_F(Up, APairWithoutNewMotionsIsReportedAndThatTheyComeAgain) {
   const std::string url = "udpm://239.255.76.67:7755?ttl=0";

@@ -165,7 +165,14 @@ void run(const Options& options) {
     throw cli::Exit{1};
   }
   if (options.log.empty()) return;
-  const Outcome outcome = watch.outcome();
+  const Outcome outcome = [&] {
+    try {
+      return watch.outcome();
+    } catch (const Error& error) {
+      throw Error(fmt::format("up: {}; egocal solve --rig {} --log {} computes it from the log", error.what(),
+                              options.rig, options.log));
+    }
+  }();
   if (!outcome.answered)
     throw Error("up: nothing was calibrated: no solver answered; see " +
                 (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));

@@ -21,6 +21,7 @@
 #include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/log_file.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/error.hpp"
@@ -115,7 +116,7 @@ class Listening {
       });
   }
   bus::Loop& loop() { return loop_; }
-  Outcome outcome(const std::string& log) const {
+  Outcome outcome(bus::LogReader& log) const {
     return outcome_of(rig_, answers_, log_extent(log, rig_), read_until_, options_.outcome);
   }
 
@@ -156,6 +157,9 @@ class Listening {
 void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::string& log,
                       const BusWatchOptions& options, Shared& shared, int out, int lines) {
   try {
+    // held open, as the player holds it: the log may be moved, removed or recorded on meanwhile
+    std::optional<bus::LogReader> reader;
+    if (!log.empty()) reader.emplace(log);
     Listening listening(rig, url, options);
     bus::Loop& loop = listening.loop();
     loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
@@ -168,13 +172,13 @@ void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::st
       write_all(lines, listening.news());
     });
     loop.run();
-    if (!log.empty()) {
-      const Outcome outcome = listening.outcome(log);
+    if (reader) {
+      const Outcome outcome = listening.outcome(*reader);
       write_all(out,
                 std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
     }
   } catch (const std::exception&) {
-    // nothing was received, then
+    // the supervisor reads the end of the lines
   }
   _exit(0);
 }
@@ -246,7 +250,8 @@ Outcome BusWatch::outcome() {
     if (n > 0) text.append(part, static_cast<std::size_t>(n));
   }
   end();
-  if (text.size() < 2) return {};
+  if (text.size() < 2)
+    throw Error("the process that listened to the bus was killed: what was calibrated is not known");
   return {text[0] == '1', text[1] == '1', text.substr(2)};
 }
 

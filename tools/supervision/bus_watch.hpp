@@ -39,7 +39,8 @@ class BusWatch {
   int awaited() const;
   /// Readable, without blocking: lines of text, see BusNews.
   int lines() const { return lines_; }
-  /// Stops listening and reads the log for what is missing in the answers. Once.
+  /// Stops listening and reads the log for what is missing in the answers. Once. Throws Error where the
+  /// listening process was killed.
   Outcome outcome();
 
  private:

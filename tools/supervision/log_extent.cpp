@@ -8,10 +8,10 @@
 
 namespace egocal::tools {
 
-LogExtent log_extent(const std::string& log, const bus::Rig& rig) {
+LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig) {
   LogExtent extent;
-  bus::LogReader reader(log);
-  while (const std::optional<bus::LogEvent> event = reader.next())
+  log.rewind();
+  while (const std::optional<bus::LogEvent> event = log.next())
     for (const bus::Sensor& sensor : rig.sensors) {
       if (sensor.channel != event->channel) continue;
       const bus::ReceivedOdometry odometry = bus::decode_odometry(sensor, event->data);
@@ -20,7 +20,7 @@ LogExtent log_extent(const std::string& log, const bus::Rig& rig) {
       extent.sensors.try_emplace(sensor.name, LogExtent::Stream{time_us, time_us}).first->second.last_us =
           time_us;
     }
-  extent.damage = reader.damage();
+  extent.damage = log.damage();
   return extent;
 }
 

@@ -20,7 +20,7 @@ struct LogExtent {
   bus::LogDamage damage;
 };
 
-/// Reads the whole log. Throws Error where it cannot be read.
-LogExtent log_extent(const std::string& log, const bus::Rig& rig);
+/// Reads the whole log, from its first event on.
+LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig);
 
 }  // namespace egocal::tools

@@ -130,6 +130,10 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
         line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options));
   }
   outcome.text += possible_of_all(rig, answers) + damage_of(extent);
+  if (outcome.answered && extent.sensors.empty()) {
+    outcome.unusable = true;
+    outcome.text += "the log holds no poses any more: whether its end is in the answers is not known\n";
+  }
   return outcome;
 }
 

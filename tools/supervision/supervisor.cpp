@@ -303,7 +303,10 @@ class Supervisor {
         said_.erase(0, end + 1);
       }
     } else if (n == 0 || errno != EAGAIN) {
-      lines_ = -1;  // who wrote them is gone
+      lines_ = -1;
+      messages_.report(
+          "the process that listens to the bus was killed: nothing that hangs, errs or is not answered is "
+          "reported any more");
     }
   }
 
