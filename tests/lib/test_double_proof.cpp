@@ -92,6 +92,10 @@ void check(const Proposal& p, const Curvatures& guess, Counts& bounds, Counts& c
   } else {
     ++(longer ? bounds.only_longer : bounds.refused);
   }
+  if (detail::proven_in_double(p.Q, p.v(), p.cost, p.bound, p.orthogonal)) {
+    ASSERT_TRUE(longer);
+    ASSERT_TRUE(truly_definite(p, 0, detail::Forms<8, 1>{}));
+  }
   const double part = detail::parts_of_guess[0];
   const Curvatures c{part * guess.rotation, part * guess.translation};
   const auto found = detail::proven_curvatures<8>(p.Q, p.v(), p.bound, p.orthogonal, 0, guess);
@@ -257,7 +261,7 @@ TEST(DoubleProof, OrdinaryAnswersNeedNoLongerMantissa) {
     p.q = best.q;
     p.orthogonal = best.lambda.orthogonal;
     propose(p, 4 * epsilon);
-    if (detail::proven_in_double(p.Q, p.v(), p.cost, {p.bound, p.orthogonal})) ++proven;
+    if (detail::proven_in_double(p.Q, p.v(), p.cost, p.bound, p.orthogonal)) ++proven;
   }
   EXPECT_EQ(proven, 500);
 }

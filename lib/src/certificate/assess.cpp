@@ -119,11 +119,6 @@ void conclude(const Subject<N>& subject, double bound, const Reach& reach, const
 
 }  // namespace
 
-bool proven_in_double(const Square<8>& Q, const Column<8>& v, double cost, const ProvenBound& proposal) {
-  const LocalForm form = form_at<8>(Q, v, proposal, 0);
-  return DoubleProof(Q, v, cost, proposal.bound, proposal.orthogonal, form).bound();
-}
-
 template <int N>
 void set_bound(const Subject<N>& subject, const ProvenBound& proven, const CertificateOptions& options,
                Certificate& certificate) {

@@ -48,10 +48,6 @@ extern template Certificate assess<4>(const Subject<4>&, const CertificateOption
 extern template void set_bound<8>(const Subject<8>&, const ProvenBound&, const CertificateOptions&,
                                   Certificate&);
 
-/// Whether the bound of an answer holds, as proven_bound() says of it at more cost; false proves nothing. Q
-/// exactly symmetric.
-bool proven_in_double(const Square<8>& Q, const Column<8>& v, double cost, const ProvenBound& proposal);
-
 /// The largest of a few proposals below `cost` that can be proven with this multiplier and lift.
 template <int N>
 std::optional<ProvenBound> best_bound(const Square<N>& Q, double cost, double rounding, double orthogonal,

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "egocal/geometry/dual_quaternion.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -39,7 +41,38 @@ bool has_positive_pivots(const LocalForm& form, const Number (&off)[coordinates]
   return true;
 }
 
+/// What DoubleProof reads of a LocalForm, by quarters.
+LocalForm local_form(const Square<8>& Q, const Column<8>& v, double bound, double orthogonal) {
+  using Eigen::Matrix4d;
+  Matrix4d A = Q.topLeftCorner<4, 4>(), B = Q.topRightCorner<4, 4>();
+  const Matrix4d D = Q.bottomRightCorner<4, 4>();
+  A.diagonal().array() -= bound;
+  B.diagonal().array() += orthogonal;
+  // T without its order: v and the turns are [R; S], (0, r) and the slides [0; R]
+  const Matrix4d R = left_matrix(v.head<4>()), S = left_matrix(v.tail<4>());
+  const Matrix4d of_slides = D.lazyProduct(R), lower = B.transpose().lazyProduct(R) + D.lazyProduct(S),
+                 upper = A.lazyProduct(R) + B.lazyProduct(S);
+  const Matrix4d R_transposed = R.transpose(), S_transposed = S.transpose();
+  const Matrix4d slides = R_transposed.lazyProduct(of_slides), mixed = R_transposed.lazyProduct(lower),
+                 turns = R_transposed.lazyProduct(upper) + S_transposed.lazyProduct(lower);
+  LocalForm form;
+  form.topLeftCorner<3, 3>() = turns.bottomRightCorner<3, 3>();
+  form.block<3, 3>(3, 0) = mixed.bottomRightCorner<3, 3>();
+  form.block<3, 3>(3, 3) = slides.bottomRightCorner<3, 3>();
+  form.block<1, 3>(6, 0) = mixed.topRightCorner<1, 3>();
+  form.block<1, 3>(6, 3) = slides.topRightCorner<1, 3>();
+  form(6, 6) = slides(0, 0);
+  form.block<3, 1>(0, 7) = turns.bottomLeftCorner<3, 1>();
+  form.block<3, 1>(3, 7) = mixed.bottomLeftCorner<3, 1>();
+  form(6, 7) = mixed(0, 0);
+  return form;
+}
+
 }  // namespace
+
+bool proven_in_double(const Square<8>& Q, const Column<8>& v, double cost, double bound, double orthogonal) {
+  return DoubleProof(Q, v, cost, bound, orthogonal, local_form(Q, v, bound, orthogonal)).bound();
+}
 
 DoubleProof::DoubleProof(const Square<8>& Q, const Column<8>& v, double cost, double bound, double orthogonal,
                          const LocalForm& form)

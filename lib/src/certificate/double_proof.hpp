@@ -49,6 +49,7 @@ using LocalForm = Eigen::Matrix<double, 8, 8>;
 /// the rounding of these few numbers themselves. tau within 1e-100 and 1e100 keeps underflow below all that.
 class DoubleProof {
  public:
+  /// Of the form the lower triangle and the last column are read.
   DoubleProof(const Square<8>& Q, const Column<8>& v, double cost, double bound, double orthogonal,
               const LocalForm& form);
   /// J(q') >= bound for every q' with |r'| = 1 and r'd' = 0.
@@ -63,5 +64,8 @@ class DoubleProof {
   double shift_real_ = 0, shift_dual_ = 0;  ///< what is given away of the diagonal
   bool usable_ = false;
 };
+
+/// The bound alone; Q exactly symmetric. cost: that of v.
+bool proven_in_double(const Square<8>& Q, const Column<8>& v, double cost, double bound, double orthogonal);
 
 }  // namespace egocal::detail

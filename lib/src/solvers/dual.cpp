@@ -76,7 +76,7 @@ bool proven_optimal(Search& search) {
   const double rounding = detail::rounding_of<8>(search.sizes, v);
   const double cost = detail::extended_cost<8>(search.Q, v);
   const double bound = detail::first_proposal(cost, rounding), orthogonal = search.best.lambda.orthogonal;
-  if ((search.symmetric && detail::proven_in_double(search.Q, v, cost, {bound, orthogonal})) ||
+  if ((search.symmetric && detail::proven_in_double(search.Q, v, cost, bound, orthogonal)) ||
       detail::proven_bound<8>(search.Q, bound, orthogonal, 0)) {
     search.proven = {bound, orthogonal};
     return true;

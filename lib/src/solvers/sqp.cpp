@@ -53,6 +53,7 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
   Vector8d v = q.vec();
   Vector8d Qv = Q.lazyProduct(v);
   double J = v.dot(Qv);
+  const Matrix8d absolute = Q.cwiseAbs();
   double shift = 0;
   solution.status = SolverStatus::iteration_limit;
   for (int i = 0; i < max_iterations; ++i) {
@@ -72,7 +73,7 @@ Solution newton_on_kkt(const Matrix8d& Q, const DualQuaternion& start, int max_i
       break;
     }
     const double rounding =
-        8 * std::numeric_limits<double>::epsilon() * v.cwiseAbs().dot(Q.cwiseAbs() * v.cwiseAbs());
+        8 * std::numeric_limits<double>::epsilon() * v.cwiseAbs().dot(absolute * v.cwiseAbs());
     Vector6d x;
     DualQuaternion next;
     Vector8d v_next, Qv_next;
