@@ -88,6 +88,17 @@ TEST_F(OutcomeTest, ThatBeginsLateSaysSo) {
   EXPECT_THAT(outcome().text, Not(HasSubstr("are not in this answer")));
 }
 
+// All processes were restarted with another rig: pairing read the rest, for a pair of another name.
+TEST_F(OutcomeTest, WhoseLastMotionIsFarFromTheEndSaysSo) {
+  for (auto& [name, stream] : extent.sensors) stream.last_us += 30 * second;
+  for (auto& [channel, until] : read_until) until += 30 * second;
+  EXPECT_FALSE(outcome().unusable) << "the sensor may have been frozen";
+  EXPECT_THAT(outcome().text, HasSubstr("the last 30.0 s of the log are not in this answer: no new motion"));
+  // one sensor ended earlier
+  extent.sensors["right"].last_us -= 27 * second;
+  EXPECT_THAT(outcome().text, Not(HasSubstr("are not in this answer")));
+}
+
 TEST_F(OutcomeTest, OfADamagedLogSaysSo) {
   extent.damage.lost_events = 12;
   EXPECT_FALSE(outcome().unusable);

@@ -189,6 +189,12 @@ double Answers::seconds_not_answered(const PairName& pair) const {
   return 1e-6 * static_cast<double>(std::max<std::int64_t>(0, newest.utime - from));
 }
 
+std::optional<std::pair<std::int64_t, double>> Answers::end_of_motions(const PairName& pair) const {
+  const auto newest = newest_.find(pair);
+  if (newest == newest_.end()) return std::nullopt;
+  return std::pair(newest->second.utime, newest->second.time_offset);
+}
+
 bool unusable(const Diagnosis& diagnosis) {
   return diagnosis.verdict == Verdict::contradictory || (diagnosis.goal && !diagnosis.goal->reached);
 }
@@ -239,7 +245,7 @@ void Answers::note(const problem_t& message) {
   const bool older = std::tie(message.session, message.seq) < std::tie(newest.session, newest.seq);
   newest.older_in_a_row = older ? newest.older_in_a_row + 1 : 0;
   if (older && newest.older_in_a_row < confirmations) return;
-  newest = {message.session, message.seq, message.utime, 0};
+  newest = {message.session, message.seq, message.utime, message.time_offset, 0};
 }
 
 /// Of a problem that is no longer the newest although it has the higher number.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -55,6 +56,9 @@ class Answers {
   bool answered_to_the_end(const PairName& pair) const;
   /// How much of the drive came after what that answer knows [s]; 0 where it knows all of it.
   double seconds_not_answered(const PairName& pair) const;
+  /// End of the newest motion that was heard of [us, time of a], and what is added to the time of b [s];
+  /// nothing: none was.
+  std::optional<std::pair<std::int64_t, double>> end_of_motions(const PairName& pair) const;
   /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
   /// The scale of one of the pair's sensors is to be found, and none that was verified is known of the
@@ -75,6 +79,7 @@ class Answers {
   /// disk had no room for the newest session. Problems that arrive again and again are believed then.
   struct Newest {
     std::int64_t session = 0, seq = 0, utime = 0;
+    double time_offset = 0;
     int older_in_a_row = 0;
   };
   const Judgement* judgement(const PairName& pair) const;

@@ -42,6 +42,18 @@ double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_
   return least.value_or(0) > options.least_missing ? *least : 0;
 }
 
+/// The log after the last motion of the pair, while both sensors send [s]: pairing rejected the rest, or knew
+/// another rig by then.
+double without_motion(const PairName& pair, const LogExtent& extent, const Answers& answers,
+                      const OutcomeOptions& options) {
+  const auto motions = answers.end_of_motions(pair);
+  const auto a = extent.sensors.find(pair.first), b = extent.sensors.find(pair.second);
+  if (!motions || a == extent.sensors.end() || b == extent.sensors.end()) return 0;
+  const double of_a = seconds(a->second.last_us - motions->first),
+               of_b = seconds(b->second.last_us - motions->first) + motions->second;
+  return std::min(of_a, of_b) > options.standing ? std::min(of_a, of_b) : 0;
+}
+
 /// What neither the answer (missing: how much, and why) nor the verdict knows of the end of the drive comes
 /// first.
 std::string judgement_of(const PairName& pair, const Answers& answers, const std::string& missing) {
@@ -63,7 +75,7 @@ std::string missing_end(const PairName& pair, const Answers& answers, double unr
 
 /// Of a pair that has an answer.
 std::string line_of(const PairName& pair, const Answers& answers, const std::string& missing,
-                    double not_in_session) {
+                    double not_in_session, double without_motion) {
   const Answers::Best& best = *answers.best(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Pose T = to_pose(best.checked.answer.T_a_b);
@@ -78,6 +90,10 @@ std::string line_of(const PairName& pair, const Answers& answers, const std::str
     text += fmt::format(
         "  the first {:.1f} s of the log are not in this answer: its statistics begin after them\n",
         not_in_session);
+  if (without_motion > 0)
+    text += fmt::format(
+        "  the last {:.1f} s of the log are not in this answer: no new motion was found in them\n",
+        without_motion);
   if (scale)
     text += fmt::format("  scale of {} {:.6g} +- {:.2g}, {}\n", scale->sensor, scale->solution.scale,
                         scale->solution.stddev,
@@ -127,7 +143,8 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
     outcome.answered = true;
     outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis));
     outcome.text +=
-        line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options));
+        line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options),
+                missing.empty() ? without_motion(pair, extent, answers, options) : 0);
   }
   outcome.text += possible_of_all(rig, answers) + damage_of(extent);
   if (outcome.answered && extent.sensors.empty()) {
