@@ -95,15 +95,33 @@ bool shows_scale(const Evidence& evidence, const Ranked& reading, const Diagnosi
 BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options) {
   Ranked best{evidence.given, evidence.scaled};
   std::optional<Explanation> twin;
-  for (Ranked& here : best_readings(evidence, options)) {
-    if (!better(compare(evidence.scaled.explained, here.scaled.explained), 0.01, options)) continue;
+  std::vector<Ranked> readings = best_readings(evidence, options);
+  const auto clearly_better = [&](const Ranked& reading) {
+    return better(compare(evidence.scaled.explained, reading.scaled.explained), 0.01, options);
+  };
+  const auto fits = [&](const Ranked& reading) { return explains(reading.scaled.explained, options); };
+  const auto any_inverted = [&](const auto& holds) {
+    return std::any_of(readings.begin(), readings.end(),
+                       [&](const Ranked& reading) { return inverts_one(reading.as_is) && holds(reading); });
+  };
+  // of twins one may be clear by the test and both fit
+  const bool one_is_better = any_inverted(clearly_better), one_fits = any_inverted(fits);
+  for (Ranked& here : readings) {
+    const bool inverted = inverts_one(here.as_is);
+    if (!clearly_better(here) && !(one_is_better && inverted)) continue;
+    if (inverted && one_fits && !fits(here)) continue;
     // where the streams as given agree: far from the origin any residual is a small part of an inverse motion
-    if (inverts_one(here.as_is) && explains(evidence.given.explained, options) &&
+    if (inverted && explains(evidence.given.explained, options) &&
         loss_in_metres(evidence.given.explained, here.scaled.explained) > 0)
       continue;
     const Comparison against = compare(best.scaled.explained, here.scaled.explained);
     const bool first = best.as_is.code.empty();
-    const bool alike = !first && std::abs(against.gain) < options.alike;
+    // twins are each other with both streams inverted: arms fit up to ten times better under the wrong one,
+    // but not in metres
+    const bool disagree =
+        inverted && inverts_one(best.as_is) &&
+        (against.gain > 0) == (loss_in_metres(best.scaled.explained, here.scaled.explained) > 0);
+    const bool alike = !first && std::abs(against.gain) < (disagree ? decisive_loss : options.alike);
     if (first || (alike ? preferred(here.scaled, best.scaled, options.heading) : against.gain > 0))
       std::swap(best, here);
     if (alike)
@@ -291,18 +309,23 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
   double least = INFINITY;
   std::vector<Candidate> readings = common_mistakes();
   readings.insert(readings.begin(), Candidate{"", {}, {}});
-  for (int stride = std::max(1, n / 32), looks = 0; looks < 4; stride /= 4, ++looks) {
+  int longer = n;
+  for (int stride = std::max(1, n / 32), looks = 0; looks < 4; ++looks) {
+    // short motions hold fewer wrong poses, the shortest much noise: only where nearly nothing else is left
+    const double clearly_less = longer < 4 ? 0.1 : 0.8;
     for (const Candidate& candidate : readings) {
       const Motions motions = motions_of(evidence.instants, candidate.a, candidate.b, stride,
                                          options.motions.first_look, options.motions);
       if (motions.all.empty()) continue;
       const double typical = quick_fit(motions, options.fit).typical;
-      if (typical < 0.8 * least) {
+      if (typical < clearly_less * least) {
         least = typical;
         evidence.stride = stride;
       }
     }
-    if (stride < 4) break;
+    if (stride == 1) break;
+    longer = stride;
+    stride = std::max(1, stride / 4);
   }
   evidence.given.explained = explained(evidence, "", {}, {}, options).explained;
   evidence.scaled = with_scale(evidence.given, options);

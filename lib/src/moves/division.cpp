@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -51,12 +52,19 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
     for (std::size_t i = 0; i < blocks.size(); ++i)
       d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (second.has(i) ? d.x2 : d.x1));
     const double limit = longest_length(d.residuals, options);
+    std::array<std::size_t, 2> all{}, shortened{};  // blocks of each side
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const Parameters& x = second.has(i) ? d.x2 : d.x1;
+      const std::size_t side = second.has(i) ? 1 : 0;
+      const Parameters& x = side == 1 ? d.x2 : d.x1;
       const double length = d.residuals[i].norm();
-      if (length > limit) d.residuals[i] *= limit / length;
+      ++all[side];
+      if (length > limit) {
+        d.residuals[i] *= limit / length;
+        ++shortened[side];
+      }
       d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
     }
+    d.fits = 2 * shortened[0] <= all[0] && 2 * shortened[1] <= all[1];
   }
   return d;
 }
@@ -105,7 +113,7 @@ Evidence evidence(Blocks blocks, Part second, const Division& d, const Parameter
   const Eigen::LDLT<ParameterMatrix> factor(result.V);
   if (factor.info() == Eigen::Success && factor.isPositive())
     result.t2 = result.S.dot(factor.solve(result.S));
-  if (!std::isfinite(result.t2)) result.t2 = 0;
+  if (!std::isfinite(result.t2) || !d.fits) result.t2 = 0;
   return result;
 }
 
