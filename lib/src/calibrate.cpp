@@ -119,12 +119,15 @@ std::string repeats_in_words(const Trajectory& a, const Trajectory& b, const Pai
   };
   std::string text;
   for (const auto& [name, stream] : {std::pair("a", &a), std::pair("b", &b)}) {
-    std::size_t differ = 1;
-    for (std::size_t i = 1; i < stream->size(); ++i)
-      differ += !repeats((*stream)[i - 1], (*stream)[i]) ? 1 : 0;
+    std::size_t differ = 1, newest = 0;
+    for (std::size_t i = 1; i < stream->size(); ++i) {
+      if (repeats((*stream)[i - 1], (*stream)[i])) continue;
+      ++differ;
+      newest = i;
+    }
     if (2 * differ > stream->size()) continue;  // as many are whole motions, and reject none of the others
-    const double lasts =
-        1e-6 * (static_cast<double>(stream->back().time_us) - static_cast<double>(stream->front().time_us));
+    const double lasts = 1e-6 * (static_cast<double>((*stream)[newest].time_us) -
+                                 static_cast<double>(stream->front().time_us));
     char line[256];
     if (differ == 1)
       std::snprintf(line, sizeof line,

@@ -134,6 +134,19 @@ TEST_F(BusNewsTest, WhatPairingRejectsIsNamedWithItsCure) {
               HasSubstr("no new motion for 5 s: pairing rejects the poses: frozen: one odometry repeats"));
 }
 
+TEST_F(BusNewsTest, WhyThereIsNothingIsWhatPairingRejectedMost) {
+  pairing.counters = {
+      {"rejected: gap", 59}, {"rejected: duplicate", 1}, {"rejected: frozen", 540}, {"in", 700}};
+  pairs = false;
+  run(2);
+  EXPECT_THAT(news->why_nothing(),
+              AllOf(HasSubstr("pairing found no motion: it rejected 540 x frozen (one odo"),
+                    HasSubstr("(send each pose once)), 59 x gap (poses are further")));
+  pairs = true;
+  run(2);
+  EXPECT_EQ(news->why_nothing(), "");
+}
+
 TEST_F(BusNewsTest, WhatComesAndGoesIsReportedOnceAMinute) {
   run(10);
   std::string text;

@@ -422,6 +422,31 @@ TEST_F(Up, ChecksTheLogBeforeItPlaysIt) {
   EXPECT_THAT(read(path("said")), HasSubstr("is not in the log; there are: SOMETHING_ELSE"));
 }
 
+// It was "no solver answered".
+TEST_F(Up, SaysWhyNothingWasCalibrated) {
+  {
+    bus::LogReader all(log);
+    bus::LogWriter writer(path("held.log"));
+    odometry_t held{};
+    for (int i = 0; const auto event = all.next();) {
+      odometry_t pose{};
+      ASSERT_GE(pose.decode(event->data.data(), 0, static_cast<int>(event->data.size())), 0);
+      if (event->channel == "ODOMETRY_CAMERA") {
+        if (i++ % 10 == 0) held = pose;
+        std::copy(std::begin(held.pos), std::end(held.pos), pose.pos);
+        std::copy(std::begin(held.quat), std::end(held.quat), pose.quat);
+      }
+      writer.write(event->time_us, event->channel, bus::encode(pose));
+    }
+    writer.close();
+  }
+  ChildProcess egocal = up({"--log", path("held.log"), "--speed", "0"});
+  EXPECT_EQ(egocal.wait(60s), 1) << read(path("said"));
+  EXPECT_THAT(read(path("said")),
+              HasSubstr("nothing was calibrated: pairing found no motion: it rejected 36"));
+  EXPECT_THAT(read(path("said")), HasSubstr(" x frozen (one odometry repeats the same pose"));
+}
+
 TEST_F(Up, FailsWhereNothingWasCalibrated) {
   {
     bus::LogReader all(log);

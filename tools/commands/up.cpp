@@ -174,8 +174,9 @@ void run(const Options& options) {
     }
   }();
   if (!outcome.answered)
-    throw Error("up: nothing was calibrated: no solver answered; see " +
-                (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
+    throw Error(
+        "up: nothing was calibrated: " + (outcome.text.empty() ? "no solver answered" : outcome.text) +
+        "; see " + (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
   fmt::print("{}", outcome.text);
   const bool pages_usable =
       !options.report ||

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/bus/process.hpp"
@@ -69,6 +70,25 @@ std::string BusNews::mostly_rejected(std::int64_t now_us) const {
   if (!most) return {};
   const std::string cure = bus::cure_of_rejection(most->first);
   return most->first + (cure.empty() ? "" : ": " + cure);
+}
+
+std::string BusNews::why_nothing() const {
+  constexpr std::size_t most_named = 2;  // the others are rarer, and often follow from these
+  if (std::any_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair.second.newest; }))
+    return {};
+  std::vector<std::pair<std::int64_t, std::string>> counts;
+  for (const auto& [reason, rejected] : rejected_)
+    if (rejected.count > 0) counts.emplace_back(rejected.count, reason);
+  std::stable_sort(counts.begin(), counts.end(),
+                   [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::string text;
+  for (std::size_t i = 0; i < counts.size() && i < most_named; ++i) {
+    std::string cure = bus::cure_of_rejection(counts[i].second);
+    if (cure.ends_with('.')) cure.pop_back();
+    text += fmt::format("{}{} x {}{}", i == 0 ? ": it rejected " : ", ", counts[i].first, counts[i].second,
+                        cure.empty() ? "" : " (" + cure + ")");
+  }
+  return "pairing found no motion" + text;
 }
 
 /// Such as a state that cannot be saved, which otherwise only a monitor shows. Errors of solvers and the

@@ -54,6 +54,10 @@ class BusNews {
   /// The lines since the last call, each with its end.
   std::string lines(const Answers& answers, std::int64_t now_us);
 
+  /// Why there is no answer, where there is none: "pairing found no motion: it rejected 540 x frozen (what to
+  /// do)"; empty: there were motions.
+  std::string why_nothing() const;
+
  private:
   static constexpr std::size_t most_errors = 100, most_reasons = 100;  // limits on memory
   struct Pair {

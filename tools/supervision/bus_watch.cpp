@@ -117,7 +117,9 @@ class Listening {
   }
   bus::Loop& loop() { return loop_; }
   Outcome outcome(bus::LogReader& log) const {
-    return outcome_of(rig_, answers_, log_extent(log, rig_), read_until_, options_.outcome);
+    Outcome outcome = outcome_of(rig_, answers_, log_extent(log, rig_), read_until_, options_.outcome);
+    if (!outcome.answered) outcome.text = news_.why_nothing();
+    return outcome;
   }
 
   void hear(const status_t& status) {

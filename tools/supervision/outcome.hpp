@@ -17,8 +17,10 @@ namespace egocal::tools {
 struct Outcome {
   bool answered = false;  ///< any solver, for any pair
   bool unusable =
-      false;         ///< some pair's motions contradict each other, miss the goal, or are not in its answer
-  std::string text;  ///< of each pair verdict, proof and transform, or that there is no answer
+      false;  ///< some pair's motions contradict each other, miss the goal, or are not in its answer
+  /// Of each pair verdict, proof and transform, or that there is no answer. Of a bus that was watched and on
+  /// which nothing was answered: why, in one line, or empty.
+  std::string text;
 };
 
 struct OutcomeOptions {
