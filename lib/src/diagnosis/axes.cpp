@@ -272,6 +272,10 @@ bool is_permutation(const Matrix3d& axes) {
   return (axes.array() == axes.array().round()).all();
 }
 
+double turn_of(const Matrix3d& axes) {
+  return rotation_log(Rotation(axes.determinant() < 0 ? Matrix3d(-axes) : axes)).norm();
+}
+
 std::vector<PoseReading> inverse_rotation_readings() {
   PoseReading inverse_rotation, inverse_position;
   inverse_rotation.conjugate = true;

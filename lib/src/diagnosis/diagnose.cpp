@@ -243,6 +243,16 @@ bool explains(const Finding& finding, const DiagnosisOptions& options) {
          (finding.code != "inverted_both" && finding.improvement > options.overwhelming);
 }
 
+/// One of the two streams is inverted; which one is open.
+bool one_is_inverted(const std::vector<Finding>& findings, const DiagnosisOptions& options) {
+  const auto named = [&](std::string_view code) {
+    return std::any_of(findings.begin(), findings.end(), [&](const Finding& one) {
+      return one.code == code && one.improvement > std::exp(options.gain);
+    });
+  };
+  return named("inverted_a") && named("inverted_b");
+}
+
 /// A wrong scale that few motions show, where nothing else is certain.
 void name_wrong_scale(const Evidence& evidence, const DiagnosisOptions& options,
                       std::vector<Finding>& findings) {
@@ -362,6 +372,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   };
   const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
                          replace_by_moves(pairing, evidence, answered, options, result.findings) ||
+                         one_is_inverted(result.findings, options) ||
                          std::any_of(result.findings.begin(), result.findings.end(), is_explanation);
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);

@@ -152,6 +152,12 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
   return found.scale != 1 ? with_scale(twin, options) : twin;
 }
 
+double least_gain_of(const PoseReading& reading, const DiagnosisOptions& options) {
+  const TurnedAxesOptions turned;
+  const bool small = !is_permutation(reading.axes) && turn_of(reading.axes) < turned.small;
+  return small ? turned.gain_of_small : options.least_gain;
+}
+
 /// The same wrong axes in both files, the one that fits best: what is left may agree nearly where both
 /// sensors stand alike.
 std::optional<Explanation> common_axes(const Evidence& evidence, const DiagnosisOptions& options) {
@@ -169,6 +175,7 @@ std::optional<Explanation> common_axes(const Evidence& evidence, const Diagnosis
         (compare(given, here.explained).gain < (turned_too ? decisive_loss : least.gain) ||
          loss_in_metres(given, here.explained) > -(turned_too ? decisive_loss : least.gain_in_metres)))
       continue;
+    if (compare(given, here.explained).gain < least_gain_of(reading, options)) continue;
     // simple readings come first
     if (!best || compare(best->explained, here.explained).gain > options.alike) best = std::move(here);
   }
@@ -207,7 +214,7 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
         if (!explains(two.scaled.explained, options) || !shows_scale(evidence, two, options)) continue;
         here = std::move(two.scaled);
       }
-      if (!better(compare(given.best.explained, here.explained), options.least_gain, options) ||
+      if (!better(compare(given.best.explained, here.explained), least_gain_of(reading, options), options) ||
           !but_for_lever_arms(here))
         continue;
       std::optional<Explanation>& best = is_permutation(reading.axes) ? exchanged : turned_here;
