@@ -146,7 +146,7 @@ void BusNews::hear(const problem_t& problem, std::int64_t now_us) {
   if (is_new && pair.paused_us && seconds(*pair.paused_us, now_us) > options_.settle)
     pair.paused_us.reset();  // it was resumed, or the command was lost
   if (is_new && std::exchange(pair.standing_reported, false))
-    told_ += begin_of(found->first) + "new motions come again\n";
+    pending_ += begin_of(found->first) + "new motions come again\n";
   pair.newest = number;
   pair.problem_us = now_us;
 }
@@ -168,7 +168,7 @@ void BusNews::hear(const std::string& channel, bus::Bytes bytes, std::int64_t no
 }
 
 std::string BusNews::lines(const Answers& answers, std::int64_t now_us) {
-  std::string text = errors(now_us) + std::exchange(told_, {});
+  std::string text = errors(now_us) + std::exchange(pending_, {});
   for (const bus::PairConfig& config : rig_.pairs) {
     const PairName name{config.a, config.b};
     Pair& pair = pairs_[name];

@@ -98,7 +98,7 @@ class BusNews {
   std::map<std::string, Rejected> rejected_;         ///< by reason
   std::map<std::string, Error> errors_;              ///< by role
   std::map<std::string, std::int64_t> reported_us_;  ///< of each line about an error
-  std::string told_;                                 ///< that were not asked for yet
+  std::string pending_;                              ///< lines that were not asked for yet
 };
 
 }  // namespace egocal::tools

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// How the two files are best read: inverted, in another order, in other axes.
+#pragma once
+
+#include <optional>
+
+#include "diagnosis/explanations.hpp"
+
+namespace egocal::detail {
+
+struct BestReading {
+  Explanation best;
+  std::optional<Explanation> twin;  ///< fits as well
+};
+
+/// As given unless another reading is clearly better; with a scale of b where that is shown besides.
+BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options);
+
+}  // namespace egocal::detail
