@@ -39,8 +39,7 @@ constexpr const std::uint8_t* number_at = places.data();
 /// Of any processor: pairs.
 namespace narrow {
 
-using Lanes [[gnu::vector_size(16)]] = double;
-constexpr int lane_count = 2;  // numbers in 16 bytes
+#include "problem/lanes_of_two.hpp"
 
 [[gnu::always_inline]] inline Lanes root(const Lanes& x) {
 #ifdef __SSE2__
@@ -48,16 +47,6 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 #else
   return Lanes{std::sqrt(x[0]), std::sqrt(x[1])};
 #endif
-}
-
-/// The four numbers of each lane.
-[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
-  for (int lane = 0; lane < lane_count; ++lane) {
-    w[lane] = from[lane][0];
-    x[lane] = from[lane][1];
-    y[lane] = from[lane][2];
-    z[lane] = from[lane][3];
-  }
 }
 
 /// Number k of each lane's row to its place `at` + k.
@@ -80,22 +69,10 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 
 namespace wide {
 
-using Lanes [[gnu::vector_size(32)]] = double;
-constexpr int lane_count = 4;  // numbers in 32 bytes
+#include "problem/lanes_of_four.hpp"
 
 [[gnu::always_inline]] inline Lanes root(const Lanes& x) {
   return _mm256_sqrt_pd(x);
-}
-
-[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
-  const __m256d row_0 = _mm256_loadu_pd(from[0]), row_1 = _mm256_loadu_pd(from[1]),
-                row_2 = _mm256_loadu_pd(from[2]), row_3 = _mm256_loadu_pd(from[3]);
-  const __m256d low_01 = _mm256_unpacklo_pd(row_0, row_1), high_01 = _mm256_unpackhi_pd(row_0, row_1),
-                low_23 = _mm256_unpacklo_pd(row_2, row_3), high_23 = _mm256_unpackhi_pd(row_2, row_3);
-  w = _mm256_permute2f128_pd(low_01, low_23, 0x20);
-  x = _mm256_permute2f128_pd(high_01, high_23, 0x20);
-  y = _mm256_permute2f128_pd(low_01, low_23, 0x31);
-  z = _mm256_permute2f128_pd(high_01, high_23, 0x31);
 }
 
 [[gnu::always_inline]] inline void store(const Lanes* const* rows, double* const* to, int at) {

@@ -50,7 +50,7 @@ std::vector<Vector6d> spatial_differences(const Problem& problem, const Matrix8d
   for (std::size_t i = 0; i < count; i += detail::FourForms::count) {
     const auto steps = detail::TangentSpace::newton_steps_without(all, forms[i / detail::FourForms::count]);
     for (std::size_t k = 0; k < detail::FourForms::count && i + k < count; ++k)
-      for (int row = 0; row < 6; ++row) differences[i + k][row] = steps[static_cast<std::size_t>(row)][k];
+      differences[i + k] = detail::column(steps, k);
   }
   for (Vector6d& difference : differences) difference.head<3>() *= length;
   return differences;

@@ -105,19 +105,10 @@ constexpr int place(int i, int j) {
 /// Of any processor: pairs.
 namespace narrow {
 
-using Lanes [[gnu::vector_size(16)]] = double;
-constexpr int lane_count = 2;  // numbers in 16 bytes
+#include "problem/lanes_of_two.hpp"
 
 [[gnu::always_inline]] inline bool positive(const Lanes& x) {
   return x[0] > 0 && x[1] > 0;
-}
-
-/// The four numbers of each lane.
-[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
-  w = Lanes{from[0][0], from[1][0]};
-  x = Lanes{from[0][1], from[1][1]};
-  y = Lanes{from[0][2], from[1][2]};
-  z = Lanes{from[0][3], from[1][3]};
 }
 
 #include "uncertainty/tangent_lanes.hpp"
@@ -134,22 +125,10 @@ constexpr int lane_count = 2;  // numbers in 16 bytes
 
 namespace wide {
 
-using Lanes [[gnu::vector_size(32)]] = double;
-constexpr int lane_count = 4;  // numbers in 32 bytes
+#include "problem/lanes_of_four.hpp"
 
 [[gnu::always_inline]] inline bool positive(const Lanes& x) {
   return _mm256_movemask_pd(_mm256_cmp_pd(x, _mm256_setzero_pd(), _CMP_GT_OQ)) == 15;
-}
-
-[[gnu::always_inline]] inline void gather(const double* const* from, Lanes& w, Lanes& x, Lanes& y, Lanes& z) {
-  const __m256d row_0 = _mm256_loadu_pd(from[0]), row_1 = _mm256_loadu_pd(from[1]),
-                row_2 = _mm256_loadu_pd(from[2]), row_3 = _mm256_loadu_pd(from[3]);
-  const __m256d low_01 = _mm256_unpacklo_pd(row_0, row_1), high_01 = _mm256_unpackhi_pd(row_0, row_1),
-                low_23 = _mm256_unpacklo_pd(row_2, row_3), high_23 = _mm256_unpackhi_pd(row_2, row_3);
-  w = _mm256_permute2f128_pd(low_01, low_23, 0x20);
-  x = _mm256_permute2f128_pd(high_01, high_23, 0x20);
-  y = _mm256_permute2f128_pd(low_01, low_23, 0x31);
-  z = _mm256_permute2f128_pd(high_01, high_23, 0x31);
 }
 
 #include "uncertainty/tangent_lanes.hpp"

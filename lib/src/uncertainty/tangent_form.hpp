@@ -36,6 +36,11 @@ struct TangentForm {
 template <std::size_t n>
 using Fours = std::array<std::array<double, 4>, n>;
 
+/// The number of each row at place k.
+inline Vector6d column(const Fours<6>& numbers, std::size_t k) {
+  return {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k], numbers[4][k], numbers[5][k]};
+}
+
 /// Forms of four blocks. Of the curvatures the lower triangles, by columns.
 struct FourForms {
   static constexpr std::size_t count = 4;  // numbers in 32 bytes, the width of AVX2

@@ -99,11 +99,6 @@ void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, c
     blocks.information[i] = sums_of_products(transposed.empty() ? blocks.forms[i] : transposed[i], products);
 }
 
-/// The number of each row at place k.
-Vector6d column(const Fours<6>& numbers, std::size_t k) {
-  return {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k], numbers[4][k], numbers[5][k]};
-}
-
 /// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
 Jackknife jackknife_of(const Blocks& blocks, const TangentForm& all, double pairs,
                        const ShownDirections& directions) {
