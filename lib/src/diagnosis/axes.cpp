@@ -225,29 +225,22 @@ std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
 /// The orthogonal matrix, mirrored as W is, that suits the steps best: from W, which has six unknowns more
 /// and what noise makes of them. Gauss-Newton for it and the lever arm t: (R_s - 1) t + t_s + R_world_s' W
 /// d_s - R R_world' W d = 0.
-Matrix3d refined(std::vector<Step>& steps, const Matrix3d& R, Matrix3d W, int rounds) {
-  Vector6d x = Vector6d::Zero();  // t, and the turn of W
-  const auto jacobian = [&R, &W](const Step& step) {
-    TurnRows J;
-    J.leftCols<3>() = step.R_s - Matrix3d::Identity();
-    J.rightCols<3>() = R * step.R_world.transpose() * W * cross_matrix(step.d) -
-                       step.R_world_s.transpose() * W * cross_matrix(step.d_s);
-    return J;
-  };
-  const auto residual = [&R, &W](const Step& step) -> Vector3d {
-    return step.t_s + step.R_world_s.transpose() * W * step.d_s - R * step.R_world.transpose() * W * step.d;
-  };
+Matrix3d refined(const std::vector<Step>& steps, const Matrix3d& R, Matrix3d W, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     Matrix6d A = Matrix6d::Zero();
     Vector6d g = Vector6d::Zero();
     for (const Step& step : steps) {
-      const TurnRows J = jacobian(step);
+      const Matrix3d of_s = step.R_world_s.transpose() * W, of_w = R * step.R_world.transpose() * W;
+      const Vector3d residual = step.t_s + of_s * step.d_s - of_w * step.d;
+      TurnRows J;
+      J.leftCols<3>() = step.R_s - Matrix3d::Identity();
+      J.rightCols<3>() = of_w * cross_matrix(step.d) - of_s * cross_matrix(step.d_s);
       A += step.weight * J.transpose() * J;
-      g -= step.weight * J.transpose() * residual(step);
+      g -= step.weight * J.transpose() * residual;
     }
     A.diagonal().head<3>().array() += 1e-6 * A.diagonal().head<3>().sum() + 1e-300;
     A.diagonal().tail<3>().array() += 1e-6 * A.diagonal().tail<3>().sum() + 1e-300;
-    x = A.ldlt().solve(g);
+    const Vector6d x = A.ldlt().solve(g);  // t, and the turn of W
     if (!x.allFinite()) break;
     W = W * rotation_exp(x.tail<3>()).toRotationMatrix();
   }
@@ -272,8 +265,8 @@ bool is_permutation(const Matrix3d& axes) {
   return (axes.array() == axes.array().round()).all();
 }
 
-double turn_of(const Matrix3d& axes) {
-  return rotation_log(Rotation(axes.determinant() < 0 ? Matrix3d(-axes) : axes)).norm();
+Vector3d turn_of(const Matrix3d& axes) {
+  return rotation_log(Rotation(axes.determinant() < 0 ? Matrix3d(-axes) : axes));
 }
 
 std::vector<PoseReading> inverse_rotation_readings() {

@@ -47,7 +47,7 @@ std::vector<PoseReading> common_axes_readings(const Instants& instants, int stri
 /// Whether the matrix only exchanges and mirrors axes.
 bool is_permutation(const Eigen::Matrix3d& axes);
 
-/// Angle of a turn, but for mirroring at the origin [rad].
-double turn_of(const Eigen::Matrix3d& axes);
+/// Rotation vector of a turn, but for mirroring at the origin [rad].
+Eigen::Vector3d turn_of(const Eigen::Matrix3d& axes);
 
 }  // namespace egocal::detail

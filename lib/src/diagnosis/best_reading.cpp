@@ -117,8 +117,8 @@ BestReading best_common_mistake(const Evidence& evidence, const DiagnosisOptions
     twin.reset();
   if (number_explains(compare(best.as_is.explained, best.scaled.explained), options) &&
       shows_scale(evidence, best, options))
-    return {best.scaled, twin};
-  return {best.as_is, twin};
+    return {best.scaled, twin, {}};
+  return {best.as_is, twin, {}};
 }
 
 /// Positions mirrored at the origin in one stream are those of the other one mirrored, for every rotation.
@@ -134,32 +134,46 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
 
 double least_gain_of(const PoseReading& reading, const DiagnosisOptions& options) {
   const TurnedAxesOptions turned;
-  const bool small = !is_permutation(reading.axes) && turn_of(reading.axes) < turned.small;
+  const bool small = !is_permutation(reading.axes) && turn_of(reading.axes).norm() < turned.small;
   return small ? turned.gain_of_small : options.least_gain;
 }
 
+struct CommonAxes {
+  std::optional<Explanation> best, possible;
+};
+
 /// The same wrong axes in both files, the one that fits best: what is left may agree nearly where both
-/// sensors stand alike.
-std::optional<Explanation> common_axes(const Evidence& evidence, const DiagnosisOptions& options) {
+/// sensors stand alike. And inverse rotations that are possible.
+CommonAxes common_axes(const Evidence& evidence, const DiagnosisOptions& options) {
   const CommonAxesOptions least;
-  std::optional<Explanation> best;
+  const Explained& given = evidence.given.explained;
+  CommonAxes result;
+  double gain_of_possible = 0;
   for (const PoseReading& reading :
        common_axes_readings(evidence.instants, evidence.stride, options.motions.first_look, options)) {
     Explanation here = explained(evidence, "axes_both", reading, reading, options);
     if (here.explained.motions.all.empty() || !explains(here.explained, options)) continue;
+    const Comparison comparison = compare(given, here.explained);
     // as where both are inverted, noise alone may suit the wrong reading better, and far from the origin any
     // residual is a small part of its motions
-    const Explained& given = evidence.given.explained;
-    const bool turned_too = !reading.axes.isIdentity(0);
-    if (reading.conjugate &&
-        (compare(given, here.explained).gain < (turned_too ? decisive_loss : least.gain) ||
-         loss_in_metres(given, here.explained) > -(turned_too ? decisive_loss : least.gain_in_metres)))
-      continue;
-    if (compare(given, here.explained).gain < least_gain_of(reading, options)) continue;
+    if (reading.conjugate) {
+      const double loss = loss_in_metres(given, here.explained);
+      const bool turned_too = !reading.axes.isIdentity(0);
+      if (!turned_too && better(comparison, least.possible_gain, least.possible_sigmas) &&
+          loss <= -least.possible_gain_in_metres && comparison.gain > gain_of_possible) {
+        result.possible = here;
+        gain_of_possible = comparison.gain;
+      }
+      if (comparison.gain < (turned_too ? decisive_loss : least.gain) ||
+          loss > -(turned_too ? decisive_loss : least.gain_in_metres))
+        continue;
+    }
+    if (comparison.gain < least_gain_of(reading, options)) continue;
     // simple readings come first
-    if (!best || compare(best->explained, here.explained).gain > options.alike) best = std::move(here);
+    if (!result.best || compare(result.best->explained, here.explained).gain > options.alike)
+      result.best = std::move(here);
   }
-  return best;
+  return result;
 }
 
 /// Positions of one file in other axes than its rotations. Exchanged columns are what people do; turned axes
@@ -206,19 +220,21 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     if (turned_other && !fits_better(turned_other, *turned)) std::swap(turned, turned_other);
   }
   BestReading result = given;
-  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options)};
+  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options), {}};
   if (turned && better(compare(result.best.explained, turned->explained), options.gain, options))
-    result = {*turned, turned_other};
-  if (std::optional<Explanation> both = common_axes(evidence, options)) {
+    result = {*turned, turned_other, {}};
+  CommonAxes common = common_axes(evidence, options);
+  if (std::optional<Explanation>& both = common.best) {
     const Comparison comparison = compare(result.best.explained, both->explained);
     // columns that one program exchanged in both files are simpler than axes of one file that are turned
     const bool simpler = is_permutation(both->read_b.axes) && turned && result.best.code == turned->code &&
                          !is_permutation(result.best.read_a.axes * result.best.read_b.axes);
     if (better(comparison, options.gain, options))
-      result = {*std::move(both), {}};
+      result = {*std::move(both), {}, {}};
     else if (simpler && comparison.gain > -options.alike)
-      result = {*std::move(both), result.best};
+      result = {*std::move(both), result.best, {}};
   }
+  result.inverse_rotations = std::move(common.possible);
   return result;
 }
 

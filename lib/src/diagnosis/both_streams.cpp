@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "diagnosis/axes.hpp"
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/forward.hpp"
 #include "diagnosis/pace.hpp"
@@ -54,23 +53,6 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
   Finding finding = finding_of(both, comparison, trace);
   finding.improvement = comparison.ratio;
   return finding;
-}
-
-std::optional<Finding> both_rotations_inverse(const Evidence& evidence, const DiagnosisOptions& options) {
-  const CommonAxesOptions least;
-  const Explained& given = evidence.given.explained;
-  std::optional<Finding> best;
-  for (const PoseReading& reading : inverse_rotation_readings()) {
-    const Explanation here = explained(evidence, "axes_both", reading, reading, options);
-    if (here.explained.motions.all.empty() || !explains(here.explained, options)) continue;
-    const Comparison comparison = compare(given, here.explained);
-    if (!better(comparison, least.possible_gain, least.possible_sigmas) ||
-        loss_in_metres(given, here.explained) > -least.possible_gain_in_metres)
-      continue;
-    if (!best || best->improvement < std::exp(comparison.gain))
-      best = worded_reading(finding_of(here, comparison, false), reading, reading);
-  }
-  return best;
 }
 
 std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options) {

@@ -20,10 +20,6 @@ constexpr double decisive_loss = 3;
 /// the inverted ones: a mount that moved looks the same. Otherwise both answers stand.
 std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options);
 
-/// Rotations of both files that are those of the inverse poses, where the motions show it but do not prove
-/// it: uncertain. What is certain is found among the axes (best_reading.cpp).
-std::optional<Finding> both_rotations_inverse(const Evidence& evidence, const DiagnosisOptions& options);
-
 /// The order of the quaternions wrong in both streams alike: where both sensors move in nearly the same way
 /// that is nearly consistent. Short motions, of which there are many, show it.
 std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options);

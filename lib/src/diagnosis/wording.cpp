@@ -39,7 +39,7 @@ std::string columns(const Eigen::Matrix3d& axes) {
 /// What must be done to the positions so that they suit the rotations.
 std::string turned(const Eigen::Matrix3d& axes) {
   const bool mirrored = axes.determinant() < 0;
-  const Eigen::Vector3d turn = rotation_log(Rotation(mirrored ? Eigen::Matrix3d(-axes) : axes));
+  const Eigen::Vector3d turn = turn_of(axes);
   const double angle = turn.norm();
   const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitZ();
   return format("positions turned by %.1f deg about (%.2f %.2f %.2f)%s", angle * 180 / std::numbers::pi,
