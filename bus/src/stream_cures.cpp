@@ -116,8 +116,7 @@ std::string cure_of_rejection(const std::string& reason) {
        "poses are further apart than max_gap in the rig file: a slow or interrupted stream."},
       {std::string(to_string(Rejection::frozen)),
        "one odometry repeats the same pose while the other one moves: it has stopped working, or is sent "
-       "more "
-       "often than it is computed (send each pose once)."},
+       "more often than it is computed (send each pose once)."},
       {std::string(to_string(Rejection::screw_congruence)),
        "motions of the two sensors differ by more than noise: outliers, clocks apart, or a loose mount."},
       {std::string(to_string(Rejection::too_much_rotation)),

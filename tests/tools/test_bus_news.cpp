@@ -31,7 +31,7 @@ class BusNewsTest : public AnswersTest {
     pairing.state = "running";
     diagnosis.name = diagnosis.role = "diagnosis";
     diagnosis.state = "running";
-    told = problem(1);
+    latest = problem(1);
   }
 
   /// Everything that was reported meanwhile.
@@ -45,12 +45,12 @@ class BusNewsTest : public AnswersTest {
       if (left) news->hear("LEFT", bus::encode(bus::to_message(pose, now)), now);
       pose.time_us += ahead_us;
       if (right) news->hear("RIGHT", bus::encode(bus::to_message(pose, now)), now);
-      if (pairs && left && right && ahead_us == 0) ++told.seq;
-      told.utime = begin_us + now;
+      if (pairs && left && right && ahead_us == 0) ++latest.seq;
+      latest.utime = begin_us + now;
       const bool repeats = now % second == 0;
       if (repeats && pairing_runs) news->hear(pairing, now);
       if (repeats) news->hear(diagnosis, now);
-      if (pairing_runs && told.seq > 1 && (repeats || (left && right))) news->hear(told, now);
+      if (pairing_runs && latest.seq > 1 && (repeats || (left && right))) news->hear(latest, now);
       text += news->lines(answers, now);
     }
     return text;
@@ -67,7 +67,7 @@ class BusNewsTest : public AnswersTest {
   std::optional<BusNews> news;
   Answers answers;
   status_t pairing{}, diagnosis{};
-  problem_t told;
+  problem_t latest;
   std::int64_t now = 50 * second, ahead_us = 0;
   bool left = true, right = true, pairs = true, pairing_runs = true;
 };
@@ -157,7 +157,7 @@ TEST_F(BusNewsTest, WhatComesAndGoesIsReportedOnceAMinute) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6) << text;
 }
 
-TEST_F(BusNewsTest, AUserWhoPausesIsNotTold) {
+TEST_F(BusNewsTest, NothingIsReportedWhileAUserPauses) {
   run(10);
   command("pause");
   pairs = false;
@@ -167,7 +167,7 @@ TEST_F(BusNewsTest, AUserWhoPausesIsNotTold) {
   EXPECT_THAT(run(4), HasSubstr("pairing rejects the poses")) << "it is not paused";
   pairs = true;
   run(4);
-  pairing.state = "paused";  // whoever paused it, and whether or not the command was heard
+  pairing.state = "paused";  // its status shows it, even if the command was lost
   pairs = false;
   EXPECT_EQ(run(20), "");
 }

@@ -38,7 +38,7 @@ void BusNews::hear(const status_t& status, std::int64_t now_us) {
     return;
   const bool paused = status.state == bus::state_name(bus::State::paused);
   if (pairing_.empty() || paused != pairing_paused_)
-    for (auto& [name, pair] : pairs_) motions_may_come(pair, now_us);
+    for (auto& [name, pair] : pairs_) pair.motion_us = now_us;
   pairing_ = status.name;
   pairing_paused_ = paused;
   count_rejections(status, now_us);
@@ -129,11 +129,6 @@ std::string BusNews::errors(std::int64_t now_us) {
   return text;
 }
 
-/// What was missed until now is nobody's fault.
-void BusNews::motions_may_come(Pair& of, std::int64_t now_us) const {
-  of.motion_us = now_us;
-}
-
 void BusNews::hear(const problem_t& problem, std::int64_t now_us) {
   const auto found = pairs_.find({problem.sensor_a, problem.sensor_b});
   if (found == pairs_.end()) return;
@@ -142,7 +137,7 @@ void BusNews::hear(const problem_t& problem, std::int64_t now_us) {
   const bool first_or_back = seconds(pair.problem_us, now_us) > options_.pairing_silent;
   const bool is_new =
       !pair.newest || pair.newest->first != number.first || pair.newest->second < number.second;
-  if (is_new || first_or_back) motions_may_come(pair, now_us);
+  if (is_new || first_or_back) pair.motion_us = now_us;
   if (is_new && pair.paused_us && seconds(*pair.paused_us, now_us) > options_.settle)
     pair.paused_us.reset();  // it was resumed, or the command was lost
   if (is_new && std::exchange(pair.standing_reported, false))
@@ -159,7 +154,7 @@ void BusNews::hear(const command_t& command, std::int64_t now_us) {
     const bool all = command.sensor_a.empty() && command.sensor_b.empty();
     if (!all && (command.sensor_a != name.first || command.sensor_b != name.second)) continue;
     pair.paused_us = pause ? std::optional(now_us) : std::nullopt;
-    motions_may_come(pair, now_us);
+    pair.motion_us = now_us;
   }
 }
 

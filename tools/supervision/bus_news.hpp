@@ -38,9 +38,9 @@ struct BusNewsOptions {
   bool live = true;
 };
 
-/// What a person is told who watches nothing: errors of pairing and the diagnosis, pairs that no solver
-/// answers, pairs that find no new motion, once when it begins, and once when it is over. Times are those of
-/// the loop's clock [us].
+/// Reports for a user without a monitor: errors of pairing and the diagnosis, pairs that no solver answers,
+/// and pairs that find no new motion. Each is reported once when it begins and once when it is over. Times
+/// are those of the loop's clock [us].
 class BusNews {
  public:
   BusNews(const bus::Rig& rig, const BusNewsOptions& options);
@@ -64,7 +64,9 @@ class BusNews {
     bus::AnswerAge age;
     bool unanswered_reported = false;
     std::optional<std::pair<std::int64_t, std::int64_t>> newest;  ///< session and number of a problem,
-    std::int64_t problem_us = 0, motion_us = 0;                   ///< when one came, and a new one
+    std::int64_t problem_us = 0;                                  ///< when one came
+    /// When a new one came, or could come first: pairing was paused or silent until then.
+    std::int64_t motion_us = 0;
     std::optional<std::int64_t> paused_us;
     bool standing_reported = false;
     std::optional<std::int64_t> standing_reported_us;
@@ -84,7 +86,6 @@ class BusNews {
   std::string errors(std::int64_t now_us);
   void count_rejections(const status_t& status, std::int64_t now_us);
   std::string mostly_rejected(std::int64_t now_us) const;
-  void motions_may_come(Pair& of, std::int64_t now_us) const;
   std::string why_standing(const Pair& of, const PairName& pair, std::int64_t now_us) const;
   std::string unanswered(Pair& of, const PairName& pair, const Answers& answers, std::int64_t now_us) const;
   std::string standing(Pair& of, const PairName& pair, std::int64_t now_us) const;

@@ -28,8 +28,8 @@ struct OutcomeOptions {
   /// is not missed at either end of a log [s]. Study: of 96 pairs of streams that were recorded together
   /// (../shared/data) the begins and ends of 93 are less than 1 s apart, of three up to 4 s.
   double least_missing = 1;
-  /// A pair whose last motion is farther from the log's end is told so [s]: as one that finds none while it
-  /// runs (BusNewsOptions).
+  /// The end of a log is reported as missing in an answer where the pair's last motion is farther from it
+  /// [s]. As BusNewsOptions::standing.
   double standing = 5;
 };
 
