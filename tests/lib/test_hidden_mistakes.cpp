@@ -61,6 +61,21 @@ TEST(HiddenMistakes, InverseRotationsOfBothFilesThatAreOnlyProbableMakeTheAnswer
   EXPECT_LT(extrinsic_error(right.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.02);
 }
 
+/// A stream that was made from the other one by an extrinsic has that as its answer, whatever it is.
+TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherIsNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  EXPECT_EQ(find(calibrate(right.a, right.b), "same_stream"), nullptr);
+  Trajectory made = right.a;
+  for (StampedPose& pose : made)
+    pose.pose = canonical_sign(
+        normalized(pose.pose * to_dual_quaternion(Pose{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}})));
+  const Calibration calibration = calibrate(right.a, made);
+  const Finding* finding = find(calibration, "same_stream");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_FALSE(finding->certain);
+  EXPECT_NE(finding->message.find("agree to rounding"), std::string::npos) << finding->message;
+}
+
 /// Positions in another world frame: twelve linear unknowns and what noise makes of them are only the start.
 TEST(HiddenMistakes, PositionsThatAreTurnedByAnyAngleHaveAnAnswerOfTheirOwn) {
   const Eigen::Matrix3d turn =

@@ -3,9 +3,13 @@
 // A mount that moves is named with its time and size, and what only looks like a move is not.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <numbers>
+#include <vector>
 
 #include "../support/findings.hpp"
 #include "../support/manoeuvres.hpp"
@@ -61,6 +65,59 @@ TEST(MovedMount, AMountThatGoesBackAndForthIsNamed) {
   EXPECT_NEAR(*moved->time, 7, 2);
   ASSERT_TRUE(moved->T_a_b);
   EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*moved->T_a_b)).rotation, 0.005);
+}
+
+/// The sensor of b turned further about an axis by an angle that depends on the time [s].
+testing::Streams shaken(const std::function<double(double)>& angle) {
+  testing::Streams streams = drive(Terrain::free);
+  const std::int64_t begin_us = streams.b.front().time_us;
+  for (StampedPose& pose : streams.b) {
+    const double t = 1e-6 * static_cast<double>(pose.time_us - begin_us);
+    const Pose turn{rotation_exp(angle(t) * Eigen::Vector3d(0.6, 0.8, 0)), Eigen::Vector3d::Zero()};
+    pose.pose = canonical_sign(normalized(pose.pose * to_dual_quaternion(turn)));
+  }
+  return streams;
+}
+
+/// Faster than blocks of motions can follow, or between more than two places.
+TEST(MovedMount, AMountThatShakesIsDoubtful) {
+  const auto flaps = [](double t) { return static_cast<long>(t) % 2 == 1 ? 0.035 : -0.035; };
+  const auto sways = [](double t) { return 0.035 * std::sin(2 * std::numbers::pi * t / 8); };
+  for (const std::function<double(double)>& angle : {std::function<double(double)>(flaps), {sways}}) {
+    const testing::Streams streams = shaken(angle);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(calibration.verdict, Verdict::doubtful) << calibration.reason;
+    const Finding* moved = find(calibration, "mount_moved");
+    ASSERT_NE(moved, nullptr) << calibration.reason;
+    EXPECT_FALSE(moved->certain);
+    EXPECT_NE(moved->message.find("The rotation between the sensors changes by "), std::string::npos)
+        << moved->message;
+  }
+}
+
+/// An attitude that errs by half a degree for eight seconds, one that drifts by degrees, and noise of 2 deg
+/// in single poses.
+TEST(MovedMount, RotationsThatErrDoNotShake) {
+  constexpr double period = 0.1;
+  testing::Random random(5);
+  double error = 0, drift = 0;
+  std::vector<double> errors, drifts, noise;
+  for (int i = 0; i < 2000; ++i) {
+    const double forgotten = period / 8;
+    error += -forgotten * error + std::sqrt(2 * forgotten) * 0.009 * random.normal();
+    drift += std::sqrt(period) * 0.01 * random.normal();
+    errors.push_back(error);
+    drifts.push_back(drift);
+    noise.push_back(0.035 * random.normal());
+  }
+  for (const std::vector<double>* angles : {&errors, &drifts, &noise}) {
+    const testing::Streams streams = shaken([&](double t) {
+      return (*angles)[std::min(angles->size() - 1, static_cast<std::size_t>(t / period))];
+    });
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    const Finding* moved = find(calibration, "mount_moved");
+    EXPECT_EQ(moved, nullptr) << moved->message;
+  }
 }
 
 /// A car in town, two minutes at 10 Hz, whose sensors find their poses in a map: noise of 0.3 deg and 3 cm

@@ -28,6 +28,7 @@
 #include "diagnosis/planes.hpp"
 #include "diagnosis/standing_still.hpp"
 #include "diagnosis/stream_check.hpp"
+#include "diagnosis/swaying_mount.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/foresee.hpp"
@@ -197,6 +198,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   std::optional<Finding> last = std::move(late);
   if (!last && answered.problem.mode != Mode::planar)
     last = back_and_forth(evidence.instants, answered, options);
+  if (!last && answered.problem.mode != Mode::planar)
+    last = swaying_mount(evidence.instants, answered, options);
   if (last) findings.insert(findings.begin(), *std::move(last));
 }
 
@@ -379,7 +382,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   name_wrong_scale(evidence, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
-    for (Finding& finding : in_one_frame(answered)) result.findings.push_back(std::move(finding));
+    for (const std::vector<Finding>& found : {in_one_frame(answered), made_from_each_other(result.fit)})
+      result.findings.insert(result.findings.end(), found.begin(), found.end());
   const auto reads_otherwise = [](const Finding& one) {
     return one.certain && one.code.starts_with("inverted_");
   };

@@ -330,4 +330,17 @@ std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOpt
   return {finding};
 }
 
+std::vector<Finding> made_from_each_other(const Fit& fit, const StreamCheckOptions& options) {
+  if (fit.rotation_median > options.of_rounding || fit.translation_relative_median > options.of_rounding)
+    return {};
+  Finding finding;
+  finding.code = "same_stream";
+  finding.message =
+      "The motions agree to rounding, as those of two sensors never do: one stream was made from the other, "
+      "or "
+      "both were simulated without noise.";
+  finding.remedy = "Give what each sensor measured by itself; ignore this where the streams were simulated.";
+  return {finding};
+}
+
 }  // namespace egocal::detail

@@ -42,6 +42,9 @@ struct StreamCheckOptions {
   double parallel = 0.0087, close = 0.2;
   double known_rotation = 0.0175,
          known_translation = 0.3;  ///< standard deviations up to here show it [rad, m]
+  /// Half of the motions agree to less [rad, and as a part of their length]: rounding, and a hundredth of
+  /// what two sensors leave.
+  double of_rounding = 1e-5;
 };
 
 /// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream,
@@ -59,5 +62,9 @@ std::vector<Finding> unrelated_part(const Motions& motions, const StreamCheckOpt
 /// same_stream, uncertain: the answer is the identity, as far as it is known. Both streams are then of one
 /// frame; where poses were moved to the vehicle's frame before, the answer is not the mounting.
 std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOptions& options = {});
+
+/// same_stream, uncertain: the motions agree to rounding. One stream was made from the other, and whatever
+/// made it is the answer; or both were simulated without noise.
+std::vector<Finding> made_from_each_other(const Fit& fit, const StreamCheckOptions& options = {});
 
 }  // namespace egocal::detail
