@@ -164,13 +164,18 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   choice.reason = "fixed";
   if (options.balance) return choice;
   std::vector<Candidate> candidates;
-  for (const double translation : options.accumulator.balances)
-    candidates.push_back({1, {1, translation}, problem.blocks});
+  const auto add = [&](const std::vector<double>& balances) {
+    for (const double translation : balances) candidates.push_back({1, {1, translation}, problem.blocks});
+  };
+  const std::vector<double>& balances = options.accumulator.balances;
+  add(balances);
   choice.reason = "too few motions to choose";
-  if (const auto selection = select_candidate(problem, candidates, std::nullopt)) {
-    choice.balance = candidates[selection->index].balance;
-    choice.reason = "smallest jack-knife spread of " + std::to_string(candidates.size()) + " balances";
-  }
+  std::optional<Selection> selection = select_candidate(problem, candidates, std::nullopt);
+  if (!selection) return choice;
+  add(smaller_balances(problem, candidates[selection->index], std::ranges::min(balances)));
+  if (candidates.size() > balances.size()) selection = select_candidate(problem, candidates, std::nullopt);
+  choice.balance = candidates[selection->index].balance;
+  choice.reason = "smallest jack-knife spread of " + std::to_string(candidates.size()) + " balances";
   return choice;
 }
 

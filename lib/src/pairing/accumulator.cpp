@@ -265,21 +265,34 @@ void Accumulator::choose() {
   const Problem problem = empty_problem();
   std::vector<Candidate> candidates;
   std::optional<std::size_t> current;
-  candidates.reserve(state_.strides.size() * options_.accumulator.balances.size());
-  for (const AccumulatorState::PerStride& entry : state_.strides) {
-    const std::vector<Statistics> inliers = entry.statistics.inliers();
-    for (const double translation : options_.accumulator.balances) {
-      const Balance balance = options_.balance.value_or(Balance{1, translation});
-      if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
-          balance.translation == state_.choice.balance.translation)
-        current = candidates.size();
-      candidates.push_back({entry.stride, balance, inliers});
-      if (options_.balance) break;
+  const auto select = [&](const std::vector<double>& balances) {
+    candidates.clear();
+    current.reset();
+    candidates.reserve(state_.strides.size() * balances.size());
+    for (const AccumulatorState::PerStride& entry : state_.strides) {
+      const std::vector<Statistics> inliers = entry.statistics.inliers();
+      for (const double translation : balances) {
+        const Balance balance = options_.balance.value_or(Balance{1, translation});
+        if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
+            balance.translation == state_.choice.balance.translation)
+          current = candidates.size();
+        candidates.push_back({entry.stride, balance, inliers});
+        if (options_.balance) break;
+      }
+    }
+    return select_candidate(problem, candidates, current, tuning_.selection);
+  };
+  std::vector<double> balances = options_.accumulator.balances;
+  std::optional<Selection> selection = select(balances);
+  if (!selection) return;
+  if (!options_.balance) {
+    const std::vector<double> smaller = smaller_balances(problem, candidates[selection->index],
+                                                         std::ranges::min(balances), tuning_.selection);
+    if (!smaller.empty()) {
+      balances.insert(balances.end(), smaller.begin(), smaller.end());
+      selection = select(balances);
     }
   }
-  const std::optional<Selection> selection =
-      select_candidate(problem, candidates, current, tuning_.selection);
-  if (!selection) return;
   const Candidate& chosen = candidates[selection->index];
   state_.choice.stride = chosen.stride;
   state_.choice.balance = chosen.balance;

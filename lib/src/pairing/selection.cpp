@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "egocal/uncertainty/observability.hpp"
+#include "estimation/spread_by_poses.hpp"
 #include "online/solve_and_verify.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -140,6 +141,23 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (possible[i] && (!best || better(i, *best))) best = i;
   return best ? std::optional(Selection{*best, trials[*best]->spread}) : std::nullopt;
+}
+
+std::vector<double> smaller_balances(const Problem& problem, const Candidate& chosen, double least,
+                                     const SelectionOptions& options) {
+  if (problem.mode == Mode::planar) return {};
+  const Statistics sum = sum_blocks(chosen.blocks);
+  const DualQuaternion q = detail::minimiser(cost_matrix(sum, chosen.balance), problem.mode);
+  const double translation = q.vec().dot(sum.dual_rows * q.vec()),
+               rotation = q.real.dot(sum.dual_rows.bottomRightCorner<4, 4>() * q.real);
+  std::vector<double> balances;
+  double balance = least;
+  if (!(balance * translation > options.imbalance * rotation)) return balances;
+  while (balance > options.least_balance && options.imbalance * balance * translation > rotation) {
+    balance /= 10;
+    balances.push_back(balance);
+  }
+  return balances;
 }
 
 }  // namespace egocal

@@ -38,6 +38,12 @@ struct SelectionOptions {
   /// turns) no spread shows, but it fades as motions grow. Four: of 36 comparisons a drive, one in 400
   /// drives.
   double contradicts = 4;
+  /// Translations that weigh more than this many times as much as rotations, by their squared residuals, with
+  /// the smallest of the given balances have smaller ones tried as well (a tenth, a hundredth, ...), until
+  /// rotations weigh this many times as much. An aircraft at 100 m/s errs by 20 m and 2 deg in four seconds:
+  /// the balance is 3e-6, and with 0.001 its answer was turned about the direction of travel by 150 deg.
+  double imbalance = 10;
+  double least_balance = 1e-9;  ///< smaller ones are not tried: a cost in metres keeps its digits [1/m^2]
 };
 
 /// The blocks, neighbours joined until each has at least `least_pairs` pairs.
@@ -69,5 +75,10 @@ struct Selection {
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
                                           std::optional<std::size_t> current,
                                           const SelectionOptions& options = {});
+
+/// Translation weights below `least` that are to be tried after `chosen` won (SelectionOptions::imbalance),
+/// in falling order; mostly none [1/m^2]. Not in planar mode.
+std::vector<double> smaller_balances(const Problem& problem, const Candidate& chosen, double least,
+                                     const SelectionOptions& options = {});
 
 }  // namespace egocal
