@@ -53,18 +53,25 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
       d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (second.has(i) ? d.x2 : d.x1));
     const double limit = longest_length(d.residuals, options);
     std::array<std::size_t, 2> all{}, shortened{};  // blocks of each side
+    std::array<double, 2> own{}, others{};          // squared residuals at either optimum
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const std::size_t side = second.has(i) ? 1 : 0;
       const Parameters& x = side == 1 ? d.x2 : d.x1;
+      const Parameters& other = side == 1 ? d.x1 : d.x2;
       const double length = d.residuals[i].norm();
       ++all[side];
+      own[side] += length * length;
+      others[side] += (blocks[i].inverse_root * (blocks[i].g + blocks[i].H * other)).squaredNorm();
       if (length > limit) {
         d.residuals[i] *= limit / length;
         ++shortened[side];
       }
       d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
     }
-    d.fits = 2 * shortened[0] <= all[0] && 2 * shortened[1] <= all[1];
+    const auto side_fits = [&](std::size_t side) {
+      return 2 * shortened[side] <= all[side] || own[side] <= options.own_part * others[side];
+    };
+    d.fits = side_fits(0) && side_fits(1);
   }
   return d;
 }
