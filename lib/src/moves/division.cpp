@@ -52,16 +52,16 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
     for (std::size_t i = 0; i < blocks.size(); ++i)
       d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (second.has(i) ? d.x2 : d.x1));
     const double limit = longest_length(d.residuals, options);
-    std::array<std::size_t, 2> all{}, shortened{};  // blocks of each side
-    std::array<double, 2> own{}, others{};          // squared residuals at either optimum
+    std::array<std::size_t, 2> all{}, shortened{};   // blocks of each side
+    std::array<std::vector<double>, 2> own, others;  // squared residuals at either optimum
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const std::size_t side = second.has(i) ? 1 : 0;
       const Parameters& x = side == 1 ? d.x2 : d.x1;
       const Parameters& other = side == 1 ? d.x1 : d.x2;
       const double length = d.residuals[i].norm();
       ++all[side];
-      own[side] += length * length;
-      others[side] += (blocks[i].inverse_root * (blocks[i].g + blocks[i].H * other)).squaredNorm();
+      own[side].push_back(length * length);
+      others[side].push_back((blocks[i].inverse_root * (blocks[i].g + blocks[i].H * other)).squaredNorm());
       if (length > limit) {
         d.residuals[i] *= limit / length;
         ++shortened[side];
@@ -69,7 +69,8 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
       d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
     }
     const auto side_fits = [&](std::size_t side) {
-      return 2 * shortened[side] <= all[side] || own[side] <= options.own_part * others[side];
+      // medians: the block in which the mount moved fits neither
+      return 2 * shortened[side] <= all[side] || median(own[side]) <= options.own_part * median(others[side]);
     };
     d.fits = side_fits(0) && side_fits(1);
   }
