@@ -19,9 +19,9 @@ struct ChangeTestOptions {
   /// Residuals of blocks that are longer than this many medians count as if they were this long: one wrong
   /// block is not a change.
   double longest_residual = 3;
-  /// More than half of a side's blocks are so long: its optimum fits them where it leaves at most this part
-  /// of the squares that the other side's leaves. Where a mount turned by 5 deg, what is not linear in the
-  /// turn is far above the noise, and 0.3 % of the squares.
+  /// More than half of a side's blocks are so long: its optimum fits them where the median of the squares
+  /// that it leaves is at most this part of what the other side's leaves. Where a mount turned by 5 deg, what
+  /// is not linear in the turn is far above the noise, and 0.3 % of the squares.
   double own_part = 0.1;
   /// Curvature that one side lacks is taken from the whole, this part of it: without any, its own optimum is
   /// not defined, and with a millionth a stretch of straight driving was taken for a turn by 135 deg. The
