@@ -152,7 +152,8 @@ std::vector<double> smaller_balances(const Problem& problem, const Candidate& ch
                rotation = q.real.dot(sum.dual_rows.bottomRightCorner<4, 4>() * q.real);
   std::vector<double> balances;
   double balance = least;
-  if (!(balance * translation > options.imbalance * rotation)) return balances;
+  const bool errs = translation > options.least_error * options.least_error * sum.weight;
+  if (!errs || !(balance * translation > options.imbalance * rotation)) return balances;
   while (balance > options.least_balance && options.imbalance * balance * translation > rotation) {
     balance /= 10;
     balances.push_back(balance);
