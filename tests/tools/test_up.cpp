@@ -235,7 +235,7 @@ TEST_F(Up, SaysThatItsOwnListenerWasKilled) {
   EXPECT_THAT(read(path("said")), HasSubstr("what was calibrated is not known; egocal solve --rig "));
 }
 
-// Where a driver dies, the answer stays. Without a report nobody knows that it is old.
+// When a driver process dies, the last answer is still shown. Only the report says that it is old.
 TEST_F(Up, APairWithoutNewMotionsIsReportedAndThatTheyComeAgain) {
   const std::string url = "udpm://239.255.76.67:7755?ttl=0";
   bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});

@@ -30,8 +30,8 @@ struct Division {
   std::vector<Parameters> residuals;  ///< whitened
   Parameters x1, x2;                  ///< optima
   /// Whether each optimum fits its own blocks: most of them, or all far better than the other one does. Where
-  /// a side shows some direction less than its noise does, its optimum there is anything: all its blocks would
-  /// then be wrong ones that have been shortened.
+  /// a side shows some direction less than its noise does, its optimum there is anything: all its blocks
+  /// would then be wrong ones that have been shortened.
   bool fits = true;
 };
 Division divide(Blocks blocks, Part second, const ChangeTestOptions& options);
