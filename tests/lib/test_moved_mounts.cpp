@@ -46,15 +46,30 @@ TEST(MovedMount, AMovedMountIsFoundAtItsTime) {
   EXPECT_GE(calibration.verdict, Verdict::doubtful);
 }
 
-/// A loose bolt: another place in every second stretch of 7 s. The one answer lies between both.
-TEST(MovedMount, AMountThatGoesBackAndForthIsNamed) {
-  const DualQuaternion change = to_dual_quaternion(Pose{rotation_exp({0.03, 0.05, 0}), {0, 0.05, 0}});
+/// The sensor of b moved by an amount that depends on the time in microseconds since its first pose.
+testing::Streams with_moving_mount(const std::function<Pose(std::int64_t)>& moved) {
   testing::Streams streams = drive(Terrain::free);
-  EXPECT_LE(calibrate(streams.a, streams.b).verdict, Verdict::incomplete);
   const std::int64_t begin_us = streams.b.front().time_us;
   for (StampedPose& pose : streams.b)
-    if ((pose.time_us - begin_us) / 7'000'000 % 2 == 1)
-      pose.pose = canonical_sign(normalized(pose.pose * change));
+    pose.pose = canonical_sign(normalized(pose.pose * to_dual_quaternion(moved(pose.time_us - begin_us))));
+  return streams;
+}
+
+/// Turned about an axis by an angle that depends on the time [s].
+testing::Streams shaken(const std::function<double(double)>& angle) {
+  return with_moving_mount([&](std::int64_t time_us) {
+    return Pose{rotation_exp(angle(1e-6 * static_cast<double>(time_us)) * Eigen::Vector3d(0.6, 0.8, 0)),
+                Eigen::Vector3d::Zero()};
+  });
+}
+
+/// A loose bolt: another place in every second stretch of 7 s. The one answer lies between both.
+TEST(MovedMount, AMountThatGoesBackAndForthIsNamed) {
+  const testing::Streams still = drive(Terrain::free);
+  EXPECT_LE(calibrate(still.a, still.b).verdict, Verdict::incomplete);
+  const testing::Streams streams = with_moving_mount([](std::int64_t time_us) {
+    return time_us / 7'000'000 % 2 == 1 ? Pose{rotation_exp({0.03, 0.05, 0}), {0, 0.05, 0}} : Pose{};
+  });
   const Calibration calibration = calibrate(streams.a, streams.b);
   EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
   const Finding* moved = find(calibration, "mount_moved");
@@ -65,18 +80,6 @@ TEST(MovedMount, AMountThatGoesBackAndForthIsNamed) {
   EXPECT_NEAR(*moved->time, 7, 2);
   ASSERT_TRUE(moved->T_a_b);
   EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*moved->T_a_b)).rotation, 0.005);
-}
-
-/// The sensor of b turned further about an axis by an angle that depends on the time [s].
-testing::Streams shaken(const std::function<double(double)>& angle) {
-  testing::Streams streams = drive(Terrain::free);
-  const std::int64_t begin_us = streams.b.front().time_us;
-  for (StampedPose& pose : streams.b) {
-    const double t = 1e-6 * static_cast<double>(pose.time_us - begin_us);
-    const Pose turn{rotation_exp(angle(t) * Eigen::Vector3d(0.6, 0.8, 0)), Eigen::Vector3d::Zero()};
-    pose.pose = canonical_sign(normalized(pose.pose * to_dual_quaternion(turn)));
-  }
-  return streams;
 }
 
 /// Faster than blocks of motions can follow, or between more than two places.
