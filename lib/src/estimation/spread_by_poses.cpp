@@ -15,13 +15,13 @@ DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
   return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
 }
 
-Seen seen_directions(const Problem& problem) {
+SeenDirections seen_directions(const Problem& problem) {
   const Matrix8d Q = cost_matrix(problem);
   const Answer answer = solve_and_verify(problem, Q, Method::dual);
   return observable_directions(problem, Q, answer.T_a_b, ErrorCorrelation::independent);
 }
 
-SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen) {
+SpreadByPoses spread_by_poses(const Problem& problem, const SeenDirections& seen) {
   const Matrix8d Q = cost_matrix(problem);
   const DualQuaternion q = minimiser(Q, problem.mode);
   const DualQuaternion T_a_b =

@@ -10,9 +10,9 @@
 namespace egocal::detail {
 
 /// Directions (x y z roll pitch yaw of sensor a's frame) that the motions show.
-using Seen = std::array<bool, 6>;
+using SeenDirections = std::array<bool, 6>;
 
-Seen seen_directions(const Problem& problem);
+SeenDirections seen_directions(const Problem& problem);
 
 /// How far the answers scatter when blocks of instants are omitted, each with all motions that touch it.
 /// Over the directions that are seen.
@@ -30,7 +30,7 @@ struct SpreadByPoses {
 
 /// problem: touching blocks, as WeightedBlocks make them. The score is not finite where a block cannot be
 /// omitted.
-SpreadByPoses spread_by_poses(const Problem& problem, const Seen& seen);
+SpreadByPoses spread_by_poses(const Problem& problem, const SeenDirections& seen);
 
 /// Standard error of the difference of two scores of the same blocks.
 double standard_error(const SpreadByPoses& x, const SpreadByPoses& y);

@@ -16,7 +16,7 @@ namespace egocal {
 
 namespace {
 
-using detail::Seen;
+using detail::SeenDirections;
 using detail::spread_by_poses;
 using detail::SpreadByPoses;
 using detail::standard_error;
@@ -249,9 +249,9 @@ class Trials {
     weights_ = weights;
     return problem_.blocks.size() >= options_.least_blocks;
   }
-  Seen seen() const { return detail::seen_directions(problem_); }
+  SeenDirections seen() const { return detail::seen_directions(problem_); }
   /// With the noise that omitting blocks misses.
-  SpreadByPoses spread(const Seen& seen) const {
+  SpreadByPoses spread(const SeenDirections& seen) const {
     SpreadByPoses result = spread_by_poses(problem_, seen);
     const auto missed = [&](const std::vector<double>& weights) {
       return detail::missed_noise(ladder_.strides, weights, growth_, block_length_);
@@ -272,7 +272,7 @@ class Trials {
 
 /// Whether the sum's answer is where motions of one stride, judged one by one, allow it to be. shorter: the
 /// sum's motions are shorter than those.
-bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, bool shorter, const Seen& seen,
+bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, bool shorter, const SeenDirections& seen,
            const WeightingOptions& options) {
   const auto difference = detail::frame_a_difference(single.T_a_b, sum.T_a_b);
   double translation = 0, rotation = 0;
@@ -297,7 +297,8 @@ double weight_taken_off(const Ladder& ladder) {
 
 /// Whether the sum's spread is clearly smaller than that of motions of one stride.
 bool beats(const SpreadByPoses& sum, double mean_stride, const SingleStride& rival, bool in_force,
-           const Ladder& ladder, Trials& trials, const Seen& seen, const WeightingOptions& options) {
+           const Ladder& ladder, Trials& trials, const SeenDirections& seen,
+           const WeightingOptions& options) {
   std::optional<SpreadByPoses> own;  // the rival as it is, in its own blocks
   if (rival.problem.blocks.size() >= options.least_blocks) own = spread_by_poses(rival.problem, seen);
   const auto place = std::find(ladder.strides.begin(), ladder.strides.end(), rival.stride);
@@ -344,10 +345,10 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights
   Trials trials(sums, problem, ladder, blocks.state().block_length, options);
   trials.judge_noise(best->q);
-  Seen seen{};
+  SeenDirections seen{};
   if (!others.empty() && trials.set(others.back().weights)) seen = trials.seen();
   if (!trials.set(best->weights)) return std::nullopt;
-  const Seen more = trials.seen();
+  const SeenDirections more = trials.seen();
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || more[i];
   if (std::none_of(seen.begin(), seen.end(), [](bool direction) { return direction; })) return std::nullopt;
 
