@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/answer_age.hpp"
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal::bus {
 
 void AnswerAge::note(const Number& answer, bool behind, std::int64_t now_us) {
@@ -13,7 +15,7 @@ void AnswerAge::note(const Number& answer, bool behind, std::int64_t now_us) {
 
 double AnswerAge::old(std::int64_t now_us, const AnswerAgeOptions& options) const {
   if (!behind_since_us_) return 0;
-  const double behind = 1e-6 * (static_cast<double>(now_us) - static_cast<double>(*behind_since_us_));
+  const double behind = seconds_between(*behind_since_us_, now_us);
   return behind > options.answered_within ? behind : 0;
 }
 

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal::bus {
 
 namespace {
@@ -28,7 +30,7 @@ bool same_message(const Stamp& one, const Stamp& other) {
 }
 
 std::string jump_in_words(std::int64_t gain_us) {
-  const double seconds = 1e-6 * static_cast<double>(std::abs(gain_us));
+  const double seconds = to_seconds(std::abs(gain_us));
   char text[200];
   std::snprintf(text, sizeof text,
                 "its time %s by %.*f s: was the clock of the sender set? Set it before the sensor sends.",

@@ -8,6 +8,7 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/odometry.hpp"
 #include "egocal/bus/plausible.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::bus {
 
@@ -46,7 +47,7 @@ void StreamWatch::count(HeardStream& stream, Counting& counting, std::int64_t mo
   const std::int64_t elapsed = mono_us - counting.window_begin_us;
   if (elapsed < options_.rate_window_us) return;
   // the message that begins a window belongs to the one before
-  stream.rate = 1e6 * static_cast<double>(counting.in_window - 1) / static_cast<double>(elapsed);
+  stream.rate = second_us * static_cast<double>(counting.in_window - 1) / static_cast<double>(elapsed);
   counting.window_begin_us = mono_us;
   counting.in_window = 1;
 }

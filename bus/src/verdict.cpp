@@ -9,6 +9,7 @@
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 #include "wire_checks.hpp"
 
 namespace egocal::bus {
@@ -35,7 +36,7 @@ finding_t to_message(const Finding& finding, std::int64_t begin_us) {
   message.message = printable(finding.message, max_sentence);
   message.remedy = printable(finding.remedy, max_sentence);
   message.improvement = finite_or_zero(finding.improvement);
-  if (finding.time) message.utime = begin_us + std::llround(1e6 * *finding.time);
+  if (finding.time) message.utime = begin_us + to_microseconds(*finding.time);
   if (finding.value) {
     message.has_value = 1;
     message.value = finite_or_zero(*finding.value);
@@ -60,7 +61,7 @@ Checked<Finding> to_finding(const finding_t& message, std::int64_t begin_us) {
   finding.message = message.message;
   finding.remedy = message.remedy;
   finding.improvement = message.improvement;
-  if (message.utime != 0) finding.time = 1e-6 * static_cast<double>(message.utime - begin_us);
+  if (message.utime != 0) finding.time = to_seconds(message.utime - begin_us);
   if (message.has_value) finding.value = message.value;
   if (message.has_answer) {
     const Checked<DualQuaternion> T = to_dual_quaternion(message.pos, message.quat);

@@ -14,6 +14,7 @@
 #include "egocal/error.hpp"
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/outlier_choice.hpp"
@@ -99,8 +100,8 @@ std::string gaps_in_words(const Trajectory& a, const Trajectory& b, const Pairin
                           double max_gap) {
   if (counts.rejected[static_cast<std::size_t>(Rejection::gap)] == 0 || a.size() < 2 || b.size() < 2)
     return "";
-  const double step_a = 1e-6 * static_cast<double>(detail::median_period_us(a)),
-               step_b = 1e-6 * static_cast<double>(detail::median_period_us(b));
+  const double step_a = to_seconds(detail::median_period_us(a)),
+               step_b = to_seconds(detail::median_period_us(b));
   if (!(std::min(step_a, step_b) > max_gap)) return "";
   char text[192];
   std::snprintf(text, sizeof text,
@@ -126,8 +127,7 @@ std::string repeats_in_words(const Trajectory& a, const Trajectory& b, const Pai
       newest = i;
     }
     if (2 * differ > stream->size()) continue;  // as many are whole motions, and reject none of the others
-    const double lasts = 1e-6 * (static_cast<double>((*stream)[newest].time_us) -
-                                 static_cast<double>(stream->front().time_us));
+    const double lasts = seconds_between(stream->front().time_us, (*stream)[newest].time_us);
     char line[256];
     if (differ == 1)
       std::snprintf(line, sizeof line,
@@ -163,19 +163,13 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   choice.balance = problem.balance;
   choice.reason = "fixed";
   if (options.balance) return choice;
-  std::vector<Candidate> candidates;
-  const auto add = [&](const std::vector<double>& balances) {
-    for (const double translation : balances) candidates.push_back({1, {1, translation}, problem.blocks});
-  };
-  const std::vector<double>& balances = options.accumulator.balances;
-  add(balances);
   choice.reason = "too few motions to choose";
-  std::optional<Selection> selection = select_candidate(problem, candidates, std::nullopt);
-  if (!selection) return choice;
-  add(smaller_balances(problem, candidates[selection->index], std::ranges::min(balances)));
-  if (candidates.size() > balances.size()) selection = select_candidate(problem, candidates, std::nullopt);
-  choice.balance = candidates[selection->index].balance;
-  choice.reason = "smallest jack-knife spread of " + std::to_string(candidates.size()) + " balances";
+  const MotionsOfStride motions{1, problem.blocks};
+  const std::optional<SelectedSetting> selected =
+      select_setting(problem, {&motions, 1}, options.accumulator.balances, std::nullopt, std::nullopt);
+  if (!selected) return choice;
+  choice.balance = selected->setting.balance;
+  choice.reason = "smallest jack-knife spread of " + std::to_string(selected->tried) + " balances";
   return choice;
 }
 

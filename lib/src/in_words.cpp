@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal {
 
 std::string counted(std::uint64_t count, std::string_view noun) {
@@ -22,8 +24,8 @@ std::string span_in_words(std::uint64_t poses, double first, double last) {
 
 std::string span_in_words(const Trajectory& trajectory) {
   if (trajectory.empty()) return span_in_words(0, 0, 0);
-  return span_in_words(trajectory.size(), 1e-6 * static_cast<double>(trajectory.front().time_us),
-                       1e-6 * static_cast<double>(trajectory.back().time_us));
+  return span_in_words(trajectory.size(), to_seconds(trajectory.front().time_us),
+                       to_seconds(trajectory.back().time_us));
 }
 
 std::string rival_offsets_in_words(double period, std::string_view sensor) {

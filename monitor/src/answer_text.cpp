@@ -7,10 +7,6 @@
 
 namespace egocal::monitor {
 
-double seconds(std::int64_t from_us, std::int64_t to_us) {
-  return (static_cast<double>(to_us) - static_cast<double>(from_us)) * 1e-6;
-}
-
 std::string bounded(const std::string& text) {
   return text.substr(0, Model::max_text);
 }

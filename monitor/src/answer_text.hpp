@@ -19,8 +19,6 @@ inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double centimetres_per_metre = 100.0;  // unit
 inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
-/// From one time to another [s]; no overflow, whatever was sent.
-double seconds(std::int64_t from_us, std::int64_t to_us);
 /// What is kept of a text from a sender: its first Model::max_text bytes.
 std::string bounded(const std::string& text);
 /// From SI to what is shown, by direction (x y z roll pitch yaw).

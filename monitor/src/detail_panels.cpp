@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "answer_text.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/plot.hpp"
 #include "panels.hpp"
 
@@ -151,7 +152,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     value(verify_time(answer, charset));
     value(latency(answer, charset));
     value(count(answer.pairs));
-    value(age(seconds(solver.at.mono_us, now.mono_us)), solver.silent ? Style::bad : Style::dim);
+    value(age(seconds_between(solver.at.mono_us, now.mono_us)), solver.silent ? Style::bad : Style::dim);
   }
 }
 
@@ -261,7 +262,7 @@ void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewSt
   if (pair.verdict)
     for (const Finding& finding : pair.verdict->diagnosis.findings)
       if (finding.code == "mount_moved" && finding.time)
-        plot.moves.push_back(seconds(pair.session, pair.verdict->judged.begin_us) + *finding.time);
+        plot.moves.push_back(seconds_between(pair.session, pair.verdict->judged.begin_us) + *finding.time);
   if (plot.curve == execution_time && plot.mark) plot.mark_label = "fast alone";
   draw_plot(pane, plot, view.charset);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "answer_text.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/layout.hpp"
 #include "egocal/monitor/view.hpp"
 #include "panels.hpp"
@@ -19,7 +20,7 @@ constexpr std::array<double, 6> window_choices{10, 30, 60, 300, 1800, 7200};  //
 /// Measured time that the curves of a pair cover [s].
 double session_length(const PairState* pair) {
   const calibration_t* answer = pair ? pair->answer() : nullptr;
-  return answer ? 1e-6 * (static_cast<double>(answer->utime) - static_cast<double>(pair->session)) : 0;
+  return answer ? seconds_between(pair->session, answer->utime) : 0;
 }
 
 /// step > 0: less of the session, from all of it through the windows that are shorter than it.

@@ -9,6 +9,7 @@
 #include "answer_text.hpp"
 #include "egocal/bus/answer_check.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/loops.hpp"
 #include "egocal/online/algorithm1.hpp"
 
@@ -45,7 +46,7 @@ bool is_gap(const problem_t& before, const problem_t& message, double max_gap) {
   if (message.seq <= before.seq) return false;
   const double motions = static_cast<double>(message.seq) - static_cast<double>(before.seq);
   const double stride = std::clamp(message.stride, 1, 1000);
-  return seconds(before.utime, message.utime) > max_gap * (stride + motions - 1);
+  return seconds_between(before.utime, message.utime) > max_gap * (stride + motions - 1);
 }
 
 }  // namespace
@@ -98,7 +99,7 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
   for (std::size_t i = 1; i <= recent; ++i) {
     Event& event = events_[events_.size() - i];
     if (event.subject != subject) continue;
-    if (event.text == text && seconds(event.at.mono_us, now.mono_us) < options_.repeat) {
+    if (event.text == text && seconds_between(event.at.mono_us, now.mono_us) < options_.repeat) {
       ++event.repeated;
       return;
     }
@@ -156,7 +157,7 @@ void Model::on_problem(const problem_t& message, Now now) {
     if (pair->has_problem) note(Severity::warning, name, "session reset: the calibration starts again", now);
     begin_session(*pair, message.session);
   } else if (pair->has_problem) {
-    const double step = seconds(pair->problem.utime, message.utime);
+    const double step = seconds_between(pair->problem.utime, message.utime);
     if (step < 0) {
       note(Severity::warning, name, "time ran backwards in the problems of one session", now);
     } else if (is_gap(pair->problem, message, options_.max_gap)) {
@@ -166,7 +167,7 @@ void Model::on_problem(const problem_t& message, Now now) {
     follow_back(*pair, message, now);
   }
   if (pair->paused && message.seq > pair->problem.seq && message.session == pair->problem.session &&
-      seconds(pair->paused_mono_us, now.mono_us) > options_.settle)
+      seconds_between(pair->paused_mono_us, now.mono_us) > options_.settle)
     pair->paused = false;  // it was resumed, or the command was lost
   if (pair->silent) note(Severity::good, name, "the stream is back", now);
   if (!pair->has_problem || pair->problem.session != message.session || message.seq > pair->problem.seq) {
@@ -311,7 +312,7 @@ void Model::watch_certificate(PairState& pair, Now now) {
     if (!pair.certified) note(Severity::good, name, "optimal (proven), by " + answer->solver, now);
     pair.certified = true;
     pair.certified_mono_us = now.mono_us;
-  } else if (pair.certified && seconds(pair.certified_mono_us, now.mono_us) > options_.settle) {
+  } else if (pair.certified && seconds_between(pair.certified_mono_us, now.mono_us) > options_.settle) {
     pair.certified = false;
     note(Severity::bad, name,
          answer->status == 1 ? "proof lost: a better answer is known" : "proof lost: too imprecise to decide",
@@ -364,7 +365,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   track->verified = verified;
   track->role = role_of(track->answer);
 
-  const double time = seconds(pair->session, message.utime);
+  const double time = seconds_between(pair->session, message.utime);
   if (track->role == Role::global || message.fallback) {
     pair->only_fast_since.reset();
   } else if (!pair->only_fast_since && track->answer.status == 0) {
@@ -375,7 +376,7 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
       note(Severity::warning, name, "fallback: " + solver + " asked for the global solver", now);
     pair->fallback = true;
     pair->fallback_mono_us = now.mono_us;
-  } else if (pair->fallback && seconds(pair->fallback_mono_us, now.mono_us) > options_.settle) {
+  } else if (pair->fallback && seconds_between(pair->fallback_mono_us, now.mono_us) > options_.settle) {
     pair->fallback = false;
     note(Severity::good, name, "only the fast solver runs again", now);
   }
@@ -407,7 +408,7 @@ void Model::tick(Now now) {
   watch_loops(now);
   for (ProcessState& process : processes_) {
     if (is_own(process)) process.at = now;
-    if (process.alive && seconds(process.at.mono_us, now.mono_us) > options_.heartbeat_timeout) {
+    if (process.alive && seconds_between(process.at.mono_us, now.mono_us) > options_.heartbeat_timeout) {
       process.alive = false;
       process.rate_in = process.rate_out = -1;
       note(Severity::bad, process.status.name,
@@ -417,7 +418,7 @@ void Model::tick(Now now) {
   for (PairState& pair : pairs_) {
     const std::string name = pair_name(pair.a, pair.b);
     if (pair.has_problem && !pair.silent &&
-        seconds(pair.problem_at.mono_us, now.mono_us) > options_.stream_timeout) {
+        seconds_between(pair.problem_at.mono_us, now.mono_us) > options_.stream_timeout) {
       pair.silent = true;
       note(Severity::info, name,
            "the stream is silent: no new motion for " + rounded(options_.stream_timeout, 0) + " s", now);
@@ -428,7 +429,7 @@ void Model::tick(Now now) {
     // a solver is missed only where there is something to solve, and only after it has had time to
     if (!pair.has_problem || pair.silent || pair_is_paused(*this, pair)) pair.idle_mono_us = now.mono_us;
     for (SolverTrack& track : pair.solvers) {
-      const double unanswered = seconds(std::max(track.at.mono_us, pair.idle_mono_us), now.mono_us);
+      const double unanswered = seconds_between(std::max(track.at.mono_us, pair.idle_mono_us), now.mono_us);
       if (track.role == Role::fast && !track.silent && unanswered > options_.stream_timeout) {
         track.silent = true;
         note(Severity::bad, name, "solver swapped: " + track.name + " no longer answers", now);

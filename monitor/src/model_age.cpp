@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "answer_text.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
@@ -22,7 +23,7 @@ void Model::watch_age_of_answer(PairState& pair, Now now) {
   const double unanswered = pair.unanswered.old(now.mono_us, options_.answer_age);
   // where no problem was ever received, the answer is not verified, which is shown as well
   const double silent =
-      pairing_is_silent(pair) && pair.has_problem ? seconds(pair.problem_at.mono_us, now.mono_us) : 0;
+      pairing_is_silent(pair) && pair.has_problem ? seconds_between(pair.problem_at.mono_us, now.mono_us) : 0;
   const bool was_old = pair.old > 0;
   pair.old = std::max(unanswered, silent);
   if (unanswered > 0 && !was_old)
@@ -32,7 +33,7 @@ void Model::watch_age_of_answer(PairState& pair, Now now) {
 
 /// Pairing sends its problem every second, with new motions or without.
 void Model::watch_motions(PairState& pair, Now now) {
-  const double since = seconds(pair.motion_mono_us, now.mono_us);
+  const double since = seconds_between(pair.motion_mono_us, now.mono_us);
   const bool stands =
       pair.has_problem && !pair.silent && !pair_is_paused(*this, pair) && since > options_.standing;
   pair.standing = stands ? since : 0;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "answer_text.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
@@ -43,7 +44,7 @@ void sum_counters(ProcessState& process, const status_t& message) {
 
 /// Messages per second since the last update; -1 where they are not known.
 void update_rates(ProcessState& process, Now now) {
-  const double elapsed = seconds(process.rate_mono_us, now.mono_us);
+  const double elapsed = seconds_between(process.rate_mono_us, now.mono_us);
   if (process.rate_mono_us == 0 || process.in < process.rate_in_count || elapsed < 0) {
     process.rate_in = process.rate_out = -1;
   } else if (elapsed >= 0.7) {

@@ -3,6 +3,8 @@
 // What the model makes of verdicts.
 #include <algorithm>
 
+#include "egocal/microseconds.hpp"
+
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
@@ -76,7 +78,7 @@ void Model::watch_age_of_verdict(PairState& pair, Now now) {
   const double within =
       gone ? 0
            : options_.judged_within + options_.judged_within_per_pair * static_cast<double>(pairs_.size());
-  const double behind = 1e-6 * static_cast<double>(now.mono_us - *pair.verdict->behind_mono_us);
+  const double behind = to_seconds(now.mono_us - *pair.verdict->behind_mono_us);
   if (behind < within) return;
   if (pair.verdict->old == 0)
     note(Severity::warning, pair_name(pair.a, pair.b),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "answer_text.hpp"
+#include "egocal/microseconds.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
@@ -120,7 +121,7 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
       return {compact(answer.scaled_gap, charset), answer.scaled_gap <= 1 ? Style::normal : Style::warning};
     case PairColumn::age:
       // of an answer that is sent again every second: since the motions that it is about
-      return {age(std::max(seconds(pair.counted_solver()->at.mono_us, now.mono_us), pair.standing)),
+      return {age(std::max(seconds_between(pair.counted_solver()->at.mono_us, now.mono_us), pair.standing)),
               pair.silent || pair.standing > 0 ? Style::warning : Style::dim};
     case PairColumn::solve:
       return {solve_time(answer, charset)};

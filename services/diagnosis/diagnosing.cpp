@@ -17,6 +17,7 @@
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 #include "egocal/scale/solve_scale.hpp"
 
@@ -25,10 +26,6 @@ namespace egocal::services {
 namespace {
 
 using namespace std::chrono_literals;
-
-double seconds(std::int64_t us) {
-  return 1e-6 * static_cast<double>(us);
-}
 
 StreamOptions stream_options(const bus::Rig& rig) {
   StreamOptions options;
@@ -40,7 +37,7 @@ StreamOptions stream_options(const bus::Rig& rig) {
 /// one sensor was set in between.
 std::size_t at_common_times(const Trajectory& a, const Trajectory& b, double time_offset) {
   if (a.empty() || b.empty()) return 0;
-  const std::int64_t offset = std::llround(1e6 * time_offset);
+  const std::int64_t offset = to_microseconds(time_offset);
   const std::int64_t begin = std::max(a.front().time_us, b.front().time_us + offset);
   const std::int64_t end = std::min(a.back().time_us, b.back().time_us + offset);
   const auto between = [](const Trajectory& poses, std::int64_t first, std::int64_t last) {
@@ -55,7 +52,7 @@ std::size_t at_common_times(const Trajectory& a, const Trajectory& b, double tim
 std::int64_t common_end(const DriveSample& sample, double time_offset) {
   const Trajectory &a = sample.poses(Side::a), &b = sample.poses(Side::b);
   if (a.empty() || b.empty()) return 0;
-  return std::min<std::int64_t>(a.back().time_us, b.back().time_us + std::llround(1e6 * time_offset));
+  return std::min<std::int64_t>(a.back().time_us, b.back().time_us + to_microseconds(time_offset));
 }
 
 }  // namespace
@@ -74,7 +71,7 @@ Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
       heartbeat_.reject("saved state that does not fit");
       heartbeat_.set_error(saved_->refused());
     }
-    save_mono_us_ = loop_.mono_us() + std::llround(1e6 * options_.save_distance);
+    save_mono_us_ = loop_.mono_us() + to_microseconds(options_.save_distance);
     loop_.every(500ms, [this] {
       if (loop_.mono_us() >= save_mono_us_) save();
     });
@@ -179,7 +176,8 @@ void Diagnosing::save() {
   }
   const std::int64_t now = loop_.mono_us();
   const double took = static_cast<double>(now - begin_mono_us);
-  save_mono_us_ = now + std::llround(std::max(1e6 * options_.save_distance, took / options_.save_share));
+  save_mono_us_ =
+      now + std::llround(std::max(second_us * options_.save_distance, took / options_.save_share));
 }
 
 Diagnosing::~Diagnosing() {
@@ -216,7 +214,7 @@ void Diagnosing::take_problems() {
 }
 
 bool Diagnosing::idle(const Pair& pair) const {
-  return seconds(loop_.mono_us() - pair.newest_mono_us) >= options_.idle;
+  return to_seconds(loop_.mono_us() - pair.newest_mono_us) >= options_.idle;
 }
 
 /// At full speed many motions are there before the first problem is heard, but not before the first pose; and
@@ -226,7 +224,7 @@ Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
   std::int64_t begin = message.session;
   for (const Side side : {Side::a, Side::b}) {
     const Trajectory& sample = pair.sample.poses(side);
-    const std::int64_t offset = side == Side::b ? std::llround(1e6 * message.time_offset) : 0;
+    const std::int64_t offset = side == Side::b ? to_microseconds(message.time_offset) : 0;
     begin = std::max(begin, sample.empty() ? message.utime : sample.front().time_us + offset);
   }
   const auto part = [](double unseen, double all) {
@@ -236,17 +234,17 @@ Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
   const std::int64_t unseen_us = begin - message.session + known.missed_us;
   return {std::min(part(static_cast<double>(known.matched_before + known.matched_between),
                         static_cast<double>(message.matched)),
-                   part(seconds(unseen_us), seconds(message.utime - message.session))),
-          seconds(unseen_us), poses, known.missed_us > 0};
+                   part(to_seconds(unseen_us), to_seconds(message.utime - message.session))),
+          to_seconds(unseen_us), poses, known.missed_us > 0};
 }
 
 /// By a new problem, or by poses alone; without waiting where nothing more comes.
 bool Diagnosing::to_be_judged(const Pair& pair, bool early) const {
   if (!pair.newest) return false;
   if (pair.newest->message.seq != pair.judged_seq) return !early || idle(pair);
-  const bool more_poses = seconds(common_end(pair.sample, pair.newest->message.time_offset) -
-                                  pair.judged_until_us) >= options_.pose_step;
-  const bool no_poses_come = seconds(loop_.mono_us() - pair.newest_pose_mono_us) >= options_.idle;
+  const bool more_poses = to_seconds(common_end(pair.sample, pair.newest->message.time_offset) -
+                                     pair.judged_until_us) >= options_.pose_step;
+  const bool no_poses_come = to_seconds(loop_.mono_us() - pair.newest_pose_mono_us) >= options_.idle;
   return more_poses && (!early || (idle(pair) && no_poses_come));
 }
 
@@ -262,7 +260,7 @@ void Diagnosing::look() {
     judge(pair);
     const auto took = static_cast<double>(loop_.mono_us() - began);
     not_before_mono_us_ =
-        began + std::llround(std::max(took / options_.share, 1e6 * options_.least_distance));
+        began + std::llround(std::max(took / options_.share, second_us * options_.least_distance));
     return;  // messages have their turn
   }
 }
@@ -296,7 +294,7 @@ void Diagnosing::judge(Pair& pair) {
     answered.observability = answer.observability;
     answered.problem = problem;
     answered.stride = message.stride;
-    answered.seconds = seconds(message.utime - message.session);
+    answered.seconds = to_seconds(message.utime - message.session);
     if (pair.unscaled)
       if (const ScaleSolution* solution = pair.scale.solution(pair.config.a, pair.config.b, message.session))
         answered.scale_stddev = with_spread_of_scale({}, problem, *solution);

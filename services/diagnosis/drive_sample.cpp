@@ -10,6 +10,7 @@
 #include "egocal/bus/check.hpp"
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::services {
 
@@ -79,7 +80,7 @@ void DriveSample::begin_session(std::int64_t time_us) {
 }
 
 void DriveSample::set_time_offset(double seconds) {
-  state_.time_offset_us = std::llround(1e6 * seconds);
+  state_.time_offset_us = to_microseconds(seconds);
 }
 
 void DriveSample::thin() {

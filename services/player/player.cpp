@@ -10,6 +10,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/error.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::services {
 
@@ -182,7 +183,7 @@ void Player::anchor(std::int64_t recorded_us) {
 }
 
 double Player::into_log(std::int64_t recorded_us) const {
-  return 1e-6 * (static_cast<double>(recorded_us) - static_cast<double>(tape_.begin_us()));
+  return seconds_between(tape_.begin_us(), recorded_us);
 }
 
 bool Player::send(const bus::LogEvent& event) {
@@ -245,7 +246,7 @@ void Player::play() {
         if (wait > options_.pace.announced_wait_us && announced_gap_us_ != next_->time_us) {
           announced_gap_us_ = next_->time_us;
           const std::string gap = text("gap in the log, nothing until %.1f s into it: %.1f s to wait",
-                                       into_log(next_->time_us), 1e-6 * static_cast<double>(wait));
+                                       into_log(next_->time_us), to_seconds(wait));
           say(gap);
           heartbeat_.set_error(gap);
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "egocal/error.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::services {
 
@@ -45,7 +46,7 @@ Tape::Tape(const std::string& file, const TapeOptions& options) : log_(file), op
 
 void Tape::rewind(double from) {
   // the events in between are not read: a seek in a log of 10 GB takes no longer than in a small one
-  const double target_us = static_cast<double>(begin_us_) + 1e6 * from;
+  const double target_us = static_cast<double>(begin_us_) + second_us * from;
   if (from > 0 && std::abs(target_us) < largest_time_us)
     log_.seek(std::llround(target_us));
   else
@@ -109,9 +110,9 @@ std::optional<bus::LogEvent> Tape::next() {
     last_us_ = event.time_us;
     // as doubles: the difference of damaged times may not fit
     const double into_us = static_cast<double>(event.time_us) - static_cast<double>(begin_us_);
-    if (options_.end && into_us > std::round(1e6 * *options_.end)) return std::nullopt;
+    if (options_.end && into_us > std::round(second_us * *options_.end)) return std::nullopt;
     // where the clock was set back, events are older than the first one
-    if ((from_ <= 0 || into_us >= std::round(1e6 * from_)) && wanted(event.channel)) return event;
+    if ((from_ <= 0 || into_us >= std::round(second_us * from_)) && wanted(event.channel)) return event;
   }
 }
 

@@ -17,8 +17,11 @@ namespace egocal {
 namespace {
 
 using testing::displacement;
+using testing::Motion;
 using testing::Random;
+using testing::random_extrinsic;
 using testing::random_pairs;
+using testing::random_planar_extrinsic;
 
 std::vector<Statistics> blocks_of(const DualQuaternion& T, std::size_t pairs, double noise,
                                   std::uint64_t seed) {
@@ -92,25 +95,34 @@ TEST(Selection, TranslationsOfAFastMachineCountAsLittleAsTheyAreKnown) {
 }
 
 TEST(Selection, SmallerBalancesAreTriedWhereTranslationsWeighFarMore) {
-  const DualQuaternion T = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
   Random random(3);
-  const auto candidate = [&](double metres) {
+  const std::array<double, 2> balances{0.001, 0.1};
+  const auto selected = [&](double metres, Mode mode, const std::optional<Balance>& fixed) {
+    const bool planar = mode == Mode::planar;
+    const DualQuaternion T = planar ? random_planar_extrinsic(random) : random_extrinsic(random);
     BlockStatistics blocks;
-    for (MotionPair pair : random_pairs(T, {.pairs = 300}, random)) {
-      pair.b = canonical_sign(pair.b * displacement(random.normal3(0.01), random.normal3(metres)));
+    for (MotionPair pair :
+         random_pairs(T, {.motion = planar ? Motion::planar : Motion::free, .pairs = 1200}, random)) {
+      Eigen::Vector3d turn = random.normal3(0.01), shift = random.normal3(metres);
+      if (planar) turn.head<2>().setZero(), shift[2] = 0;
+      pair.b = canonical_sign(pair.b * displacement(turn, shift));
       blocks.add(pair);
     }
-    return Candidate{1, {1, 1}, blocks.inliers()};
+    Problem problem;
+    problem.mode = mode;
+    const MotionsOfStride motions{1, blocks.inliers()};
+    return select_setting(problem, {&motions, 1}, balances, fixed, std::nullopt).value();
   };
-  EXPECT_TRUE(smaller_balances({}, candidate(0.1), 0.001).empty());
-  // residuals of 0.01 rad and 10 m balance at 1e-6; one tenth of that closes the list
-  const std::vector<double> balances = smaller_balances({}, candidate(10), 0.001);
-  ASSERT_GE(balances.size(), 3);
-  EXPECT_NEAR(balances.front(), 1e-4, 1e-12);
-  EXPECT_LE(balances.back(), 2e-6);
-  Problem planar;
-  planar.mode = Mode::planar;
-  EXPECT_TRUE(smaller_balances(planar, candidate(10), 0.001).empty());
+  EXPECT_EQ(selected(0.1, Mode::spatial, std::nullopt).tried, 2);
+  // residuals of 0.01 rad and 10 m balance at 1e-6: 1e-4, 1e-5 and so on to a tenth of that
+  const SelectedSetting fast = selected(10, Mode::spatial, std::nullopt);
+  EXPECT_GE(fast.tried, 2 + 3);
+  EXPECT_LE(fast.tried, 2 + 4);
+  EXPECT_LT(fast.setting.balance.translation, 0.001);
+  EXPECT_EQ(selected(10, Mode::planar, std::nullopt).tried, 2);
+  const SelectedSetting fixed = selected(10, Mode::spatial, Balance{1, 0.5});
+  EXPECT_EQ(fixed.tried, 1);
+  EXPECT_EQ(fixed.setting.balance.translation, 0.5);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
 
@@ -168,7 +169,7 @@ std::optional<double> Answers::seconds_not_judged(const PairName& pair) const {
   if (!known) return {};
   const auto newest = newest_.find(pair);
   if (newest == newest_.end() || newest->second.session != known->session) return 0;
-  return 1e-6 * static_cast<double>(std::max<std::int64_t>(0, newest->second.utime - known->utime));
+  return to_seconds(std::max<std::int64_t>(0, newest->second.utime - known->utime));
 }
 
 bool Answers::answered_to_the_end(const PairName& pair) const {
@@ -186,7 +187,7 @@ double Answers::seconds_not_answered(const PairName& pair) const {
   const bool same_session = answer && answer->message.session == newest.session;
   // a session is named by the time at which it began
   const std::int64_t from = same_session ? answer->message.utime : newest.session;
-  return 1e-6 * static_cast<double>(std::max<std::int64_t>(0, newest.utime - from));
+  return to_seconds(std::max<std::int64_t>(0, newest.utime - from));
 }
 
 std::optional<std::pair<std::int64_t, double>> Answers::end_of_motions(const PairName& pair) const {

@@ -13,6 +13,7 @@
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/io/stream_summary.hpp"
+#include "egocal/microseconds.hpp"
 #include "offline/provenance.hpp"
 #include "offline/trajectory_source.hpp"
 
@@ -76,10 +77,6 @@ Contents read_contents(const Options& options) {
   return contents;
 }
 
-double seconds(std::int64_t time_us) {
-  return 1e-6 * static_cast<double>(time_us);
-}
-
 ordered_json row_json(const Row& row) {
   const auto& [stream, summary] = row;
   ordered_json object{{"name", bus::printable(stream.name)},
@@ -91,9 +88,9 @@ ordered_json row_json(const Row& row) {
   if (stream.fixed) object["static"] = true;
   object["poses"] = summary.poses;
   if (summary.poses == 0) return object;
-  object["first_s"] = seconds(summary.first_us);
-  object["last_s"] = seconds(summary.last_us);
-  object["span_s"] = seconds(summary.last_us - summary.first_us);
+  object["first_s"] = to_seconds(summary.first_us);
+  object["last_s"] = to_seconds(summary.last_us);
+  object["span_s"] = to_seconds(summary.last_us - summary.first_us);
   object["rate_hz"] = summary.rate;
   object["path_length_m"] = summary.path_length;
   object["turning_rad"] = summary.turning;
@@ -133,8 +130,8 @@ void print_row(const Row& row) {
     fmt::print("  pose of         {} in {}\n", bus::printable(stream.child, 60),
                bus::printable(stream.parent, 60));
   fmt::print("  poses           {} at {:.1f} Hz\n", summary.poses, summary.rate);
-  fmt::print("  time            {:.3f} to {:.3f} s, {:.3f} s\n", seconds(summary.first_us),
-             seconds(summary.last_us), seconds(summary.last_us - summary.first_us));
+  fmt::print("  time            {:.3f} to {:.3f} s, {:.3f} s\n", to_seconds(summary.first_us),
+             to_seconds(summary.last_us), to_seconds(summary.last_us - summary.first_us));
   fmt::print("  path length     {:.1f} m\n", summary.path_length);
   fmt::print("  turning         {:.0f} {:.0f} {:.0f} deg about x y z of the sensor\n",
              summary.turning[0] * degrees, summary.turning[1] * degrees, summary.turning[2] * degrees);

@@ -11,6 +11,7 @@
 #include "egocal/bus/plausible.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/bus/stream_watch.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
 
@@ -31,7 +32,7 @@ nlohmann::ordered_json stream_json(const bus::HeardStream& stream, std::int64_t 
   json["type"] = stream.type;
   json["messages"] = stream.messages;
   json["rate_hz"] = stream.rate > 0 ? nlohmann::ordered_json(stream.rate) : nullptr;
-  json["silent_s"] = 1e-6 * static_cast<double>(now_us - stream.last_mono_us);
+  json["silent_s"] = to_seconds(now_us - stream.last_mono_us);
   json["faults"] = nlohmann::ordered_json::array();
   for (const bus::Refusal& refusal : stream.refusals)
     json["faults"].push_back({{"reason", refusal.reason}, {"count", refusal.count}, {"cure", refusal.cure}});

@@ -17,6 +17,7 @@
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/io/mcap_writer.hpp"
+#include "egocal/microseconds.hpp"
 #include "offline/lcm_pose.hpp"
 #include "offline/trajectory_source.hpp"
 #include "progress.hpp"
@@ -79,8 +80,8 @@ void create(const CreateOptions& options) {
   }
   log.close();
   if (shift != 0)
-    warnings.push_back(fmt::format("times do not begin after 1970; {:.3f} s were added to all of them",
-                                   1e-6 * static_cast<double>(shift)));
+    warnings.push_back(
+        fmt::format("times do not begin after 1970; {:.3f} s were added to all of them", to_seconds(shift)));
   print_warnings(warnings);
 }
 
@@ -166,8 +167,8 @@ void print_info(const std::string& file, bool json) {
       object["channels"].push_back({{"channel", bus::printable(name)},
                                     {"type", channel.type},
                                     {"events", channel.count},
-                                    {"first_s", 1e-6 * static_cast<double>(channel.first_us)},
-                                    {"last_s", 1e-6 * static_cast<double>(channel.last_us)}});
+                                    {"first_s", to_seconds(channel.first_us)},
+                                    {"last_s", to_seconds(channel.last_us)}});
     object["events_of_other_channels"] = info.others.count;
     object["damaged_regions"] = info.damage.regions;
     object["lost_bytes"] = info.damage.bytes;
@@ -182,9 +183,9 @@ void print_info(const std::string& file, bool json) {
   fmt::print("{}: {} bytes, {}\n{:<32} {:<22} {:>9} {:>18} {:>10} {:>9}\n", file, info.size,
              damage_text(info.damage), "channel", "type", "events", "first [s]", "span [s]", "rate [Hz]");
   for (const auto& [name, channel] : info.channels) {
-    const double span = 1e-6 * static_cast<double>(channel.last_us - channel.first_us);
+    const double span = to_seconds(channel.last_us - channel.first_us);
     fmt::print("{:<32} {:<22} {:>9} {:>18.3f} {:>10.3f} {:>9.1f}\n", bus::printable(name, 32), channel.type,
-               channel.count, 1e-6 * static_cast<double>(channel.first_us), span,
+               channel.count, to_seconds(channel.first_us), span,
                span > 0 ? static_cast<double>(channel.count - 1) / span : 0.0);
   }
   if (info.more_channels)

@@ -17,6 +17,7 @@
 #include "egocal/io/mcap_writer.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/io/whole_file.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "progress.hpp"
 
@@ -80,7 +81,7 @@ std::vector<Sent> in_order_of_time(const std::vector<Trajectory>& trajectories,
   for (std::size_t k = 0; k < trajectories.size(); ++k) {
     const SensorFaults faults = k < simulation.faults.size() ? simulation.faults[k] : SensorFaults{};
     const std::int64_t start_us = trajectories[k].front().time_us;
-    const double offset = 1e6 * faults.clock_offset;
+    const double offset = second_us * faults.clock_offset;
     for (std::size_t i = 0; i < trajectories[k].size(); ++i) {
       const auto elapsed = static_cast<double>(trajectories[k][i].time_us - start_us);
       const double drifted = elapsed * faults.clock_drift / (1 + faults.clock_drift);

@@ -14,6 +14,7 @@
 #include "egocal/calibrate_beside.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/pairs_file.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
@@ -38,8 +39,7 @@ struct Motions {
 };
 
 StreamSpan span_of(const Trajectory& trajectory) {
-  return {trajectory.size(), 1e-6 * static_cast<double>(trajectory.front().time_us),
-          1e-6 * static_cast<double>(trajectory.back().time_us)};
+  return {trajectory.size(), to_seconds(trajectory.front().time_us), to_seconds(trajectory.back().time_us)};
 }
 
 /// A file that can be read beside another one, and is long enough to be worth a thread. Two pipes may be one.

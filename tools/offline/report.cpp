@@ -11,6 +11,7 @@
 #include "degrees.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/microseconds.hpp"
 #include "offline/samples.hpp"
 #include "offline/trust_report.hpp"
 
@@ -64,9 +65,7 @@ nlohmann::ordered_json matrix_json(const Pose& T) {
 nlohmann::ordered_json segments_json(const SolveResult& result) {
   nlohmann::ordered_json segments = nlohmann::ordered_json::array();
   if (!result.course || !result.a) return segments;
-  const auto seconds = [&](std::int64_t time_us) {
-    return 1e-6 * static_cast<double>(time_us) - result.a->first;
-  };
+  const auto seconds = [&](std::int64_t time_us) { return to_seconds(time_us) - result.a->first; };
   for (const ScaleSegment& segment : result.course->segments)
     segments.push_back({{"begin_s", seconds(segment.begin_us)},
                         {"end_s", seconds(segment.end_us)},
@@ -80,8 +79,8 @@ std::string segments_text(const SolveResult& result) {
   std::string text;
   if (!result.course || !result.a) return text;
   for (const ScaleSegment& segment : result.course->segments) {
-    const double begin = 1e-6 * static_cast<double>(segment.begin_us) - result.a->first;
-    const double end = 1e-6 * static_cast<double>(segment.end_us) - result.a->first;
+    const double begin = to_seconds(segment.begin_us) - result.a->first;
+    const double end = to_seconds(segment.end_us) - result.a->first;
     text += segment.begin_scale == segment.end_scale
                 ? fmt::format("  from {:.1f} to {:.1f} s   {:.6g} +- {:.2g}\n", begin, end,
                               segment.begin_scale, segment.stddev)

@@ -9,6 +9,7 @@
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/rig/rig.hpp"
 #include "offline/append.hpp"
 #include "offline/log_trajectory.hpp"
@@ -207,7 +208,7 @@ RigReport calibrate_rig(const RigRequest& given) {
   for (std::size_t i = 0; i < pairs.size(); ++i)
     report.pairs[i].T_a_b = to_pose(report.solution.pairs[i].T_a_b);
   const double begin =
-      1e-6 * static_cast<double>(pairs.front().pairs.front().begin_us - trajectories.front().front().time_us);
+      to_seconds(pairs.front().pairs.front().begin_us - trajectories.front().front().time_us);
   options.stride = 1;
   find_in_rig(pairs, common.stride > 1 ? rig_motions(trajectories, options) : std::vector<RigPair>{}, begin,
               report);

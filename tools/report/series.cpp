@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/series.hpp"
 #include "degrees.hpp"
+#include "egocal/microseconds.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,10 +11,6 @@
 namespace egocal::tools {
 
 namespace {
-
-double seconds(std::int64_t from_us, std::int64_t to_us) {
-  return 1e-6 * static_cast<double>(to_us - from_us);
-}
 
 /// Pose at a time, by screw interpolation; the ends outside of the trajectory.
 Pose pose_at(const Trajectory& trajectory, std::int64_t time_us) {
@@ -36,7 +33,7 @@ Residuals residuals_of(const std::vector<MotionPair>& pairs, const Pose& T_a_b) 
   const Pose T_b_a = inverse(T_a_b);
   for (const MotionPair& pair : pairs) {
     const Pose residual = inverse(to_pose(pair.a)) * (T_a_b * to_pose(pair.b) * T_b_a);
-    result.time.push_back(seconds(pairs.front().end_us, pair.end_us));
+    result.time.push_back(seconds_between(pairs.front().end_us, pair.end_us));
     result.rotation.push_back(rotation_log(residual.rotation).norm() * degrees);
     result.translation.push_back(residual.translation.norm());
   }
@@ -87,7 +84,7 @@ Progress progress_of(const Trajectory& a, const Trajectory& b, const Calibration
     if (i % step != step - 1) continue;
     const std::optional<Calibration> calibration = calibrator.answer();
     if (!calibration) continue;
-    progress.time.push_back(seconds(a.front().time_us, a[i].time_us));
+    progress.time.push_back(seconds_between(a.front().time_us, a[i].time_us));
     for (std::size_t k = 0; k < 6; ++k) progress.stddev[k].push_back(calibration->observability.stddev[k]);
   }
   return progress;
@@ -101,11 +98,11 @@ Excitation excitation_of(const Trajectory& a) {
     const Pose motion = inverse(to_pose(a[i - 1].pose)) * to_pose(a[i].pose);
     result.path += motion.translation.norm();
     if (a[i].time_us - a[from].time_us < shortest_us) continue;
-    const double duration = seconds(a[from].time_us, a[i].time_us);
+    const double duration = seconds_between(a[from].time_us, a[i].time_us);
     const Eigen::Quaterniond turned =
         to_pose(a[from].pose).rotation.conjugate() * to_pose(a[i].pose).rotation;
     const Eigen::Vector3d rate = rotation_log(turned) * degrees / duration;
-    result.time.push_back(seconds(a.front().time_us, a[i].time_us));
+    result.time.push_back(seconds_between(a.front().time_us, a[i].time_us));
     for (int k = 0; k < 3; ++k) result.turning[k].push_back(rate[k]);
     from = i;
   }

@@ -10,15 +10,11 @@
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/bus/process.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
 
 namespace {
-
-/// As doubles: the clock may be anybody's.
-double seconds(std::int64_t from_us, std::int64_t to_us) {
-  return 1e-6 * (static_cast<double>(to_us) - static_cast<double>(from_us));
-}
 
 std::string begin_of(const PairName& pair) {
   return pair.first + " -> " + pair.second + ": ";
@@ -65,7 +61,7 @@ std::string BusNews::mostly_rejected(std::int64_t now_us) const {
   const std::pair<const std::string, Rejected>* most = nullptr;
   for (const auto& entry : rejected_)
     if (entry.second.growth > (most ? most->second.growth : 0) &&
-        seconds(entry.second.grown_us, now_us) < options_.pairing_silent)
+        seconds_between(entry.second.grown_us, now_us) < options_.pairing_silent)
       most = &entry;
   if (!most) return {};
   const std::string cure = bus::cure_of_rejection(most->first);
@@ -113,13 +109,13 @@ std::string BusNews::errors(std::int64_t now_us) {
   for (auto& [role, error] : errors_) {
     if (error.now == error.reported) continue;
     if (error.now.empty()) {
-      if (seconds(error.since_us, now_us) < options_.over_after) continue;
+      if (seconds_between(error.since_us, now_us) < options_.over_after) continue;
       const std::size_t name_end = error.reported.find(": ");
       text += error.reported.substr(0, name_end) + ": this is over" + error.reported.substr(name_end) + "\n";
     } else {
       const auto before = reported_us_.find(error.now);
       if (before == reported_us_.end() ? reported_us_.size() >= most_errors
-                                       : seconds(before->second, now_us) < options_.repeat_report)
+                                       : seconds_between(before->second, now_us) < options_.repeat_report)
         continue;
       reported_us_[error.now] = now_us;
       text += error.now + "\n";
@@ -134,11 +130,11 @@ void BusNews::hear(const problem_t& problem, std::int64_t now_us) {
   if (found == pairs_.end()) return;
   Pair& pair = found->second;
   const std::pair number(problem.session, problem.seq);
-  const bool first_or_back = seconds(pair.problem_us, now_us) > options_.pairing_silent;
+  const bool first_or_back = seconds_between(pair.problem_us, now_us) > options_.pairing_silent;
   const bool is_new =
       !pair.newest || pair.newest->first != number.first || pair.newest->second < number.second;
   if (is_new || first_or_back) pair.motion_us = now_us;
-  if (is_new && pair.paused_us && seconds(*pair.paused_us, now_us) > options_.settle)
+  if (is_new && pair.paused_us && seconds_between(*pair.paused_us, now_us) > options_.settle)
     pair.paused_us.reset();  // it was resumed, or the command was lost
   if (is_new && std::exchange(pair.standing_reported, false))
     pending_ += begin_of(found->first) + "new motions come again\n";
@@ -186,9 +182,9 @@ std::string BusNews::unanswered(Pair& of, const PairName& pair, const Answers& a
 }
 
 std::string BusNews::standing(Pair& of, const PairName& pair, std::int64_t now_us) const {
-  const double since = seconds(of.motion_us, now_us);
+  const double since = seconds_between(of.motion_us, now_us);
   if (of.standing_reported || since <= options_.standing) return {};
-  if (of.standing_reported_us && seconds(*of.standing_reported_us, now_us) < options_.repeat_report)
+  if (of.standing_reported_us && seconds_between(*of.standing_reported_us, now_us) < options_.repeat_report)
     return {};
   const std::string why = why_standing(of, pair, now_us);
   if (why.empty()) return {};
@@ -212,8 +208,8 @@ std::string BusNews::why_standing(const Pair& of, const PairName& pair, std::int
   const bool both = silent(pair.first) && silent(pair.second);
   if (both && !options_.live) return {};
   const bool none = silent(pair.first) || silent(pair.second);
-  if (!of.newest && !none && seconds(of.motion_us, now_us) <= options_.first_motion) return {};
-  if (of.newest && seconds(of.problem_us, now_us) > options_.pairing_silent) return {};
+  if (!of.newest && !none && seconds_between(of.motion_us, now_us) <= options_.first_motion) return {};
+  if (of.newest && seconds_between(of.problem_us, now_us) > options_.pairing_silent) return {};
   std::string why =
       both ? pair.first + " and " + pair.second + " send nothing"
            : bus::why_no_motion(streams_, pair.first, pair.second, now_us, mostly_rejected(now_us));

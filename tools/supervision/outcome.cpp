@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
 
 namespace {
-
-double seconds(std::int64_t us) {
-  return 1e-6 * static_cast<double>(us);
-}
 
 /// The log's end after what pairing has read, on the channel that has more of it [s].
 double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& extent,
@@ -25,7 +22,7 @@ double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& exte
     const auto stream = extent.sensors.find(name);
     const auto until = read_until.find(bus::sensor(rig, name).channel);
     if (stream != extent.sensors.end() && until != read_until.end())
-      most = std::max(most, seconds(stream->second.last_us - until->second));
+      most = std::max(most, to_seconds(stream->second.last_us - until->second));
   }
   return most > options.least_missing ? most : 0;
 }
@@ -37,7 +34,7 @@ double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_
   std::optional<double> least;
   for (const std::string& name : {pair.first, pair.second})
     if (const auto stream = extent.sensors.find(name); stream != extent.sensors.end())
-      if (const double late = seconds(session - stream->second.first_us); late >= 0)
+      if (const double late = to_seconds(session - stream->second.first_us); late >= 0)
         least = std::min(least.value_or(late), late);
   return least.value_or(0) > options.least_missing ? *least : 0;
 }
@@ -49,8 +46,8 @@ double without_motion(const PairName& pair, const LogExtent& extent, const Answe
   const auto motions = answers.end_of_motions(pair);
   const auto a = extent.sensors.find(pair.first), b = extent.sensors.find(pair.second);
   if (!motions || a == extent.sensors.end() || b == extent.sensors.end()) return 0;
-  const double of_a = seconds(a->second.last_us - motions->first),
-               of_b = seconds(b->second.last_us - motions->first) + motions->second;
+  const double of_a = to_seconds(a->second.last_us - motions->first),
+               of_b = to_seconds(b->second.last_us - motions->first) + motions->second;
   return std::min(of_a, of_b) > options.standing ? std::min(of_a, of_b) : 0;
 }
 

@@ -9,6 +9,7 @@
 #include "diagnosis/mount_pairs.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/microseconds.hpp"
 #include "moves/switching.hpp"
 
 namespace egocal::detail {
@@ -21,7 +22,7 @@ std::optional<Finding> back_and_forth(const Instants& instants, const Answered& 
     std::optional<Switching> here = find_switching(pairs, answered.problem);
     if (!here || (found && found->left <= here->left)) continue;
     found = std::move(here);
-    begin = 1e-6 * static_cast<double>(pairs.front().begin_us);
+    begin = to_seconds(pairs.front().begin_us);
   }
   if (!found) return std::nullopt;
   const ExtrinsicError apart = extrinsic_error(found->first, found->second);

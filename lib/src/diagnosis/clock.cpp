@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "pairing/offset/correlation.hpp"
 #include "pairing/offset/line_fit.hpp"
 
@@ -19,8 +20,8 @@ Series turning_rates(const Trajectory& trajectory, std::span<const float> turnin
   Series turned(count, 0.0);
   std::vector<double> covered(count, 0.0);
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    const double t0 = 1e-6 * static_cast<double>(trajectory[i - 1].time_us - origin_us) + shift;
-    const double t1 = 1e-6 * static_cast<double>(trajectory[i].time_us - origin_us) + shift;
+    const double t0 = to_seconds(trajectory[i - 1].time_us - origin_us) + shift;
+    const double t1 = to_seconds(trajectory[i].time_us - origin_us) + shift;
     if (!(t1 > t0) || t1 - t0 > 10 * step) continue;
     const double angle = turning[i - 1];
     // share out over the cells that the interval touches
@@ -75,7 +76,7 @@ struct CoarseClocks {
 std::optional<CoarseClocks> coarse_clocks(const Streams& streams, const ClockModel& start) {
   const ClockSearchOptions& options = streams.options.clock;
   const std::int64_t origin_us = streams.a.front().time_us;
-  const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - origin_us);
+  const double span = to_seconds(streams.a.back().time_us - origin_us);
   const double step = std::max(streams.grid.finest, span / static_cast<double>(options.grid));
   const auto count = static_cast<std::size_t>(span / step);
   if (count < 2 * streams.grid.least_cells) return std::nullopt;
@@ -185,7 +186,7 @@ ClockFits fit_clock(const Streams& streams, const ClockModel& start) {
       drift = std::move(offset);
     else
       refine(streams, &ClockModel::offset, 0.05, 3, drift);
-    const double span = 1e-6 * static_cast<double>(streams.a.back().time_us - streams.a.front().time_us);
+    const double span = to_seconds(streams.a.back().time_us - streams.a.front().time_us);
     refine(streams, &ClockModel::rate, 0.05 / std::max(1.0, span), 2, drift);
     refine(streams, &ClockModel::offset, 0.01, 1, drift);
     fits.drift = std::move(drift.fit);

@@ -7,6 +7,7 @@
 
 #include "diagnosis/wording.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
@@ -53,10 +54,10 @@ bool fits_better(const MiddlePart& part, double offset, double than, const DualQ
   TimeOffsetOptions options;
   options.candidate_motions = tuning.instants;
   Schedule schedule;
-  OffsetFits fits(a, b, options, std::llround(1e6 * max_gap), schedule);
+  OffsetFits fits(a, b, options, to_microseconds(max_gap), schedule);
   for (const double seconds : {than, offset}) {
     const std::int64_t at_b_us = b.front().time_us;
-    fits.add({at_b_us + std::llround(1e6 * seconds), at_b_us, 0, 0}, T_a_b);
+    fits.add({at_b_us + to_microseconds(seconds), at_b_us, 0, 0}, T_a_b);
   }
   while (!schedule.run(1'000'000)) {
   }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "diagnosis/robust_fit.hpp"
+#include "egocal/microseconds.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -64,7 +65,7 @@ std::vector<bool> spoiled_stretches(const std::vector<MotionPair>& pairs, const 
                        to_us = k == moves.size() ? pairs.back().end_us : times_us[k];
     parts.push_back(
         {{motions_of(within(pairs, from_us, to_us)), k == 0 ? moves.front().before : moves[k - 1].after},
-         1e-6 * static_cast<double>(to_us - from_us)});
+         to_seconds(to_us - from_us)});
   }
   std::vector<bool> spoiled;
   for (const Part& part : parts)
@@ -95,9 +96,9 @@ std::vector<Move> without_corrections(const std::vector<MotionPair>& pairs, cons
                                       std::vector<Move> moves, const CorrectionOptions& options) {
   if (pairs.empty() || moves.empty()) return moves;
   std::stable_sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) { return x.time < y.time; });
-  const std::int64_t left_out_us = std::llround(1e6 * options.seconds);
+  const std::int64_t left_out_us = to_microseconds(options.seconds);
   std::vector<std::int64_t> times_us;
-  for (const Move& move : moves) times_us.push_back(pairs.front().begin_us + std::llround(1e6 * move.time));
+  for (const Move& move : moves) times_us.push_back(pairs.front().begin_us + to_microseconds(move.time));
   const std::vector<bool> spoiled = spoiled_stretches(pairs, moves, times_us, options);
   std::vector<Move> kept;
   std::int64_t from_us = pairs.front().begin_us;

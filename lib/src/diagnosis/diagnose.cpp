@@ -174,7 +174,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   if (answered.problem.mode != Mode::planar)
     late = late_positions(evidence.instants, evidence.given.explained, options);
   const auto explains_more = [&late](double improvement) { return !late || improvement > late->improvement; };
-  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
+  MovedMount moved = moved_mount(evidence.instants, answered, options);
+  std::vector<Finding>& moves = moved.findings;
   // where a filter delays positions, parts of the drive with other speeds have other extrinsics
   if (!moves.empty() && late && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
     moves.clear();
@@ -200,6 +201,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     last = back_and_forth(evidence.instants, answered, options);
   if (!last && answered.problem.mode != Mode::planar)
     last = swaying_mount(evidence.instants, answered, options);
+  if (!last) last = contradicting_times(moved.unexplained, options);
   if (last) findings.insert(findings.begin(), *std::move(last));
 }
 
@@ -217,7 +219,7 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
     if (finding.code != "inverted_both" && finding.improvement > move->improvement) return false;
   const std::vector<PoseReading> of_both = readings_of_both(findings);
   // its time is more exact where it is small enough for the linear test
-  findings = moved_mount(evidence.instants, answered, options);
+  findings = moved_mount(evidence.instants, answered, options).findings;
   if (!one_move(findings)) findings = {*std::move(move)};
   findings = moves_or_else(std::move(findings), pairing, evidence, answered, of_both, options);
   return true;
@@ -231,7 +233,7 @@ bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, c
   const auto axes = std::find_if(findings.begin(), findings.end(),
                                  [](const Finding& one) { return one.certain && one.code == "axes_both"; });
   if (axes == findings.end()) return false;
-  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options);
+  std::vector<Finding> moves = moved_mount(evidence.instants, answered, options).findings;
   if (moves.empty() || std::exp(gain_of_parts(evidence, moves, options)) <= axes->improvement) return false;
   moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
   if (moves.empty()) return false;

@@ -12,6 +12,7 @@
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/scale.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::detail {
 
@@ -62,7 +63,7 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
       std::clamp<std::size_t>(evidence.instants.size() / options.clock.instants, 1,
                               std::max<std::size_t>(1, static_cast<std::size_t>(evidence.stride) / 8));
   std::vector<Explanation> result;
-  const double length = 1e-6 * static_cast<double>(streams.a.back().time_us - streams.a.front().time_us);
+  const double length = to_seconds(streams.a.back().time_us - streams.a.front().time_us);
   const auto take = [&](const char* code, const std::optional<ClockFit>& fit, const Explained& against) {
     if (!fit || largest_difference(fit->clock, evidence.clock, 0, length) < options.clock.least ||
         !number_explains(compare(against, fit->explained), options))

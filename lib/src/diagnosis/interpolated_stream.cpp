@@ -6,6 +6,7 @@
 #include <string>
 
 #include "diagnosis/wording.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::detail {
 
@@ -29,8 +30,8 @@ Kinds lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options
   Kinds kinds;
   const std::size_t n = poses.size(), count = std::min(n, options.most), first = (n - count) / 2;
   for (std::size_t i = first + 1; i + 1 < first + count; ++i) {
-    const double before = 1e-6 * static_cast<double>(poses[i].time_us - poses[i - 1].time_us),
-                 after = 1e-6 * static_cast<double>(poses[i + 1].time_us - poses[i].time_us);
+    const double before = to_seconds(poses[i].time_us - poses[i - 1].time_us),
+                 after = to_seconds(poses[i + 1].time_us - poses[i].time_us);
     if (!(before > 0 && after > 0)) continue;
     const Pose x = to_pose(poses[i - 1].pose), y = to_pose(poses[i].pose), z = to_pose(poses[i + 1].pose);
     const double ratio = before / after;

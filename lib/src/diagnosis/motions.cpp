@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "pairing/cut_alike.hpp"
 #include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
@@ -186,7 +187,7 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
   instants.b_slower_ = b_slower;
   instants.keys_ = b_slower ? &b : &a;
   instants.others_ = b_slower ? &a : &b;
-  instants.max_gap_us_ = std::llround(1e6 * max_gap);
+  instants.max_gap_us_ = to_microseconds(max_gap);
   const Times& key_times = instants.key_times_.emplace(b_slower ? times_b : times_a);
   Lookup other(b_slower ? times_a : times_b, max_gap);
   instants.places_.reserve(key_times.size() / each + 1);

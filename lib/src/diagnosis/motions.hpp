@@ -11,6 +11,7 @@
 
 #include "diagnosis/reading.hpp"
 #include "egocal/diagnosis/options.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/options.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/problem/cost.hpp"
@@ -36,7 +37,7 @@ class Times {
       : trajectory_(&trajectory), origin_us_(origin_us), clock_(clock) {}
   std::size_t size() const { return trajectory_->size(); }
   double operator[](std::size_t i) const {
-    return clock_.on_clock_of_a(1e-6 * static_cast<double>((*trajectory_)[i].time_us - origin_us_));
+    return clock_.on_clock_of_a(to_seconds((*trajectory_)[i].time_us - origin_us_));
   }
 
  private:

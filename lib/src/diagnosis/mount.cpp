@@ -11,6 +11,7 @@
 #include "diagnosis/correction.hpp"
 #include "diagnosis/mount_pairs.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/moves/find_moves.hpp"
 
 namespace egocal::detail {
@@ -72,29 +73,34 @@ void word_falling_back(Finding& first, Finding& second) {
       moved, back);
 }
 
-MovesResult moves_of(const std::vector<std::vector<MotionPair>>& strides, const Answered& answered,
-                     const DiagnosisOptions& options) {
+using Strides = std::vector<std::vector<MotionPair>>;
+
+MovesResult moves_of(const Strides& strides, const Answered& answered, const DiagnosisOptions& options) {
   MovesOptions moves;
   moves.false_alarms = options.mount.false_alarms;
   return find_moves_of_strides(strides, answered.problem, moves);
 }
 
-/// The moves that the motions show without those of the last seconds, too. Times of moves are counted from
-/// the first motion of the stride that answers.
-void keep_those_shown_before(const std::vector<std::vector<MotionPair>>& strides, const Answered& answered,
-                             const DiagnosisOptions& options, MovesResult& result) {
-  const MountCheckOptions& mount = options.mount;
-  std::vector<std::vector<MotionPair>> before = strides;
-  for (std::vector<MotionPair>& pairs : before) {
-    const std::int64_t end = pairs.empty() ? 0 : pairs.back().end_us - std::llround(1e6 * mount.shown_before);
+/// Without the motions of the last seconds.
+Strides shown_before(Strides strides, const MountCheckOptions& mount) {
+  for (std::vector<MotionPair>& pairs : strides) {
+    const std::int64_t end = pairs.empty() ? 0 : pairs.back().end_us - to_microseconds(mount.shown_before);
     std::erase_if(pairs, [end](const MotionPair& pair) { return pair.end_us > end; });
   }
+  return strides;
+}
+
+/// The moves that the motions show without those of the last seconds, too. Times of moves are counted from
+/// the first motion of the stride that answers.
+void keep_those_shown_before(const Strides& strides, const Answered& answered,
+                             const DiagnosisOptions& options, MovesResult& result) {
+  const MountCheckOptions& mount = options.mount;
+  const Strides before = shown_before(strides, mount);
   const MovesResult earlier = moves_of(before, answered, options);
   const auto begin_us = [](const std::vector<MotionPair>& pairs) {
     return pairs.empty() ? 0 : pairs.front().begin_us;
   };
-  const double later =
-      1e-6 * static_cast<double>(begin_us(strides[result.stride]) - begin_us(before[earlier.stride]));
+  const double later = to_seconds(begin_us(strides[result.stride]) - begin_us(before[earlier.stride]));
   std::erase_if(result.moves, [&](const Move& move) {
     return std::none_of(earlier.moves.begin(), earlier.moves.end(), [&](const Move& other) {
       return later + move.earliest <= std::max(other.latest, other.time + mount.same_time) &&
@@ -103,7 +109,13 @@ void keep_those_shown_before(const std::vector<std::vector<MotionPair>>& strides
   });
 }
 
-using Strides = std::vector<std::vector<MotionPair>>;
+/// Of the strongest evidence, without the motions of the last seconds as well.
+double lasting_chance(const Strides& strides, const Answered& answered, const DiagnosisOptions& options,
+                      double chance) {
+  const MountCheckOptions& mount = options.mount;
+  if (!(mount.shown_before > 0) || !(chance < mount.contradicting_times)) return chance;
+  return std::max(chance, moves_of(shown_before(strides, mount), answered, options).chance);
+}
 
 std::int64_t begin_of(const Strides& strides, const MovesResult& result) {
   return strides[result.stride].front().begin_us;
@@ -112,8 +124,8 @@ std::int64_t begin_of(const Strides& strides, const MovesResult& result) {
 /// Without the motions in the seconds around moves.
 Strides without_those_around(Strides strides, std::int64_t begin_us, const std::vector<Move>& moves) {
   for (const Move& move : moves) {
-    const std::int64_t left_us = begin_us + std::llround(1e6 * (move.time - CorrectionOptions{}.seconds)),
-                       right_us = begin_us + std::llround(1e6 * (move.time + CorrectionOptions{}.seconds));
+    const std::int64_t left_us = begin_us + to_microseconds(move.time - CorrectionOptions{}.seconds),
+                       right_us = begin_us + to_microseconds(move.time + CorrectionOptions{}.seconds);
     for (std::vector<MotionPair>& pairs : strides)
       std::erase_if(
           pairs, [&](const MotionPair& pair) { return pair.end_us > left_us && pair.begin_us < right_us; });
@@ -152,22 +164,24 @@ void leave_out_corrections(Strides& strides, const Answered& answered, const Dia
 
 }  // namespace
 
-std::vector<Finding> moved_mount(const Instants& instants, const Answered& answered,
-                                 const DiagnosisOptions& options, const PoseReading& reading) {
+MovedMount moved_mount(const Instants& instants, const Answered& answered, const DiagnosisOptions& options,
+                       const PoseReading& reading) {
   Strides strides = strides_of(instants, answered, options, reading);
   MovesResult result = moves_of(strides, answered, options);
-  std::vector<Finding> findings;
-  if (result.moves.empty()) return findings;
+  if (result.moves.empty()) return {{}, lasting_chance(strides, answered, options, result.chance)};
   if (options.mount.shown_before > 0) keep_those_shown_before(strides, answered, options, result);
   leave_out_corrections(strides, answered, options, result);
+  // what is left without a correction may still contradict
+  const double left = result.moves.empty() ? lasting_chance(strides, answered, options, result.chance) : 1;
   // as large as odometry errs, where the answer is known at all
   std::erase_if(result.moves, [&](const Move& move) {
     const auto [turn, shift] = known_change(move, answered.observability.observable);
     const MovesOptions least;
     return turn > 0 && turn < least.least_rotation && shift < least.least_translation;
   });
-  if (result.moves.empty()) return findings;
-  const double begin = 1e-6 * static_cast<double>(begin_of(strides, result));
+  if (result.moves.empty()) return {{}, left};
+  std::vector<Finding> findings;
+  const double begin = to_seconds(begin_of(strides, result));
   for (const Move& move : result.moves) {
     Finding finding;
     finding.code = "mount_moved";
@@ -179,7 +193,20 @@ std::vector<Finding> moved_mount(const Instants& instants, const Answered& answe
   }
   for (std::size_t k = 1; k < result.moves.size(); ++k)
     if (falls_back(result.moves[k - 1], result.moves[k])) word_falling_back(findings[k - 1], findings[k]);
-  return findings;
+  return {std::move(findings), 1};
+}
+
+std::optional<Finding> contradicting_times(double chance, const DiagnosisOptions& options) {
+  if (!(chance < options.mount.contradicting_times)) return std::nullopt;
+  Finding finding;
+  finding.code = "mount_moved";
+  finding.message = format(
+      "Motions of different times contradict each other (by chance in one of %.0e drives): the mounting "
+      "moved, "
+      "or a stream changed, at times that are not clear.",
+      1 / std::max(chance, 1e-300));
+  finding.remedy = "Calibrate parts of the drive separately, and compare their answers.";
+  return finding;
 }
 
 bool one_move(const std::vector<Finding>& moves) {

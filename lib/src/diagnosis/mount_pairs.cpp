@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/congruence.hpp"
 
 namespace egocal::detail {
@@ -30,8 +31,8 @@ std::vector<MotionPair> pairs_of(const Instants& instants, const Answered& answe
     ends.fetch_next(i, k);
     const PosePair from = ends.at(i), to = ends.at(k);
     MotionPair pair{canonical_sign(normalized(conjugate(from.a) * to.a)),
-                    canonical_sign(normalized(conjugate(from.b) * to.b)),
-                    std::llround(1e6 * instants.time(i)), std::llround(1e6 * instants.time(k)), 1};
+                    canonical_sign(normalized(conjugate(from.b) * to.b)), to_microseconds(instants.time(i)),
+                    to_microseconds(instants.time(k)), 1};
     if (planar) {
       pair.a = planar_motion(pair.a, G_a);
       pair.b = planar_motion(pair.b, G_b);

@@ -15,6 +15,7 @@
 #include "diagnosis/wandering_scale.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/error.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/scale/estimate_scale.hpp"
 #include "egocal/scale/scale_course.hpp"
 
@@ -50,13 +51,13 @@ ScaleGuesses scales_of_b(const Trajectory& a, const Trajectory& b, const Pairing
   ScaleGuesses guesses;
   add_scale_of_b(a, b, pairing, guesses);
   if (moves.empty()) return guesses;
-  const std::int64_t offset_us = std::llround(1e6 * pairing.time_offset);
+  const std::int64_t offset_us = to_microseconds(pairing.time_offset);
   std::int64_t from = a.front().time_us;
   for (std::size_t k = 0; k <= moves.size(); ++k) {
     std::int64_t to = a.back().time_us + 1;
     if (k < moves.size()) {
       if (!moves[k].time) continue;
-      to = a.front().time_us + std::llround(1e6 * *moves[k].time);
+      to = a.front().time_us + to_microseconds(*moves[k].time);
     }
     add_scale_of_b(between(a, from, to), between(b, from - offset_us, to - offset_us), pairing, guesses);
     from = to;
@@ -67,7 +68,7 @@ ScaleGuesses scales_of_b(const Trajectory& a, const Trajectory& b, const Pairing
 /// Times are counted from origin_us.
 std::string in_words(const ScaleCourse& course, std::int64_t origin_us) {
   constexpr std::size_t most = 4;  // a message is one line
-  const auto seconds = [&](std::int64_t time_us) { return 1e-6 * static_cast<double>(time_us - origin_us); };
+  const auto seconds = [&](std::int64_t time_us) { return to_seconds(time_us - origin_us); };
   std::string text;
   for (std::size_t i = 0; i < std::min(most, course.segments.size()); ++i) {
     const ScaleSegment& segment = course.segments[i];
@@ -108,7 +109,8 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   if (!course.changes()) return std::nullopt;
   const Trajectory followed = scaled(b, course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
-  if (!moved_mount(instants, answered, options).empty() || large_move(instants, evidence.stride, options))
+  if (!moved_mount(instants, answered, options).findings.empty() ||
+      large_move(instants, evidence.stride, options))
     return std::nullopt;
   Explained explained;
   explained.motions = motions_of(instants, {}, {}, evidence.stride, options.motions.most, options.motions);
@@ -123,7 +125,7 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   finding.improvement = std::exp(gain);
   const ScaleSegment& first = course.segments.front();
   const bool drifts = course.segments.size() == 1;
-  finding.time = 1e-6 * static_cast<double>((drifts ? first.begin_us : first.end_us) - origin_us);
+  finding.time = to_seconds((drifts ? first.begin_us : first.end_us) - origin_us);
   finding.T_a_b = to_pose(explained.fit.T);
   finding.message = "The lengths of b must be multiplied by a factor that changes along the drive: " +
                     in_words(course, origin_us) + ". With these the mounting does not move.";
@@ -152,7 +154,7 @@ bool explained_by_reading(const PoseReading& of_both, const Evidence& evidence,
                           const DiagnosisOptions& options) {
   const Motions motions =
       motions_of(evidence.instants, of_both, of_both, evidence.stride, options.motions.most, options.motions);
-  if (motions.all.empty() || !moved_mount(evidence.instants, answered, options, of_both).empty())
+  if (motions.all.empty() || !moved_mount(evidence.instants, answered, options, of_both).findings.empty())
     return false;
   const Explained both{motions, robust_fit(motions, options.fit)};
   const Explained parts = in_parts(evidence.given.explained, moves, options);
@@ -168,7 +170,8 @@ bool moves_with_the_scale(const PairingOptions& pairing, const Evidence& evidenc
   if (!course) return false;
   const Trajectory followed = scaled(b, *course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
-  return moved_mount(instants, answered, options).empty() && !large_move(instants, evidence.stride, options);
+  return moved_mount(instants, answered, options).findings.empty() &&
+         !large_move(instants, evidence.stride, options);
 }
 
 }  // namespace

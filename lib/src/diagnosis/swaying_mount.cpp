@@ -85,11 +85,28 @@ std::optional<RotationChange> sway(const std::vector<RotationChange>& changes, c
   return largest;
 }
 
+double change_by_interpolation(const Instants& instants, const SwayOptions& options) {
+  const Instants other = instants.through(options.poses);
+  const std::size_t each = std::max<std::size_t>(1, instants.size() / options.most_motions);
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < instants.size(); i += each) {
+    if (!instants.between_poses(i)) continue;
+    const PosePair here = instants.at(i), there = other.at(i);
+    squares.push_back(rotation_log(to_pose(conjugate(here.a) * there.a).rotation).squaredNorm() +
+                      rotation_log(to_pose(conjugate(here.b) * there.b).rotation).squaredNorm());
+  }
+  if (squares.empty()) return 0;
+  return std::sqrt(mean(squares, options.longest_square * mean(squares, INFINITY)));
+}
+
 std::optional<Finding> swaying_mount(const Instants& instants, const Answered& answered,
                                      const DiagnosisOptions& options) {
+  const SwayOptions tuning;
   const std::optional<RotationChange> found =
-      sway(rotation_changes(instants, answered.T_a_b, options.motions));
-  if (!found) return std::nullopt;
+      sway(rotation_changes(instants, answered.T_a_b, options.motions, tuning), tuning);
+  if (!found ||
+      std::sqrt(found->mean_square) < tuning.of_interpolation * change_by_interpolation(instants, tuning))
+    return std::nullopt;
   Finding finding;
   finding.code = "mount_moved";
   finding.message = format(

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -72,7 +74,7 @@ std::optional<ScaleCourse> wandering_scale(const Motions& motions, std::int64_t 
   ScaleCourse course;
   for (std::size_t part = 0; part < scales.size(); ++part) {
     const auto time_us = [&](std::size_t i) {
-      return origin_us + std::llround(1e6 * motions.all[std::min(i, motions.all.size() - 1)].time);
+      return origin_us + to_microseconds(motions.all[std::min(i, motions.all.size() - 1)].time);
     };
     course.segments.push_back({time_us(begins[part]), time_us(begins[part + 1]), scales[part], scales[part]});
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "egocal/error.hpp"
+#include "egocal/microseconds.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal {
@@ -20,7 +21,7 @@ struct Instant {
 
 std::vector<Instant> common_instants(const Trajectory& a, const Trajectory& b_as_a,
                                      const AlignmentOptions& options) {
-  const std::int64_t largest_gap_us = std::llround(1e6 * options.max_gap);
+  const std::int64_t largest_gap_us = to_microseconds(options.max_gap);
   std::vector<Instant> instants;
   std::size_t after = 0;
   for (const StampedPose& pose : b_as_a) {

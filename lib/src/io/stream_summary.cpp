@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "microseconds.hpp"
+#include "egocal/microseconds.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {
@@ -24,7 +24,7 @@ void StreamSummariser::add(const StampedPose& pose) {
   }
   summary_.first_us = std::min(summary_.first_us, pose.time_us);
   summary_.last_us = std::max(summary_.last_us, pose.time_us);
-  const double step = detail::seconds(pose.time_us - last_->time_us);
+  const double step = to_seconds(pose.time_us - last_->time_us);
   if (step <= 0) {
     ++summary_.out_of_order;
     return;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "egocal/limits.hpp"
-#include "microseconds.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal {
 
@@ -27,7 +27,7 @@ std::optional<DualQuaternion> TwistIntegrator::add(const Twist& twist) {
   if (!twist.linear.allFinite() || !twist.angular.allFinite()) return std::nullopt;
   if (last_) {
     if (twist.time_us <= last_->time_us) return std::nullopt;
-    const double step_s = detail::seconds(twist.time_us - last_->time_us);
+    const double step_s = to_seconds(twist.time_us - last_->time_us);
     const Pose step =
         screw(0.5 * step_s * (last_->linear + twist.linear), 0.5 * step_s * (last_->angular + twist.angular));
     // a damaged velocity may be finite, and its way not

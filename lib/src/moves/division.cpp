@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimation/spread_by_poses.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/median.hpp"
@@ -35,6 +36,36 @@ double longest_length(const std::vector<Parameters>& residuals, const ChangeTest
   return options.longest_residual * median(std::move(lengths));
 }
 
+namespace {
+
+/// Median cost of the blocks of one side at q.
+double median_cost(Blocks blocks, Part second, bool of_second, const DualQuaternion& q) {
+  const Vector8d v = q.vec();
+  std::vector<double> costs;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (second.has(i) == of_second) costs.push_back(v.dot(blocks[i].Q * v));
+  return median(std::move(costs));
+}
+
+/// Whether the motions of each side fit their own optimum far better than that of the other side, without
+/// linearising. Medians: the block in which the mount moved fits neither.
+std::array<bool, 2> fit_far_better(Blocks blocks, Part second, const ChangeTestOptions& options) {
+  const Mode mode = blocks.front().g.size() == 3 ? Mode::planar : Mode::spatial;
+  std::array<Matrix8d, 2> Q{Matrix8d::Zero(), Matrix8d::Zero()};
+  for (std::size_t i = 0; i < blocks.size(); ++i) Q[second.has(i) ? 1 : 0] += blocks[i].Q;
+  const std::array<DualQuaternion, 2> optima{minimiser(Q[0], mode), minimiser(Q[1], mode)};
+  std::array<bool, 2> better{};
+  for (const std::size_t side : {0, 1}) {
+    const bool of_second = side == 1;
+    const double own = median_cost(blocks, second, of_second, optima[side]),
+                 others = median_cost(blocks, second, of_second, optima[1 - side]);
+    better[side] = others > 0 && own <= options.own_part * others;
+  }
+  return better;
+}
+
+}  // namespace
+
 Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
   Division d;
   d.H1 = d.H2 = zero_matrix(blocks);
@@ -44,6 +75,7 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
   const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + options.borrowed_curvature * d.H));
   for (const LinearBlock& block : blocks) d.gradients.push_back(block.g);
   d.residuals.resize(blocks.size());
+  std::array<std::size_t, 2> all{}, shortened{};  // blocks of each side
   for (int pass = 0; pass < 3; ++pass) {
     Parameters g1 = zero_vector(blocks), g2 = g1;
     for (std::size_t i = 0; i < blocks.size(); ++i) (second.has(i) ? g2 : g1) += d.gradients[i];
@@ -52,28 +84,22 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
     for (std::size_t i = 0; i < blocks.size(); ++i)
       d.residuals[i] = blocks[i].inverse_root * (blocks[i].g + blocks[i].H * (second.has(i) ? d.x2 : d.x1));
     const double limit = longest_length(d.residuals, options);
-    std::array<std::size_t, 2> all{}, shortened{};   // blocks of each side
-    std::array<std::vector<double>, 2> own, others;  // squared residuals at either optimum
+    all = shortened = {};
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const std::size_t side = second.has(i) ? 1 : 0;
-      const Parameters& x = side == 1 ? d.x2 : d.x1;
-      const Parameters& other = side == 1 ? d.x1 : d.x2;
       const double length = d.residuals[i].norm();
       ++all[side];
-      own[side].push_back(length * length);
-      others[side].push_back((blocks[i].inverse_root * (blocks[i].g + blocks[i].H * other)).squaredNorm());
       if (length > limit) {
         d.residuals[i] *= limit / length;
         ++shortened[side];
       }
-      d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * x;
+      d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * (side == 1 ? d.x2 : d.x1);
     }
-    const auto side_fits = [&](std::size_t side) {
-      // medians: the block in which the mount moved fits neither
-      return 2 * shortened[side] <= all[side] || median(own[side]) <= options.own_part * median(others[side]);
-    };
-    d.fits = side_fits(0) && side_fits(1);
   }
+  const auto most_fit = [&](std::size_t side) { return 2 * shortened[side] <= all[side]; };
+  if (most_fit(0) && most_fit(1)) return d;
+  const std::array<bool, 2> better = fit_far_better(blocks, second, options);
+  d.fits = (most_fit(0) || better[0]) && (most_fit(1) || better[1]);
   return d;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "egocal/microseconds.hpp"
 #include "moves/change_place.hpp"
 #include "moves/change_test.hpp"
 #include "moves/linear_blocks.hpp"
@@ -279,7 +280,7 @@ class Finder {
     return extrinsic_from_planar(q, plane_frame(problem_.plane_a), plane_frame(problem_.plane_b));
   }
 
-  double seconds(std::int64_t time_us) const { return 1e-6 * static_cast<double>(time_us - origin_us_); }
+  double seconds(std::int64_t time_us) const { return to_seconds(time_us - origin_us_); }
 
   detail::ChangePlace place(const Found& found, const DualQuaternion& before,
                             const DualQuaternion& after) const {

@@ -239,6 +239,7 @@ Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, 
     const Matrix8d Q_block =
         in_units_of(result.length, cost_without_noise(statistics, problem.balance, attenuation));
     LinearBlock block;
+    block.Q = share * in_units_of(result.length, cost_matrix(statistics, problem.balance));
     block.g = share * (T.transpose() * (Q_block * v));
     block.H = share * (T.transpose() * lagrangian_matrix(Q_block, lambda) * T);
     const std::size_t from = k * pairs.size() / count;

@@ -21,6 +21,7 @@ struct LinearBlock {
   Parameters g;
   ParameterMatrix H;
   ParameterMatrix root, inverse_root;  ///< of the covariance of the noise in g, but for a factor
+  Matrix8d Q = Matrix8d::Zero();       ///< its cost, with the noise of its own rotations
   double time = 0;                     ///< of its middle, from -1 at the begin of the stretch to 1 at its end
 };
 

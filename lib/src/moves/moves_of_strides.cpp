@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "egocal/moves/find_moves.hpp"
 #include "moves/linear_blocks.hpp"
 #include "moves/moving_pairs.hpp"
@@ -19,7 +20,9 @@ using Pairs = std::span<const MotionPair>;
 /// The motions from the move before number k to the one after it: others would pass for noise. Times of moves
 /// are counted from origin_us.
 Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k, std::int64_t origin_us) {
-  const auto at = [&](const Move& move) { return origin_us + static_cast<std::int64_t>(1e6 * move.time); };
+  const auto at = [&](const Move& move) {
+    return origin_us + static_cast<std::int64_t>(second_us * move.time);
+  };
   std::size_t from = 0, to = pairs.size();
   if (k > 0 && moves[k - 1].kind == MoveKind::bump)
     while (from < to && pairs[from].begin_us < at(moves[k - 1])) ++from;
@@ -31,7 +34,7 @@ Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k
 /// False: the motions were tested and do not show it.
 bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_t origin_us,
               const MovesOptions& options) {
-  const std::int64_t time_us = origin_us + static_cast<std::int64_t>(1e6 * move.time);
+  const std::int64_t time_us = origin_us + static_cast<std::int64_t>(second_us * move.time);
   const std::optional<double> chance = chance_of_move(pairs, problem, move.kind, time_us, options);
   return !chance || *chance <= options.confirmation;
 }

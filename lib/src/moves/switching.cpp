@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "egocal/microseconds.hpp"
 #include "moves/division.hpp"
 #include "moves/moving_pairs.hpp"
 #include "solvers/tangent.hpp"
@@ -116,7 +117,7 @@ std::optional<Switching> switching_of(std::span<const MotionPair> pairs, const P
   for (std::size_t k = 1; k < count; ++k) {
     if (sides[k] == sides[k - 1]) continue;
     if (result.switches++ == 0)
-      result.time = 1e-6 * static_cast<double>(pairs[all.begin[k]].begin_us - pairs.front().begin_us);
+      result.time = to_seconds(pairs[all.begin[k]].begin_us - pairs.front().begin_us);
   }
   if (result.switches < options.least_switches) return std::nullopt;
   const DualQuaternion q = in_units_of(1 / all.length, all.q);
@@ -139,7 +140,7 @@ std::optional<Switching> find_switching(std::span<const MotionPair> pairs, const
   pairs = moving_pairs(pairs, MovesOptions{}.least_motion, kept);
   if (pairs.size() < options.least_blocks * options.block_pairs) return std::nullopt;
   const Problem weighted = weighted_by_noise(pairs, problem, options.test);
-  const double seconds = 1e-6 * static_cast<double>(pairs.back().end_us - pairs.front().begin_us);
+  const double seconds = to_seconds(pairs.back().end_us - pairs.front().begin_us);
   const std::size_t most = std::min(options.most_blocks, pairs.size() / options.block_pairs);
   std::optional<Switching> best;
   for (double block = options.shortest_block; block <= options.longest_block; block *= 2) {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "estimation/motions_to_one.hpp"
 #include "pairing/choice_schedule.hpp"
 #include "pairing/motions_between.hpp"
@@ -49,7 +50,7 @@ void Accumulator::begin(std::int64_t period_us) {
     state_.strides.push_back({*options_.stride, {}});
     return;
   }
-  const double longest_us = 1e6 * options_.accumulator.longest_motion;
+  const double longest_us = second_us * options_.accumulator.longest_motion;
   for (int stride = 1; stride == 1 || stride * static_cast<double>(period_us) <= longest_us; stride *= 2)
     state_.strides.push_back({stride, {}});
 }
@@ -262,44 +263,20 @@ std::uint64_t Accumulator::choice_delay() const {
 
 void Accumulator::choose() {
   if (options_.stride && options_.balance) return;
-  const Problem problem = empty_problem();
-  std::vector<Candidate> candidates;
-  std::optional<std::size_t> current;
-  const auto select = [&](const std::vector<double>& balances) {
-    candidates.clear();
-    current.reset();
-    candidates.reserve(state_.strides.size() * balances.size());
-    for (const AccumulatorState::PerStride& entry : state_.strides) {
-      const std::vector<Statistics> inliers = entry.statistics.inliers();
-      for (const double translation : balances) {
-        const Balance balance = options_.balance.value_or(Balance{1, translation});
-        if (entry.stride == state_.choice.stride && balance.rotation == state_.choice.balance.rotation &&
-            balance.translation == state_.choice.balance.translation)
-          current = candidates.size();
-        candidates.push_back({entry.stride, balance, inliers});
-        if (options_.balance) break;
-      }
-    }
-    return select_candidate(problem, candidates, current, tuning_.selection);
-  };
-  std::vector<double> balances = options_.accumulator.balances;
-  std::optional<Selection> selection = select(balances);
-  if (!selection) return;
-  if (!options_.balance) {
-    const std::vector<double> smaller = smaller_balances(problem, candidates[selection->index],
-                                                         std::ranges::min(balances), tuning_.selection);
-    if (!smaller.empty()) {
-      balances.insert(balances.end(), smaller.begin(), smaller.end());
-      selection = select(balances);
-    }
-  }
-  const Candidate& chosen = candidates[selection->index];
-  state_.choice.stride = chosen.stride;
-  state_.choice.balance = chosen.balance;
+  std::vector<MotionsOfStride> strides;
+  strides.reserve(state_.strides.size());
+  for (const AccumulatorState::PerStride& entry : state_.strides)
+    strides.push_back({entry.stride, entry.statistics.inliers()});
+  const std::optional<SelectedSetting> selected =
+      select_setting(empty_problem(), strides, options_.accumulator.balances, options_.balance,
+                     Setting{state_.choice.stride, state_.choice.balance}, tuning_.selection);
+  if (!selected) return;
+  state_.choice.stride = selected->setting.stride;
+  state_.choice.balance = selected->setting.balance;
   char text[160];
   std::snprintf(text, sizeof text, "smallest jack-knife spread of %zu settings: %.3f deg, %.2f cm",
-                candidates.size(), selection->spread.rotation * 180 / std::numbers::pi,
-                100 * selection->spread.translation);
+                selected->tried, selected->spread.rotation * 180 / std::numbers::pi,
+                100 * selected->spread.translation);
   state_.choice.reason = text;
 }
 

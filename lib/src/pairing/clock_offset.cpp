@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal {
 
 namespace {
@@ -129,9 +131,9 @@ void ClockFollower::conclude(std::vector<ReleasedPose>& released) {
   }
   if (trusted) {
     const std::int64_t end_us = *state_.streams[1].begin_us + state_.next_us;
-    const double since = 1e-6 * static_cast<double>(end_us - offset->at_us);
-    const double change = 1e-6 * std::abs(static_cast<double>(on_clock_of_a(*offset, end_us) -
-                                                              on_clock_of_a(*state_.in_force, end_us)));
+    const double since = to_seconds(end_us - offset->at_us);
+    const double change =
+        std::abs(to_seconds(on_clock_of_a(*offset, end_us) - on_clock_of_a(*state_.in_force, end_us)));
     const double stddev =
         offset->drifts ? std::hypot(offset->stddev, since * offset->rate_stddev) : offset->stddev;
     if (change >= options_.least_change && change >= options_.change_sigmas * stddev) {
@@ -193,7 +195,7 @@ void ClockFollower::forget() {
 std::optional<double> ClockFollower::seconds() const {
   if (!state_.in_force) return std::nullopt;
   const std::int64_t now_us = state_.streams[1].newest_us.value_or(state_.in_force->at_us);
-  return 1e-6 * static_cast<double>(on_clock_of_a(*state_.in_force, now_us) - now_us);
+  return to_seconds(on_clock_of_a(*state_.in_force, now_us) - now_us);
 }
 
 }  // namespace egocal

@@ -67,6 +67,31 @@ std::uint64_t two_motions(int stride) {
   return 2 * static_cast<std::uint64_t>(stride);
 }
 
+/// Translation weights below `least` that are to be tried after `chosen` won (SelectionOptions::imbalance),
+/// in falling order; mostly none [1/m^2].
+std::vector<double> smaller_balances(const Problem& problem, const Candidate& chosen, double least,
+                                     const SelectionOptions& options) {
+  if (problem.mode == Mode::planar) return {};
+  const Statistics sum = sum_blocks(chosen.blocks);
+  const DualQuaternion q = detail::minimiser(cost_matrix(sum, chosen.balance), problem.mode);
+  const double translation = q.vec().dot(sum.dual_rows * q.vec()),
+               rotation = q.real.dot(sum.dual_rows.bottomRightCorner<4, 4>() * q.real);
+  std::vector<double> balances;
+  double balance = least;
+  const bool errs = translation > options.least_error * options.least_error * sum.weight;
+  if (!errs || !(balance * translation > options.imbalance * rotation)) return balances;
+  while (balance > options.least_balance && options.imbalance * balance * translation > rotation) {
+    balance /= 10;
+    balances.push_back(balance);
+  }
+  return balances;
+}
+
+bool same(const Setting& x, const Setting& y) {
+  return x.stride == y.stride && x.balance.rotation == y.balance.rotation &&
+         x.balance.translation == y.balance.translation;
+}
+
 }  // namespace
 
 std::vector<Statistics> merge_blocks(const std::vector<Statistics>& blocks, std::uint64_t least_pairs) {
@@ -143,22 +168,42 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
   return best ? std::optional(Selection{*best, trials[*best]->spread}) : std::nullopt;
 }
 
-std::vector<double> smaller_balances(const Problem& problem, const Candidate& chosen, double least,
-                                     const SelectionOptions& options) {
-  if (problem.mode == Mode::planar) return {};
-  const Statistics sum = sum_blocks(chosen.blocks);
-  const DualQuaternion q = detail::minimiser(cost_matrix(sum, chosen.balance), problem.mode);
-  const double translation = q.vec().dot(sum.dual_rows * q.vec()),
-               rotation = q.real.dot(sum.dual_rows.bottomRightCorner<4, 4>() * q.real);
-  std::vector<double> balances;
-  double balance = least;
-  const bool errs = translation > options.least_error * options.least_error * sum.weight;
-  if (!errs || !(balance * translation > options.imbalance * rotation)) return balances;
-  while (balance > options.least_balance && options.imbalance * balance * translation > rotation) {
-    balance /= 10;
-    balances.push_back(balance);
+std::optional<SelectedSetting> select_setting(const Problem& problem,
+                                              std::span<const MotionsOfStride> strides,
+                                              std::span<const double> balances,
+                                              const std::optional<Balance>& fixed,
+                                              const std::optional<Setting>& current,
+                                              const SelectionOptions& options) {
+  std::vector<Balance> tried;
+  if (fixed) {
+    tried.push_back(*fixed);
+  } else {
+    for (const double translation : balances) tried.push_back({1, translation});
   }
-  return balances;
+  std::vector<Candidate> candidates;
+  const auto select = [&] {
+    candidates.clear();
+    candidates.reserve(strides.size() * tried.size());
+    std::optional<std::size_t> in_force;
+    for (const MotionsOfStride& of : strides) {
+      for (const Balance& balance : tried) {
+        if (current && same(*current, {of.stride, balance})) in_force = candidates.size();
+        candidates.push_back({of.stride, balance, of.blocks});
+      }
+    }
+    return select_candidate(problem, candidates, in_force, options);
+  };
+  std::optional<Selection> selection = select();
+  if (selection && !fixed) {
+    const double least = std::ranges::min(balances);
+    const std::vector<double> smaller =
+        smaller_balances(problem, candidates[selection->index], least, options);
+    for (const double translation : smaller) tried.push_back({1, translation});
+    if (!smaller.empty()) selection = select();
+  }
+  if (!selection) return std::nullopt;
+  const Candidate& best = candidates[selection->index];
+  return SelectedSetting{{best.stride, best.balance}, selection->spread, candidates.size()};
 }
 
 }  // namespace egocal

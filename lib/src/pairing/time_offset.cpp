@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "egocal/microseconds.hpp"
 #include "pairing/offset/candidates.hpp"
 #include "pairing/offset/correlation.hpp"
 #include "pairing/offset/lasting_jumps.hpp"
@@ -19,12 +20,6 @@
 namespace egocal {
 
 using namespace detail;
-
-namespace {
-
-constexpr double second_us = 1e6;  // unit
-
-}  // namespace
 
 struct TimeOffsetSearch::Impl {
   struct Stream {

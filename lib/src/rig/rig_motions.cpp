@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
@@ -45,7 +46,7 @@ std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t
   if (next == trajectory.begin()) return std::nullopt;
   const auto last = std::prev(next);
   const auto gap = static_cast<double>(next->time_us - last->time_us);
-  if (gap > 1e6 * max_gap) return std::nullopt;
+  if (gap > second_us * max_gap) return std::nullopt;
   const double part = static_cast<double>(time_us - last->time_us) / gap;
   const SynchroniserOptions options;
   const auto side = static_cast<std::ptrdiff_t>(options.smooth_poses / 2);
@@ -73,7 +74,7 @@ std::vector<int> gaps_before(const std::vector<Instant>& instants, double max_ga
   for (std::size_t i = 1; i < instants.size(); ++i)
     periods.push_back(instants[i].time_us - instants[i - 1].time_us);
   if (periods.empty()) return std::vector<int>(instants.size(), 0);
-  const double limit = std::max(1e6 * max_gap, 1.5 * static_cast<double>(detail::median(periods)));
+  const double limit = std::max(second_us * max_gap, 1.5 * static_cast<double>(detail::median(periods)));
   std::vector<int> gaps = {0};
   for (const std::int64_t period : periods)
     gaps.push_back(gaps.back() + (static_cast<double>(period) > limit ? 1 : 0));

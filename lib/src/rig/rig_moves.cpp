@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal {
 
 namespace {
@@ -35,7 +37,7 @@ std::vector<std::vector<Seen>> grouped(std::vector<Seen> seen, double same_time)
 /// The motions between two times [s] from the first one's begin.
 std::span<const MotionPair> part_of(const RigPair& pair, double from, double to) {
   const auto at = [&](double seconds) {
-    const double time_us = static_cast<double>(pair.pairs.front().begin_us) + 1e6 * seconds;
+    const double time_us = static_cast<double>(pair.pairs.front().begin_us) + second_us * seconds;
     return std::lower_bound(
         pair.pairs.begin(), pair.pairs.end(), time_us,
         [](const MotionPair& motion, double time) { return static_cast<double>(motion.begin_us) < time; });
@@ -99,7 +101,7 @@ std::vector<RigMove> find_rig_moves(std::size_t sensors, std::span<const RigPair
       const auto part = part_of(pair, std::min(from, result[k].time), std::max(to, result[k].time));
       const double chance =
           chance_of_move(part, pair.problem, result[k].kind,
-                         pair.pairs.front().begin_us + std::llround(1e6 * result[k].time), options.moves)
+                         pair.pairs.front().begin_us + to_microseconds(result[k].time), options.moves)
               .value_or(1);
       decades.push_back(chance > 0 ? std::min(options.most_decades, -std::log10(chance))
                                    : options.most_decades);

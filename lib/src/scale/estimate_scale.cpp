@@ -8,6 +8,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/scale/interpolation_loss.hpp"
 #include "scale/kept_motions.hpp"
@@ -27,7 +28,7 @@ double interpolation_doubt(const Trajectory& a, const Trajectory& b, const Pairi
   options.most_stamps = std::max(a.size(), b.size());
   InterpolationLoss loss(options);
   for (const StampedPose& pose : a) loss.stamp(Side::a, pose.time_us);
-  const std::int64_t offset_us = std::llround(1e6 * pairing.time_offset);
+  const std::int64_t offset_us = to_microseconds(pairing.time_offset);
   for (const StampedPose& pose : b) loss.stamp(Side::b, pose.time_us + offset_us);
   const Side keys = steps.drive.state().synchroniser.keys.value_or(Side::b);
   for (const MotionPair& step : steps.pairs) loss.step(step, keys);

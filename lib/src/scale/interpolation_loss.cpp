@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "egocal/geometry/pose.hpp"
-#include "microseconds.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal {
 
@@ -56,16 +56,16 @@ void InterpolationLoss::step(const MotionPair& step, Side keys) {
   if (state_.previous) {
     // the instant between both steps, interpolated from its neighbours, seen from where it was
     const DualQuaternion before = motion_of(*state_.previous), after = motion_of(step);
-    const double at = detail::seconds(state_.previous->end_us - state_.previous->begin_us) /
-                      detail::seconds(step.end_us - state_.previous->begin_us);
+    const double at = to_seconds(state_.previous->end_us - state_.previous->begin_us) /
+                      to_seconds(step.end_us - state_.previous->begin_us);
     const Eigen::Vector3d miss =
         to_pose(conjugate(before) * interpolate(DualQuaternion{}, before * after, at)).translation;
     // an odometry that jumps, or a vehicle that stands or leaves, is no path that interpolation follows
     if (miss.norm() > std::min(to_pose(before).translation.norm(), to_pose(after).translation.norm())) {
       open.clear();
     } else {
-      const double length = options_.motion - 0.5 * detail::seconds(step.end_us - step.begin_us);
-      while (!open.empty() && detail::seconds(step.begin_us - open.front().begin_us) >= length) {
+      const double length = options_.motion - 0.5 * to_seconds(step.end_us - step.begin_us);
+      while (!open.empty() && to_seconds(step.begin_us - open.front().begin_us) >= length) {
         const Pose motion = to_pose(open.front().motion);
         state_.lost += motion.translation.dot(open.front().miss - motion.rotation * miss);
         state_.energy += motion.translation.squaredNorm();
@@ -73,7 +73,7 @@ void InterpolationLoss::step(const MotionPair& step, Side keys) {
       }
       const double distance =
           options_.motion / static_cast<double>(std::max<std::size_t>(1, options_.starts));
-      if (open.empty() || detail::seconds(step.begin_us - open.back().begin_us) >= distance)
+      if (open.empty() || to_seconds(step.begin_us - open.back().begin_us) >= distance)
         open.push_back({DualQuaternion{}, miss, step.begin_us});
     }
   }

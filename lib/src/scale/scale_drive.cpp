@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "egocal/limits.hpp"
-#include "microseconds.hpp"
+#include "egocal/microseconds.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
 #include "statistics/median.hpp"
@@ -99,11 +99,11 @@ void ScaleDrive::grow(const MotionPair& step, std::vector<MotionPair>& completed
     motion.b = motion.b * step.b;
     motion.end_us = step.end_us;
   }
-  if (open.empty() || detail::seconds(step.begin_us - open.back().begin_us) >= distance) open.push_back(step);
+  if (open.empty() || to_seconds(step.begin_us - open.back().begin_us) >= distance) open.push_back(step);
   // rounded down, streams with jitter would take one step more every other time
-  const double length = options_.motion - 0.5 * detail::seconds(state_.step_us);
+  const double length = options_.motion - 0.5 * to_seconds(state_.step_us);
   const double least_real = std::cos(0.5 * options_.pairing.accumulator.most_rotation);
-  while (!open.empty() && detail::seconds(open.front().end_us - open.front().begin_us) >= length) {
+  while (!open.empty() && to_seconds(open.front().end_us - open.front().begin_us) >= length) {
     const MotionPair& motion = open.front();
     if (std::abs(motion.a.real[0]) > least_real && std::abs(motion.b.real[0]) > least_real) {
       completed.push_back(motion);
@@ -229,7 +229,7 @@ Choice ScaleDrive::choice() const {
   Choice choice;
   if (state_.step_us > 0)
     choice.stride =
-        static_cast<int>(std::clamp(std::round(options_.motion / detail::seconds(state_.step_us)), 1.0, 1e4));
+        static_cast<int>(std::clamp(std::round(options_.motion / to_seconds(state_.step_us)), 1.0, 1e4));
   choice.balance = state_.solution.balance;
   choice.reason = "motions of one second, with the scale that they show";
   return choice;

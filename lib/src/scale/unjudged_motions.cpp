@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal::detail {
 
 PairingOptions unjudged(PairingOptions pairing, int stride) {
@@ -19,7 +21,7 @@ std::vector<MotionPair> unjudged_motions(const Trajectory& a, const Trajectory& 
                                          double length) {
   const Trajectory& slower = a.size() < b.size() ? a : b;
   if (slower.size() < 2) return {};
-  const double span = 1e-6 * static_cast<double>(slower.back().time_us - slower.front().time_us);
+  const double span = to_seconds(slower.back().time_us - slower.front().time_us);
   const double period = span / static_cast<double>(slower.size() - 1);
   pairing.track_time_offset = false;
   const double steps = std::clamp(std::round(length / std::max(period, 1e-6)), 1.0, 64.0);

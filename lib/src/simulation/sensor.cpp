@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal {
 
 namespace {
@@ -74,7 +76,7 @@ Path resampled(const Path& path, double rate, double phase) {
     if (time > path.times.back()) return result;
     while (next + 1 < path.times.size() && path.times[next] < time) ++next;
     const double part = (time - path.times[next - 1]) / (path.times[next] - path.times[next - 1]);
-    result.stamps.push_back(std::llround(1e6 * time));
+    result.stamps.push_back(to_microseconds(time));
     result.times.push_back(time);
     result.poses.push_back(pose_between(path, next, part));
   }
@@ -150,7 +152,7 @@ Trajectory detail::drive_sensor(const SimulationOptions& options, const Path& dr
                         to_dual_quaternion({rotation_exp(faults.outlier_rotation * chance.normal3()),
                                             faults.outlier_translation / faults.scale * chance.normal3()}));
     const double clock = faults.clock_offset + faults.clock_drift * path.times[i];
-    if (!dropped) trajectory.push_back({epoch_us + path.stamps[i] + std::llround(1e6 * clock), said});
+    if (!dropped) trajectory.push_back({epoch_us + path.stamps[i] + to_microseconds(clock), said});
   }
   return trajectory;
 }

@@ -12,6 +12,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 #include "simulation/random.hpp"
 #include "simulation/sensor.hpp"
 
@@ -161,8 +162,8 @@ std::vector<Trajectory> simulate(const SimulationOptions& options) {
   detail::Random random(options.seed);
   detail::Path path;
   for (int i = 0; i < options.poses; ++i) {
-    path.stamps.push_back(std::llround(1e6 * i / options.rate));
-    path.times.push_back(1e-6 * static_cast<double>(path.stamps.back()));
+    path.stamps.push_back(std::llround(second_us * i / options.rate));
+    path.times.push_back(to_seconds(path.stamps.back()));
   }
   path.poses = options.terrain == Terrain::free ? free_path(options, path.times, random)
                                                 : ground_path(options, path.times, random);

@@ -79,9 +79,30 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
                                           std::optional<std::size_t> current,
                                           const SelectionOptions& options = {});
 
-/// Translation weights below `least` that are to be tried after `chosen` won (SelectionOptions::imbalance),
-/// in falling order; mostly none [1/m^2]. Not in planar mode.
-std::vector<double> smaller_balances(const Problem& problem, const Candidate& chosen, double least,
-                                     const SelectionOptions& options = {});
+/// The kept motions of one stride.
+struct MotionsOfStride {
+  int stride = 1;
+  std::vector<Statistics> blocks;
+};
+
+struct Setting {
+  int stride = 1;
+  Balance balance;
+};
+
+/// The best of every stride with every balance of rotation 1 and a translation of `balances` [1/m^2], or with
+/// `fixed` alone. Where translations outweigh rotations with the best (SelectionOptions::imbalance; not in
+/// planar mode), smaller balances are tried as well. `current` and what is returned as in select_candidate.
+struct SelectedSetting {
+  Setting setting;
+  Spread spread;
+  std::size_t tried = 0;  ///< settings
+};
+std::optional<SelectedSetting> select_setting(const Problem& problem,
+                                              std::span<const MotionsOfStride> strides,
+                                              std::span<const double> balances,
+                                              const std::optional<Balance>& fixed,
+                                              const std::optional<Setting>& current,
+                                              const SelectionOptions& options = {});
 
 }  // namespace egocal

@@ -10,11 +10,11 @@
 
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 #include "io/checked_pose.hpp"
 #include "io/text/geodesy.hpp"
 #include "io/text/line_reader.hpp"
 #include "io/text/rotation_rows.hpp"
-#include "microseconds.hpp"
 
 namespace egocal::detail {
 
@@ -202,7 +202,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
 double TextRecording::seconds_of_row(const Rows& rows) const {
   if (rows.fields.size() < layout_.fields) return 0;
   try {
-    return seconds(time_of_row(rows));
+    return to_seconds(time_of_row(rows));
   } catch (const Error&) {
     return 0;
   }

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "egocal/geometry/pose.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
-#include "microseconds.hpp"
 #include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"
 #include "statistics/distributions.hpp"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "microseconds.hpp"
+#include "egocal/microseconds.hpp"
 #include "pairing/offset/line_fit.hpp"
 #include "statistics/median.hpp"
 

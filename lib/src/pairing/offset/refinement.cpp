@@ -8,10 +8,10 @@
 #include <limits>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/instant.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
-#include "microseconds.hpp"
 #include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"
 #include "statistics/median.hpp"
@@ -310,7 +310,7 @@ void Refinement::conclude() {
 void Refinement::report(double stddev, double rate, double rate_stddev) {
   TimeOffset result;
   // whole microseconds first: dates leave no digits for parts of one
-  result.seconds = 1e-6 * static_cast<double>(model_.at_a_us - model_.at_b_us) + 1e-6 * model_.shift_us;
+  result.seconds = to_seconds(model_.at_a_us - model_.at_b_us) + 1e-6 * model_.shift_us;
   result.stddev = stddev;
   result.rate = rate;
   result.rate_stddev = rate_stddev;
