@@ -17,6 +17,7 @@
 #include "../support/random_motion.hpp"
 #include "../support/shaken_car.hpp"
 #include "../support/turning_machine.hpp"
+#include "diagnosis/mount.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 
@@ -147,6 +148,18 @@ testing::Streams noisy_poses(std::uint64_t seed) {
           testing::displacement({period * roll.at(t), period * pitch.at(t), way * bend.at(t)}, {way, 0, 0});
   }
   return streams;
+}
+
+TEST(MovedMount, EvidenceThatNoMoveExplainsIsNamedWithoutATime) {
+  const DiagnosisOptions options;
+  EXPECT_FALSE(detail::contradicting_times(1e-6, options));
+  const std::optional<Finding> finding = detail::contradicting_times(1e-30, options);
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->code, "mount_moved");
+  EXPECT_FALSE(finding->certain);
+  EXPECT_FALSE(finding->time);
+  EXPECT_NE(finding->message.find("one of 1e+30 drives"), std::string::npos) << finding->message;
+  EXPECT_TRUE(detail::contradicting_times(0, options));  // as where it is smaller than any double
 }
 
 TEST(MovedMount, NoiseOfPosesIsNoMove) {

@@ -96,7 +96,7 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
       d.gradients[i] = blocks[i].root * d.residuals[i] - blocks[i].H * (side == 1 ? d.x2 : d.x1);
     }
   }
-  const auto most_fit = [&](std::size_t side) { return 2 * shortened[side] <= all[side]; };
+  const auto most_fit = [&](std::size_t side) { return 2 * shortened[side] < all[side]; };
   if (most_fit(0) && most_fit(1)) return d;
   const std::array<bool, 2> better = fit_far_better(blocks, second, options);
   d.fits = (most_fit(0) || better[0]) && (most_fit(1) || better[1]);

@@ -19,7 +19,7 @@ struct ChangeTestOptions {
   /// Residuals of blocks that are longer than this many medians count as if they were this long: one wrong
   /// block is not a change.
   double longest_residual = 3;
-  /// More than half of a side's blocks are so long: they are believed where the median of their costs at
+  /// Half of a side's blocks or more are so long: they are believed where the median of their costs at
   /// the side's own optimum is at most this part of that at the other side's, without linearising. Of eight
   /// mounts that turned by 3 to 5 deg in little noise the same moves are found with 0.05 to 0.3; with 0.5 an
   /// aircraft whose translations err by 20 m shows one of chance 1e-116.
