@@ -55,7 +55,7 @@ std::array<bool, 2> fit_far_better(Blocks blocks, Part second, const ChangeTestO
   for (std::size_t i = 0; i < blocks.size(); ++i) Q[second.has(i) ? 1 : 0] += blocks[i].Q;
   const std::array<DualQuaternion, 2> optima{minimiser(Q[0], mode), minimiser(Q[1], mode)};
   std::array<bool, 2> better{};
-  for (const std::size_t side : {0, 1}) {
+  for (std::size_t side = 0; side < 2; ++side) {
     const bool of_second = side == 1;
     const double own = median_cost(blocks, second, of_second, optima[side]),
                  others = median_cost(blocks, second, of_second, optima[1 - side]);
