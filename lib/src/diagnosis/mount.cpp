@@ -202,8 +202,7 @@ std::optional<Finding> contradicting_times(double chance, const DiagnosisOptions
   finding.code = "mount_moved";
   finding.message = format(
       "Motions of different times contradict each other (by chance in one of %.0e drives): the mounting "
-      "moved, "
-      "or a stream changed, at times that are not clear.",
+      "moved, or a stream changed, at times that are not clear.",
       1 / std::max(chance, 1e-300));
   finding.remedy = "Calibrate parts of the drive separately, and compare their answers.";
   return finding;
