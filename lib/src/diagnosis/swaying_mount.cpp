@@ -37,6 +37,26 @@ double mean(const std::vector<double>& values, double most) {
   return sum / static_cast<double>(values.size());
 }
 
+/// Without the tails.
+double mean_square(const std::vector<double>& squares, const SwayOptions& options) {
+  return mean(squares, options.longest_square * mean(squares, INFINITY));
+}
+
+/// Of the change of the rotations at an instant by interpolation through `poses` [rad^2]; zero where no pose
+/// is interpolated.
+double mean_square_by_interpolation(const Instants& instants, std::size_t poses, const SwayOptions& options) {
+  const Instants other = instants.through(poses);
+  const std::size_t each = std::max<std::size_t>(1, instants.size() / options.most_motions);
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < instants.size(); i += each) {
+    if (!instants.between_poses(i)) continue;
+    const PosePair here = instants.at(i), there = other.at(i);
+    squares.push_back(rotation_log(to_pose(conjugate(here.a) * there.a).rotation).squaredNorm() +
+                      rotation_log(to_pose(conjugate(here.b) * there.b).rotation).squaredNorm());
+  }
+  return squares.empty() ? 0 : mean_square(squares, options);
+}
+
 }  // namespace
 
 std::vector<RotationChange> rotation_changes(const Instants& instants, const DualQuaternion& T_a_b,
@@ -48,8 +68,7 @@ std::vector<RotationChange> rotation_changes(const Instants& instants, const Dua
                                        std::lround(options.next_stride * static_cast<double>(steps))))) {
     const std::vector<double> squares = squared_changes(instants, T_a_b, steps, motions, options);
     if (squares.size() < options.least_motions) continue;
-    const double most_square = options.longest_square * mean(squares, INFINITY);
-    changes.push_back({static_cast<double>(steps) * instants.period, mean(squares, most_square)});
+    changes.push_back({static_cast<double>(steps) * instants.period, mean_square(squares, options)});
   }
   return changes;
 }
@@ -85,34 +104,22 @@ std::optional<RotationChange> sway(const std::vector<RotationChange>& changes, c
   return largest;
 }
 
-double change_by_interpolation(const Instants& instants, const SwayOptions& options) {
-  const Instants other = instants.through(options.poses);
-  const std::size_t each = std::max<std::size_t>(1, instants.size() / options.most_motions);
-  std::vector<double> squares;
-  for (std::size_t i = 0; i < instants.size(); i += each) {
-    if (!instants.between_poses(i)) continue;
-    const PosePair here = instants.at(i), there = other.at(i);
-    squares.push_back(rotation_log(to_pose(conjugate(here.a) * there.a).rotation).squaredNorm() +
-                      rotation_log(to_pose(conjugate(here.b) * there.b).rotation).squaredNorm());
-  }
-  if (squares.empty()) return 0;
-  return std::sqrt(mean(squares, options.longest_square * mean(squares, INFINITY)));
-}
-
 std::optional<Finding> swaying_mount(const Instants& instants, const Answered& answered,
                                      const DiagnosisOptions& options) {
   const SwayOptions tuning;
   const std::optional<RotationChange> found =
       sway(rotation_changes(instants, answered.T_a_b, options.motions, tuning), tuning);
-  if (!found ||
-      std::sqrt(found->mean_square) < tuning.of_interpolation * change_by_interpolation(instants, tuning))
-    return std::nullopt;
+  if (!found) return std::nullopt;
+  const double sways = std::sqrt(found->mean_square),
+               interpolation =
+                   std::sqrt(mean_square_by_interpolation(instants, options.undersampling.poses, tuning));
+  if (sways < tuning.of_interpolation * interpolation) return std::nullopt;
   Finding finding;
   finding.code = "mount_moved";
   finding.message = format(
       "The rotation between the sensors changes by %.2g deg within %.2g s, and by no more in a longer time: "
       "the mounting shakes, or the rotations of a stream do.",
-      std::sqrt(found->mean_square) * 180 / std::numbers::pi, found->time);
+      sways * 180 / std::numbers::pi, found->time);
   finding.remedy = "Fasten the mounting, or check the filter that makes the rotations, and record again.";
   return finding;
 }

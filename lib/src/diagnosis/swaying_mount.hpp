@@ -30,11 +30,10 @@ struct SwayOptions {
   double flat_until = 4, looked_at = 8;  ///< times the time: the change is as large there
   double most_after = 1.15;              ///< as a part of the change; random walks reach 2
   double fallen = 0.6;                   ///< or it falls below this part before flat_until: a period
-  /// The change is at least this many times what another interpolation, through `poses`, changes in the
-  /// rotations between poses: a vehicle that shakes faster than a sensor measures sways as well. Swaying
-  /// mounts have 400 and more, such vehicles 9 (docs/moves.md, "Sway").
+  /// The change is at least this many times what the better interpolation (UndersamplingOptions::poses)
+  /// changes in the rotations between poses: a vehicle that shakes faster than a sensor measures sways as
+  /// well. Swaying mounts have 400 and more, such vehicles 9 (docs/moves.md, "Sway").
   double of_interpolation = 30;
-  std::size_t poses = 12;  ///< SynchroniserOptions::smooth_poses
 };
 
 /// How much the rotation between the sensors changes in a time.
@@ -51,10 +50,6 @@ std::vector<RotationChange> rotation_changes(const Instants& instants, const Dua
 /// The largest change that has grown and does not grow further.
 std::optional<RotationChange> sway(const std::vector<RotationChange>& changes,
                                    const SwayOptions& options = {});
-
-/// Root mean square of the change of the rotations at an instant by another interpolation
-/// (SwayOptions::poses) [rad]; zero where no pose is interpolated.
-double change_by_interpolation(const Instants& instants, const SwayOptions& options = {});
 
 /// Finding mount_moved, uncertain: a filter may give a stream such an attitude. Spatial mode.
 std::optional<Finding> swaying_mount(const Instants& instants, const Answered& answered,

@@ -9,6 +9,7 @@
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
+#include "estimation/spread_by_poses.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -18,8 +19,7 @@ namespace egocal::detail {
 namespace {
 
 DualQuaternion minimiser(const std::vector<Statistics>& blocks, const Problem& problem) {
-  const Matrix8d Q = cost_matrix(sum_blocks(blocks), problem.balance);
-  return (problem.mode == Mode::planar ? solve_planar(Q) : solve_dual(Q)).q;
+  return detail::minimiser(cost_matrix(sum_blocks(blocks), problem.balance), problem.mode);
 }
 
 /// The directions in which an extrinsic can move, columns.
