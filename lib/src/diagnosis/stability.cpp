@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
+#include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
 
@@ -32,17 +32,12 @@ std::vector<Vector6d> without_touching_parts(const Problem& problem, const DualQ
 
 std::vector<Vector6d> without_parts(const Problem& problem, const DualQuaternion& T_a_b, std::size_t parts) {
   const std::size_t n = problem.blocks.size();
-  const bool planar = problem.mode == Mode::planar;
-  const DualQuaternion G_a = planar ? plane_frame(problem.plane_a) : DualQuaternion{};
-  const DualQuaternion G_b = planar ? plane_frame(problem.plane_b) : DualQuaternion{};
   std::vector<Vector6d> answers;
   for (std::size_t part = 0; part < parts; ++part) {
     Statistics rest;
     for (std::size_t i = 0; i < n; ++i)
       if (i < part * n / parts || i >= (part + 1) * n / parts) rest += problem.blocks[i];
-    const Matrix8d Q = cost_matrix(rest, problem.balance);
-    const DualQuaternion T = planar ? extrinsic_from_planar(solve_planar(Q).q, G_a, G_b) : solve_dual(Q).q;
-    answers.push_back(frame_a_difference(T_a_b, T));
+    answers.push_back(frame_a_difference(T_a_b, extrinsic_of(problem, rest)));
   }
   return answers;
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "estimation/spread_by_poses.hpp"
+#include "solvers/minimiser.hpp"
 #include "statistics/select.hpp"
 
 namespace egocal {

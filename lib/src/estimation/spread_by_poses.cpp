@@ -4,16 +4,12 @@
 
 #include <cmath>
 
-#include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
 #include "egocal/uncertainty/observability.hpp"
 #include "online/solve_and_verify.hpp"
+#include "solvers/minimiser.hpp"
 
 namespace egocal::detail {
-
-DualQuaternion minimiser(const Matrix8d& Q, Mode mode) {
-  return mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
-}
 
 SeenDirections seen_directions(const Problem& problem) {
   const Matrix8d Q = cost_matrix(problem);
@@ -23,11 +19,7 @@ SeenDirections seen_directions(const Problem& problem) {
 
 SpreadByPoses spread_by_poses(const Problem& problem, const SeenDirections& seen) {
   const Matrix8d Q = cost_matrix(problem);
-  const DualQuaternion q = minimiser(Q, problem.mode);
-  const DualQuaternion T_a_b =
-      problem.mode == Mode::planar
-          ? extrinsic_from_planar(q, plane_frame(problem.plane_a), plane_frame(problem.plane_b))
-          : q;
+  const DualQuaternion T_a_b = extrinsic_of(problem, minimiser(Q, problem.mode));
   const auto differences = leave_out_differences(problem, Q, T_a_b);
   const auto blocks = static_cast<double>(differences.size());
   Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();

@@ -35,7 +35,4 @@ SpreadByPoses spread_by_poses(const Problem& problem, const SeenDirections& seen
 /// Standard error of the difference of two scores of the same blocks.
 double standard_error(const SpreadByPoses& x, const SpreadByPoses& y);
 
-/// Of (18); planar mode: T_p.
-DualQuaternion minimiser(const Matrix8d& Q, Mode mode);
-
 }  // namespace egocal::detail

@@ -10,6 +10,7 @@
 
 #include "estimation/missed_noise.hpp"
 #include "estimation/spread_by_poses.hpp"
+#include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "estimation/spread_by_poses.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "solvers/minimiser.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/median.hpp"
 

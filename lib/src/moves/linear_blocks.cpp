@@ -9,8 +9,8 @@
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
-#include "estimation/spread_by_poses.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "solvers/minimiser.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "egocal/uncertainty/observability.hpp"
-#include "estimation/spread_by_poses.hpp"
 #include "online/solve_and_verify.hpp"
+#include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {

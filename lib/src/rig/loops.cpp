@@ -8,17 +8,11 @@
 #include <map>
 #include <utility>
 
-#include "egocal/solvers/global.hpp"
+#include "solvers/minimiser.hpp"
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
-
-DualQuaternion extrinsic_of(const Problem& problem, const Statistics& statistics) {
-  const Matrix8d Q = cost_matrix(statistics, problem.balance);
-  if (problem.mode == Mode::spatial) return solve_dual(Q).q;
-  return extrinsic_from_planar(solve_planar(Q).q, plane_frame(problem.plane_a), plane_frame(problem.plane_b));
-}
 
 namespace {
 

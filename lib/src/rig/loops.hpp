@@ -15,9 +15,6 @@ struct TimedPair {
   Statistics all;
 };
 
-/// T_a_b that minimises (18) over the statistics; mode, planes and balance are the problem's.
-DualQuaternion extrinsic_of(const Problem& problem, const Statistics& statistics);
-
 /// All loops of three sensors that have all three pairs. timed: one of every pair, with options.blocks
 /// blocks.
 std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,

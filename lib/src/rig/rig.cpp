@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "egocal/solvers/global.hpp"
 #include "moves/linear_blocks.hpp"
 #include "rig/loops.hpp"
+#include "solvers/minimiser.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {
@@ -97,10 +97,10 @@ RigPairAnswer answer_of(const RigPair& pair, const Statistics& all) {
   answer.a = pair.a;
   answer.b = pair.b;
   const Matrix8d Q = cost_matrix(all, pair.problem.balance);
-  const bool planar = pair.problem.mode == Mode::planar;
-  const DualQuaternion q = planar ? solve_planar(Q).q : solve_dual(Q).q;
-  answer.certificate = planar ? verify_planar(Q, q) : verify(Q, q);
-  answer.T_a_b = detail::extrinsic_of(pair.problem, all);
+  const Mode mode = pair.problem.mode;
+  const DualQuaternion q = detail::minimiser(Q, mode);
+  answer.certificate = mode == Mode::planar ? verify_planar(Q, q) : verify(Q, q);
+  answer.T_a_b = detail::extrinsic_of(pair.problem, q);
   answer.residual_rotation =
       std::max(0.0, q.real.dot(all.dual_rows.bottomRightCorner<4, 4>() * q.real) / all.weight);
   answer.residual_translation = std::max(0.0, cost(cost_matrix(all, {0, 1}), q));

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "egocal/solvers/global.hpp"
 #include "problem/motion_square.hpp"
 #include "robust/residual_limit.hpp"
+#include "solvers/minimiser.hpp"
 
 namespace egocal {
 
@@ -190,9 +190,7 @@ class Search {
     return weighted_median(std::move(sizes));
   }
 
-  DualQuaternion minimiser(const Matrix8d& Q) const {
-    return mode_ == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
-  }
+  DualQuaternion minimiser(const Matrix8d& Q) const { return detail::minimiser(Q, mode_); }
 
   /// A run of motions with the extrinsic that suits it best.
   struct Alone {

@@ -13,6 +13,7 @@
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/solvers/global.hpp"
 #include "scale/joint_jackknife.hpp"
+#include "solvers/minimiser.hpp"
 #include "solvers/proven_dual.hpp"
 
 namespace egocal {
@@ -70,9 +71,7 @@ class ScaleCost {
   }
 
   Matrix8d matrix(double s) const { return cost_matrix(at_scale(statistics_, s), balance(s)); }
-  DualQuaternion minimise(const Matrix8d& Q) const {
-    return options_.mode == Mode::planar ? solve_planar(Q).q : solve_dual(Q).q;
-  }
+  DualQuaternion minimise(const Matrix8d& Q) const { return detail::minimiser(Q, options_.mode); }
   /// The bound that the dual has proven on its way is not proven again.
   std::pair<DualQuaternion, Certificate> certified_minimum(const Matrix8d& Q) const {
     if (options_.mode == Mode::planar) {
