@@ -70,6 +70,15 @@ Calibration judged(Calibration calibration, Diagnosis diagnosis) {
   return calibration;
 }
 
+/// What was answered says how well each direction is known, but not whether the motions agree.
+Diagnosis diagnose_without_poses(const Answered& answered, const DiagnosisOptions& options) {
+  Diagnosis diagnosis = diagnose(answered, options);
+  if (diagnosis.verdict != Verdict::good) return diagnosis;
+  diagnosis.verdict = Verdict::incomplete;
+  diagnosis.reason = "All directions are known; whether the motions agree was not looked at.";
+  return diagnosis;
+}
+
 bool as_read(const Reading& reading) {
   return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && reading.scale == 1;
 }
@@ -272,7 +281,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   const Answered what = answered(result, pairing.single_stride_problem(), scale);
   Diagnosis diagnosis = foresight                   ? foresight->diagnose(what)
                         : options.diagnosis.enabled ? diagnose(a, b, pairing_options, what, options.diagnosis)
-                                                    : diagnose(what, options.diagnosis);
+                                                    : diagnose_without_poses(what, options.diagnosis);
   result = judged(std::move(result), std::move(diagnosis));
   if (time_offset && time_offset->rival && options.diagnosis.enabled)
     put_rival_offset(a, given_b, pairing_options, options.diagnosis, result);
@@ -328,7 +337,8 @@ Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const Cal
   if (options.estimate_scale) {
     // rotations alone show the time offset, whatever the scale
     std::optional<TimeOffset> offset;
-    if (options.estimate_time_offset) offset = estimate_time_offset(a, b);
+    if (options.estimate_time_offset)
+      offset = estimate_time_offset(a, b, {.max_gap = validated(pairing).max_gap});
     if (offset) pairing.time_offset = 0;
     estimate = estimate_scale(a, offset ? on_clock_of_a(*offset, b) : b, pairing, scale_options(options));
   }
@@ -416,6 +426,8 @@ PairingOptions pairing_options(const CalibrationOptions& options) {
 }  // namespace
 
 Calibrator::Calibrator(CalibrationOptions options) {
+  if (options.estimate_scale)
+    throw Error("estimate_scale: the whole drive shows it; give `scale`, or use calibrate()");
   MotionPairing pairing(pairing_options(options));
   impl_.reset(new Impl{std::move(options), std::move(pairing)});
 }
@@ -424,7 +436,13 @@ Calibrator::Calibrator(Calibrator&&) noexcept = default;
 Calibrator& Calibrator::operator=(Calibrator&&) noexcept = default;
 
 void Calibrator::add(Side side, const StampedPose& pose) {
-  impl_->pairing.push(side, pose);
+  const CalibrationOptions& options = impl_->options;
+  const Reading& reading = side == Side::a ? options.read_a : options.read_b;
+  StampedPose understood = pose;
+  if (!as_read(reading)) understood = reread({understood}, reading).front();
+  if (options.scale_side == side && options.scale != 1)
+    understood.pose = scaled(understood.pose, options.scale);
+  impl_->pairing.push(side, understood);
 }
 
 void Calibrator::finish() {
@@ -441,8 +459,9 @@ std::optional<Calibration> Calibrator::answer() const {
   if (problem.blocks.empty()) return std::nullopt;
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), impl_->options.method);
   result.time_offset_applied = pairing.time_offset().value_or(0);
-  return judged(result,
-                diagnose(answered(result, pairing.single_stride_problem()), impl_->options.diagnosis));
+  result.scale_applied = impl_->options.scale;
+  return judged(result, diagnose_without_poses(answered(result, pairing.single_stride_problem()),
+                                               impl_->options.diagnosis));
 }
 
 }  // namespace egocal

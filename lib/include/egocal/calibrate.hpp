@@ -64,18 +64,22 @@ Calibration calibrate(const Trajectory& a, const Trajectory& b, const Calibratio
 /// planes, balance, robust and prior. Throws Error where `pairs` is empty.
 Calibration calibrate(std::span<const MotionPair> pairs, const CalibrationOptions& options = {});
 
-/// The same, one pose at a time, in bounded memory: the answer after the last pose and
-/// finish() is that of calibrate() on the whole trajectories. Use one object per pair of sensors; one thread
-/// at a time.
+/// The same, one pose at a time, in bounded memory: the extrinsic after the last pose and finish() is that of
+/// calibrate() on the whole trajectories, to the last bit. No poses are kept, so three things are less: other
+/// explanations are not tried and `fit` is not measured (no answer is called good: calibrate() on the drive
+/// says that), the choice of outliers is not proven, and with estimate_time_offset the offset is followed
+/// while the poses come. Use one object per pair of sensors; one thread at a time.
 class Calibrator {
  public:
-  /// Throws Error where the options contradict each other.
+  /// Throws Error where the options contradict each other, and for estimate_scale, which needs the whole
+  /// drive.
   explicit Calibrator(CalibrationOptions options = {});
   ~Calibrator();
   Calibrator(Calibrator&&) noexcept;
   Calibrator& operator=(Calibrator&&) noexcept;
 
-  /// Takes the next pose of one sensor. The two streams may interleave in any way.
+  /// Takes the next pose of one sensor, as it was measured: read_a, read_b and scale are applied here. The
+  /// two streams may interleave in any way.
   void add(Side side, const StampedPose& pose);
 
   /// No more poses will come: pairs what a drive too short to show its slower stream has held back.

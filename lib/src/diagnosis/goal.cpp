@@ -64,7 +64,7 @@ Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpr
     const double wanted = i < 3 ? options.translation : options.rotation;
     const double stddev =
         answered.observability.observable[i] ? with_further_parts(spread[i], answered, i) : INFINITY;
-    const double ratio = stddev / wanted;
+    const double ratio = stddev >= 0 && wanted > 0 ? stddev / wanted : INFINITY;
     missing.emplace_back(ratio, i);
     ratios.push_back(ratio);
     chance *= chance_within(ratio, tuning.interval);
