@@ -16,6 +16,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
+#include "egocal/io/mcap_writer.hpp"
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/io/whole_file.hpp"
@@ -101,6 +102,36 @@ TEST_F(Writing, AProgramsLocaleChangesNothing) {
   ASSERT_EQ(read.size(), trajectory.size());
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i].time_us, trajectory[i].time_us);
   EXPECT_THAT(extrinsic, HasSubstr("xyz=\"0.5 1.5 2.5\""));
+}
+
+TEST_F(Writing, AnMcapFileLeavesFilesOfOthersAlone) {
+  write_whole_file(path("x.mcap.part"), "of somebody else");
+  {
+    McapWriter never_closed(path("x.mcap"));
+    never_closed.write_pose("/lidar", "lidar_start", {1, {}});
+  }
+  EXPECT_FALSE(fs::exists(path("x.mcap")));
+  McapWriter writer(path("x.mcap"));
+  writer.write_pose("/lidar", "lidar_start", {1, {}});
+  writer.close();
+  EXPECT_TRUE(fs::exists(path("x.mcap")));
+  EXPECT_EQ(content(path("x.mcap.part")), "of somebody else");
+  EXPECT_EQ(temporaries(), 1);
+}
+
+/// Ids of channels have 16 bits: one more would be written to the first topic.
+TEST_F(Writing, AnMcapFileHoldsNoMoreChannelsThanItsFormatCounts) {
+  McapWriter writer(path("x.mcap"));
+  for (int i = 1; i < 65536; ++i) writer.write_pose("/" + std::to_string(i), "start", {i, {}});
+  writer.write_pose("/1", "start", {65536, {}});
+  EXPECT_THROW(
+      try {
+        writer.write_pose("/65536", "start", {65537, {}});
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("65535 channels"));
+        throw;
+      },
+      Error);
 }
 
 }  // namespace

@@ -7,12 +7,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "io/bag/mcap_records.hpp"
 
 namespace egocal {
@@ -20,6 +21,8 @@ namespace egocal {
 namespace {
 
 constexpr std::size_t chunk_size = 1 << 20;  // [bytes], as rosbag2 and Foxglove write them
+constexpr std::size_t most_channels =
+    std::numeric_limits<std::uint16_t>::max();  // by the format, with ids from 1
 
 const std::string pose_type = "geometry_msgs/msg/PoseStamped";
 const std::string transform_type = "tf2_msgs/msg/TFMessage";
@@ -114,8 +117,10 @@ struct McapWriter::State {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< time and offset, of the open chunk
   };
 
-  std::string file, part;
-  std::FILE* stream = nullptr;
+  explicit State(const std::string& name) : file(name), out(name) {}
+
+  std::string file;
+  WholeFile out;
   std::uint64_t offset = 0;
   std::uint32_t crc = 0;
   std::map<std::string, Channel> channels;  ///< by topic
@@ -126,8 +131,7 @@ struct McapWriter::State {
   std::uint32_t chunks = 0, schemas = 0;
 
   void write(const std::string& bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), stream) != bytes.size())
-      throw error_at(file, 0, "", "cannot be written: the disk is full or gone");
+    out.write(bytes);
     offset += bytes.size();
     crc = crc_of(bytes, crc);
   }
@@ -135,6 +139,10 @@ struct McapWriter::State {
   Channel& channel(const std::string& topic, const std::string& type, const std::string& definition) {
     const auto known = channels.find(topic);
     if (known != channels.end()) return known->second;
+    if (channels.size() == most_channels)
+      throw error_at(file, 0, "",
+                     "an MCAP file holds at most " + std::to_string(most_channels) + " channels, and \"" +
+                         topic + "\" is one more");
     Channel& added = channels[topic];
     added.id = static_cast<std::uint16_t>(channels.size());
     ++schemas;
@@ -229,19 +237,11 @@ struct McapWriter::State {
   }
 };
 
-McapWriter::McapWriter(const std::string& file) : state_(std::make_unique<State>()) {
-  state_->file = file;
-  state_->part = file + ".part";
-  state_->stream = std::fopen(state_->part.c_str(), "wb");
-  if (!state_->stream) throw error_at(file, 0, "", "cannot be written");
+McapWriter::McapWriter(const std::string& file) : state_(std::make_unique<State>(file)) {
   state_->write(std::string(detail::mcap_magic) + record(1, Bytes().text("ros2").text("egocal").bytes));
 }
 
-McapWriter::~McapWriter() {
-  if (!state_->stream) return;
-  std::fclose(state_->stream);
-  std::remove(state_->part.c_str());
-}
+McapWriter::~McapWriter() = default;
 
 void McapWriter::write_pose(const std::string& topic, const std::string& frame, const StampedPose& pose) {
   State::Channel& channel = state_->channel(topic, pose_type, pose_definition);
@@ -257,11 +257,7 @@ void McapWriter::write_transform(const std::string& parent, const std::string& c
 
 void McapWriter::close() {
   state_->finish();
-  std::FILE* const stream = std::exchange(state_->stream, nullptr);
-  if (std::fclose(stream) != 0 || std::rename(state_->part.c_str(), state_->file.c_str()) != 0) {
-    std::remove(state_->part.c_str());
-    throw error_at(state_->file, 0, "", "cannot be written");
-  }
+  state_->out.commit();
 }
 
 }  // namespace egocal
