@@ -110,6 +110,22 @@ TEST(Screw, AngleAndSlideDoNotDependOnTheSensor) {
   }
 }
 
+/// Also at and near a pitch of a quarter turn, where an exported extrinsic is read back from these angles.
+TEST(RollPitchYaw, MakeTheRotation) {
+  const double quarter = std::numbers::pi / 2;
+  for (const double roll : {-3.0, -0.7, 0.0, 0.2, 3.1})
+    for (const double pitch : {0.0, 0.3, -1.2, quarter, -quarter, quarter - 1e-9, 1e-12 - quarter})
+      for (const double yaw : {-3.1, -0.3, 0.0, 0.4, 2.0}) {
+        const auto rotation = [](const Eigen::Vector3d& angles) {
+          return Rotation(Eigen::AngleAxisd(angles[2], Eigen::Vector3d::UnitZ()) *
+                          Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
+                          Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitX()));
+        };
+        const Rotation R = rotation({roll, pitch, yaw});
+        EXPECT_LT(R.angularDistance(rotation(roll_pitch_yaw(R))), 4e-8) << roll << " " << pitch << " " << yaw;
+      }
+}
+
 TEST(Errors, AreThoseOf32) {
   const DualQuaternion truth = displacement({0.3, -1, 2}, {4, 5, 6});
   const DualQuaternion estimate = truth * displacement({0, 0.01, 0}, {0.03, 0, 0.04});

@@ -40,7 +40,9 @@ Eigen::Vector3d rotation_log(const Rotation& rotation) {
 Eigen::Vector3d roll_pitch_yaw(const Rotation& rotation) {
   const Eigen::Matrix3d R = rotation.toRotationMatrix();
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+  // where the pitch is nearly a quarter turn the yaw is rounding; the roll is then the one that suits it
+  const double yaw = std::atan2(R(1, 0), R(0, 0)), c = std::cos(yaw), s = std::sin(yaw);
+  return {std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1)), pitch, yaw};
 }
 
 }  // namespace egocal

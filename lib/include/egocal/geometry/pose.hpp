@@ -30,7 +30,8 @@ Rotation rotation_exp(const Eigen::Vector3d& rotation_vector);
 /// The rotation vector of the shorter way round, its length in [0, pi] [rad].
 Eigen::Vector3d rotation_log(const Rotation& rotation);
 
-/// Roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) [rad].
+/// Roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) [rad]: pitch in [-pi/2, pi/2], roll and yaw in
+/// [-pi, pi]. They make R to rounding, also at a pitch of +-pi/2, where roll and yaw are not unique.
 Eigen::Vector3d roll_pitch_yaw(const Rotation& rotation);
 
 }  // namespace egocal
