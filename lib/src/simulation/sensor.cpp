@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
+#include "egocal/error.hpp"
 #include "egocal/microseconds.hpp"
 
 namespace egocal {
@@ -158,6 +160,10 @@ Trajectory detail::drive_sensor(const SimulationOptions& options, const Path& dr
 }
 
 Pose true_extrinsic(const SimulationOptions& options, std::size_t a, std::size_t b, double time) {
+  const std::size_t sensors = options.T_vehicle_sensor.size();
+  if (std::max(a, b) >= sensors)
+    throw Error("sensor " + std::to_string(std::max(a, b)) + ": the simulation has " +
+                std::to_string(sensors));
   return inverse(mounting_at(options, a, time)) * mounting_at(options, b, time);
 }
 

@@ -91,10 +91,11 @@ struct SimulationOptions {
 
 /// One trajectory a sensor, each in its own start frame, with the motions' noise accumulated. The same
 /// options give the same bits (own random numbers), and a fault of one sensor changes no other sensor's
-/// poses. Throws Error on values out of range.
+/// poses. Throws Error on values out of range, and where dropped poses leave none of a sensor. Thread-safe.
 std::vector<Trajectory> simulate(const SimulationOptions& options);
 
-/// Pose of sensor b in sensor a at a time of the drive [s], with the mount changes up to then.
+/// Pose of sensor b in sensor a at a time of the drive [s], with the mount changes up to then. a, b: indices
+/// of T_vehicle_sensor; throws Error for others. Thread-safe.
 Pose true_extrinsic(const SimulationOptions& options, std::size_t a, std::size_t b, double time = 0);
 
 }  // namespace egocal
