@@ -117,13 +117,6 @@ std::vector<Statistics> independent_blocks(const std::vector<Statistics>& blocks
   return long_ones.size() >= options.least_parts ? long_ones : merge_blocks(blocks, 2 * steps);
 }
 
-std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options) {
-  Problem parts = problem;
-  parts.blocks = merge_blocks(problem.blocks, two_motions(stride));
-  const std::optional<Trial> trial = tried(parts, options);
-  return trial ? std::optional(trial->spread) : std::nullopt;
-}
-
 std::optional<Selection> select_candidate(const Problem& problem, std::span<const Candidate> candidates,
                                           std::optional<std::size_t> current,
                                           const SelectionOptions& options) {

@@ -63,8 +63,6 @@ struct Spread {
   double translation = 0;  ///< [m]
   int directions = 0;      ///< observable ones
 };
-/// Empty where too few parts of at least two strides' length are there, or nothing is observable.
-std::optional<Spread> answer_spread(const Problem& problem, int stride, const SelectionOptions& options = {});
 
 /// The candidate with the smallest spread, in rotation and translation together (their product: it has no
 /// unit to choose), of those that no longer motions contradict (SelectionOptions::contradicts). One that
