@@ -130,6 +130,25 @@ TEST(HiddenMistakes, PositionsThatAreLaterThanTheRotationsAreNamed) {
   EXPECT_LT(off_by(to_dual_quaternion(*finding->T_a_b)), 0.5 * off_by(to_dual_quaternion(calibration.T_a_b)));
 }
 
+/// Moved to another point of the body by p + R'l. The motions nearly agree, with an answer about a metre off.
+TEST(HiddenMistakes, ALeverArmThatWasTurnedByTheInverseRotationIsNamed) {
+  const Eigen::Vector3d arm(0.3, 1.5, 0.5);
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (const Side side : {Side::a, Side::b}) {
+      testing::Streams s = drive(terrain);
+      Trajectory& wrong = side == Side::a ? s.a : s.b;
+      wrong = testing::with_turned_lever_arm(wrong, arm);
+      const Calibration calibration = calibrate(s.a, s.b);
+      EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+      const Finding* finding = find(calibration, side == Side::a ? "axes_a" : "axes_b");
+      ASSERT_NE(finding, nullptr) << calibration.reason;
+      EXPECT_TRUE(finding->certain);
+      EXPECT_NE(finding->message.find("lever arm"), std::string::npos) << finding->message;
+      ASSERT_TRUE(finding->T_a_b);
+      EXPECT_LT(extrinsic_error(s.T, to_dual_quaternion(*finding->T_a_b)).translation, 0.3);
+    }
+}
+
 /// A filter that delays the rotations alone looks like a clock that is off, and at that clock the positions
 /// are early.
 TEST(HiddenMistakes, RotationsThatAreLaterThanThePositionsAreNamed) {

@@ -139,6 +139,26 @@ TEST(Moves, AJumpOfOneOdometryIsNotAMovedMount) {
   }
 }
 
+/// What motions of one stride alone show are errors of that length: stamps that jitter while a robot turns.
+TEST(Moves, EvidenceIsThatOfTwoStrides) {
+  SimulationOptions still = drive(Terrain::rough, 3), bumped = still;
+  bumped.faults[1].mount_changes = {bump(60, 3, 3)};
+  const auto pairs_of = [](const SimulationOptions& options, int stride) {
+    const auto trajectories = simulate(options);
+    PairingOptions pairing;
+    pairing.stride = stride;
+    return pair_motions(pairing, trajectories[0], trajectories[1]).pairs;
+  };
+  Problem problem;
+  problem.balance = {1, 1};
+  const auto chance = [&](const std::vector<std::vector<MotionPair>>& strides) {
+    return find_moves_of_strides(strides, problem).chance;
+  };
+  EXPECT_LT(chance({pairs_of(bumped, 2), pairs_of(bumped, 5)}), 1e-10);
+  EXPECT_GT(chance({pairs_of(bumped, 2), pairs_of(still, 5)}), 1e-5);
+  EXPECT_LT(chance({pairs_of(bumped, 2)}), 1e-10);
+}
+
 TEST(Moves, SeveralBumpsAreDistinguished) {
   SimulationOptions options = drive(Terrain::free, 400, 400);
   for (int i = 0; i < 3; ++i)

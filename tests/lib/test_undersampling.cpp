@@ -3,6 +3,7 @@
 // What interpolation loses of motions that are too fast for a sensor is counted as unknown, and is named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -10,6 +11,7 @@
 #include "../support/simulated_drive.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "egocal/calibrate.hpp"
+#include "egocal/scale/scale_statistics.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -90,6 +92,26 @@ TEST(Undersampling, IsNotNamedOfSlowMotions) {
       const testing::Streams streams = shaken(rate_a, rate_b, 0.3, 0.9, seed);
       const Calibration found = calibrate(streams.a, streams.b);
       EXPECT_EQ(undersampled(found), nullptr) << rate_a << " and " << rate_b << " Hz, seed " << seed;
+    }
+}
+
+// The standard deviation of the scale of long motions is that of the shaking; motions of all lengths know it.
+TEST(Undersampling, AWrongScaleIsNamedNevertheless) {
+  for (const double scale : {1.0, 1.02, 0.98})
+    for (const std::uint64_t seed : {3u, 4u}) {
+      testing::ShakenCar car;
+      car.rate_a = car.rate_b = 10;
+      car.phase_b = 0.04;
+      car.lowest = 2;
+      car.highest = 6;
+      car.size = 0.04;
+      car.seconds = 120;
+      car.seed = seed;
+      const testing::Streams streams = testing::shaken_car(car);
+      const Calibration calibration = calibrate(streams.a, scaled(streams.b, scale));
+      const bool named = std::any_of(calibration.findings.begin(), calibration.findings.end(),
+                                     [](const Finding& one) { return one.code == "scale" && one.certain; });
+      EXPECT_EQ(named, scale != 1) << scale << ", seed " << seed;
     }
 }
 

@@ -25,6 +25,13 @@ inline Trajectory inverted(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) { return inverse(pose); });
 }
 
+/// Positions moved by a lever arm of the body [m] with the rotations from the world to the body.
+inline Trajectory with_turned_lever_arm(const Trajectory& trajectory, const Eigen::Vector3d& arm) {
+  return changed(trajectory, [&arm](const Pose& pose) {
+    return Pose{pose.rotation, pose.translation + pose.rotation.conjugate() * arm};
+  });
+}
+
 /// Columns w x y z in a file whose readers expect x y z w, and the other way round.
 inline Trajectory scalar_first(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) {

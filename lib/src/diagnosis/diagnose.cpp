@@ -29,6 +29,7 @@
 #include "diagnosis/standing_still.hpp"
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/swaying_mount.hpp"
+#include "diagnosis/turned_lever_arm.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/foresee.hpp"
@@ -133,6 +134,13 @@ bool has(const std::vector<Finding>& findings, std::string_view code) {
                      [code](const Finding& one) { return one.code == code; });
 }
 
+/// Positions of one stream that are late, or hold a lever arm that was turned wrongly: what explains more.
+std::optional<Finding> wrong_positions(const Evidence& evidence, const DiagnosisOptions& options) {
+  std::optional<Finding> late = late_positions(evidence.instants, evidence.given.explained, options),
+                         lever = turned_lever_arm(evidence.instants, evidence.given.explained, options);
+  return lever && !(late && late->improvement > lever->improvement) ? lever : late;
+}
+
 /// What is left where no reading, scale or clock explains the motions. misfit: by what is no noise.
 void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                   const Fit& fit, const DiagnosisOptions& options, Misfit& misfit,
@@ -170,14 +178,15 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unrelated(correlation));
     return;
   }
-  std::optional<Finding> late;
-  if (answered.problem.mode != Mode::planar)
-    late = late_positions(evidence.instants, evidence.given.explained, options);
-  const auto explains_more = [&late](double improvement) { return !late || improvement > late->improvement; };
+  std::optional<Finding> wrong;
+  if (answered.problem.mode != Mode::planar) wrong = wrong_positions(evidence, options);
+  const auto explains_more = [&wrong](double improvement) {
+    return !wrong || improvement > wrong->improvement;
+  };
   MovedMount moved = moved_mount(evidence.instants, answered, options);
   std::vector<Finding>& moves = moved.findings;
-  // where a filter delays positions, parts of the drive with other speeds have other extrinsics
-  if (!moves.empty() && late && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
+  // where positions are wrong, parts of the drive with other speeds and headings have other extrinsics
+  if (!moves.empty() && wrong && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
     moves.clear();
   moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
@@ -196,7 +205,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unexplained(*part));
     return;
   }
-  std::optional<Finding> last = std::move(late);
+  std::optional<Finding> last = std::move(wrong);
   if (!last && answered.problem.mode != Mode::planar)
     last = back_and_forth(evidence.instants, answered, options);
   if (!last && answered.problem.mode != Mode::planar)
@@ -259,11 +268,12 @@ bool one_is_inverted(const std::vector<Finding>& findings, const DiagnosisOption
 }
 
 /// A wrong scale that few motions show, where nothing else is certain.
-void name_wrong_scale(const Evidence& evidence, const DiagnosisOptions& options,
-                      std::vector<Finding>& findings) {
+void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing,
+                      const DiagnosisOptions& options, std::vector<Finding>& findings) {
   for (const Finding& finding : findings)
     if (explains(finding, options) || finding.code == "mount_moved") return;
   std::optional<Finding> scale = wrong_scale(evidence, options);
+  if (!scale) scale = wrong_scale_of_drive(evidence, pairing, options);
   if (!scale) return;
   // the same with less certainty, and what its motions were taken for
   std::erase_if(findings, [](const Finding& one) {
@@ -381,7 +391,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                          std::any_of(result.findings.begin(), result.findings.end(), is_explanation);
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);
-  name_wrong_scale(evidence, options, result.findings);
+  name_wrong_scale(evidence, pairing, options, result.findings);
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
     for (const std::vector<Finding>& found : {in_one_frame(answered), made_from_each_other(result.fit)})

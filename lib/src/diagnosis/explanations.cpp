@@ -13,6 +13,7 @@
 #include "diagnosis/scale.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/microseconds.hpp"
+#include "egocal/scale/estimate_scale.hpp"
 
 namespace egocal::detail {
 
@@ -29,6 +30,17 @@ Finding scale_finding(const Explanation& explanation, const Comparison& comparis
   finding = worded_scale(std::move(finding));
   // the answer is in the units of a: those of the longer stream are the wrong ones
   if (units && power > 0) finding.T_a_b->translation /= *finding.value;
+  return finding;
+}
+
+/// sigmas: by how many of its standard deviations the scale differs from one.
+Finding shown_by_few(const Explanation& scaled, const Comparison& comparison, double sigmas,
+                     const DiagnosisOptions& options) {
+  Finding finding = scale_finding(scaled, comparison, true, options);
+  if (finding.code == "scale" && comparison.gain < options.gain)
+    finding.message = format(
+        "The lengths of b times %.4g fit those of a: few motions show it, but by %.0f standard deviations.",
+        scaled.scale, sigmas);
   return finding;
 }
 
@@ -209,12 +221,24 @@ std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOpti
   const std::optional<double> stddev = stddev_of_log_scale(
       evidence.given.explained.motions, {scaled.scale, scaled.explained}, independent, options.scale_check);
   if (!stddev || size < options.scale_check.sigmas * *stddev) return std::nullopt;
-  Finding finding = scale_finding(scaled, comparison, true, options);
-  if (finding.code == "scale" && comparison.gain < options.gain)
-    finding.message = format(
-        "The lengths of b times %.4g fit those of a: few motions show it, but by %.0f standard deviations.",
-        scaled.scale, size / *stddev);
-  return finding;
+  return shown_by_few(scaled, comparison, size / *stddev, options);
+}
+
+std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
+                                            const DiagnosisOptions& options) {
+  const ScaleCheckOptions& check = options.scale_check;
+  const double size = std::log(evidence.scaled.scale);
+  if (!(std::abs(size) >= check.least) || !explains(evidence.scaled.explained, options)) return std::nullopt;
+  DriveScaleOptions of_b;
+  of_b.scale.side = Side::b;
+  const ScaleSolution drive = estimate_scale(evidence.streams.a, evidence.streams.b, pairing, of_b);
+  if (!drive.observable || !drive.certified) return std::nullopt;
+  const double of_drive = std::log(drive.scale), stddev = drive.stddev / drive.scale;
+  if (!(std::abs(of_drive) >= check.least) || !(std::abs(of_drive) >= check.sigmas * stddev) ||
+      !(std::abs(of_drive - size) <= check.agree * std::abs(size)))
+    return std::nullopt;
+  return shown_by_few(evidence.scaled, compare(evidence.given.explained, evidence.scaled.explained),
+                      std::abs(of_drive) / stddev, options);
 }
 
 }  // namespace egocal::detail

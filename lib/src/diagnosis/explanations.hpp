@@ -43,4 +43,10 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
 /// say. Only where nothing else explains the streams: any contradiction has some best scale.
 std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOptions& options);
 
+/// The same by motions of all lengths together, where the long ones seem to have a scale: on a machine that
+/// is shaken faster than it is measured their own standard deviation is mostly that of the shaking. pairing:
+/// as for the answer.
+std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
+                                            const DiagnosisOptions& options);
+
 }  // namespace egocal::detail

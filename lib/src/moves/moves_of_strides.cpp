@@ -69,10 +69,11 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
   options.false_alarms /= static_cast<double>(std::max<std::size_t>(1, strides.size() - shortest));
   MovesResult best;
   best.stride = shortest;
-  double least = 1, least_chance = 1;
+  double least = 1;
+  std::vector<double> chances;
   for (std::size_t i = shortest; i < strides.size(); ++i) {
     MovesResult result = find_moves(strides[i], problem, options);
-    least_chance = std::min(least_chance, static_cast<double>(strides.size() - shortest) * result.chance);
+    if (result.tested) chances.push_back(static_cast<double>(strides.size() - shortest) * result.chance);
     double chance = 1;
     for (const Move& move : result.moves) chance = std::min(chance, move.false_alarm);
     const bool first = !best.tested && result.tested;
@@ -92,7 +93,8 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
     if (shown) confirmed.push_back(best.moves[k]);
   }
   best.moves = std::move(confirmed);
-  best.chance = least_chance;
+  std::sort(chances.begin(), chances.end());
+  best.chance = chances.empty() ? 1 : std::min(1.0, chances[std::min<std::size_t>(1, chances.size() - 1)]);
   return best;
 }
 

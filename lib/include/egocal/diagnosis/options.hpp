@@ -76,6 +76,9 @@ struct ScaleCheckOptions {
   /// Noise of single motions counts this many times in the standard deviation of the scale: that of motions
   /// one after the other is not independent where it wanders.
   double wandering = 2;
+  /// The scale of motions of all lengths agrees with that of the long ones where their logarithms differ by
+  /// at most this part.
+  double agree = 0.3;
   /// An answer is doubtful where the scale moves it by more than this many of its standard deviations in some
   /// direction: less is within what it states.
   double significant = 3;
@@ -219,7 +222,8 @@ struct ClockCheckOptions {
 
 /// When an answer counts as known or as wrong.
 struct DiagnosisOptions {
-  bool enabled = true;  ///< of calibrate(): without it the verdict knows of no other explanation
+  /// Of calibrate(): without it no other explanation is tried, and no answer is called good.
+  bool enabled = true;
   /// An answer is not called good where its rotation or its translation as a whole may be off by more than
   /// this (95 %), and is called contradictory where a better explanation has an answer further away [rad, m].
   /// What users of vehicles call wrong; an arm wants less.

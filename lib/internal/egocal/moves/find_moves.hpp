@@ -154,7 +154,8 @@ struct MovesResult {
   bool tested = false;      ///< false: too few motion pairs, nothing is known
   std::vector<Move> moves;  ///< in the order of time
   std::size_t stride = 0;   ///< of find_moves_of_strides(): index of the motions that show most
-  /// Chance of the strongest evidence, reported or not, in a drive without a change.
+  /// Chance of the strongest evidence, reported or not, in a drive without a change. find_moves_of_strides():
+  /// of what the motions of a second stride show as well, where there is one.
   double chance = 1;
 };
 
