@@ -44,10 +44,11 @@ struct Fit {
 
 /// An explanation that fits better than the streams as given, or as well and with another answer.
 struct Finding {
-  std::string code;  ///< inverted_a, inverted_b, inverted_both, quaternion_order_a|_b|_both, scale, units,
-                     ///< clock_offset, clock_drift, axes_a, axes_b, axes_both, plane_a, plane_b, unrelated,
-                     ///< mount_moved, scale_change, time_unit, too_little_motion, undersampled_a,
-                     ///< undersampled_b, late_positions_a, late_positions_b
+  /// inverted_a|_b|_both, quaternion_order_a|_b|_both, scale, units, scale_change, clock_offset, clock_drift,
+  /// time_unit, axes_a|_b|_both, late_positions_a|_b, plane_a|_b, mount_moved, unrelated, frozen_a|_b,
+  /// missing_a|_b, flat_a|_b, same_stream, samples, wrong_samples, undersampled_a|_b, too_little_motion.
+  /// docs/trust.md, "Findings", says what each means.
+  std::string code;
   bool certain = false;         ///< it fits clearly better; otherwise both remain possible
   std::string message;          ///< what was found, one sentence
   std::string remedy;           ///< option or action that cures it
@@ -55,7 +56,8 @@ struct Finding {
   std::optional<Pose> T_a_b;    ///< the answer under this explanation, where it has one
   std::optional<double> time;   ///< mount_moved, scale_change: since the first pose of a [s]
   std::optional<double> value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
-                                ///< clock_drift: rate of b's clock against a's [s/s]
+                                ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
+                                ///< how late they are [s]; time_unit: likely factor of the times
 };
 
 /// What carries the sensors: which manoeuvres can be asked for.

@@ -6,11 +6,12 @@
 
 namespace egocal {
 
-/// (32): of the displacement between the truth and an estimate.
+/// (32): of the displacement between the truth and an estimate, both unit dual quaternions of either sign.
 struct ExtrinsicError {
   double translation = 0;  ///< [m]
   double rotation = 0;     ///< [0, pi] [rad]
 };
+/// Thread-safe. Exact for small errors.
 ExtrinsicError extrinsic_error(const DualQuaternion& truth, const DualQuaternion& estimate);
 
 }  // namespace egocal

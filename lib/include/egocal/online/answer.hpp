@@ -45,13 +45,21 @@ using NanosecondClock = std::int64_t (*)();
 
 /// The cost that the certificate of an answer is about. Along directions that the motions do not show, noise
 /// has a minimum that means nothing: where the problem has a prior, squares are added to (16) that hold the
-/// answer at the prior there. Without a prior, and in planar mode, it is cost_matrix().
+/// answer at the prior there. Without a prior, and in planar mode, it is cost_matrix(). Never throws.
+/// Deterministic. Thread-safe.
 Matrix8d certified_cost(const Problem& problem);
 
-/// Solve, verify, and say what is known. start: for the local methods; without it they start at the global
-/// minimum. In directions that the motions do not show the answer is at the problem's prior. Without a prior
-/// it is the minimum, which is noise along these directions, or the one closest to the identity where the
-/// cost is flat. The certificate is about certified_cost().
+/// Solve, verify, and say what is known. start: T_a_b for the local methods; without it they start at the
+/// global minimum. dual and sdp ignore it, and so does sqp in planar mode. In directions that the motions do
+/// not show the answer is at the problem's prior. Without a prior it is the minimum, which is noise along
+/// these directions, or the one closest to the identity where the cost is flat. The certificate is about
+/// certified_cost().
+///
+/// Never throws. Without motion the status is degenerate, T_a_b is the prior or the identity, and no
+/// direction is observable; all extrinsics cost the same then, so the certificate calls each of them
+/// certified. Where the statistics hold NaN or infinity the status is not_finite, the certificate is
+/// undecided with an infinite cost, no direction is observable, and T_a_b means nothing. Deterministic but
+/// for the two times. Thread-safe where the clock is.
 Answer solve(const Problem& problem, Method method, const std::optional<DualQuaternion>& start = std::nullopt,
              NanosecondClock clock = nullptr);
 

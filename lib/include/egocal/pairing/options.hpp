@@ -119,14 +119,15 @@ struct ScreeningOptions {
 /// Tuning of the Accumulator.
 struct AccumulatorOptions {
   /// Longer motions are not considered when the stride is chosen [s]. The robot arm's best motions take 3 to
-  /// 6 s (design, section 3 point 7).
+  /// 6 s. Study: docs/method.md, "Sums over strides".
   double longest_motion = 8;
   /// A motion may take this many times as long as its stride says: lost poses make longer motions, standing
   /// still for minutes does not make one.
   double stretch = 4;
   /// Motions that rotate by more are rejected, for the sign of their quaternion is a guess [rad].
   double most_rotation = 170 * std::numbers::pi / 180;
-  /// Translation weights that are tried at a rotation weight of 1 [1/m^2] (design, section 3 point 7).
+  /// Translation weights that are tried at a rotation weight of 1 [1/m^2]; smaller ones where that is not
+  /// enough (docs/method.md, "Fast machines").
   std::vector<double> balances{1, 0.1, 0.01, 0.001};
   /// Number of synchronised instants at which stride and balance are chosen first. Each further choice comes
   /// after a quarter more: the cost of choosing stays a constant part of the work.

@@ -36,7 +36,8 @@ struct Reading {
   double scale = 1;     ///< factor of all lengths, > 0
 };
 
-/// The trajectory as understood by `reading`; times are kept. Poses stay unit dual quaternions.
+/// The trajectory as understood by `reading`; times are kept. Poses stay unit dual quaternions. Throws Error
+/// where the scale is not finite and above zero.
 Trajectory reread(const Trajectory& trajectory, const Reading& reading);
 
 }  // namespace egocal

@@ -32,13 +32,15 @@ EGOCAL_SAME_LAYOUT(Balance)
 Matrix8d pair_cost(const DualQuaternion& a, const DualQuaternion& b, const Vector8d& w = Vector8d::Ones());
 
 /// 36 numbers, the whole memory of any number of motion pairs: sum of eta M_d'M_d over the dual rows M_d of
-/// (14). Its lower right block is the rotation part D, so every Balance follows from it (design, section 3
-/// point 6). The sum is plain, in the order of the calls: the same calls give the same bits.
+/// (14). Its lower right block is the rotation part D, so every Balance follows from it (docs/method.md, "The
+/// cost is 36 numbers"). The sum is plain, in the order of the calls: the same calls give the same bits.
 struct Statistics {
   Matrix8d dual_rows = Matrix8d::Zero();  ///< symmetric, both triangles filled
   double weight = 0;                      ///< sum of eta
   std::uint64_t count = 0;                ///< pairs
 
+  /// a, b: unit dual quaternions of either sign (each counts with its real scalar >= 0); eta >= 0. Nothing of
+  /// this is checked: NaN stays in the sum, and the solvers report it.
   void add(const DualQuaternion& a, const DualQuaternion& b, double eta = 1);
   void add(const MotionPair& pair) { add(pair.a, pair.b, pair.eta); }
   Statistics& operator+=(const Statistics& other);

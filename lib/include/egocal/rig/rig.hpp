@@ -72,8 +72,10 @@ struct RigPairAnswer {
   std::size_t a = 0, b = 0;
   DualQuaternion T_a_b;
   Certificate certificate;
-  double residual_rotation = 0;     ///< mean squared residual of the real rows
-  double residual_translation = 0;  ///< of the dual rows [m^2]
+  /// Mean squared residuals of the real and of the dual rows of (14), about a quarter of the mean squared
+  /// angle [rad^2] and distance [m^2] by which a motion of b, seen from a, differs from that of a.
+  double residual_rotation = 0;
+  double residual_translation = 0;
 };
 
 /// Three sensors and the misfit of their pairwise answers, T_ab T_bc T_ca, that should be the identity.
@@ -99,7 +101,8 @@ struct RigSolution {
 };
 
 /// All pairs, all loops of three, and the one consistent set of extrinsics that fits all pairs best. Throws
-/// Error where a sensor has no pair with sensor 0, or a pair has no motions. Deterministic.
+/// Error where a sensor has no pair with sensor 0, a pair has no motions, or the numbers of a pair are not
+/// a < b < sensors. Deterministic. Thread-safe.
 RigSolution solve_rig(std::size_t sensors, std::span<const RigPair> pairs, const RigOptions& options = {});
 
 struct RigMotionsOptions {
@@ -108,13 +111,15 @@ struct RigMotionsOptions {
   /// Poses further apart are not interpolated between [s], and no motion spans a pause between instants that
   /// is longer, unless all are.
   double max_gap = 0.5;
-  std::vector<GroundPlane> planes;  ///< one a sensor: planar mode; empty: 3-D
+  std::vector<GroundPlane> planes;  ///< one a sensor: planar mode; any other number of them: 3-D
   ScreeningOptions screening;       ///< a motion that is not congruent in one pair is used in none
 };
 
 /// All pairs of a rig, with motions between the same instants for all of them: those of the slowest sensor,
 /// the other poses interpolated. The errors of the pairwise answers are then nearly dependent, and the loops
-/// close to second order. Trajectories: in the order of time, on one clock.
+/// close to second order. Trajectories: in the order of time, on one clock. Never throws: where the sensors
+/// share no instants the pairs have no motions, and solve_rig() refuses them; fewer than two sensors have no
+/// pairs. Deterministic. Thread-safe.
 std::vector<RigPair> rig_motions(std::span<const Trajectory> sensors, const RigMotionsOptions& options = {});
 
 }  // namespace egocal

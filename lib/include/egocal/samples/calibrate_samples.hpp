@@ -44,6 +44,7 @@ struct MatchingOptions {
 /// The rows of two lists of still poses that belong together; poses are never interpolated. Rows whose stamps
 /// are each other's nearest, and much nearer than the next sample, belong together; where that leaves rows
 /// over and the lists are equally long, row i belongs to row i. Throws Error where neither gives 3 samples.
+/// Deterministic. Thread-safe.
 MatchedSamples match_samples(const Trajectory& a, const Trajectory& b, const MatchingOptions& options = {});
 
 /// Whether two recordings look like still poses rather than streams: few poses, as many in both, and large
@@ -55,7 +56,7 @@ struct SampleOptions {
   /// Find samples that contradict the others and reject them. Fewer than least_to_judge cannot outvote a
   /// wrong one.
   bool robust = true;
-  std::size_t least_to_judge = 6;
+  std::size_t least_to_judge = 6;  ///< different ones may be one less: two samples of one pose, one wrong
   /// A sample is wrong where noise alone would explain its residual less often than this. Real detections
   /// have heavier tails than a normal distribution, so it is far below the usual 1e-3.
   double wrong_probability = 1e-6;
@@ -95,19 +96,23 @@ struct SampleCalibration {
   Calibration calibration;  ///< T_a_b is the hand-eye pose (sensor b in sensor a)
   Pose T_world_a_world_b;   ///< the target in the base (eye in hand), or in the hand (eye to hand)
   std::vector<SampleResidual> residuals;  ///< per sample, in the order given
-  double spread_median = 0;               ///< of the target's position over the samples that count [m]
-  double spread_rms = 0;                  ///< [m]
-  double spread_largest = 0;              ///< [m]
-  double noise_rotation = 0;              ///< standard deviation of one sample, each axis [rad]
-  double noise_translation = 0;           ///< [m]
+  std::size_t repeated = 0;               ///< samples that repeat another one exactly: they count once
+  /// Samples where those that share one pose of a, or one of b, count as one: what the standard deviations
+  /// are judged on. Several images at one pose of the arm share its error.
+  std::size_t different = 0;
+  double spread_median = 0;      ///< of the target's position over the samples that count [m]
+  double spread_rms = 0;         ///< [m]
+  double spread_largest = 0;     ///< [m]
+  double noise_rotation = 0;     ///< standard deviation of one sample, each axis [rad]
+  double noise_translation = 0;  ///< [m]
 };
 
 /// Solves a X = Y b for X = T_a_b and Y from at least 3 samples in any order; the order changes no bit of the
 /// answer. Minimises the sum over all motions between two samples of the squared differences of their
 /// targets, rotation and position each weighted by the inverse of its variance, which is maximum likelihood
 /// for independent noise of both; the minimum of the weighted cost is global, with the certificate of every
-/// other solve. The unit of length changes nothing. Throws Error where there are fewer than 3 samples.
-/// Thread-safe.
+/// other solve. The unit of length changes nothing, nor do samples that repeat others exactly. Throws Error
+/// where there are fewer than 3 samples. Thread-safe.
 SampleCalibration calibrate_samples(std::span<const PoseSample> samples, const SampleOptions& options = {});
 
 }  // namespace egocal

@@ -10,23 +10,26 @@ namespace egocal {
 
 /// The scale and the extrinsic that minimise the cost together.
 struct ScaleSolution {
-  double scale = 1;  ///< what the translations of `side` are multiplied by
+  double scale = 1;  ///< what the translations of the sensor without a known unit are multiplied by
   DualQuaternion q;  ///< the minimiser of (18) at that scale: T_a_b (planar mode: T_p)
   double cost = 0;   ///< J
-  Balance balance;   ///< in force at that scale: the q above minimises cost_matrix(at_scale(...), balance)
+  Balance balance;   ///< in force at that scale: q minimises (18) of the scaled motions with these weights
   double lower_bound = 0;  ///< no scale in the range and no extrinsic has a cost below it, up to rounding
   double gap = 0;          ///< cost - lower_bound, >= 0
   double rounding = 0;     ///< costs that differ by less than this are equal
-  /// No scale outside of these two has as low a cost.
+  /// No scale outside of these two has as low a cost. Scales as `scale` is one, not parts of it.
   double least_scale = 0, most_scale = 0;
   bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale
   bool at_limit = false;   ///< the best scale is the end of the range
-  double stddev = 0;       ///< by the jack-knife over blocks, with `attenuation`; infinite where unknown
+  /// Of `scale`, absolute: stddev / scale is the relative one. By the jack-knife over blocks, with
+  /// `attenuation`; infinite where unknown.
+  double stddev = 0;
   /// Change of the best extrinsic per relative change of the scale, x y z roll pitch yaw in the frame of q
-  /// [m, rad]. What an extrinsic at this scale does not know of it: with_spread_of_scale().
+  /// [m, rad]. What an unknown scale adds to the variance of a direction is the square of
+  /// sensitivity * stddev / scale; calibrate() has added it.
   std::array<double, 6> sensitivity{};
-  /// Errors in variables: the true scale lies within this part of the scale of it, if all translation noise
-  /// is in one sensor or the other; with noise as ScaleOptions::noise assumes nothing of it is left.
+  /// Errors in variables: where all translation noise is in one of the two sensors, `scale` is off by at most
+  /// this part of it. Where both have as much, as is assumed, nothing of it is left.
   double attenuation = 0;
   /// Curvature of the cost over the scale against that at a fixed extrinsic, in [0, 1]: 0 shows no scale
   /// (pure rotation, or one circle at constant speed, where another lever arm explains another scale).
