@@ -151,6 +151,24 @@ TEST_F(Tables, RowsOutOfOrderAreSortedAndCounted) {
               ElementsAre(HasSubstr("1 pose was out of order"), HasSubstr("the first of each")));
 }
 
+/// Else the whole file would be in nanoseconds, and hold two times.
+TEST_F(Tables, OneWrongTimeDoesNotDecideTheUnit) {
+  std::string rows;
+  for (int i = 0; i < 50; ++i)
+    rows += (i == 20 ? "1600000000000000000" : std::to_string(1600000000 + i)) + " 0 0 0 0 0 0 1\n";
+  expect_error(rows, ":21:");
+}
+
+TEST_F(Tables, StrictRefusesWhatWouldBeRepaired) {
+  ReadOptions strict;
+  strict.strict = true;
+  EXPECT_EQ(read("1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n", strict).trajectory.size(), 2u);
+  expect_error("1 0 0 0 0 0 0 1\n3 2 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n",
+               "pose 3, at 2.000000 s, comes after a later one", strict);
+  expect_error("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n",
+               "pose 2, at 1.000000 s, has the time of the one before it", strict);
+}
+
 /// Neighbouring rows are 23 s and more apart, as milliseconds might be; the times in order are 1 s apart.
 TEST_F(Tables, RowsOutOfOrderDoNotChangeTheUnitOfTheirTimes) {
   std::string rows;

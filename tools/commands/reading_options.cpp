@@ -10,6 +10,7 @@ ReadOptions either(const ReadOptions& own, const ReadOptions& common) {
   ReadOptions result = common;
   if (!own.times_file.empty()) result.times_file = own.times_file;
   if (!own.columns.empty()) result.columns = own.columns;
+  result.strict = own.strict || common.strict;
   return result;
 }
 
@@ -31,6 +32,7 @@ void refuse_reading_options(const ReadingOptions& options, const char* instead) 
     refuse(!one->times_file.empty(), "--times");
     refuse(!one->columns.empty(), "--columns");
     refuse(one->rate > 0, "--rate");
+    refuse(one->strict, "--strict");
   }
 }
 
@@ -41,6 +43,8 @@ void add_reading_options(cli::App command, ReadOptions& options) {
                      "yaw[deg]; - for others");
   command.add_option("--rate", options.rate, "of poses without times [Hz; 10]")
       .check(cli::Check::above_zero(1e6, 1e-3));
+  command.add_flag("--strict", options.strict,
+                   "refuse poses out of order, repeated times and damage instead of repairing them");
 }
 
 void add_reading_options(cli::App command, ReadingOptions& options) {

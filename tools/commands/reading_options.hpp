@@ -16,10 +16,10 @@ struct ReadingOptions {
   ReadOptions of_b() const;
 };
 
-/// Adds --times, --columns and --rate. The struct must exist until the command has run.
 /// Refuses them where no file of poses is read: `instead` is what takes its place, such as "--log".
 void refuse_reading_options(const ReadingOptions& options, const char* instead);
 
+/// Adds --times, --columns, --rate and --strict. The struct must exist until the command has run.
 void add_reading_options(cli::App command, ReadOptions& options);
 
 /// The same and --times-a, --times-b, --columns-a, --columns-b.

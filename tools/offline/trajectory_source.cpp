@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/trajectory_source.hpp"
 
+#include <utility>
+
+#include "egocal/error.hpp"
 #include "offline/lcm_recording.hpp"
 #include "offline/log_trajectory.hpp"
 
@@ -21,6 +24,7 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   if (!is_lcm_log(parts.file) || parts.topic.empty()) {
     const std::unique_ptr<Recording> recording = open_any_recording(parts.file, options);
     TrajectoryReading reading = read_trajectory_of(*recording, parts.topic);
+    if (options.strict) refuse_repairs(name, reading);
     return with(std::move(reading), recording->unused(options));
   }
   // live odometry and its log pass the same checks
@@ -29,7 +33,9 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   reading.trajectory = std::move(log.poses);
   reading.format = "LCM log";
   reading.stream = parts.topic;
-  if (!log.not_used.empty()) reading.notes.push_back(log.not_used);
+  for (std::string* note : {&log.not_used, &log.damage})
+    if (!note->empty()) reading.notes.push_back(std::move(*note));
+  if (options.strict && !reading.notes.empty()) throw error_at(name, 0, "", reading.notes.front());
   return with(std::move(reading), unused_by_messages(options));
 }
 

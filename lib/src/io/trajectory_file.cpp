@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 
 #include "egocal/error.hpp"
+#include "egocal/microseconds.hpp"
 #include "io/stream_list.hpp"
 #include "io/transform_chain.hpp"
 
@@ -97,9 +99,16 @@ Error no_pose(const Recording& recording, const std::string& name) {
 void put_in_order(TrajectoryReading& reading) {
   Trajectory& poses = reading.trajectory;
   std::int64_t latest = INT64_MIN;
-  for (const StampedPose& pose : poses) {
-    if (pose.time_us < latest) ++reading.out_of_order;
-    latest = std::max(latest, pose.time_us);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::int64_t time_us = poses[i].time_us;
+    if (time_us < latest) ++reading.out_of_order;
+    if (time_us <= latest && reading.first_repair.empty()) {
+      char text[128];
+      std::snprintf(text, sizeof text, "pose %zu, at %.6f s, %s", i + 1, to_seconds(time_us),
+                    time_us < latest ? "comes after a later one" : "has the time of the one before it");
+      reading.first_repair = text;
+    }
+    latest = std::max(latest, time_us);
   }
   if (reading.out_of_order > 0)
     std::stable_sort(poses.begin(), poses.end(),
@@ -108,6 +117,15 @@ void put_in_order(TrajectoryReading& reading) {
   const auto end = std::unique(poses.begin(), poses.end(), same);
   reading.duplicates = static_cast<std::uint64_t>(poses.end() - end);
   poses.erase(end, poses.end());
+}
+
+void refuse_repairs(const std::string& name, const TrajectoryReading& reading) {
+  if (!reading.first_repair.empty())
+    throw error_at(name, 0, "",
+                   reading.first_repair +
+                       ", expected increasing times; without --strict such poses are sorted "
+                       "and merged");
+  if (reading.losses.any()) throw error_at(name, 0, "", losses_in_words(reading.losses));
 }
 
 TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic) {
@@ -162,7 +180,9 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
 
 TrajectoryReading read_trajectory_file(const std::string& name, const ReadOptions& options) {
   const RecordingName parts = parse_recording_name(name);
-  return read_trajectory_of(*open_recording(parts.file, options), parts.topic);
+  TrajectoryReading reading = read_trajectory_of(*open_recording(parts.file, options), parts.topic);
+  if (options.strict) refuse_repairs(name, reading);
+  return reading;
 }
 
 Trajectory read_trajectory(const std::string& name, const std::string& times_file) {

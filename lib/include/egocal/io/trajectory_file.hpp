@@ -18,6 +18,8 @@ struct ReadOptions {
   /// A unit may follow in brackets: t[ns], yaw[deg].
   std::string columns;
   double rate = 0;  ///< poses without times: their rate [Hz]; 0: 10 is assumed and reported in the notes
+  /// Nothing is repaired: an Error where poses are out of order, have the time of another one, or are lost.
+  bool strict = false;
 };
 
 /// What a recording has lost: nothing is dropped without being counted here.
@@ -43,6 +45,7 @@ struct TrajectoryReading {
   ReadLosses losses;
   std::uint64_t out_of_order = 0;  ///< poses that came after a later one: sorted in
   std::uint64_t duplicates = 0;    ///< poses with the time of another one: the first is kept
+  std::string first_repair;        ///< the first of either, in words; empty: none
   std::vector<std::string> notes;  ///< assumptions and repairs in words, one sentence each
 };
 
@@ -54,10 +57,11 @@ struct TrajectoryReading {
 /// topic where several streams hold poses it names them all.
 TrajectoryReading read_trajectory_file(const std::string& name, const ReadOptions& options = {});
 
-/// The poses alone. times_file: for KITTI.
+/// The poses alone. times_file: for KITTI. Throws Error as read_trajectory_file() does; what was lost or
+/// assumed while reading is not reported.
 Trajectory read_trajectory(const std::string& name, const std::string& times_file = "");
 
-/// Writes TUM. The file appears whole or not at all.
+/// Writes TUM. The file appears whole or not at all. Throws Error naming it where it cannot be written.
 void write_tum(const std::string& file, const Trajectory& trajectory);
 
 }  // namespace egocal

@@ -81,4 +81,8 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
 /// Sorts by time and keeps the first of equal times; counts both.
 void put_in_order(TrajectoryReading& reading);
 
+/// ReadOptions::strict: throws Error naming the recording and the first pose that was put in order, or what
+/// was lost.
+void refuse_repairs(const std::string& name, const TrajectoryReading& reading);
+
 }  // namespace egocal

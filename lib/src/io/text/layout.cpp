@@ -385,9 +385,11 @@ const TimeUnitName& unit_by_size(std::vector<double> times) {
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   const double typical_step = steps.empty() ? 0 : median(steps);
   // nanoseconds since a phone was switched on may look like milliseconds since 1970, but for their steps
-  const double largest = times.empty() ? 0 : std::max(std::abs(times.front()), std::abs(times.back()));
+  std::vector<double> sizes;
+  for (const double time : times) sizes.push_back(std::abs(time));
+  const double size = sizes.empty() ? 0 : median(sizes);  // a single wrong time does not decide
   for (const TimeUnitName& unit : time_units)
-    if (largest * unit.in_seconds >= earliest && largest * unit.in_seconds <= latest &&
+    if (size * unit.in_seconds >= earliest && size * unit.in_seconds <= latest &&
         typical_step * unit.in_seconds < longest_step)
       return unit;
   // any other time: the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the
