@@ -149,6 +149,24 @@ TEST(HiddenMistakes, ALeverArmThatWasTurnedByTheInverseRotationIsNamed) {
     }
 }
 
+/// A compass or a gyroscope that is not calibrated. On hills the answer was off by tens of degrees.
+TEST(HiddenMistakes, HeadingsThatTurnTooFarAreNamed) {
+  for (const Side side : {Side::a, Side::b})
+    for (const double factor : {1.05, 0.97}) {
+      testing::Streams s = drive(Terrain::rough, 2);
+      Trajectory& wrong = side == Side::a ? s.a : s.b;
+      wrong = testing::with_turning_scale(wrong, factor);
+      const Calibration calibration = calibrate(s.a, s.b);
+      const Finding* finding = find(calibration, side == Side::a ? "turning_scale_a" : "turning_scale_b");
+      ASSERT_NE(finding, nullptr) << factor << ": " << calibration.reason;
+      EXPECT_TRUE(finding->certain);
+      EXPECT_NEAR(finding->value.value_or(0), factor, 0.003);
+      EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+      ASSERT_TRUE(finding->T_a_b);
+      EXPECT_LT(extrinsic_error(s.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.02);
+    }
+}
+
 /// A filter that delays the rotations alone looks like a clock that is off, and at that clock the positions
 /// are early.
 TEST(HiddenMistakes, RotationsThatAreLaterThanThePositionsAreNamed) {

@@ -25,6 +25,29 @@ inline Trajectory inverted(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) { return inverse(pose); });
 }
 
+/// Headings of a compass that turns `factor` times as far as it should, about the axis of its world that most
+/// of the turning is about: the vertical. Positions are right.
+inline Trajectory with_turning_scale(Trajectory trajectory, double factor) {
+  std::vector<Eigen::Vector3d> turns{Eigen::Vector3d::Zero()};
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    turns.push_back(rotation_log(to_pose(trajectory[i].pose).rotation *
+                                 to_pose(trajectory[i - 1].pose).rotation.conjugate()));
+  Eigen::Vector3d axis(0.3, 0.5, 0.8);
+  for (int round = 0; round < 100; ++round) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& turn : turns) sum += axis.dot(turn) * turn;
+    axis = sum.normalized();
+  }
+  double turned = 0;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    turned += axis.dot(turns[i]);
+    const Pose pose = to_pose(trajectory[i].pose);
+    trajectory[i].pose = canonical_sign(to_dual_quaternion(
+        Pose{rotation_exp((factor - 1) * turned * axis) * pose.rotation, pose.translation}));
+  }
+  return trajectory;
+}
+
 /// Positions moved by a lever arm of the body [m] with the rotations from the world to the body.
 inline Trajectory with_turned_lever_arm(const Trajectory& trajectory, const Eigen::Vector3d& arm) {
   return changed(trajectory, [&arm](const Pose& pose) {
@@ -380,10 +403,17 @@ inline std::vector<Mistake> mistakes() {
          s.a = with_inverse_rotations(s.a);
          s.b = with_inverse_rotations(s.b);
        }},
-      {"x, y, z of both from y, z, x", "axes_both", [=](Streams& s) {
+      {"x, y, z of both from y, z, x", "axes_both",
+       [=](Streams& s) {
          s.a = with_position_columns(s.a, cycle);
          s.b = with_position_columns(s.b, cycle);
-       }}};
+       }},
+      {"lever arm of b by the inverse rotation", "axes_b",
+       [](Streams& s) {
+         s.b = with_turned_lever_arm(s.b, {0.3, 1.5, 0.5});
+       }},
+      {"headings of b 1.05 times too far", "turning_scale_b",
+       [](Streams& s) { s.b = with_turning_scale(s.b, 1.05); }}};
 }
 
 }  // namespace egocal::testing

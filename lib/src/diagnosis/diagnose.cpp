@@ -30,6 +30,7 @@
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/swaying_mount.hpp"
 #include "diagnosis/turned_lever_arm.hpp"
+#include "diagnosis/turning_scale.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/foresee.hpp"
@@ -134,11 +135,16 @@ bool has(const std::vector<Finding>& findings, std::string_view code) {
                      [code](const Finding& one) { return one.code == code; });
 }
 
-/// Positions of one stream that are late, or hold a lever arm that was turned wrongly: what explains more.
-std::optional<Finding> wrong_positions(const Evidence& evidence, const DiagnosisOptions& options) {
-  std::optional<Finding> late = late_positions(evidence.instants, evidence.given.explained, options),
-                         lever = turned_lever_arm(evidence.instants, evidence.given.explained, options);
-  return lever && !(late && late->improvement > lever->improvement) ? lever : late;
+/// One stream that has late positions, a lever arm that was turned wrongly, or turns too far: what explains
+/// most.
+std::vector<Finding> wrong_stream(const Evidence& evidence, const DiagnosisOptions& options) {
+  std::vector<Finding> best = turning_scale(evidence.instants, evidence.given.explained, options);
+  for (std::optional<Finding> finding :
+       {turned_lever_arm(evidence.instants, evidence.given.explained, options),
+        late_positions(evidence.instants, evidence.given.explained, options)})
+    if (finding && (best.empty() || best.front().improvement < finding->improvement))
+      best = {*std::move(finding)};
+  return best;
 }
 
 /// What is left where no reading, scale or clock explains the motions. misfit: by what is no noise.
@@ -178,15 +184,15 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unrelated(correlation));
     return;
   }
-  std::optional<Finding> wrong;
-  if (answered.problem.mode != Mode::planar) wrong = wrong_positions(evidence, options);
+  std::vector<Finding> wrong;
+  if (answered.problem.mode != Mode::planar) wrong = wrong_stream(evidence, options);
   const auto explains_more = [&wrong](double improvement) {
-    return !wrong || improvement > wrong->improvement;
+    return wrong.empty() || improvement > wrong.front().improvement;
   };
   MovedMount moved = moved_mount(evidence.instants, answered, options);
   std::vector<Finding>& moves = moved.findings;
-  // where positions are wrong, parts of the drive with other speeds and headings have other extrinsics
-  if (!moves.empty() && wrong && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
+  // where a stream is wrong, parts of the drive with other speeds and headings have other extrinsics
+  if (!moves.empty() && !wrong.empty() && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
     moves.clear();
   moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
@@ -205,9 +211,12 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.push_back(unexplained(*part));
     return;
   }
-  std::optional<Finding> last = std::move(wrong);
-  if (!last && answered.problem.mode != Mode::planar)
-    last = back_and_forth(evidence.instants, answered, options);
+  if (!wrong.empty()) {
+    findings.insert(findings.begin(), wrong.begin(), wrong.end());
+    return;
+  }
+  std::optional<Finding> last;
+  if (answered.problem.mode != Mode::planar) last = back_and_forth(evidence.instants, answered, options);
   if (!last && answered.problem.mode != Mode::planar)
     last = swaying_mount(evidence.instants, answered, options);
   if (!last) last = contradicting_times(moved.unexplained, options);

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/turning_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/common_mistakes.hpp"
+#include "diagnosis/stillest_point.hpp"
+#include "diagnosis/wording.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
+#include "statistics/median.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// One end of a motion: the orientation that the file states, and how far it had turned about the axis [rad].
+struct End {
+  Matrix3d R;
+  double turned = 0;
+};
+
+/// What the motions of one stream are made of.
+struct Turning {
+  Vector3d axis;  ///< of most turning, in the stream's world
+  std::vector<End> begins, ends;
+};
+
+/// Of the motions that motions_of() makes of the same instants, by their times.
+Turning turning_of(const Instants& instants, const Motions& motions, Side side) {
+  std::vector<Matrix3d> orientations;
+  std::vector<Vector3d> turns;
+  Matrix3d squares = Matrix3d::Zero();
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const PosePair poses = instants.at(i);
+    orientations.push_back(rotation_of(side == Side::a ? poses.a : poses.b));
+    if (i == 0) continue;
+    turns.push_back(rotation_log(Rotation(orientations[i] * orientations[i - 1].transpose())));
+    squares += turns.back() * turns.back().transpose();
+  }
+  Turning result;
+  result.axis = symmetric_eigen<3>(squares).vectors.col(2);
+  std::vector<double> turned{0};
+  for (const Vector3d& turn : turns) turned.push_back(turned.back() + result.axis.dot(turn));
+  const auto span = static_cast<std::size_t>(motions.stride);
+  std::size_t i = 0;
+  for (const Motion& motion : motions.all) {
+    while (i + span + 1 < instants.size() &&
+           0.5 * (instants.time(i) + instants.time(i + span)) < motion.time - 1e-9)
+      ++i;
+    result.begins.push_back({orientations[i], turned[i]});
+    result.ends.push_back({orientations[i + span], turned[i + span]});
+  }
+  return result;
+}
+
+/// The motions with a part of the turning of one stream taken off. right_positions: those of the file, else
+/// those that were summed in its own frame.
+Motions without(const Motions& given, const Turning& turning, Side side, double part, bool right_positions) {
+  Motions motions = given;
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    Motion& motion = motions.all[i];
+    const auto corrected = [&](const End& end) {
+      return Matrix3d(rotation_exp(-part * end.turned * turning.axis).toRotationMatrix() * end.R);
+    };
+    const Matrix3d begin = corrected(turning.begins[i]), end = corrected(turning.ends[i]);
+    Vector3d& t = side == Side::a ? motion.t_a : motion.t_b;
+    if (right_positions) t = begin.transpose() * (turning.begins[i].R * t);
+    const Rotation rotation(begin.transpose() * end);
+    DualQuaternion& pose = side == Side::a ? motion.a : motion.b;
+    pose = canonical_sign(to_dual_quaternion(Pose{rotation, t}));
+    (side == Side::a ? motion.angle_a : motion.angle_b) = rotation_angle(pose);
+    if (side == Side::a) motion.R_a = rotation.toRotationMatrix();
+  }
+  return motions;
+}
+
+/// The part by which the stream turns too far, of the motions that turn most.
+double excess(const Motions& motions, Side side) {
+  std::vector<double> angles;
+  for (const Motion& motion : motions.all) angles.push_back(motion.angle_a);
+  const double least = median(std::vector<double>(angles));
+  std::vector<double> ratios;
+  for (const Motion& motion : motions.all)
+    if (motion.angle_a >= least && motion.angle_a > 0 && motion.angle_b > 0)
+      ratios.push_back(side == Side::a ? motion.angle_b / motion.angle_a : motion.angle_a / motion.angle_b);
+  return ratios.empty() ? 0 : 1 - median(std::move(ratios));
+}
+
+double most_turned(const Turning& turning) {
+  double most = 0;
+  for (const End& end : turning.ends) most = std::max(most, std::abs(end.turned));
+  return most;
+}
+
+struct Scaled {
+  Side side = Side::b;
+  double part = 0;
+  Explained explained;
+  Comparison comparison;
+};
+
+/// centre, around: where the part is looked for.
+Scaled fitted(const Explained& given, const Turning& turning, Side side, double centre, double around,
+              bool right_positions, const DiagnosisOptions& options, const TurningScaleOptions& search) {
+  constexpr double golden = 0.6180339887498949;  // mathematics: the golden section
+  const auto left_over = [&](double part) {
+    return quick_fit(without(given.motions, turning, side, part, right_positions), options.fit).typical;
+  };
+  double low = centre - around, high = centre + around;
+  double x = high - golden * (high - low), y = low + golden * (high - low);
+  double at_x = left_over(x), at_y = left_over(y);
+  for (int step = 0; step < search.steps; ++step) {
+    if (at_x < at_y) {
+      high = std::exchange(y, x);
+      at_y = at_x;
+      x = high - golden * (high - low);
+      at_x = left_over(x);
+    } else {
+      low = std::exchange(x, y);
+      at_x = at_y;
+      y = low + golden * (high - low);
+      at_y = left_over(y);
+    }
+  }
+  Scaled result{side, 0.5 * (low + high), {}, {}};
+  result.explained.motions = without(given.motions, turning, side, result.part, right_positions);
+  result.explained.fit = robust_fit(result.explained.motions, options.fit);
+  result.comparison = compare(given, result.explained);
+  return result;
+}
+
+Finding worded(const Scaled& scaled) {
+  const char which = scaled.side == Side::a ? 'a' : 'b';
+  Finding finding;
+  finding.code = std::string("turning_scale_") + which;
+  finding.certain = true;
+  finding.improvement = std::exp(scaled.comparison.gain);
+  finding.T_a_b = to_pose(scaled.explained.fit.T);
+  finding.value = 1 / (1 - scaled.part);
+  finding.message = format(
+      "The rotations of %c turn %.4g times as far as they should about one axis: the squared residuals are "
+      "%.3g "
+      "times smaller without that.",
+      which, *finding.value, finding.improvement);
+  finding.remedy = format("Calibrate the gyroscope or the compass of %c, then record again.", which);
+  return finding;
+}
+
+}  // namespace
+
+std::vector<Finding> turning_scale(const Instants& instants, const Explained& given,
+                                   const DiagnosisOptions& options, const TurningScaleOptions& turning) {
+  if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return {};
+  std::vector<Scaled> best;  // of each stream
+  for (const Side side : {Side::b, Side::a}) {
+    const double centre = excess(given.motions, side);
+    if (!(std::abs(centre) >= turning.least && std::abs(centre) <= turning.most)) continue;
+    const Turning of_side = turning_of(instants, given.motions, side);
+    // right positions show the part more exactly, but only near it: beyond, their headings are turned round
+    const double most = most_turned(of_side);
+    double near = centre, around = turning.around;
+    std::optional<Scaled> better_one;
+    for (const bool right_positions : {false, true}) {
+      Scaled here = fitted(given, of_side, side, near, around, right_positions, options, turning);
+      near = here.part;
+      around = std::min(turning.around, 1 / std::max(1.0, most));
+      if (!(std::abs(here.part) >= turning.least) || !explains(here.explained, options) ||
+          !better(here.comparison, options.gain, options))
+        continue;
+      if (!better_one || here.comparison.gain > better_one->comparison.gain) better_one = std::move(here);
+    }
+    if (better_one) best.push_back(*std::move(better_one));
+  }
+  std::stable_sort(best.begin(), best.end(),
+                   [](const Scaled& x, const Scaled& y) { return x.comparison.gain > y.comparison.gain; });
+  std::vector<Finding> findings;
+  for (const Scaled& scaled : best) {
+    // both streams with the same error nearly agree: which one has it may be open
+    if (scaled.comparison.gain < best.front().comparison.gain - options.alike) break;
+    findings.push_back(worded(scaled));
+  }
+  return findings;
+}
+
+}  // namespace egocal::detail
