@@ -259,6 +259,19 @@ bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, c
   return true;
 }
 
+/// The same of what one stream alone explains more of.
+bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
+                             const DiagnosisOptions& options, std::vector<Finding>& findings) {
+  if (answered.problem.mode == Mode::planar) return false;
+  const auto axes = std::find_if(findings.begin(), findings.end(),
+                                 [](const Finding& one) { return one.certain && one.code == "axes_both"; });
+  if (axes == findings.end()) return false;
+  std::vector<Finding> wrong = wrong_stream(evidence, options);
+  if (wrong.empty() || wrong.front().improvement <= axes->improvement) return false;
+  findings = std::move(wrong);
+  return true;
+}
+
 /// There is nothing further to look for. Twin readings that both fit far better are uncertain each, but one
 /// of them is right.
 bool explains(const Finding& finding, const DiagnosisOptions& options) {
@@ -396,6 +409,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   };
   const bool explained = replace_by_large_move(pairing, evidence, answered, options, result.findings) ||
                          replace_by_moves(pairing, evidence, answered, options, result.findings) ||
+                         replace_by_wrong_stream(evidence, answered, options, result.findings) ||
                          one_is_inverted(result.findings, options) ||
                          std::any_of(result.findings.begin(), result.findings.end(), is_explanation);
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
