@@ -234,7 +234,7 @@ std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const Pair
   const ScaleSolution drive = estimate_scale(evidence.streams.a, evidence.streams.b, pairing, of_b);
   if (!drive.observable || !drive.certified) return std::nullopt;
   const double of_drive = std::log(drive.scale), stddev = drive.stddev / drive.scale;
-  if (!(std::abs(of_drive) >= check.least) || !(std::abs(of_drive) >= check.sigmas * stddev) ||
+  if (!(std::abs(of_drive) >= check.least) || !(std::abs(of_drive) >= check.sigmas_of_drive * stddev) ||
       !(std::abs(of_drive - size) <= check.agree * std::abs(size)))
     return std::nullopt;
   return shown_by_few(evidence.scaled, compare(evidence.given.explained, evidence.scaled.explained),

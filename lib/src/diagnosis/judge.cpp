@@ -212,7 +212,8 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
     if (!diagnosis.goal && answered.seconds > 0) {
       const GoalOptions usable{options.tolerance_rotation / length_of_three,
                                options.tolerance_translation / length_of_three, options.platform};
-      diagnosis.reason += " " + goal_of(answered, usable, options.goal_spread).next;
+      if (const std::string next = goal_of(answered, usable, options.goal_spread).next; !next.empty())
+        diagnosis.reason += " " + next;
     }
   } else if (diagnosis.goal && !diagnosis.goal->reached) {
     diagnosis.verdict = Verdict::incomplete;

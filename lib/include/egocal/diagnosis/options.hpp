@@ -77,8 +77,9 @@ struct ScaleCheckOptions {
   /// one after the other is not independent where it wanders.
   double wandering = 2;
   /// The scale of motions of all lengths agrees with that of the long ones where their logarithms differ by
-  /// at most this part.
-  double agree = 0.3;
+  /// at most this part, and counts where it is this many of its own standard deviations from one. Those of
+  /// machines that are shaken faster than measured have 65 and more; of real devices up to 7 (Tango: 2.5 %).
+  double agree = 0.3, sigmas_of_drive = 20;
   /// An answer is doubtful where the scale moves it by more than this many of its standard deviations in some
   /// direction: less is within what it states.
   double significant = 3;
