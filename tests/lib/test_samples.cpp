@@ -246,6 +246,26 @@ TEST(Samples, AListInTheOtherConventionIsNamed) {
   EXPECT_EQ(calibrate_samples(drawn.samples).calibration.verdict, Verdict::good);
 }
 
+TEST(Samples, FewInTheOtherConventionAreNotTakenForWrongSamples) {
+  for (const double cone : {20.0, 45.0})
+    for (std::uint64_t seed = 1; seed <= 20; ++seed)
+      for (const std::size_t n : {6u, 12u}) {
+        ArmSamples what;
+        what.samples = n;
+        what.cone = cone;
+        what.rotation_noise = 0.3;
+        what.position_noise = 2;
+        Random random(seed);
+        const SimulatedSamples drawn = testing::simulate_arm(what, random);
+        SampleOptions inverted;
+        inverted.read_b.invert = true;
+        const Calibration found = calibrate_samples(drawn.samples, inverted).calibration;
+        EXPECT_EQ(found.verdict, Verdict::contradictory) << n << " " << cone << " " << seed << found.reason;
+        EXPECT_THAT(found.findings, ::testing::Contains(::testing::Field(&Finding::code, "inverted_b")))
+            << n << " " << cone << " " << seed;
+      }
+}
+
 TEST(Samples, LengthsInMillimetresAreNamed) {
   const SimulatedSamples drawn = arm(10, 0.3, 2, 9);
   SampleOptions options;

@@ -47,11 +47,11 @@ class SamplesCommand : public ::testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(error)};
   }
   /// Samples, one of them wrong; the eye's stamps a little late. to_hand: the camera beside the arm.
-  testing::SimulatedSamples write(bool to_hand, std::size_t samples = 12) {
+  testing::SimulatedSamples write(bool to_hand, std::size_t samples = 12, std::size_t wrong = 1) {
     testing::Random random(4);
     testing::ArmSamples what;
     what.samples = samples;
-    what.wrong = 1;
+    what.wrong = wrong;
     testing::SimulatedSamples drawn = testing::simulate_arm(what, random);
     Trajectory hand, eye;
     for (std::size_t i = 0; i < drawn.samples.size(); ++i) {
@@ -97,6 +97,29 @@ TEST_F(SamplesCommand, TheCureOfEyeToHandIsToLeaveItOut) {
   const nlohmann::json json = nlohmann::json::parse(result.out);
   for (const auto& finding : json["findings"]) cures += finding["remedy"].get<std::string>() + "\n";
   EXPECT_NE(cures.find("Leave out --eye-to-hand."), std::string::npos) << result.out;
+}
+
+TEST_F(SamplesCommand, SixInvertedRowsAreNoAnswer) {
+  write(false, 6, 0);
+  const Result result = solve("--samples --json --invert-b");
+  EXPECT_EQ(result.code, 3) << result.error;
+  EXPECT_NE(result.out.find("\"inverted_b\""), std::string::npos) << result.out;
+}
+
+TEST_F(SamplesCommand, OneRowSixTimesShowsNothing) {
+  const testing::SimulatedSamples drawn = write(false, 1, 0);
+  Trajectory hand, eye;
+  for (std::int64_t i = 0; i < 6; ++i) {
+    hand.push_back({3'000'000 * i, drawn.samples[0].a});
+    eye.push_back({3'000'000 * i, drawn.samples[0].b});
+  }
+  write_tum(folder.path("hand.tum"), hand);
+  write_tum(folder.path("eye.tum"), eye);
+  const Result result = solve("--samples --json");
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["verdict"], "incomplete");
+  EXPECT_EQ(json["observable"], nlohmann::json(std::vector<bool>(6, false)));
+  EXPECT_EQ(json["findings"][0]["code"], "too_little_motion");
 }
 
 TEST_F(SamplesCommand, IsOfferedWhereFilesLookLikeSamples) {

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 
+#include "samples/half_turns.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/median.hpp"
 
@@ -47,13 +48,22 @@ class Search {
  public:
   Search(const SampleSet& set, const SampleOptions& options, const AgreeingOptions& tuning)
       : set_(set), options_(options), tuning_(tuning) {
-    const auto part =
-        static_cast<std::size_t>(std::ceil(options.least_agreeing * static_cast<double>(set.size())));
-    kept_ = std::max<std::size_t>(4, part);
+    const auto part_of = [&](std::size_t n) {
+      return std::max<std::size_t>(
+          4, static_cast<std::size_t>(std::ceil(options.least_agreeing * static_cast<double>(n))));
+    };
+    kept_ = part_of(set.size());
+    kept_units_ = part_of(set.units());
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (set.unit(i) == members_.size()) members_.emplace_back();
+      members_[set.unit(i)].push_back(i);
+    }
   }
 
   /// The samples that fit best, beginning with the fit of all.
-  Trimmed from_all() const { return concentrated(first_fit(all_of(set_)), tuning_.steps_from_all); }
+  Trimmed from_all() const {
+    return or_half_turned(concentrated(first_fit(all_of(set_)), tuning_.steps_from_all));
+  }
 
   Trimmed best() const {
     std::vector<Trimmed> found;
@@ -66,10 +76,19 @@ class Search {
       Trimmed here = concentrated(found[i].fit, tuning_.last_steps);
       if (here.size < best.size) best = std::move(here);
     }
-    return best;
+    return or_half_turned(std::move(best));
   }
 
  private:
+  /// The same with X times half a turn, where the rotations leave it open and the positions want it.
+  Trimmed or_half_turned(Trimmed trimmed) const {
+    for (const SampleFit& other : half_turned(set_, trimmed.chosen, trimmed.fit)) {
+      Trimmed here = concentrated(other, tuning_.last_steps);
+      if (here.size < trimmed.size - tuning_.least_gain) trimmed = std::move(here);
+    }
+    return trimmed;
+  }
+
   SampleFit first_fit(const Indices& start) const {
     FitSettings settings = settings_of(options_);
     // two motions say nothing of noise
@@ -79,30 +98,51 @@ class Search {
     return fit_samples(set_, start, settings);
   }
 
-  /// Triples, all of them or drawn.
+  /// Triples of different units, all of them or drawn.
   std::vector<Indices> starts() const {
     std::vector<Indices> starts{all_of(set_)};
     const std::size_t n = set_.size();
     if (n * (n - 1) * (n - 2) / 6 <= static_cast<std::size_t>(options_.starts)) {
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j)
-          for (std::size_t k = j + 1; k < n; ++k) starts.push_back({i, j, k});
+          for (std::size_t k = j + 1; k < n; ++k)
+            if (set_.units_among(Indices{i, j, k}) == 3) starts.push_back({i, j, k});
       return starts;
     }
     std::uint64_t drawn = 1;
-    const auto draw = [&] {
+    const auto draw_of = [&](std::size_t count) {
       drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
-      return static_cast<std::size_t>((drawn >> 33) % n);
+      return static_cast<std::size_t>((drawn >> 33) % count);
+    };
+    const auto draw = [&] {
+      const Indices& unit = members_[draw_of(members_.size())];
+      return unit.size() == 1 ? unit[0] : unit[draw_of(unit.size())];
     };
     while (starts.size() <= static_cast<std::size_t>(options_.starts)) {
       Indices triple{draw(), draw(), draw()};
       std::sort(triple.begin(), triple.end());
-      if (triple[0] != triple[1] && triple[1] != triple[2]) starts.push_back(std::move(triple));
+      if (triple[0] != triple[1] && triple[1] != triple[2] && set_.units_among(triple) == 3)
+        starts.push_back(std::move(triple));
     }
     return starts;
   }
 
-  /// The kept_ samples that fit best, fitted, and again, until the same ones fit best.
+  /// The first kept_ of them, and more until they are of kept_units_ units.
+  Indices first_of(const std::vector<std::pair<double, std::size_t>>& order) const {
+    Indices chosen;
+    std::vector<bool> met(set_.units(), false);
+    std::size_t units = 0;
+    for (const auto& [size, i] : order) {
+      if (chosen.size() >= kept_ && units >= kept_units_) break;
+      chosen.push_back(i);
+      units += met[set_.unit(i)] ? 0 : 1;
+      met[set_.unit(i)] = true;
+    }
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+  }
+
+  /// The samples that fit best, fitted, and again, until the same ones fit best.
   Trimmed concentrated(SampleFit fit, int steps) const {
     Trimmed trimmed;
     for (int step = 0; step < steps; ++step) {
@@ -111,9 +151,7 @@ class Search {
         order.emplace_back(in_variances(set_, i, fit), i);
       }
       std::sort(order.begin(), order.end());
-      Indices chosen;
-      for (std::size_t i = 0; i < kept_; ++i) chosen.push_back(order[i].second);
-      std::sort(chosen.begin(), chosen.end());
+      Indices chosen = first_of(order);
       const bool same = chosen == trimmed.chosen;
       if (same) break;
       trimmed.chosen = std::move(chosen);
@@ -138,7 +176,8 @@ class Search {
   const SampleSet& set_;
   const SampleOptions& options_;
   const AgreeingOptions& tuning_;
-  std::size_t kept_ = 0;
+  std::size_t kept_ = 0, kept_units_ = 0;
+  std::vector<Indices> members_;  ///< of each unit
 };
 
 Indices with(const Indices& chosen, std::size_t one) {
@@ -160,10 +199,13 @@ Added added_by(const SampleSet& set, const Indices& chosen, const SampleFit& fit
   settings.noise = fit.noise;
   settings.most_rounds = tuning.rounds_on_the_way;
   settings.precision = FitPrecision::on_the_way;
-  const SampleFit more = fit_samples(set, with(chosen, one), settings);
-  const double dof = more.dof - fit.dof;
+  const Indices and_one = with(chosen, one);
+  const SampleFit more = fit_samples(set, and_one, settings);
+  constexpr double dof_of_pose = 6;  // mathematics
+  const bool of_a_unit = set.units_among(and_one) == set.units_among(chosen);
+  const double dof = of_a_unit ? dof_of_pose : more.dof - fit.dof;
   if (!(dof > 0) || !(fit.dof > 0)) return {};
-  const double squares = (more.cost - fit.cost) / std::max(fit.cost / fit.dof, tuning.least_variance);
+  const double squares = (more.cost - fit.cost) / std::max(fit.variance, tuning.least_variance);
   return {f_exceeded(squares / dof, dof, fit.dof), squares};
 }
 
@@ -187,7 +229,7 @@ class PlainTest {
   bool agrees(std::size_t one) {
     constexpr double dof = 6;  // mathematics: of a pose
     if (!(fit_.dof > 0) || !(fit_.cost > 0)) return false;
-    const double f = in_variances(set_, one, fit_) / dof / (fit_.cost / fit_.dof);
+    const double f = in_variances(set_, one, fit_) / dof / fit_.variance;
     // the probability falls with f: most samples are on a side that is known already
     if (f <= agreed_) return true;
     if (f >= disagreed_) return false;
@@ -227,7 +269,7 @@ Indices next_of_many(const SampleSet& set, const AgreeingSamples& agreeing, cons
   constexpr double dof = 6;  // mathematics: of a pose
   const SampleFit& fit = agreeing.fit;
   if (!(fit.dof > 0)) return {};
-  const double variance = std::max(fit.cost / fit.dof, tuning.least_variance);
+  const double variance = std::max(fit.variance, tuning.least_variance);
   std::vector<std::pair<double, std::size_t>> order;
   for (const std::size_t i : others(set, agreeing.chosen))
     order.emplace_back(in_variances(set, i, fit) / variance, i);
@@ -328,12 +370,26 @@ bool beyond_doubt(const SampleSet& set, const Trimmed& trimmed, const AgreeingSa
 
 }  // namespace
 
+SampleFit fit_of_all(const SampleSet& set, const SampleOptions& options) {
+  const FitSettings settings = settings_of(options);
+  constexpr std::size_t few = 6;  // beyond, the choices of signs are too many
+  if (set.size() <= few) return fit_of_few(set, settings);
+  const Indices all = all_of(set);
+  SampleFit best = fit_samples(set, all, settings);
+  for (const SampleFit& start : half_turned(set, all, best)) {
+    FitSettings from_there = settings;
+    from_there.start = start;
+    SampleFit other = fit_samples(set, all, from_there);
+    if (clearly_better(other, best)) best = std::move(other);
+  }
+  return best;
+}
+
 AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options,
                               const AgreeingOptions& tuning) {
-  if (!options.robust || set.size() < options.least_to_judge) {
-    const Indices all = all_of(set);
-    return {all, fit_samples(set, all, settings_of(options))};
-  }
+  // one pose in two samples may make one of them wrong: the others are still as many as in least_to_judge
+  const bool few = set.size() < options.least_to_judge || set.units() + 1 < options.least_to_judge;
+  if (!options.robust || few) return {all_of(set), fit_of_all(set, options)};
   const Search search(set, options, tuning);
   if (set.size() >= tuning.least_for_congruence) {
     const Trimmed trimmed = search.from_all();

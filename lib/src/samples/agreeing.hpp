@@ -23,6 +23,8 @@ struct AgreeingOptions {
   /// settle.
   int first_steps = 2, steps_from_all = 3, last_steps = 10;
   std::size_t most_followed = 6;  ///< of the starts, the best trimmed fits
+  /// The same minimum again has the same logarithm of squares to less than this.
+  double least_gain = 0.2;
   /// Rounds of a fit on the way: only the last fit has to be exact.
   int rounds_on_the_way = 3;
   /// A sample that noise explains this often is accepted without a second test.
@@ -47,9 +49,12 @@ struct AgreeingOptions {
   double nothing = 1e-24;
 };
 
+/// The fit of all samples, whether they agree or not.
+SampleFit fit_of_all(const SampleSet& set, const SampleOptions& options);
+
 /// Least trimmed squares over triples of samples, then samples are added again, best first, as long as
-/// noise explains them (F test of what one more adds to the cost). All samples where they are too few to
-/// judge.
+/// noise explains them (F test of what one more adds to the cost). All samples where their units
+/// (shared_poses.hpp) are too few to judge.
 AgreeingSamples find_agreeing(const SampleSet& set, const SampleOptions& options,
                               const AgreeingOptions& tuning = {});
 

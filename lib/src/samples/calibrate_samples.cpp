@@ -14,6 +14,7 @@
 #include "diagnosis/robust_fit.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "samples/agreeing.hpp"
 #include "samples/leave_one_out.hpp"
 #include "samples/readings.hpp"
@@ -33,17 +34,29 @@ std::array<double, 16> numbers_of(const PoseSample& sample) {
   return numbers;
 }
 
-/// An order that depends on the samples alone: whatever order they come in, the same sums are made.
-std::vector<std::size_t> order_of(const std::vector<PoseSample>& samples) {
-  std::vector<std::size_t> order(samples.size());
+/// Samples in an order that depends on them alone, so that the same sums are made whatever order they come
+/// in; those that repeat another one exactly are omitted.
+struct DistinctSamples {
+  std::vector<PoseSample> samples;
+  std::vector<std::size_t> places;  ///< of each given sample among these
+};
+
+DistinctSamples distinct(const std::vector<PoseSample>& given) {
+  std::vector<std::size_t> order(given.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<std::array<double, 16>> numbers;
-  numbers.reserve(samples.size());
-  for (const PoseSample& sample : samples) numbers.push_back(numbers_of(sample));
-  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-    return numbers[i] == numbers[j] ? i < j : numbers[i] < numbers[j];
-  });
-  return order;
+  numbers.reserve(given.size());
+  for (const PoseSample& sample : given) numbers.push_back(numbers_of(sample));
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t j) { return numbers[i] < numbers[j]; });
+  DistinctSamples result;
+  result.samples.reserve(given.size());
+  result.places.resize(given.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k == 0 || numbers[order[k]] != numbers[order[k - 1]]) result.samples.push_back(given[order[k]]);
+    result.places[order[k]] = result.samples.size() - 1;
+  }
+  return result;
 }
 
 void require_usable(std::span<const PoseSample> samples) {
@@ -80,17 +93,18 @@ Problem problem_of(const SampleFit& fit, const SampleOptions& options) {
 
 /// Residuals of all samples, and the spread of the target over those that count.
 void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
-                    const std::vector<std::size_t>& order, SampleCalibration& result) {
-  result.residuals.resize(order.size());
+                    const std::vector<std::size_t>& places, SampleCalibration& result) {
+  std::vector<SampleResidual> residuals;
   std::vector<double> distances;
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (std::size_t i = 0; i < set.size(); ++i) {
     const SquaredResidual squares = squared_residual(set, i, agreeing.fit);
     const bool counts = std::binary_search(agreeing.chosen.begin(), agreeing.chosen.end(), i);
-    result.residuals[order[i]] = {std::sqrt(squares.rotation), std::sqrt(squares.translation), !counts};
+    residuals.push_back({std::sqrt(squares.rotation), std::sqrt(squares.translation), !counts});
     if (!counts) continue;
     distances.push_back(std::sqrt(squares.translation));
     result.spread_rms += squares.translation / static_cast<double>(agreeing.chosen.size());
   }
+  for (const std::size_t place : places) result.residuals.push_back(residuals[place]);
   result.spread_rms = std::sqrt(result.spread_rms);
   result.spread_largest = *std::max_element(distances.begin(), distances.end());
   result.spread_median = detail::median(std::move(distances));
@@ -113,6 +127,25 @@ Finding wrong_samples(const std::vector<SampleResidual>& residuals) {
   return finding;
 }
 
+/// Two motions: fewer show no hand-eye pose.
+constexpr std::size_t least_units = 3;
+
+Finding too_few_poses(std::size_t units) {
+  Finding finding;
+  finding.code = "too_little_motion";
+  finding.certain = true;
+  finding.message =
+      format("Only %s, where samples that share a pose of a, or one of b, count as one: an answer needs %zu.",
+             counted(units, "different pose").c_str(), least_units);
+  finding.remedy =
+      "Move the arm: 10 poses and more, with turns of 20 degrees and more in different directions.";
+  return finding;
+}
+
+bool another_reading(const Finding& finding) {
+  return finding.code.starts_with("inverted_") || finding.code.starts_with("quaternion_order_");
+}
+
 void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
                    const AgreeingSamples& agreeing, const SampleOptions& options, Calibration& calibration) {
   DiagnosisOptions tolerances = options.diagnosis;
@@ -131,8 +164,19 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
   diagnosis.fit.tenths.clear();  // samples have no order in time
   Misfit misfit;
   misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
-  if (options.diagnosis.enabled) diagnosis.findings = find_other_readings(samples, agreeing, options);
+  if (set.units() < least_units) {
+    diagnosis.findings = {too_few_poses(set.units())};
+    misfit = {};  // noise contradicts every answer
+  } else if (options.diagnosis.enabled) {
+    diagnosis.findings = find_other_readings(samples, agreeing, options);
+  }
   judge(diagnosis, answered, misfit, tolerances);
+  // The poses as given are refuted, also where they show no direction in which the answers could differ.
+  for (const Finding& finding : diagnosis.findings)
+    if (another_reading(finding) && diagnosis.verdict != Verdict::contradictory) {
+      diagnosis.verdict = Verdict::contradictory;
+      diagnosis.reason = finding.message;
+    }
   calibration.verdict = diagnosis.verdict;
   calibration.reason = std::move(diagnosis.reason);
   calibration.fit = std::move(diagnosis.fit);
@@ -144,13 +188,10 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
 
 SampleCalibration calibrate_samples(std::span<const PoseSample> given, const SampleOptions& options) {
   require_usable(given);
-  const std::vector<PoseSample> as_read = detail::reread(given, options.read_a, options.read_b);
-  const std::vector<std::size_t> order = order_of(as_read);
-  std::vector<PoseSample> samples;
-  samples.reserve(order.size());
-  for (const std::size_t i : order) samples.push_back(as_read[i]);
+  const auto [samples, places] = distinct(detail::reread(given, options.read_a, options.read_b));
   const SampleSet set(samples);
   AgreeingSamples agreeing = find_agreeing(set, options);
+  if (set.units() < least_units) agreeing.fit.statistics = Statistics();  // what is there is noise
 
   SampleCalibration result;
   Calibration& calibration = result.calibration;
@@ -165,9 +206,7 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   calibration.choice.stride = 1;
   calibration.choice.balance = calibration.problem.balance;
   calibration.choice.reason = "inverse variances of the residuals";
-  calibration.counts.synchronised = samples.size();
-  calibration.counts.matched = agreeing.chosen.size();
-  calibration.counts.outliers = samples.size() - agreeing.chosen.size();
+  calibration.counts.synchronised = given.size();
 
   // where the samples do not show a direction the answer is the one closest to the prior: so is the target
   agreeing.fit.Y = target_at(set, agreeing.chosen, agreeing.fit, answer.T_a_b);
@@ -181,7 +220,11 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   result.T_world_a_world_b = {Y.rotation, Y.translation + set.middle()};
   result.noise_rotation = std::sqrt(agreeing.fit.noise.rotation);
   result.noise_translation = std::sqrt(agreeing.fit.noise.translation);
-  measure_spread(set, agreeing, order, result);
+  result.repeated = given.size() - samples.size();
+  result.different = set.units();
+  measure_spread(set, agreeing, places, result);
+  for (const SampleResidual& residual : result.residuals)
+    ++(residual.wrong ? calibration.counts.outliers : calibration.counts.matched);
   judge_samples(samples, set, agreeing, options, calibration);
   const bool misread = calibration.verdict == Verdict::contradictory && !calibration.findings.empty();
   if (calibration.counts.outliers > 0 && !misread)

@@ -3,7 +3,9 @@
 #include "samples/leave_one_out.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "statistics/distributions.hpp"
@@ -13,16 +15,33 @@ namespace egocal::detail {
 
 namespace {
 
-/// Differences of the answers without each sample from the one with all, in the frame of a.
+using Unit = std::vector<std::size_t>;
+
+/// The chosen samples by their units, in the order of the first of each.
+std::vector<Unit> units_of_chosen(const SampleSet& set, const std::vector<std::size_t>& chosen) {
+  std::vector<Unit> units;
+  std::vector<std::size_t> place(set.size(), set.size());
+  for (const std::size_t i : chosen) {
+    std::size_t& at = place[set.unit(i)];
+    if (at == set.size()) {
+      at = units.size();
+      units.emplace_back();
+    }
+    units[at].push_back(i);
+  }
+  return units;
+}
+
+/// Differences of the answers without each unit from the one with all, in the frame of a.
 std::vector<Vector6d> solved(const SampleSet& set, const std::vector<std::size_t>& chosen,
-                             const SampleFit& fit) {
+                             const std::vector<Unit>& units, const SampleFit& fit) {
   FitSettings settings;
   settings.start = fit;
   settings.noise = fit.noise;
   std::vector<Vector6d> differences;
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    std::vector<std::size_t> rest = chosen;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
+  for (const Unit& unit : units) {
+    std::vector<std::size_t> rest;
+    std::set_difference(chosen.begin(), chosen.end(), unit.begin(), unit.end(), std::back_inserter(rest));
     differences.push_back(frame_a_difference(fit.X, fit_samples(set, rest, settings).X));
   }
   return differences;
@@ -34,9 +53,9 @@ double sign_of(const SampleSet& set, std::size_t i, const SampleFit& fit) {
 }
 
 std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_t>& chosen,
-                              const SampleFit& fit) {
+                              const std::vector<Unit>& units, const SampleFit& fit) {
   // The cost is the sum of |(M - mean of the M) q|^2 over the samples, M = [dual real; real 0] in variances;
-  // without one of n the part of this one goes, n / (n - 1) times.
+  // without m of n the part of these goes, that of their mean n / (n - m) times.
   const auto n = static_cast<double>(chosen.size());
   const Pose Y = to_pose(fit.Y);
   QuaternionVector t;
@@ -48,35 +67,65 @@ std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_
   const double rotation = 1 / std::sqrt(fit.noise.rotation), position = 1 / std::sqrt(fit.noise.translation);
   const Matrix86d basis = frame_a_basis(fit.X);
   const Eigen::Matrix<double, 4, 6> basis_real = basis.topRows<4>(), basis_dual = basis.bottomRows<4>();
+  struct Linear {
+    Matrix86d J;
+    Vector8d r;
+  };
+  const auto linear = [&](std::size_t i) {
+    const SeenTarget& seen = set.seen(i);
+    const double sign = sign_of(set, i, fit);
+    const Eigen::Matrix4d real = sign * seen.real - mean_real,
+                          dual = sign * (seen.dual - half * seen.real) - mean_dual;
+    Linear one;
+    one.J.topRows<4>() = position * (dual.lazyProduct(basis_real) + real.lazyProduct(basis_dual));
+    one.J.bottomRows<4>() = rotation * real.lazyProduct(basis_real);
+    one.r << position * (dual * fit.X.real + real * fit.X.dual), rotation * (real * fit.X.real);
+    return one;
+  };
 
   struct Part {
     Matrix6d curvature;
     Vector6d gradient;
   };
-  std::vector<Part> parts;
-  parts.reserve(chosen.size());
+  std::vector<Part> parts;  // what goes with each unit
+  parts.reserve(units.size());
   Matrix6d H = Matrix6d::Zero();
-  for (const std::size_t i : chosen) {
-    const SeenTarget& seen = set.seen(i);
-    const double sign = sign_of(set, i, fit);
-    const Eigen::Matrix4d real = sign * seen.real - mean_real,
-                          dual = sign * (seen.dual - half * seen.real) - mean_dual;
-    Matrix86d J;
-    J.topRows<4>() = position * (dual.lazyProduct(basis_real) + real.lazyProduct(basis_dual));
-    J.bottomRows<4>() = rotation * real.lazyProduct(basis_real);
-    Vector8d r;
-    r << position * (dual * fit.X.real + real * fit.X.dual), rotation * (real * fit.X.real);
-    parts.push_back({J.transpose().lazyProduct(J), J.transpose() * r});
-    H += parts.back().curvature;
+  for (const Unit& unit : units) {
+    if (unit.size() == 1) {
+      const Linear one = linear(unit[0]);
+      const double share = n / (n - 1);
+      const Matrix6d curvature = one.J.transpose().lazyProduct(one.J);
+      const Vector6d gradient = one.J.transpose() * one.r;
+      parts.push_back({share * curvature, share * gradient});
+      H += curvature;
+      continue;
+    }
+    const auto m = static_cast<double>(unit.size());
+    std::vector<Linear> members;
+    Linear mean{Matrix86d::Zero(), Vector8d::Zero()};
+    for (const std::size_t i : unit) {
+      members.push_back(linear(i));
+      mean.J += members.back().J / m;
+      mean.r += members.back().r / m;
+    }
+    Part about_mean{Matrix6d::Zero(), Vector6d::Zero()};
+    for (const Linear& one : members) {
+      about_mean.curvature += (one.J - mean.J).transpose().lazyProduct(one.J - mean.J);
+      about_mean.gradient += (one.J - mean.J).transpose() * (one.r - mean.r);
+    }
+    const Part of_mean{mean.J.transpose().lazyProduct(mean.J), mean.J.transpose() * mean.r};
+    const double share = m * n / (n - m);
+    parts.push_back(
+        {share * of_mean.curvature + about_mean.curvature, share * of_mean.gradient + about_mean.gradient});
+    H += m * of_mean.curvature + about_mean.curvature;
   }
   constexpr double ridge = 1e-12;  // rounding: a direction that nothing shows is not reported
   H.diagonal() *= 1 + ridge;
-  const double share = n / (n - 1);
   std::vector<Vector6d> differences;
   differences.reserve(parts.size());
   for (const Part& part : parts) {
-    const Matrix6d rest = H - share * part.curvature;
-    differences.push_back(rest.llt().solve(share * part.gradient));
+    const Matrix6d rest = H - part.curvature;
+    differences.push_back(rest.llt().solve(part.gradient));
   }
   return differences;
 }
@@ -88,10 +137,11 @@ std::array<double, 6> spread_without_each(const SampleSet& set, const std::vecto
   std::array<double, 6> spread;
   spread.fill(std::numeric_limits<double>::infinity());
   constexpr double samples_worth = 2;  // mathematics: X and Y have twelve numbers, a sample six
-  const auto n = static_cast<double>(chosen.size());
-  if (chosen.size() < 4) return spread;
+  const std::vector<Unit> units = units_of_chosen(set, chosen);
+  const auto n = static_cast<double>(units.size());
+  if (units.size() < 4) return spread;
   const std::vector<Vector6d> differences =
-      chosen.size() <= most_solved ? solved(set, chosen, fit) : stepped(set, chosen, fit);
+      units.size() <= most_solved ? solved(set, chosen, units, fit) : stepped(set, chosen, units, fit);
   Vector6d mean = Vector6d::Zero();
   for (const Vector6d& difference : differences) mean += difference / n;
   // The jack-knife's (n - 1) / n counts one parameter a number; a difference is the residual over one minus

@@ -10,8 +10,9 @@
 namespace egocal::detail {
 
 /// Standard deviations of X in sensor a's frame (x y z roll pitch yaw, [m, rad]) from the answers without
-/// each sample in turn. With Student's factor: 1.96 of them cover 95 %. Infinite where there are fewer than 4
-/// samples. Up to most_solved samples each answer is solved for, beyond it is one Newton step.
+/// each sample in turn; samples of one unit (shared_poses.hpp) go together. With Student's factor: 1.96 of
+/// them cover 95 %. Infinite where there are fewer than 4 units. Up to most_solved units each answer is
+/// solved for, beyond it is one Newton step.
 std::array<double, 6> spread_without_each(const SampleSet& set, const std::vector<std::size_t>& chosen,
                                           const SampleFit& fit, std::size_t most_solved);
 

@@ -61,19 +61,13 @@ double rotation_variance(std::span<const PoseSample> samples, int rounds_of_sign
   return 4 * (n - largest) / (3 * (n - 1));
 }
 
-/// Samples spread over those that count.
+/// Samples spread over the chosen ones.
 std::vector<PoseSample> some(std::span<const PoseSample> samples, const std::vector<std::size_t>& chosen,
                              const SampleReadingOptions& search) {
   const std::size_t step = (chosen.size() + search.most_at_first - 1) / search.most_at_first;
   std::vector<PoseSample> result;
   for (std::size_t k = 0; k < chosen.size(); k += step) result.push_back(samples[chosen[k]]);
   return result;
-}
-
-/// Squared residuals of the given reading over those of another, rotation and position alike.
-double improvement(const SampleFit& given, const SampleFit& other) {
-  return std::sqrt(given.noise.rotation / other.noise.rotation) *
-         std::sqrt(given.noise.translation / other.noise.translation);
 }
 
 /// Cannot this reading of some samples be better than the given one by least_improvement? Rotations do not
@@ -89,6 +83,43 @@ bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given,
   settings.most_rounds = 4;
   return improvement(given, fit_samples(SampleSet(few), all, settings)) < search.least_at_first;
 }
+
+/// The samples as given, which other readings have to beat. Where some of them were rejected, with all of
+/// them too: the few that are left of a list that is misread may agree by chance.
+class AsGiven {
+ public:
+  AsGiven(std::span<const PoseSample> samples, const AgreeingSamples& given, const SampleOptions& options,
+          const SampleReadingOptions& search)
+      : given_(given), search_(search), few_(some(samples, given.chosen, search)), size_(samples.size()) {
+    if (given.chosen.size() == samples.size()) return;
+    all_ = fit_of_all(SampleSet(samples), options);
+    std::vector<std::size_t> every(samples.size());
+    std::iota(every.begin(), every.end(), std::size_t{0});
+    few_of_all_ = some(samples, every, search);
+  }
+
+  /// Is it sure that another reading is no better?
+  bool withstands(const Alternative& other) const {
+    if (!hopeless(reread(few_, other.a, other.b), given_.fit, search_)) return false;
+    return !all_ || hopeless(reread(few_of_all_, other.a, other.b), *all_, search_);
+  }
+
+  double improvement_by(const AgreeingSamples& other) const {
+    if (other.chosen.size() < given_.chosen.size()) return 0;
+    const double of_chosen = improvement(given_.fit, other.fit);
+    // all samples without exception, about as well as some of them as given
+    const bool explains_all =
+        all_ && other.chosen.size() == size_ && of_chosen * search_.least_improvement > 1;
+    return explains_all ? std::max(of_chosen, improvement(*all_, other.fit)) : of_chosen;
+  }
+
+ private:
+  const AgreeingSamples& given_;
+  const SampleReadingOptions& search_;
+  std::vector<PoseSample> few_, few_of_all_;
+  std::size_t size_;
+  std::optional<SampleFit> all_;  ///< where not all of them agree
+};
 
 PoseReading full(const Reading& reading) {
   PoseReading result;
@@ -201,16 +232,15 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
   std::vector<Finding> findings;
   if (given.chosen.size() < search.least_samples) return findings;
   std::vector<std::pair<Finding, Alternative>> fitting;
-  const std::vector<PoseSample> few = some(samples, given.chosen, search);
+  const AsGiven as_given(samples, given, options, search);
   for (const Alternative& other : alternatives()) {
-    if (hopeless(reread(few, other.a, other.b), given.fit, search)) continue;
+    if (as_given.withstands(other)) continue;
     const std::vector<PoseSample> read = reread(samples, other.a, other.b);
     const AgreeingSamples fit = find_agreeing(SampleSet(read), options);
-    if (fit.chosen.size() < given.chosen.size()) continue;
     Finding finding;
     finding.code = other.code;
     finding.certain = true;
-    finding.improvement = improvement(given.fit, fit.fit);
+    finding.improvement = as_given.improvement_by(fit);
     if (finding.improvement < search.least_improvement) continue;
     finding.T_a_b = to_pose(fit.fit.X);
     fitting.emplace_back(std::move(finding), other);

@@ -7,6 +7,7 @@
 
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "samples/shared_poses.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {
@@ -100,10 +101,10 @@ SampleNoise noise_from(const SumOfSquares& squares, double length, const FitSett
 }
 
 /// From the residuals themselves: of exact samples the quadratic forms hold nothing but rounding of either
-/// sign.
+/// sign. Each times its weight.
 SumOfSquares squares_about_mean(const SampleSet& set, std::span<const std::size_t> chosen,
                                 const std::vector<double>& signs, const Eigen::Vector3d& origin,
-                                const DualQuaternion& X) {
+                                const DualQuaternion& X, const std::vector<double>& weights) {
   std::vector<DualQuaternion> seen;
   QuaternionVector mean_real = QuaternionVector::Zero(), mean_dual = QuaternionVector::Zero();
   for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -113,10 +114,10 @@ SumOfSquares squares_about_mean(const SampleSet& set, std::span<const std::size_
     mean_dual += seen.back().dual / static_cast<double>(chosen.size());
   }
   SumOfSquares squares;
-  for (const DualQuaternion& y : seen) {
+  for (std::size_t k = 0; k < seen.size(); ++k) {
     // half an angle, and half a distance
-    squares.rotation += 4 * (y.real - mean_real).squaredNorm();
-    squares.translation += 4 * (y.dual - mean_dual).squaredNorm();
+    squares.rotation += weights[k] * 4 * (seen[k].real - mean_real).squaredNorm();
+    squares.translation += weights[k] * 4 * (seen[k].dual - mean_dual).squaredNorm();
   }
   return squares;
 }
@@ -159,6 +160,18 @@ SumOfSquares squares_of_forms(const Statistics& statistics, const DualQuaternion
   return squares;
 }
 
+double cost_of(const SumOfSquares& squares, const SampleNoise& noise) {
+  return squares.rotation / noise.rotation + squares.translation / noise.translation;
+}
+
+/// Samples of one unit may have one error: each unit counts as much as any other.
+std::vector<double> unit_weights(const SampleSet& set, std::span<const std::size_t> chosen) {
+  std::vector<double> members(set.units(), 0.0), weights;
+  for (const std::size_t i : chosen) members[set.unit(i)] += 1;
+  for (const std::size_t i : chosen) weights.push_back(1 / members[set.unit(i)]);
+  return weights;
+}
+
 /// One fit on its way: rounds of weights, signs and the target's position.
 class Rounds {
  public:
@@ -166,7 +179,12 @@ class Rounds {
       : set_(set), chosen_(chosen), settings_(settings) {
     const std::optional<SampleFit>& start = settings.start;
     fit_.noise = settings.noise.value_or(start ? start->noise : SampleNoise{1, set.length() * set.length()});
-    signs_ = start ? signs_towards(set, chosen, *start) : first_signs(set, chosen);
+    if (!settings.signs.empty())
+      signs_ = settings.signs;
+    else
+      signs_ = start ? signs_towards(set, chosen, *start) : first_signs(set, chosen);
+    units_ = set.units_among(chosen);
+    if (units_ < chosen.size()) weights_ = unit_weights(set, chosen);
     origin_ = start ? position(start->Y) : Eigen::Vector3d::Zero();
     sum();
   }
@@ -194,17 +212,22 @@ class Rounds {
     fit_.X = solve_dual(cost_matrix(fit_.statistics, balance_of(fit_.noise))).q;
     fit_.Y = exact ? mean_target(set_, chosen_, signs_, fit_.X) : sums_.mean_target(fit_.X);
     SumOfSquares squares = squares_of_forms(fit_.statistics, fit_.X);
-    const double n = static_cast<double>(chosen_.size());
+    const double n = static_cast<double>(chosen_.size()), units = static_cast<double>(units_);
     const double least = n * settings_.rounding_of_sums * settings_.rounding_of_sums;
     if (exact || squares.rotation < least || squares.translation < least * length * length)
-      squares = squares_about_mean(set_, chosen_, signs_, origin_, fit_.X);
+      squares =
+          squares_about_mean(set_, chosen_, signs_, origin_, fit_.X, std::vector<double>(chosen_.size(), 1));
+    SumOfSquares of_units = squares;
+    if (units_ < chosen_.size())
+      of_units = squares_about_mean(set_, chosen_, signs_, origin_, fit_.X, weights_);
     if (exact || !parts_) parts_ = determined(fit_.statistics, fit_.noise, length, fit_.X, settings_.shown);
-    squares.dof_rotation = 3 * (n - 1) - parts_->by_rotations;
-    squares.dof_translation = 3 * (n - 1) - parts_->by_positions;
+    of_units.dof_rotation = 3 * (units - 1) - parts_->by_rotations;
+    of_units.dof_translation = 3 * (units - 1) - parts_->by_positions;
     const SampleNoise before = fit_.noise;
-    if (!settings_.noise) fit_.noise = noise_from(squares, length, settings_);
-    fit_.cost = squares.rotation / fit_.noise.rotation + squares.translation / fit_.noise.translation;
-    fit_.dof = squares.dof_rotation + squares.dof_translation;
+    if (!settings_.noise) fit_.noise = noise_from(of_units, length, settings_);
+    fit_.cost = cost_of(squares, fit_.noise);
+    fit_.dof = of_units.dof_rotation + of_units.dof_translation;
+    fit_.variance = cost_of(of_units, fit_.noise) / fit_.dof;
     const double moved = (position(fit_.Y) - origin_).norm() / length;
     const double reweighted =
         std::abs(std::log(balance_of(fit_.noise).translation / balance_of(before).translation));
@@ -222,6 +245,8 @@ class Rounds {
   std::span<const std::size_t> chosen_;
   const FitSettings& settings_;
   SampleFit fit_;
+  std::size_t units_ = 0;        ///< among the chosen samples
+  std::vector<double> weights_;  ///< of the squares, per chosen sample, where some share a unit
   SampleSums sums_;
   std::optional<Determined> parts_;  ///< changes little from round to round
   std::vector<double> signs_;
@@ -245,6 +270,15 @@ SampleSet::SampleSet(std::span<const PoseSample> samples) : samples_(samples.beg
     squares += (position(c).squaredNorm() + position(a).squaredNorm()) / (2 * n);
   }
   if (squares > 0) length_ = std::sqrt(squares);
+  units_ = units_of(samples_, length_);
+  for (const std::size_t unit : units_) number_of_units_ = std::max(number_of_units_, unit + 1);
+}
+
+std::size_t SampleSet::units_among(std::span<const std::size_t> chosen) const {
+  if (number_of_units_ == size()) return chosen.size();
+  std::vector<bool> met(number_of_units_, false);
+  for (const std::size_t i : chosen) met[units_[i]] = true;
+  return static_cast<std::size_t>(std::count(met.begin(), met.end(), true));
 }
 
 double SampleSet::sign(std::size_t i, std::size_t j) const {
@@ -256,6 +290,16 @@ SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const Samp
   const DualQuaternion y = set.seen(i).with(fit.X);
   const double angle = rotation_angle(quaternion_product(quaternion_conjugate(fit.Y.real), y.real));
   return {angle * angle, (position(y) - position(fit.Y)).squaredNorm()};
+}
+
+double improvement(const SampleFit& given, const SampleFit& other) {
+  return std::sqrt(given.noise.rotation / other.noise.rotation) *
+         std::sqrt(given.noise.translation / other.noise.translation);
+}
+
+bool clearly_better(const SampleFit& one, const SampleFit& other) {
+  constexpr double least = 1.1;  // far above rounding; other minima are worse by much more
+  return improvement(other, one) > least;
 }
 
 DualQuaternion target_at(const SampleSet& set, std::span<const std::size_t> chosen, const SampleFit& fit,

@@ -33,6 +33,11 @@ class SampleSet {
   const SeenTarget& seen(std::size_t i) const { return seen_[i]; }
   const SampleSums& sums(std::size_t i) const { return sums_[i]; }
   const PoseSample& sample(std::size_t i) const { return samples_[i]; }
+  /// Number of the unit that the sample belongs to; most samples are one of their own (shared_poses.hpp).
+  std::size_t unit(std::size_t i) const { return units_[i]; }
+  std::size_t units() const { return number_of_units_; }
+  /// Different units among these samples.
+  std::size_t units_among(std::span<const std::size_t> chosen) const;
   /// +1 or -1: whether the quaternions of the motion between two samples have scalars of one sign.
   double sign(std::size_t i, std::size_t j) const;
 
@@ -40,6 +45,8 @@ class SampleSet {
   std::vector<PoseSample> samples_;
   std::vector<SeenTarget> seen_;
   std::vector<SampleSums> sums_;
+  std::vector<std::size_t> units_;
+  std::size_t number_of_units_ = 0;
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   double length_ = 1;
 };
@@ -50,7 +57,8 @@ struct SampleFit {
   SampleNoise noise;
   Statistics statistics;  ///< of the weighted cost, rotation and position uncoupled; count: motions
   double cost = 0;        ///< squared residuals over the variances
-  double dof = 0;         ///< of the cost
+  double dof = 0;         ///< of the cost, where all samples of one unit count once
+  double variance = 0;    ///< cost of one degree of freedom: 1, except for a noise that was given
 };
 
 /// Residuals of one sample against a fit: squared angle [rad^2] and squared distance [m^2].
@@ -58,6 +66,11 @@ struct SquaredResidual {
   double rotation = 0, translation = 0;
 };
 SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const SampleFit& fit);
+
+/// Squared residuals of one fit over those of another, rotation and position alike.
+double improvement(const SampleFit& given, const SampleFit& other);
+/// Not the same minimum again but for rounding.
+bool clearly_better(const SampleFit& one, const SampleFit& other);
 
 /// The mean of the targets that the chosen samples see with this X; `fit` gives the signs.
 DualQuaternion target_at(const SampleSet& set, std::span<const std::size_t> chosen, const SampleFit& fit,
@@ -74,6 +87,7 @@ enum class FitPrecision { on_the_way, exact };
 struct FitSettings {
   std::optional<SampleFit> start;  ///< signs of the quaternions and first guess of the target; without it the
                                    ///< signs come from the first chosen sample
+  std::vector<double> signs;       ///< of the quaternions, per chosen sample, where known; else empty
   std::optional<SampleNoise> noise;  ///< kept where given, else estimated
   double prior_log_ratio = 2;        ///< of SampleOptions
   /// Rounds of weights and of the target's position; both settle in three to six.
