@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "egocal/bus/check.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/problem.hpp"
 
@@ -37,15 +36,10 @@ Certificate verified(const Problem& problem, const Matrix8d& Q, const DualQuater
 
 }  // namespace
 
-Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b) {
-  return verified(problem, certified_cost(problem), T_a_b);
-}
-
 std::string AnswerCheck::take(const problem_t& message) {
   Checked<Problem> problem = to_problem(message);
   if (!problem) return problem.reason;
-  Pair& pair = pairs_[{message.sensor_a, message.sensor_b}];
-  pair.touched = ++touches_;
+  Pair& pair = pairs_.touch(message.sensor_a, message.sensor_b);
   Known known{message.session, message.seq, message.utime, certified_cost(*problem.value),
               std::move(*problem.value)};
   known.problem.blocks.clear();
@@ -60,23 +54,17 @@ std::string AnswerCheck::take(const problem_t& message) {
     pair.problems[pair.next] = std::move(known);
     pair.next = (pair.next + 1) % problems_per_pair;
   }
-  if (pairs_.size() > max_pairs)
-    pairs_.erase(std::min_element(pairs_.begin(), pairs_.end(), [](const auto& x, const auto& y) {
-      return x.second.touched < y.second.touched;
-    }));
-  EGOCAL_CHECK(pairs_.size() <= max_pairs, "the number of pairs with problems is bounded");
   return {};
 }
 
 template <class Message>
 const AnswerCheck::Known* AnswerCheck::find(const Message& message) const {
-  const auto pair = pairs_.find({message.sensor_a, message.sensor_b});
-  if (pair == pairs_.end()) return nullptr;
-  const auto known =
-      std::find_if(pair->second.problems.begin(), pair->second.problems.end(), [&](const Known& k) {
-        return k.session == message.session && k.seq == message.seq && k.utime == message.utime;
-      });
-  return known == pair->second.problems.end() ? nullptr : &*known;
+  const Pair* const pair = pairs_.find(message.sensor_a, message.sensor_b);
+  if (!pair) return nullptr;
+  const auto known = std::find_if(pair->problems.begin(), pair->problems.end(), [&](const Known& k) {
+    return k.session == message.session && k.seq == message.seq && k.utime == message.utime;
+  });
+  return known == pair->problems.end() ? nullptr : &*known;
 }
 
 CheckedAnswer AnswerCheck::check(const calibration_t& message) const {

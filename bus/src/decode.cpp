@@ -176,4 +176,18 @@ bool lengths_fit(const scale_t*, Bytes bytes) {
   return walk.done();
 }
 
+std::string type_name(Bytes bytes) {
+  if (is_a<odometry_t>(bytes)) return "egocal.odometry_t";
+  if (is_a<bot_core::pose_t>(bytes)) return "bot_core.pose_t";
+  if (is_a<motion_pair_t>(bytes)) return "egocal.motion_pair_t";
+  if (is_a<problem_t>(bytes)) return "egocal.problem_t";
+  if (is_a<calibration_t>(bytes)) return "egocal.calibration_t";
+  if (is_a<verdict_t>(bytes)) return "egocal.verdict_t";
+  if (is_a<scale_problem_t>(bytes)) return "egocal.scale_problem_t";
+  if (is_a<scale_t>(bytes)) return "egocal.scale_t";
+  if (is_a<status_t>(bytes)) return "egocal.status_t";
+  if (is_a<command_t>(bytes)) return "egocal.command_t";
+  return "unknown type";
+}
+
 }  // namespace egocal::bus

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/log_file.hpp"
 
-#include <endian.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <span>
 
 #include "egocal/error.hpp"
 #include "egocal/io/packing.hpp"
@@ -30,12 +30,6 @@ constexpr std::size_t window_size = 1 << 16;     // [bytes] read at once
 constexpr std::size_t most_channels = 1000;
 /// Events of several sources are not exactly in order [us].
 constexpr std::int64_t disorder_us = 1'000'000;
-
-std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
-  std::uint64_t value = 0;
-  std::memcpy(reinterpret_cast<unsigned char*>(&value) + (8 - count), bytes, count);
-  return be64toh(value);
-}
 
 void put(std::vector<unsigned char>& out, std::uint64_t value, std::size_t count) {
   for (std::size_t i = count; i > 0; --i) out.push_back(static_cast<unsigned char>(value >> (8 * (i - 1))));
@@ -225,13 +219,14 @@ bool LogReader::read_at(std::uint64_t offset, void* to, std::size_t size) const 
 }
 
 std::optional<LogReader::Place> LogReader::header_at(std::uint64_t offset) const {
-  std::array<unsigned char, header_size> header;
-  if (!read_at(offset, header.data(), header_size) || big_endian(header.data(), 4) != sync_word)
+  std::array<unsigned char, header_size> bytes;
+  const Bytes header = std::as_bytes(std::span(bytes));
+  if (!read_at(offset, bytes.data(), header_size) || big_endian<std::uint32_t>(header) != sync_word)
     return std::nullopt;
-  const Place place{offset, static_cast<std::int64_t>(big_endian(&header[4], 8)),
-                    static_cast<std::int64_t>(big_endian(&header[12], 8)),
-                    static_cast<std::int32_t>(big_endian(&header[20], 4)),
-                    static_cast<std::int32_t>(big_endian(&header[24], 4))};
+  const Place place{offset, static_cast<std::int64_t>(big_endian<std::uint64_t>(header, 4)),
+                    static_cast<std::int64_t>(big_endian<std::uint64_t>(header, 12)),
+                    static_cast<std::int32_t>(big_endian<std::uint32_t>(header, 20)),
+                    static_cast<std::int32_t>(big_endian<std::uint32_t>(header, 24))};
   if (place.channel_size < 1 || place.channel_size > longest_channel || place.data_size < 0 ||
       place.data_size > largest_data)
     return std::nullopt;

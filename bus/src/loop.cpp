@@ -67,7 +67,8 @@ struct Loop::Impl {
       if (queue.empty() || now >= end || handled++ == options.most_in_batch) break;
       queue.handle_one();
     }
-    for (const auto& callback : batch_callbacks) callback(queue.empty());
+    // a callback may add another one, whose turn comes with the next batch
+    for (std::size_t i = 0, all = batch_callbacks.size(); i < all; ++i) batch_callbacks[i](queue.empty());
   }
 
   void run_timers() {
@@ -116,7 +117,7 @@ struct Loop::Impl {
   std::string network_error, send_error;
   std::function<void(const std::string&)> on_network;
   std::int64_t not_sent = 0;
-  std::vector<std::function<void(bool)>> batch_callbacks;
+  std::deque<std::function<void(bool)>> batch_callbacks;  // one that runs stays where it is
   std::vector<Timer> timers;
   std::vector<Watch> watches;
   TimerId next_timer = 1;

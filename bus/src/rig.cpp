@@ -15,11 +15,11 @@
 #include <sstream>
 #include <string_view>
 
-#include "egocal/bus/answer_check.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/datagrams.hpp"
 #include "egocal/bus/lcm_url.hpp"
 #include "egocal/bus/plausible.hpp"
+#include "egocal/bus/recent_pairs.hpp"
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
 
@@ -29,8 +29,9 @@ namespace {
 
 /// A rig file has a few kilobytes; a log that is named by mistake is refused at once [bytes].
 constexpr std::size_t max_file_size = std::size_t{1} << 20;
-/// toml++ reads dotted keys by recursion and ends with a crash at some 50,000 parts.
-constexpr std::size_t max_dots_per_line = 1000;
+/// toml++ reads dotted keys by recursion and ends with a crash at some 50,000 parts, also where they are
+/// spread over tables within tables. The largest rig has some 4,000 dots.
+constexpr std::size_t max_dots_per_line = 1000, max_dots = 20'000;
 
 constexpr Range reorder_window{0, 3600};       // [s]
 constexpr Range heartbeat_timeout{1.5, 3600};  // [s]; heartbeats come once a second
@@ -295,7 +296,7 @@ Rig understood(const toml::table& root, const std::string& file) {
   }
   std::set<std::string> pair_channels;
   for (const Table& table : in.tables("pair")) {
-    if (rig.pairs.size() == AnswerCheck::max_pairs)
+    if (rig.pairs.size() == max_pairs)
       table.fail("",
                  "a rig has at most 256 pairs, all of 23 sensors; list those of each sensor with one "
                  "reference, and a few more that close loops");
@@ -328,11 +329,14 @@ Rig understood(const toml::table& root, const std::string& file) {
 void check_size(const std::string& text, const std::string& file) {
   if (text.size() > max_file_size) throw error_at(file, 0, "", "is larger than a rig file can be (1 MiB)");
   long line = 1;
-  std::size_t dots = 0;
+  std::size_t dots = 0, all_dots = 0;
   for (const char c : text) {
     dots += c == '.';
+    all_dots += c == '.';
     if (dots > max_dots_per_line)
       throw error_at(file, line, "", "not a rig file: a line with more than 1000 dots");
+    if (all_dots > max_dots)
+      throw error_at(file, line, "", "not a rig file: more than 20000 dots up to here");
     if (c != '\n') continue;
     ++line;
     dots = 0;
@@ -399,6 +403,12 @@ PairingOptions drive_options(const Rig& rig, const PairConfig& pair) {
   options.max_gap = rig.max_gap;
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
   options.clock.phase = options.accumulator.choice_phase = phase_of(rig, pair);
+  return options;
+}
+
+StreamOptions stream_options(const Rig& rig) {
+  StreamOptions options;
+  options.reorder_window = rig.reorder_window;
   return options;
 }
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/scale.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/limits.hpp"
@@ -197,74 +196,62 @@ Checked<ScaleSolution> to_scale(const scale_t& message) {
   return {std::move(solution), {}};
 }
 
-ScaleCheck::Pair* ScaleCheck::of(const std::string& a, const std::string& b) {
-  const auto known = pairs_.find({a, b});
-  if (known != pairs_.end()) return &known->second;
-  return pairs_.size() < max_pairs ? &pairs_[{a, b}] : nullptr;
-}
-
 std::string ScaleCheck::take(const scale_problem_t& message) {
   Checked<ScaleProblem> problem = to_scale_problem(message);
   if (!problem) return problem.reason;
-  Pair* const pair = of(message.sensor_a, message.sensor_b);
-  if (!pair) return "too many pairs";
-  const bool same = pair->session == message.session && pair->seq == message.seq;
-  pair->in_force = message.scale;
+  Pair& pair = pairs_.touch(message.sensor_a, message.sensor_b);
+  const bool same = pair.session == message.session && pair.seq == message.seq;
+  pair.in_force = message.scale;
   if (same) return {};
-  pair->session = message.session;
-  pair->seq = message.seq;
-  pair->problem = std::move(*problem.value);
-  pair->own.reset();
-  if (!pair->early) return {};
-  const scale_t early = *std::exchange(pair->early, std::nullopt);
-  return early.session == pair->session && early.seq == pair->seq ? take(early) : std::string();
+  pair.session = message.session;
+  pair.seq = message.seq;
+  pair.problem = std::move(*problem.value);
+  pair.own.reset();
+  if (!pair.early) return {};
+  const scale_t early = *std::exchange(pair.early, std::nullopt);
+  return early.session == pair.session && early.seq == pair.seq ? take(early) : std::string();
 }
 
 std::string ScaleCheck::take(const scale_t& message) {
   Checked<ScaleSolution> solution = to_scale(message);
   if (!solution) return solution.reason;
-  Pair* const pair = of(message.sensor_a, message.sensor_b);
-  if (!pair) return "too many pairs";
+  Pair& pair = pairs_.touch(message.sensor_a, message.sensor_b);
   CheckedScale scale{message.side == 0 ? message.sensor_a : message.sensor_b, *solution.value,
                      message.session, message.seq, false};
-  if (pair->session == message.session && pair->seq == message.seq) {
-    if (!pair->own) pair->own = solve_scale(pair->problem.blocks, pair->problem.options);
-    const bool agrees = message.side == (pair->problem.options.side == Side::a ? 0 : 1) &&
-                        std::abs(message.scale - pair->own->scale) <= same_scale * pair->own->scale;
+  if (pair.session == message.session && pair.seq == message.seq) {
+    if (!pair.own) pair.own = solve_scale(pair.problem.blocks, pair.problem.options);
+    const bool agrees = message.side == (pair.problem.options.side == Side::a ? 0 : 1) &&
+                        std::abs(message.scale - pair.own->scale) <= same_scale * pair.own->scale;
     if (!agrees) return "its problem has another scale";
-    scale.solution = *pair->own;
+    scale.solution = *pair.own;
     scale.verified = true;
   } else {
-    pair->early = message;
+    pair.early = message;
     scale.solution.certified = false;
     // never instead of a verified one of this session
-    if (pair->scale && pair->scale->session == message.session && pair->scale->verified) return {};
+    if (pair.scale && pair.scale->session == message.session && pair.scale->verified) return {};
   }
-  pair->scale = std::move(scale);
+  pair.scale = std::move(scale);
   return {};
 }
 
 const CheckedScale* ScaleCheck::find(const std::string& a, const std::string& b, std::int64_t session) const {
-  const auto pair = pairs_.find({a, b});
-  return pair != pairs_.end() && pair->second.scale && pair->second.scale->session == session
-             ? &*pair->second.scale
-             : nullptr;
+  const Pair* const pair = pairs_.find(a, b);
+  return pair && pair->scale && pair->scale->session == session ? &*pair->scale : nullptr;
 }
 
 const ScaleSolution* ScaleCheck::solution(const std::string& a, const std::string& b, std::int64_t session) {
-  const auto known = pairs_.find({a, b});
-  if (known == pairs_.end() || known->second.session != session || known->second.seq < 0) return nullptr;
-  Pair& pair = known->second;
-  if (!pair.own) pair.own = solve_scale(pair.problem.blocks, pair.problem.options);
-  return &*pair.own;
+  Pair* const pair = pairs_.find(a, b);
+  if (!pair || pair->session != session || pair->seq < 0) return nullptr;
+  if (!pair->own) pair->own = solve_scale(pair->problem.blocks, pair->problem.options);
+  return &*pair->own;
 }
 
 std::optional<double> ScaleCheck::in_force(const std::string& a, const std::string& b,
                                            std::int64_t session) const {
-  const auto pair = pairs_.find({a, b});
-  if (pair == pairs_.end() || pair->second.session != session || !(pair->second.in_force > 0))
-    return std::nullopt;
-  return pair->second.in_force;
+  const Pair* const pair = pairs_.find(a, b);
+  if (!pair || pair->session != session || !(pair->in_force > 0)) return std::nullopt;
+  return pair->in_force;
 }
 
 }  // namespace egocal::bus

@@ -14,24 +14,18 @@
 #include "egocal/bus/check.hpp"
 #include "egocal/bus/odometry.hpp"
 #include "egocal/bus/verdict.hpp"
-#include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 #include "egocal/scale/solve_scale.hpp"
+#include "program/stream_counts.hpp"
 
 namespace egocal::services {
 
 namespace {
 
 using namespace std::chrono_literals;
-
-StreamOptions stream_options(const bus::Rig& rig) {
-  StreamOptions options;
-  options.reorder_window = rig.reorder_window;
-  return options;
-}
 
 /// Of the stream that has fewer: poses that are there while the other one has some. None where the clock of
 /// one sensor was set in between.
@@ -60,7 +54,8 @@ std::int64_t common_end(const DriveSample& sample, double time_offset) {
 Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
                        std::unique_ptr<SavedMemory> saved, const DiagnosingOptions& options)
     : loop_(loop), heartbeat_(heartbeat), rig_(rig), options_(options), saved_(std::move(saved)) {
-  for (const bus::Sensor& sensor : rig.sensors) sensors_.push_back({sensor, Stream(stream_options(rig)), 0});
+  for (const bus::Sensor& sensor : rig.sensors)
+    sensors_.push_back({sensor, Stream(bus::stream_options(rig)), 0});
   for (const bus::PairConfig& pair : rig.pairs)
     pairs_.push_back(
         std::make_unique<Pair>(loop, heartbeat, pair, bus::unscaled_side(rig, pair), options.sample));
@@ -69,11 +64,12 @@ Diagnosing::Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Ri
       heartbeat_.counter("restored") = 1;
     } else if (!saved_->refused().empty()) {
       heartbeat_.reject("saved state that does not fit");
-      heartbeat_.set_error(saved_->refused());
     }
     save_mono_us_ = loop_.mono_us() + to_microseconds(options_.save_distance);
     loop_.every(500ms, [this] {
-      if (loop_.mono_us() >= save_mono_us_) save();
+      if (loop_.mono_us() < save_mono_us_) return;
+      save();
+      report();
     });
   }
   for (std::size_t i = 0; i < sensors_.size(); ++i)
@@ -140,7 +136,7 @@ Memory Diagnosing::memory() const {
 void Diagnosing::restore(Memory memory) {
   if (memory.streams.size() != sensors_.size() || memory.pairs.size() != pairs_.size())
     throw Error("is of another rig");
-  std::vector<Stream> streams(sensors_.size(), Stream(stream_options(rig_)));
+  std::vector<Stream> streams(sensors_.size(), Stream(bus::stream_options(rig_)));
   std::vector<DriveSample> samples(pairs_.size(), DriveSample(options_.sample));
   for (std::size_t i = 0; i < streams.size(); ++i) streams[i].restore(std::move(memory.streams[i]));
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -167,12 +163,10 @@ void Diagnosing::save() {
   try {
     saved_->save(memory());
     saved_poses_ = poses;
-    if (!save_error_.empty()) heartbeat_.set_error("");
     save_error_.clear();
   } catch (const Error& error) {
     if (save_error_.empty()) std::fprintf(stderr, "egocal-diagnosis: %s\n", error.what());
     save_error_ = error.what();
-    heartbeat_.set_error(save_error_);
   }
   const std::int64_t now = loop_.mono_us();
   const double took = static_cast<double>(now - begin_mono_us);
@@ -181,7 +175,12 @@ void Diagnosing::save() {
 }
 
 Diagnosing::~Diagnosing() {
-  if (saved_ && std::uncaught_exceptions() == 0) save();
+  if (!saved_ || std::uncaught_exceptions() > 0) return;
+  try {
+    save();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "egocal-diagnosis: %s\n", error.what());
+  }
 }
 
 void Diagnosing::take_problems() {
@@ -202,6 +201,7 @@ void Diagnosing::take_problems() {
       pair->known.matched_before = message.matched;
       forget_what_was_missed(*pair);
       pair->verdict.reset();
+      pair->error.clear();
     } else if (!pair->newest) {
       // the first one since the restart
       pair->known.matched_between += std::max<std::int64_t>(0, message.matched - pair->known.matched);
@@ -303,7 +303,7 @@ void Diagnosing::judge(Pair& pair) {
     if (poses < options_.unseen.least_poses) {
       diagnosis = diagnose(answered, options);
     } else {
-      diagnosis = diagnose(a, b, pairing, answered, options);
+      diagnosis = options_.diagnose(a, b, pairing, answered, options);
       judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses)};
     }
     limit_to_what_was_seen(unseen_of(pair, poses), diagnosis, options_.unseen);
@@ -319,11 +319,13 @@ void Diagnosing::judge(Pair& pair) {
     loop_.publish(bus::verdict_channel(verdict.sensor_a, verdict.sensor_b), verdict);
     ++heartbeat_.counter("out");
     pair.verdict = std::move(verdict);
+    pair.error.clear();
     if (pair.config.on_move == bus::OnMove::restart) restart_after_move(pair, diagnosis);
   } catch (const std::exception& error) {
     heartbeat_.reject("diagnosis failed");
-    heartbeat_.set_error(pair.config.a + " -> " + pair.config.b + ": " + error.what());
+    pair.error = pair.config.a + " -> " + pair.config.b + ": " + error.what();
   }
+  report();
 }
 
 /// The motions of both mounts have no common answer. Once a session: the next one begins without them.
@@ -370,6 +372,15 @@ void Diagnosing::report() {
   const bool paused =
       std::all_of(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair->paused; });
   heartbeat_.set_state(paused ? bus::State::paused : bus::State::running);
+  heartbeat_.set_error(error());
+}
+
+/// What is wrong now, the worst first.
+std::string Diagnosing::error() const {
+  for (const auto& pair : pairs_)
+    if (!pair->error.empty()) return pair->error;
+  if (!save_error_.empty()) return save_error_;
+  return saved_ ? saved_->refused() : "";
 }
 
 void Diagnosing::count() {
@@ -377,16 +388,10 @@ void Diagnosing::count() {
   StreamCounts sum;
   for (const Sensor& sensor : sensors_) {
     in += sensor.in;
-    sum.lost += sensor.stream.counts().lost;
-    sum.duplicate += sensor.stream.counts().duplicate;
-    sum.out_of_order += sensor.stream.counts().out_of_order;
-    sum.jump += sensor.stream.counts().jump;
+    add(sensor.stream.counts(), sum);
   }
   heartbeat_.counter("poses") = in;
-  heartbeat_.counter("lost") = sum.lost;
-  heartbeat_.counter("rejected: duplicate") = sum.duplicate;
-  heartbeat_.counter("rejected: too late") = sum.out_of_order;
-  heartbeat_.counter("rejected: time or number jumps") = sum.jump;
+  for (const auto& [name, value] : named(sum)) heartbeat_.counter(name) = value;
 }
 
 }  // namespace egocal::services

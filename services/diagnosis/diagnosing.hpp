@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "egocal/bus/newest.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/bus/scale.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/pairing/stream.hpp"
 #include "program/commands.hpp"
 #include "solving/problems.hpp"
@@ -45,6 +47,10 @@ struct DiagnosingOptions {
   /// that is slow is written to less often, and messages wait for no longer than one state takes.
   double save_distance = 2;
   double save_share = 0.02;
+  /// The library's; a test hands in one that fails.
+  using Diagnose = Diagnosis(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                             const Answered& answered, const DiagnosisOptions& options);
+  std::function<Diagnose> diagnose = static_cast<Diagnose*>(&egocal::diagnose);
 };
 
 /// egocal-diagnosis: from the sensors' poses and the problems to verdict_t. Judges the certified optimum of
@@ -86,6 +92,7 @@ class Diagnosing {
     std::int64_t judged_until_us = 0;      ///< time of the last poses that were judged
     std::int64_t newest_pose_mono_us = 0;  ///< arrival
     std::optional<verdict_t> verdict;      ///< the last one, of the newest problem's session
+    std::string error;                     ///< why its last diagnosis failed; empty: it did not
     bool paused = false;
   };
 
@@ -105,6 +112,7 @@ class Diagnosing {
   void repeat();
   void obey(Verb verb, const command_t& command);
   void report();
+  std::string error() const;
   void count();
 
   bus::Loop& loop_;

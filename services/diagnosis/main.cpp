@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
-#include <memory>
-#include <string>
-
 #include "diagnosis/diagnosing.hpp"
 #include "program/program.hpp"
+#include "state/state_option.hpp"
 
 using namespace egocal;
 
@@ -16,17 +13,10 @@ int main(int argc, char** argv) {
                                            EGOCAL_VERSION,
                                            "Judges each pair's answer by the sensors' poses: can it be "
                                            "used, and if not, why, and what to drive next.",
-                                           {},
+                                           {services::state_option(state_file)},
                                            {}};
-  description.options = {
-      {"--state", "file from which it continues after it was ended or killed", &state_file, {}}};
   return services::run_program(argc, argv, description, [&](auto& loop, auto& heartbeat, const auto& rig) {
-    std::unique_ptr<services::SavedMemory> saved;
-    if (!state_file.empty()) saved = std::make_unique<services::SavedMemory>(state_file, rig);
-    services::SavedMemory* const file = saved.get();
-    auto diagnosing = std::make_shared<services::Diagnosing>(loop, heartbeat, rig, std::move(saved));
-    if (file && !file->refused().empty())
-      std::fprintf(stderr, "egocal-diagnosis: %s\n", file->refused().c_str());
-    return diagnosing;
+    return services::with_state<services::Diagnosing, services::SavedMemory>(description.name, state_file,
+                                                                             loop, heartbeat, rig);
   });
 }

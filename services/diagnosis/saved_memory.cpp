@@ -6,16 +6,15 @@
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "pairing/state/saved_state.hpp"
-#include "pairing/state/state_fields.hpp"
+#include "state/state_fields.hpp"
+#include "state/state_identity.hpp"
 
 namespace egocal::services {
 
 namespace {
 
-/// Of the fields below; those that they hold have pairing's state_layout. Either one that changes makes
-/// another identity.
-constexpr int memory_layout = 1;
+/// Of the fields below and of those that they hold: a change of either raises it.
+constexpr int memory_layout = 1000 * 1 + state_layout;
 
 }  // namespace
 
@@ -36,9 +35,8 @@ void fields(auto& archive, Is<Memory> auto& value) {
 
 SavedMemory::SavedMemory(const std::string& file, const bus::Rig& rig, StateFile::Clock clock,
                          const StateOptions& options)
-    : file_(open_state_medium(file, options),
-            state_identity("egocal-diagnosis", 1000 * memory_layout + state_layout, rig), std::move(clock),
-            options) {}
+    : file_(open_state_medium(file, options), state_identity("egocal-diagnosis", memory_layout, rig),
+            std::move(clock), options) {}
 
 bool SavedMemory::restore(const std::function<void(Memory)>& take) {
   const std::optional<StateFile::Content> content = file_.read();

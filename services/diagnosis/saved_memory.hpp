@@ -9,7 +9,7 @@
 
 #include "diagnosis/memory.hpp"
 #include "egocal/bus/rig.hpp"
-#include "pairing/state/state_file.hpp"
+#include "state/state_file.hpp"
 
 namespace egocal::services {
 

@@ -10,7 +10,7 @@ namespace egocal::services {
 
 struct UnseenOptions {
   /// A verdict may be `good` while at most this part of the motions was not judged. That many wrong motions
-  /// are found as outliers (docs/accuracy.md, "Outliers").
+  /// are found as outliers (docs/accuracy.md, "Gross outliers").
   double largest_share = 0.2;
   /// Fewer poses of a stream say nothing about a drive: it is judged by the statistics alone, which do not
   /// say whether the motions agree.

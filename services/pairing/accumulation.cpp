@@ -8,6 +8,7 @@
 #include "egocal/bus/odometry.hpp"
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "program/stream_counts.hpp"
 
 namespace egocal::services {
 
@@ -31,9 +32,8 @@ bool plausible_refusals(const ChannelState& state) {
 }  // namespace
 
 Accumulation::Accumulation(const bus::Rig& rig) {
-  StreamOptions options;
-  options.reorder_window = rig.reorder_window;
-  for (const bus::Sensor& sensor : rig.sensors) channels_.push_back({sensor, Stream(options), {}});
+  for (const bus::Sensor& sensor : rig.sensors)
+    channels_.push_back({sensor, Stream(bus::stream_options(rig)), {}});
   for (std::size_t i = 0; i < rig.pairs.size(); ++i) pairs_.emplace_back(rig, i);
 }
 
@@ -135,11 +135,7 @@ void Accumulation::count(std::map<std::string, std::int64_t>& counters) const {
   StreamCounts sum;
   std::int64_t given_up = 0, at_the_end = 0;  // damaged in the log
   for (const Channel& channel : channels_) {
-    const StreamCounts& counts = channel.stream.counts();
-    sum.lost += counts.lost;
-    sum.duplicate += counts.duplicate;
-    sum.out_of_order += counts.out_of_order;
-    sum.jump += counts.jump;
+    add(channel.stream.counts(), sum);
     counters["in"] += channel.state.in;
     if (channel.state.undecodable > 0)
       counters["rejected: not decodable on " + channel.sensor.channel] = channel.state.undecodable;
@@ -149,11 +145,9 @@ void Accumulation::count(std::map<std::string, std::int64_t>& counters) const {
     for (const auto& [number, refusals] : channel.state.refused)
       if (refusals.in_the_log()) ++at_the_end;
   }
-  counters["lost"] = std::max<std::int64_t>(0, sum.lost - given_up);
+  sum.lost = std::max<std::int64_t>(0, sum.lost - given_up);
+  for (const auto& [name, value] : named(sum)) counters[name] = value;
   if (given_up + at_the_end > 0) counters["lost: damaged in the log"] = given_up + at_the_end;
-  counters["rejected: duplicate"] = sum.duplicate;
-  counters["rejected: too late"] = sum.out_of_order;
-  counters["rejected: time or number jumps"] = sum.jump;
   for (const auto& [reason, value] : rejected_) counters["rejected: " + reason] = value;
 }
 

@@ -12,8 +12,8 @@
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/rig.hpp"
 #include "pairing/accumulation.hpp"
+#include "pairing/saved_state.hpp"
 #include "pairing/service_options.hpp"
-#include "pairing/state/saved_state.hpp"
 #include "program/commands.hpp"
 
 namespace egocal::services {

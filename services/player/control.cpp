@@ -10,7 +10,7 @@ namespace egocal::services {
 
 namespace {
 
-constexpr double skip_s = 5;        // of the commands forward and back, docs/processes.md [s]
+constexpr double skip_s = 5;        // of the keys left and right, docs/processes.md [s]
 constexpr double most_s = 1e9;      // [s]
 constexpr double most_speed = 1e6;  // as --speed
 

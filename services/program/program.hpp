@@ -35,8 +35,17 @@ struct ProgramDescription {
   std::vector<FlagOption> flags;
 };
 
-/// A network that is away, and one that is back, are reported on standard error, one line each.
-void report_network(bus::Loop& loop, const std::string& name);
+/// What the command line says about the bus.
+struct BusOptions {
+  std::string rig_file, url;  ///< url: empty: the rig's
+  std::string name;           ///< of the process
+  bool needs_rig = true;      ///< false: an empty rig where no file is named
+};
+
+/// Connects and calls work with everything wired. A network that is away, and one that is back, are reported
+/// on standard error, one line each. Exit codes: 0, 1 failure (one line on standard error), 2 wrong usage.
+int run_on_bus(const ProgramDescription& description, const BusOptions& options,
+               const std::function<void(bus::Loop&, bus::Heartbeat&, const bus::Rig&)>& work);
 
 /// The main() of a process that needs a rig and LCM: reads --rig, --lcm-url, --name and the program's own
 /// options, connects, calls start with everything wired and runs the loop until SIGINT or SIGTERM. start

@@ -20,9 +20,8 @@ std::optional<ReceivedProblem> ProblemInbox::take() {
   ReceivedProblem received;
   if (!newest_.take(received.message)) return std::nullopt;
   ++heartbeat_.counter("in");
-  bus::Checked<Problem> problem = bus::to_problem(received.message);
-  if (problem && (received.message.sensor_a != sensor_a_ || received.message.sensor_b != sensor_b_))
-    problem = {{}, "sensors of another pair"};
+  bus::Checked<Problem> problem =
+      of_pair(bus::to_problem(received.message), received.message, sensor_a_, sensor_b_);
   if (!problem) {
     heartbeat_.reject(problem.reason);
     return std::nullopt;
@@ -32,9 +31,7 @@ std::optional<ReceivedProblem> ProblemInbox::take() {
 }
 
 bool AnswerOutbox::repeat(const problem_t& problem) {
-  if (!last_ || last_->session != problem.session || last_->seq != problem.seq ||
-      last_->utime != problem.utime)
-    return false;
+  if (!answers(last_, problem)) return false;
   loop_.publish(bus::calibration_channel(problem.sensor_a, problem.sensor_b), *last_);
   return true;
 }

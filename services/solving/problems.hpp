@@ -21,6 +21,20 @@ struct ReceivedProblem {
   Problem problem;
 };
 
+/// The last answer, if there is one, is one to this very problem.
+template <class Answer, class Problem>
+bool answers(const std::optional<Answer>& last, const Problem& problem) {
+  return last && last->session == problem.session && last->seq == problem.seq && last->utime == problem.utime;
+}
+
+/// What was made of a message about this pair; refused where it names another one.
+template <class T, class Message>
+bus::Checked<T> of_pair(bus::Checked<T> checked, const Message& message, const std::string& a,
+                        const std::string& b) {
+  if (checked && (message.sensor_a != a || message.sensor_b != b)) return {{}, "sensors of another pair"};
+  return checked;
+}
+
 /// The newest problem of one sensor pair.
 class ProblemInbox {
  public:

@@ -42,14 +42,12 @@ Answer ScaleDesk::with_spread(Answer answer, const ReceivedProblem& received) co
 
 void ScaleDesk::answer(Pair& pair, const scale_problem_t& problem, bool publishes) {
   const std::string channel = bus::scale_channel(pair.config.a, pair.config.b);
-  if (pair.last && pair.last->session == problem.session && pair.last->seq == problem.seq &&
-      pair.last->utime == problem.utime) {
+  if (answers(pair.last, problem)) {
     if (publishes) loop_.publish(channel, *pair.last);
     return;
   }
-  bus::Checked<ScaleProblem> checked = bus::to_scale_problem(problem);
-  if (checked && (problem.sensor_a != pair.config.a || problem.sensor_b != pair.config.b))
-    checked = {{}, "sensors of another pair"};
+  const bus::Checked<ScaleProblem> checked =
+      of_pair(bus::to_scale_problem(problem), problem, pair.config.a, pair.config.b);
   if (!checked) return heartbeat_.reject(checked.reason);
   const std::int64_t begin = monotonic_ns();
   pair.solution = solve_scale(checked.value->blocks, checked.value->options);

@@ -5,6 +5,8 @@
 #include <signal.h>
 
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/heartbeat.hpp"
@@ -45,6 +47,29 @@ TEST(Loop, ExceptionsOfHandlersLeaveRun) {
   loop.subscribe<command_t>("C", [](const command_t&, const Arrival&) { throw std::logic_error("mine"); });
   loop.publish("C", command_t{});
   EXPECT_THROW(loop.run(), std::logic_error);
+}
+
+// The next one was called where it no longer was: std::bad_function_call
+TEST(Loop, ACallbackOfABatchMayAddOthers) {
+  Loop loop("memq://", {.handle_signals = false});
+  int first = 0, next = 0, added = 0;
+  std::vector<std::string> blocks;
+  blocks.reserve(300);
+  loop.after_batch([&](bool) {
+    if (++first > 1) return;
+    for (int i = 0; i < 50; ++i) loop.after_batch([&added](bool) { ++added; });
+    // what was freed meanwhile is used for something else
+    for (std::size_t size = 16; size <= 4096; size += 16) blocks.emplace_back(size, '\0');
+  });
+  loop.after_batch([&next](bool) { ++next; });
+  loop.subscribe<command_t>("C", [](const command_t&, const Arrival&) {});
+  for (const int expected : {0, 50}) {
+    loop.publish("C", command_t{});
+    loop.run_once(100ms);
+    EXPECT_EQ(added, expected) << "their turn comes with the next batch";
+  }
+  EXPECT_EQ(first, 2);
+  EXPECT_EQ(next, 2);
 }
 
 TEST(Loop, SignalsEndIt) {

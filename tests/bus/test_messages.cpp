@@ -146,6 +146,11 @@ TYPED_TEST(EveryMessage, RoundTrips) {
   EXPECT_EQ(encode(message), bytes);
 }
 
+TYPED_TEST(EveryMessage, HasAName) {
+  const std::string package = std::is_same_v<TypeParam, bot_core::pose_t> ? "bot_core." : "egocal.";
+  EXPECT_EQ(type_name(encode(example<TypeParam>())), package + TypeParam::getTypeName());
+}
+
 TYPED_TEST(EveryMessage, MustFillTheBytes) {
   auto bytes = encode(example<TypeParam>());
   TypeParam message{};

@@ -234,9 +234,16 @@ TEST(Rig, HostileSizesAreRefusedInOneLine) {
   std::string dotted = "a";
   for (int i = 0; i < 200'000; ++i) dotted += ".a";
   const std::string nested(100'000, '[');
+  // what one line may not hold, on many
+  std::string inner = "{ a";
+  for (int i = 0; i < 990; ++i) inner += ".a";
+  std::string deep = "x = ";
+  for (int i = 0; i < 120; ++i) deep += "[\n" + inner + " = ";
+  deep += "1";
+  for (int i = 0; i < 120; ++i) deep += " }\n]";
   const std::string large = sensors + pair + "# " + std::string(2 << 20, 'x') + "\n";
   for (const std::string& text : {dotted + " = 1\n", sensors + dotted + " = 1\n", "[" + dotted + "]\n",
-                                  "a = " + nested, "a = " + std::string(100'000, '{'), large}) {
+                                  "a = " + nested, "a = " + std::string(100'000, '{'), deep, large}) {
     const std::string message = error_of(text);
     EXPECT_THAT(message, testing::StartsWith("my.toml")) << text.substr(0, 100);
     EXPECT_LT(message.size(), 1000U);

@@ -109,5 +109,29 @@ TEST(ScaleMessage, AListenerBelievesItsOwnSolutionAlone) {
   EXPECT_GT(check.find("lidar", "camera", begin_us)->solution.stddev, 1e-6);
 }
 
+// 256 of them filled it for ever
+TEST(ScaleMessage, InventedPairsDisplaceNoneThatIsHeardAgain) {
+  const ScaleProblem good = problem();
+  ScaleCheck check;
+  scale_problem_t invented = question(good);
+  for (std::size_t i = 0; i < 3 * max_pairs; ++i) {
+    invented.sensor_b = "b" + std::to_string(i);
+    ASSERT_EQ(check.take(invented), "");
+  }
+  EXPECT_EQ(check.take(question(good)), "");
+  EXPECT_EQ(check.take(answer(good)), "");
+  for (std::size_t i = 0; i < 3 * max_pairs; ++i) {
+    if (i % 100 == 0) {
+      EXPECT_EQ(check.take(question(good)), "");
+    }
+    invented.sensor_b = "c" + std::to_string(i);
+    ASSERT_EQ(check.take(invented), "");
+  }
+  const CheckedScale* const checked = check.find("lidar", "camera", begin_us);
+  ASSERT_TRUE(checked);
+  EXPECT_TRUE(checked->verified);
+  EXPECT_FALSE(check.in_force("lidar", "b0", begin_us)) << "memory is bounded";
+}
+
 }  // namespace
 }  // namespace egocal::bus

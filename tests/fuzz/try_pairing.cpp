@@ -8,9 +8,7 @@
 #include "fuzz/input_bytes.hpp"
 #include "fuzz/require.hpp"
 #include "fuzz/try_sequence.hpp"
-#include "pairing/accumulation.hpp"
-#include "pairing/state/archive.hpp"
-#include "pairing/state/state_fields.hpp"
+#include "pairing/accumulation_fields.hpp"
 
 namespace egocal::fuzz {
 

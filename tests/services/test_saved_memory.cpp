@@ -7,11 +7,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
+#include <stdexcept>
+#include <utility>
 
 #include "diagnosis/diagnosing.hpp"
 #include "egocal/bus/channels.hpp"
+#include "egocal/error.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
+#include "state/state_identity.hpp"
 #include "support/mistakes.hpp"
 #include "support/virtual_time.hpp"
 
@@ -34,10 +39,11 @@ testing::Streams drive(int poses) {
 
 /// One process of several, each with the state that the one before left on the disk.
 struct Host {
-  Host(test::VirtualNetwork& network, const bus::Clock& clock, const bus::Rig& rig, const std::string& state)
+  Host(test::VirtualNetwork& network, const bus::Clock& clock, const bus::Rig& rig,
+       std::unique_ptr<SavedMemory> saved, const DiagnosingOptions& options)
       : loop(network.transport(), clock, {.handle_signals = false}),
         heartbeat(loop, bus::Identity{"egocal-diagnosis", bus::Role::diagnosis, "1", 1}, 3s),
-        service(loop, heartbeat, rig, state.empty() ? nullptr : std::make_unique<SavedMemory>(state, rig)) {}
+        service(loop, heartbeat, rig, std::move(saved), options) {}
   bus::Loop loop;
   bus::Heartbeat heartbeat;
   Diagnosing service;
@@ -66,7 +72,10 @@ class SavedMemories : public ::testing::Test {
     std::filesystem::remove_all(folder);
   }
 
-  void start() { host = std::make_unique<Host>(network, clock, rig, file); }
+  void start() {
+    auto saved = std::make_unique<SavedMemory>(file, rig, state_clock);
+    host = std::make_unique<Host>(network, clock, rig, std::move(saved), options);
+  }
   /// As by SIGKILL: what the destructor writes is undone.
   void kill() {
     std::filesystem::copy_file(file, folder + "/kept");
@@ -113,6 +122,8 @@ class SavedMemories : public ::testing::Test {
   test::VirtualNetwork network{clock};
   bus::Loop observer{network.transport(), clock, {.handle_signals = false}};
   bus::Rig rig;
+  DiagnosingOptions options;
+  StateFile::Clock state_clock = boot_time;
   std::unique_ptr<MotionPairing> pairing;
   std::unique_ptr<Host> host;
   std::size_t next = 0;
@@ -203,6 +214,52 @@ TEST_F(SavedMemories, OfAnotherRigOrDamagedAreRefusedAndCounted) {
   EXPECT_EQ(count("restored"), 0);
 }
 
+/// A slip on the command line must not cost pairing its statistics, nor a person a file.
+TEST_F(SavedMemories, WhatIsNotTheDiagnosisIsNotTouched) {
+  const auto content = [this] {
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto write = [this](const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; };
+  const auto expect_untouched = [&] {
+    const std::string before = content();
+    std::string why;
+    try {
+      start();
+    } catch (const Error& error) {
+      why = error.what();
+    }
+    EXPECT_EQ(why, file + ": is not a state of egocal-diagnosis; expected one, or no file");
+    EXPECT_EQ(content(), before);
+    EXPECT_FALSE(std::filesystem::exists(file + ".refused"));
+  };
+  write("hello\n");
+  expect_untouched();
+  StateFile(open_state_medium(file), state_identity("egocal-pairing", 1, rig)).snapshot({});
+  expect_untouched();
+  std::string of_version_3 = content();
+  of_version_3.at(of_version_3.find('4')) = '3';
+  write(of_version_3);
+  expect_untouched();
+  write(of_version_3.substr(0, 30));
+  expect_untouched();
+}
+
+/// Up to version 3 they began as pairing's did.
+TEST_F(SavedMemories, OfEarlierBuildsAreKeptAside) {
+  StateFile(open_state_medium(file), {"egocal-pairing", state_identity("egocal-diagnosis", 1024, rig).text})
+      .snapshot({});
+  std::fstream bytes(file, std::ios::binary | std::ios::in | std::ios::out);
+  bytes.seekp(static_cast<std::streamoff>(std::string("egocal-pairing state ").size()));
+  bytes.put('3');
+  bytes.close();
+  start();
+  pass(2s);
+  EXPECT_EQ(count("rejected: saved state that does not fit"), 1);
+  EXPECT_THAT(status.last_error, HasSubstr("another version or machine"));
+  EXPECT_TRUE(std::filesystem::exists(file + ".refused"));
+}
+
 TEST_F(SavedMemories, AreWrittenEverySecondSecondAtMost) {
   start();
   const testing::Streams streams = drive(200);
@@ -234,6 +291,46 @@ TEST_F(SavedMemories, ADiskThatTakesNothingEndsNothing) {
   play(drive(300), 300);
   EXPECT_EQ(status.last_error, "");
   EXPECT_TRUE(std::filesystem::exists(file));
+}
+
+// It was an error for ever, or until the disk took a state again
+TEST_F(SavedMemories, AFailedDiagnosisIsAnErrorUntilTheNextOneSucceeds) {
+  bool fails = true;
+  options.diagnose = [&fails](const auto& a, const auto& b, const auto& drive, const auto& answered,
+                              const auto& goal) {
+    if (fails) throw Error("no memory left");
+    return diagnose(a, b, drive, answered, goal);
+  };
+  start();
+  const testing::Streams streams = drive(500);
+  play(streams, 100);
+  EXPECT_EQ(status.last_error, "left -> right: no memory left");
+  std::filesystem::remove_all(folder);
+  std::ofstream(folder) << "in the way";
+  play(streams, 200);
+  EXPECT_EQ(status.last_error, "left -> right: no memory left");
+  std::filesystem::remove(folder);
+  play(streams, 300);
+  EXPECT_TRUE(std::filesystem::exists(file));
+  EXPECT_EQ(status.last_error, "left -> right: no memory left") << "only the disk's error is over";
+  fails = false;
+  play(streams, 400);
+  pass(3s);
+  EXPECT_EQ(status.last_error, "");
+  ASSERT_FALSE(verdicts.empty());
+  EXPECT_EQ(verdicts.back().verdict, "good") << verdicts.back().reason;
+}
+
+TEST_F(SavedMemories, WhateverFailsAtTheEndEndsNothingElse) {
+  bool fails = false;
+  state_clock = [&fails] {
+    if (fails) throw std::runtime_error("no clock");
+    return boot_time();
+  };
+  start();
+  play(drive(100), 100);
+  fails = true;
+  host.reset();
 }
 
 }  // namespace

@@ -20,8 +20,8 @@
 #include "egocal/bus/odometry.hpp"
 #include "egocal/error.hpp"
 #include "egocal/simulation/simulation.hpp"
-#include "pairing/state/saved_state.hpp"
-#include "pairing/state/state_fields.hpp"
+#include "pairing/accumulation_fields.hpp"
+#include "pairing/saved_state.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::services {
@@ -92,6 +92,14 @@ class SavedStates : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   void write(const std::string& bytes) const { std::ofstream(file, std::ios::binary) << bytes; }
+  static std::string failure(SavedState& saved) {
+    try {
+      saved.restore();
+      return "none";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
 
   std::string folder, file;
 };
@@ -287,7 +295,7 @@ class ReadOnlyForNow : public StateMedium {
   ReadOnlyForNow(const std::string& file, const bool& read_only)
       : medium_(open_state_medium(file)), read_only_(read_only) {}
   const std::string& name() const override { return medium_->name(); }
-  std::optional<Found> read(std::string_view begins) override { return medium_->read(begins); }
+  std::optional<Found> read(const Expected& expected) override { return medium_->read(expected); }
   void replace(std::span<const std::byte> bytes) override { allowed(), medium_->replace(bytes); }
   void add(std::span<const std::byte> bytes) override { allowed(), medium_->add(bytes); }
   bool in_place() const override { return medium_->in_place(); }
@@ -422,7 +430,7 @@ TEST_F(SavedStates, CutOffAnywhereAreRefusedOrLackTheUnfinishedEnd) {
   write_state(config, 40);
   const std::string good = content();
   std::size_t refused = 0, restored = 0;
-  for (std::size_t size = 0; size < good.size(); size += 113) {
+  for (std::size_t size = 7; size < good.size(); size += 113) {
     write(good.substr(0, size));
     SavedState saved(file, config);
     const Accumulation accumulation = saved.restore();
@@ -437,11 +445,48 @@ TEST_F(SavedStates, CutOffAnywhereAreRefusedOrLackTheUnfinishedEnd) {
 }
 
 TEST_F(SavedStates, AreNeverWrittenOverWhatIsSomethingElse) {
-  write("[[sensor]]\nname = \"left\"\nchannel = \"L\"\n");
-  const std::string before = content();
+  for (const std::string text : {"[[sensor]]\nname = \"left\"\nchannel = \"L\"\n", "hello\n", "\n", "e-mail",
+                                 "egocal-diagnosis state 4l\n", "egocal-diagnosis st"}) {
+    write(text);
+    SavedState saved(file, rig("egocal.odometry_t"));
+    EXPECT_EQ(failure(saved), file + ": is not a state of egocal-pairing; expected one, or no file") << text;
+    EXPECT_EQ(content(), text);
+    EXPECT_FALSE(std::filesystem::exists(file + ".refused"));
+  }
+}
+
+TEST_F(SavedStates, AnEmptyFileIsAsNone) {
+  write("");
   SavedState saved(file, rig("egocal.odometry_t"));
-  EXPECT_THROW(saved.restore(), Error);
-  EXPECT_EQ(content(), before);
+  saved.restore();
+  EXPECT_EQ(saved.refused(), "");
+  EXPECT_GT(std::filesystem::file_size(file), 0u);
+  EXPECT_FALSE(std::filesystem::exists(file + ".refused"));
+}
+
+/// Up to version 3 all states began with "egocal-pairing state 3", and their identity began with the process.
+TEST_F(SavedStates, OfEarlierBuildsAreRefusedWhereTheyArePairings) {
+  const bus::Rig config = rig("egocal.odometry_t");
+  const auto of_version_3 = [&](const StateIdentity& identity) {
+    StateFile(open_state_medium(file), {"egocal-pairing", identity.text}).snapshot({});
+    std::string bytes = content();
+    bytes.at(bytes.find('4')) = '3';
+    write(bytes);
+    return bytes;
+  };
+  {
+    const std::string pairings = of_version_3(state_identity("egocal-pairing", 24, config));
+    SavedState saved(file, config);
+    saved.restore();
+    EXPECT_THAT(saved.refused(), HasSubstr("another version or machine"));
+    std::ifstream aside(file + ".refused", std::ios::binary);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(aside), {}), pairings);
+    std::filesystem::remove(file + ".refused");
+  }
+  const std::string diagnosis = of_version_3(state_identity("egocal-diagnosis", 1024, config));
+  SavedState saved(file, config);
+  EXPECT_THAT(failure(saved), HasSubstr("is not a state of egocal-pairing"));
+  EXPECT_EQ(content(), diagnosis);
 }
 
 TEST_F(SavedStates, BelongToOneProcessAtATime) {

@@ -21,7 +21,7 @@ class Disk::Medium final : public services::StateMedium {
 
   const std::string& name() const override { return name_; }
 
-  std::optional<Found> read(std::string_view) override {
+  std::optional<Found> read(const Expected&) override {
     const auto file = disk_.files_.find(name_);
     if (file == disk_.files_.end()) return std::nullopt;
     return Found{file->second->bytes, file->second->written_s, disk_.clock_.wall_us() / 1'000'000};

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "egocal/bus/clock.hpp"
-#include "pairing/state/state_medium.hpp"
 #include "simulation/life.hpp"
+#include "state/state_medium.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::simulation {

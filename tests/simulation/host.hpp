@@ -6,10 +6,10 @@
 #include <string>
 
 #include "egocal/bus/clock.hpp"
-#include "pairing/state/state_age.hpp"
 #include "simulation/disk.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/schedule.hpp"
+#include "state/state_age.hpp"
 
 namespace egocal::simulation {
 

@@ -6,12 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/recent_pairs.hpp"
 #include "egocal/bus/verdict.hpp"
 #include "egocal/calibration_t.hpp"
 #include "egocal/online/algorithm1.hpp"
@@ -34,11 +33,8 @@ struct CheckedAnswer {
   std::string reason;  ///< of a refusal, a short constant text that also names its counter
 };
 
-/// Verifies T as an answer to the problem, in its mode. About 2 us, five times that with a prior.
-Certificate verify_answer(const Problem& problem, const DualQuaternion& T_a_b);
-
-/// The newest problems of all pairs, and the checks of the answers to them. Memory is bounded whatever
-/// arrives. Not thread-safe.
+/// The newest problems of all pairs, and the checks of the answers to them: about 2 us each, five times that
+/// with a prior. Memory is bounded whatever arrives. Not thread-safe.
 class AnswerCheck {
  public:
   /// The reason why it was refused; empty: taken.
@@ -49,11 +45,10 @@ class AnswerCheck {
   /// word: that takes the poses.
   std::string refusal(const verdict_t& message, const ReceivedVerdict& received) const;
 
-  static constexpr std::size_t max_pairs = 256;         ///< a limit on memory
+  static constexpr std::size_t max_pairs = bus::max_pairs;
   static constexpr std::size_t problems_per_pair = 16;  ///< answers come within a few problems
 
  private:
-  using Key = std::pair<std::string, std::string>;
   struct Known {
     std::int64_t session = 0, seq = 0, utime = 0;
     Matrix8d Q;       ///< certified_cost() of the problem
@@ -61,14 +56,12 @@ class AnswerCheck {
   };
   struct Pair {
     std::vector<Known> problems;
-    std::size_t next = 0;       ///< where the next one goes
-    std::uint64_t touched = 0;  ///< the longest untouched pair is forgotten
+    std::size_t next = 0;  ///< where the next one goes
   };
   template <class Message>
   const Known* find(const Message& message) const;
 
-  std::map<Key, Pair> pairs_;
-  std::uint64_t touches_ = 0;
+  RecentPairs<Pair> pairs_;
 };
 
 /// Copies the certificate of a checked answer into its message, so that what is shown of the message

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "bot_core/pose_t.hpp"
@@ -39,6 +40,10 @@ bool is_a(Bytes bytes) {
   return lengths_fit(static_cast<const Message*>(nullptr), bytes) &&
          big_endian<std::uint64_t>(bytes) == static_cast<std::uint64_t>(Message::getHash());
 }
+
+/// Name of the type of an encoded message, as its .lcm file has it: "egocal.odometry_t", "bot_core.pose_t",
+/// another one of ours, or "unknown type".
+std::string type_name(Bytes bytes);
 
 /// Decodes a message that must fill the bytes exactly. False: wrong fingerprint (another type or version),
 /// truncated, trailing bytes, or a false length field. Never throws on any input except for lack of memory.

@@ -9,6 +9,7 @@
 #include "egocal/diagnosis/verdict.hpp"
 #include "egocal/geometry/dual_quaternion.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
+#include "egocal/pairing/stream.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/problem/problem.hpp"
 
@@ -31,7 +32,8 @@ enum class OnMove {
   restart,  ///< the calibration of the pair starts again by itself
 };
 
-/// Rotation and translation balance and stride: fixed, or chosen by the jack-knife.
+/// Two sensors whose extrinsic is to be found, and what is known or wanted of it. The jack-knife chooses what
+/// is "auto".
 struct PairConfig {
   std::string a, b;  ///< names of sensors; T is the pose of b in a
   Mode mode = Mode::spatial;
@@ -68,6 +70,8 @@ const Sensor& sensor(const Rig& rig, const std::string& name);
 
 /// What pairing is to make of the rig's pair.
 PairingOptions drive_options(const Rig& rig, const PairConfig& pair);
+/// How the poses of each of the rig's sensors are put in order.
+StreamOptions stream_options(const Rig& rig);
 /// Whose scale is to be found; empty: both are known.
 std::optional<Side> unscaled_side(const Rig& rig, const PairConfig& pair);
 

@@ -3,12 +3,11 @@
 // Scale problems and scales on the wire, checked as other messages are.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/bus/recent_pairs.hpp"
 #include "egocal/scale/scale_drive.hpp"
 #include "egocal/scale_problem_t.hpp"
 #include "egocal/scale_t.hpp"
@@ -48,8 +47,6 @@ class ScaleCheck {
   /// The solution of this pair's newest problem, solved here; null where there is none of this session.
   const ScaleSolution* solution(const std::string& a, const std::string& b, std::int64_t session);
 
-  static constexpr std::size_t max_pairs = 256;  ///< a limit on memory
-
  private:
   struct Pair {
     std::int64_t session = 0, seq = -1;
@@ -59,9 +56,7 @@ class ScaleCheck {
     std::optional<scale_t> early;      ///< an answer that came before its problem
     std::optional<CheckedScale> scale;
   };
-  using Key = std::pair<std::string, std::string>;
-  Pair* of(const std::string& a, const std::string& b);
-  std::map<Key, Pair> pairs_;
+  RecentPairs<Pair> pairs_;
 };
 
 }  // namespace egocal::bus

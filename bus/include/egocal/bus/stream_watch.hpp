@@ -91,9 +91,6 @@ class StreamWatch {
   std::map<std::string, Counting> others_counting_;
 };
 
-/// Name of the type of an encoded message, by its fingerprint.
-std::string type_name(Bytes bytes);
-
 /// What to do about messages that were refused for a reason of convert.hpp, with the message's own values.
 std::string cure_of(const std::string& reason, OdometryType type, Bytes bytes);
 /// What to do about poses and motions that pairing rejects, by the name in its counters; empty: nothing is

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/state/state_file.hpp"
+#include "state/state_file.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,20 +9,27 @@
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "pairing/state/archive.hpp"
+#include "state/archive.hpp"
 
 namespace egocal::services {
 
 namespace {
 
+/// Of a state of any version.
+std::string beginning(const std::string& process) {
+  return process + " state ";
+}
+
 /// The last character states the byte order of the machine.
-const std::string magic = [] {
+std::string magic(const std::string& process) {
   const std::uint16_t one = 1;
   std::uint8_t low = 0;
   std::memcpy(&low, &one, 1);
-  return std::string("egocal-pairing state 3") + (low ? "l" : "b") + "\n";
-}();
-const std::string magic_of_any_version = "egocal-pairing state ";
+  return beginning(process) + "4" + (low ? "l" : "b") + "\n";
+}
+
+/// Up to version 3 the state of every process began so: whose it is, its identity alone states.
+const std::string shared_beginning = "egocal-pairing state 3";
 
 /// Before each part: identity, snapshot, additions.
 struct PartHeader {
@@ -83,23 +90,47 @@ std::string difference(const std::string& found, const std::string& expected) {
   }
 }
 
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Whether a file that begins as a state may is one of this process. One that cannot be told is of the
+/// process whose name it begins with.
+bool is_of(const std::string& process, std::span<const std::byte> bytes) {
+  const std::string begin = text_of(bytes.first(std::min(bytes.size(), shared_beginning.size())));
+  if (begin == shared_beginning) {
+    try {
+      const std::size_t magic_size = shared_beginning.size() + 2;
+      std::span<const std::byte> rest = bytes.subspan(std::min(bytes.size(), magic_size));
+      std::int64_t written_us = 0;
+      if (const auto whose = next_part(rest, written_us)) return text_of(*whose).starts_with(process + " ");
+    } catch (const Error&) {
+      // damaged
+    }
+  }
+  const std::string own = beginning(process);
+  return begin.starts_with(own) || own.starts_with(begin);
+}
+
 struct Parsed {
   StateFile::Content content;
   BootTime written;  ///< the last part
 };
 
-Parsed parsed(std::span<const std::byte> bytes, const std::string& identity) {
-  if (bytes.size() < magic.size() || std::memcmp(bytes.data(), magic.data(), magic.size()) != 0)
+Parsed parsed(std::span<const std::byte> bytes, const StateIdentity& identity) {
+  const std::string begin = magic(identity.process);
+  if (text_of(bytes.first(std::min(bytes.size(), begin.size()))) != begin)
     throw Error("is that of another version or machine, or cut off");
-  std::span<const std::byte> rest = bytes.subspan(magic.size());
+  std::span<const std::byte> rest = bytes.subspan(begin.size());
   Parsed result;
   const auto whose = next_part(rest, result.written.us);
   if (!whose) throw Error("is cut off");
-  const std::string found(reinterpret_cast<const char*>(whose->data()), whose->size());
-  if (found != identity) throw Error("is that of another rig or version: " + difference(found, identity));
+  const std::string found = text_of(*whose);
+  if (found != identity.text)
+    throw Error("is that of another rig or version: " + difference(found, identity.text));
   const auto boot = next_part(rest, result.written.us);
   if (!boot) throw Error("is cut off");
-  result.written.boot.assign(reinterpret_cast<const char*>(boot->data()), boot->size());
+  result.written.boot = text_of(*boot);
   const auto snapshot = next_part(rest, result.written.us);
   if (!snapshot) throw Error("is cut off");
   result.content.snapshot.assign(snapshot->begin(), snapshot->end());
@@ -110,7 +141,7 @@ Parsed parsed(std::span<const std::byte> bytes, const std::string& identity) {
 
 }  // namespace
 
-StateFile::StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock,
+StateFile::StateFile(std::unique_ptr<StateMedium> medium, StateIdentity identity, Clock clock,
                      const StateOptions& options)
     : medium_(std::move(medium)),
       identity_(std::move(identity)),
@@ -118,8 +149,11 @@ StateFile::StateFile(std::unique_ptr<StateMedium> medium, std::string identity, 
       options_(options) {}
 
 std::optional<StateFile::Content> StateFile::read() {
-  const std::optional<StateMedium::Found> found = medium_->read(magic_of_any_version);
-  if (!found) return std::nullopt;
+  const std::string& process = identity_.process;
+  const std::optional<StateMedium::Found> found =
+      medium_->read({process, {beginning(process), shared_beginning}});
+  if (!found || found->bytes.empty()) return std::nullopt;
+  if (!is_of(process, found->bytes)) throw not_a_state(medium_->name(), process);
   try {
     Parsed state = parsed(found->bytes, identity_);
     const std::int64_t age = age_s(state.written, clock_(), found->written_s, found->now_s);
@@ -147,10 +181,11 @@ void StateFile::refuse(const std::string& why) {
 void StateFile::snapshot(std::span<const std::byte> bytes) {
   if (!in_the_way_.empty()) refuse(in_the_way_);
   if (!in_the_way_.empty()) throw Error(refused_);
-  const auto begin = as_bytes(magic);
+  const std::string begin_text = magic(identity_.process);
+  const auto begin = as_bytes(begin_text);
   std::vector<std::byte> parts(begin.begin(), begin.end());
   const BootTime now = clock_();
-  append_part(parts, as_bytes(identity_), now.us);
+  append_part(parts, as_bytes(identity_.text), now.us);
   append_part(parts, as_bytes(now.boot), now.us);
   append_part(parts, bytes, now.us);
   medium_->replace(parts);

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What of each struct goes into a state file: everything. The structured bindings do not compile where a
-// struct gains or loses a field, so that none is forgotten. A change of one raises state_layout.
+// What of each of the library's structs goes into a state file: everything. The structured bindings do not
+// compile where a struct gains or loses a field, so that none is forgotten. A change of one raises
+// state_layout.
 #pragma once
 
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/stream.hpp"
 #include "egocal/scale/scale_drive.hpp"
-#include "pairing/accumulation.hpp"
-#include "pairing/state/archive.hpp"
+#include "state/archive.hpp"
 
 namespace egocal {
 
@@ -315,31 +315,6 @@ namespace services {
 
 /// Of the fields in this file.
 constexpr int state_layout = 24;
-
-void fields(auto& archive, Is<EarlyPose> auto& value) {
-  auto& [side, pose] = value;
-  archive(side, pose);
-}
-
-void fields(auto& archive, Is<PairState> auto& value) {
-  auto& [drive, scale, session, last_session, seq, restarted_by, early, paused] = value;
-  archive(drive, scale, session, last_session, seq, restarted_by, early, paused);
-}
-
-void fields(auto& archive, Is<Refusals> auto& value) {
-  auto& [times, apart] = value;
-  archive(times, apart);
-}
-
-void fields(auto& archive, Is<ChannelState> auto& value) {
-  auto& [stream, utime, in, undecodable, refused, refused_last, damaged] = value;
-  archive(stream, utime, in, undecodable, refused, refused_last, damaged);
-}
-
-void fields(auto& archive, Is<AccumulationState> auto& value) {
-  auto& [channels, pairs, rejected] = value;
-  archive(channels, pairs, rejected);
-}
 
 }  // namespace services
 

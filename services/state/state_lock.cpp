@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/state/state_lock.hpp"
+#include "state/state_lock.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "pairing/state/state_age.hpp"
-#include "pairing/state/state_medium.hpp"
+#include "state/state_age.hpp"
+#include "state/state_identity.hpp"
+#include "state/state_medium.hpp"
 
 namespace egocal::services {
 
@@ -30,12 +31,12 @@ class StateFile {
 
   using Clock = std::function<BootTime()>;
 
-  /// identity: whose state it is, one line each.
-  StateFile(std::unique_ptr<StateMedium> medium, std::string identity, Clock clock = boot_time,
+  StateFile(std::unique_ptr<StateMedium> medium, StateIdentity identity, Clock clock = boot_time,
             const StateOptions& options = {});
 
-  /// What is there to continue from; empty where there is no file or it is refused. Throws Error where the
-  /// file cannot be read, or is something else than a state: that is never touched.
+  /// What is there to continue from; empty where there is no file, or an empty one, or it is refused. Throws
+  /// Error where the file cannot be read, or is something else than a state of this process: that is never
+  /// touched. An empty file is as none: nothing in it could be kept.
   std::optional<Content> read();
   /// One line: why what was there is refused; empty: it is not.
   const std::string& refused() const { return refused_; }
@@ -54,7 +55,8 @@ class StateFile {
 
  private:
   std::unique_ptr<StateMedium> medium_;
-  std::string identity_, refused_;
+  StateIdentity identity_;
+  std::string refused_;
   std::string in_the_way_;  ///< why a file is refused that could not be kept aside yet; empty: there is none
   Clock clock_;
   StateOptions options_;

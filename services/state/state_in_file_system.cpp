@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/state/state_medium.hpp"
+#include "state/state_medium.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -15,7 +15,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "pairing/state/state_lock.hpp"
+#include "state/state_lock.hpp"
 
 namespace egocal::services {
 
@@ -32,7 +32,7 @@ void write_all(int fd, std::span<const std::byte> bytes) {
 
 /// The file, checked before its content is read: a user's own file must not be moved away because of a
 /// slip on the command line, nor a pipe be waited for. Empty: there is none.
-std::optional<StateMedium::Found> whole(const std::string& file, std::string_view begins,
+std::optional<StateMedium::Found> whole(const std::string& file, const StateMedium::Expected& expected,
                                         const StateOptions& options) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0 && errno == ENOENT) return std::nullopt;
@@ -43,7 +43,8 @@ std::optional<StateMedium::Found> whole(const std::string& file, std::string_vie
   if (fd < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
   struct stat status {};
   if (fstat(fd, &status) != 0) fail(std::string("cannot be read: ") + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) fail("is not a file; expected a state of egocal-pairing, or no file");
+  if (!S_ISREG(status.st_mode))
+    fail("is not a file; expected a state of " + expected.process + ", or no file");
   StateMedium::Found found{{}, status.st_mtime, std::time(nullptr)};
   std::vector<std::byte>& bytes = found.bytes;
   const std::int64_t most = std::min<std::int64_t>(status.st_size, options.largest_state);
@@ -59,9 +60,17 @@ std::optional<StateMedium::Found> whole(const std::string& file, std::string_vie
     }
     bytes.resize(have);
   };
-  read_up_to(std::min(static_cast<std::size_t>(most), begins.size()));
-  if (bytes.size() == begins.size() && std::memcmp(bytes.data(), begins.data(), bytes.size()) != 0)
-    fail("is not a state of egocal-pairing; expected one, or no file");
+  std::size_t longest = 0;
+  for (const std::string& begin : expected.begins) longest = std::max(longest, begin.size());
+  read_up_to(std::min(static_cast<std::size_t>(most), longest));
+  // of a short file as much as there is: a state that was cut off is one, a user's short file is none
+  const auto begins_so = [&bytes](const std::string& begin) {
+    return std::memcmp(bytes.data(), begin.data(), std::min(bytes.size(), begin.size())) == 0;
+  };
+  if (std::none_of(expected.begins.begin(), expected.begins.end(), begins_so)) {
+    close(fd);
+    throw not_a_state(file, expected.process);
+  }
   read_up_to(static_cast<std::size_t>(most));
   close(fd);
   return found;
@@ -80,7 +89,7 @@ class StateInFileSystem final : public StateMedium {
   }
 
   const std::string& name() const override { return file_; }
-  std::optional<Found> read(std::string_view begins) override { return whole(file_, begins, options_); }
+  std::optional<Found> read(const Expected& expected) override { return whole(file_, expected, options_); }
 
   void replace(std::span<const std::byte> bytes) override {
     // the folder was there when this began: its removal was not meant for what is known here
@@ -134,6 +143,10 @@ class StateInFileSystem final : public StateMedium {
 };
 
 }  // namespace
+
+Error not_a_state(const std::string& file, const std::string& process) {
+  return error_at(file, 0, "", "is not a state of " + process + "; expected one, or no file");
+}
 
 std::unique_ptr<StateMedium> open_state_medium(const std::string& file, const StateOptions& options) {
   return std::make_unique<StateInFileSystem>(file, options);

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/state/saved_state.hpp"
+#include "pairing/saved_state.hpp"
 
-#include <cinttypes>
-#include <cstdio>
 #include <exception>
 #include <utility>
 
-#include "pairing/state/state_fields.hpp"
+#include "pairing/accumulation_fields.hpp"
+#include "state/state_identity.hpp"
 
 namespace egocal::services {
 
@@ -27,26 +26,6 @@ void apply_all(std::span<const std::byte> inputs, Accumulation& accumulation) {
 
 }  // namespace
 
-std::string state_identity(const std::string& process, int layout, const bus::Rig& rig) {
-  std::string text = process + " " EGOCAL_VERSION ", layout " + std::to_string(layout) + "\n";
-  char line[320];
-  for (const bus::Sensor& sensor : rig.sensors) {
-    std::snprintf(line, sizeof line, "sensor %s on %s, %s, scale %.17g%s, reorder_window %g\n",
-                  sensor.name.c_str(), sensor.channel.c_str(),
-                  sensor.type == bus::OdometryType::pose ? "bot_core.pose_t" : "egocal.odometry_t",
-                  sensor.scale, sensor.find_scale ? " and to be found" : "", rig.reorder_window);
-    text += line;
-  }
-  for (const bus::PairConfig& pair : rig.pairs) {
-    Writer settings;
-    settings(bus::drive_options(rig, pair));
-    std::snprintf(line, sizeof line, "pair %s %s with settings %016" PRIx64 "\n", pair.a.c_str(),
-                  pair.b.c_str(), checksum(settings.bytes()));
-    text += line;
-  }
-  return text;
-}
-
 SavedState::SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock,
                        const StateOptions& options)
     : SavedState(open_state_medium(file, options), rig, std::move(clock), options) {}
@@ -55,7 +34,7 @@ SavedState::SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig,
                        const StateOptions& options)
     : options_(options),
       rig_(rig),
-      file_(std::move(medium), state_identity("egocal-pairing", state_layout, rig), std::move(clock),
+      file_(std::move(medium), state_identity("egocal-pairing", accumulation_layout, rig), std::move(clock),
             options) {}
 
 Accumulation SavedState::restore() {

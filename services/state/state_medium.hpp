@@ -8,12 +8,13 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "egocal/error.hpp"
 
 namespace egocal::services {
 
-/// Tuning of a pairing's state on disk. Study: tests/services/test_saved_state.cpp, the faulty disks of the
+/// Tuning of a process's state on disk. Study: tests/services/test_saved_state.cpp, the faulty disks of the
 /// simulation.
 struct StateOptions {
   /// Older files are stale: the sensors may have been moved meanwhile [s]. See age_s().
@@ -35,6 +36,12 @@ class StateMedium {
     std::int64_t written_s = 0, now_s = 0;  ///< by the clock of the file system [s]
   };
 
+  /// What may be read: a file that begins otherwise is something else, and is never touched.
+  struct Expected {
+    std::string process;              ///< for messages: whose state it is to be
+    std::vector<std::string> begins;  ///< like one of these, as far as it goes
+  };
+
   StateMedium() = default;
   StateMedium(const StateMedium&) = delete;
   StateMedium& operator=(const StateMedium&) = delete;
@@ -42,9 +49,8 @@ class StateMedium {
 
   /// For messages.
   virtual const std::string& name() const = 0;
-  /// Empty: there is no file. Throws Error where it cannot be read, or does not begin like this: what is
-  /// something else is never touched.
-  virtual std::optional<Found> read(std::string_view begins) = 0;
+  /// Empty: there is no file. Throws Error where it cannot be read, or is not what is expected.
+  virtual std::optional<Found> read(const Expected& expected) = 0;
   /// In one step, after a power cut, too. Throws Error where the disk does not take it; the old content is
   /// then still there.
   virtual void replace(std::span<const std::byte> bytes) = 0;
@@ -56,6 +62,9 @@ class StateMedium {
   /// Renames the file so that it stays; its new name. Throws Error where that is not possible.
   virtual std::string keep_aside() = 0;
 };
+
+/// What is said of a file that is something else than a state of this process.
+Error not_a_state(const std::string& file, const std::string& process);
 
 /// In the file system, by whatever symbolic links the file is named. Throws Error where another process holds
 /// it, or it cannot be held.

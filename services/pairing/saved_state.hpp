@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "pairing/accumulation.hpp"
-#include "pairing/state/archive.hpp"
-#include "pairing/state/state_file.hpp"
+#include "state/archive.hpp"
+#include "state/state_file.hpp"
 
 namespace egocal::services {
-
-/// Whose state it is, one line each: of a process with this layout of its fields, for this rig. What is
-/// accumulated means nothing to another rig, nor to another version of the mathematics.
-std::string state_identity(const std::string& process, int layout, const bus::Rig& rig);
 
 /// Keeps an Accumulation on disk: a snapshot, and every input since then.
 class SavedState {

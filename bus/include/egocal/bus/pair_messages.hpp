@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages about one pair of sensors: each has a channel of its own, and the pair's names inside as well.
+#pragma once
+
+#include <string>
+
+#include "egocal/bus/channels.hpp"
+#include "egocal/bus/loop.hpp"
+
+namespace egocal::bus {
+
+/// Of the pair that the message names.
+inline std::string channel_of(const problem_t& message) {
+  return problem_channel(message.sensor_a, message.sensor_b);
+}
+inline std::string channel_of(const calibration_t& message) {
+  return calibration_channel(message.sensor_a, message.sensor_b);
+}
+inline std::string channel_of(const verdict_t& message) {
+  return verdict_channel(message.sensor_a, message.sensor_b);
+}
+inline std::string channel_of(const scale_problem_t& message) {
+  return scale_problem_channel(message.sensor_a, message.sensor_b);
+}
+inline std::string channel_of(const scale_t& message) {
+  return scale_channel(message.sensor_a, message.sensor_b);
+}
+
+/// Hands on all messages about a pair: hear(message, arrival) takes each of the types above. Names that are
+/// not the pair's are damaged, or somebody else's: such a message must not count as one of another pair. It
+/// is not what its channel promises, see Loop::undecodable().
+template <class Hear>
+void subscribe_pair(Loop& loop, const std::string& a, const std::string& b, const Hear& hear) {
+  const auto subscribe = [&]<class Message>(const Message&, const std::string& channel) {
+    loop.subscribe<Message>(channel, [&loop, hear, a, b](const Message& message, const Arrival& arrival) {
+      if (message.sensor_a == a && message.sensor_b == b)
+        hear(message, arrival);
+      else
+        loop.count_undecodable(arrival.channel);
+    });
+  };
+  subscribe(problem_t{}, problem_channel(a, b));
+  subscribe(calibration_t{}, calibration_channel(a, b));
+  subscribe(verdict_t{}, verdict_channel(a, b));
+  subscribe(scale_problem_t{}, scale_problem_channel(a, b));
+  subscribe(scale_t{}, scale_channel(a, b));
+}
+
+}  // namespace egocal::bus

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "egocal/bus/rig.hpp"
+
+namespace egocal::services {
+
+/// Whose state a file holds. What a process has learnt means nothing to another process or rig, nor to
+/// another version of the mathematics.
+struct StateIdentity {
+  std::string process;  ///< "egocal-pairing"; the state of another process is not touched
+  std::string text;     ///< everything else, one line each; where it differs the state is refused
+};
+
+/// Of a process with this layout of its fields, for this rig.
+StateIdentity state_identity(const std::string& process, int layout, const bus::Rig& rig);
+
+}  // namespace egocal::services

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "program/program.hpp"
+
+namespace egocal::services {
+
+/// --state of a process's command line.
+inline TextOption state_option(std::string& file) {
+  return {"--state", "file from which it continues after it was ended or killed", &file, {}};
+}
+
+/// The service, continuing from its Saved state where a file is named. What is refused is one line on
+/// standard error. Throws Error where the file is held by another process, or is something else than a state
+/// of this one.
+template <class Service, class Saved>
+std::shared_ptr<void> with_state(const std::string& program, const std::string& file, bus::Loop& loop,
+                                 bus::Heartbeat& heartbeat, const bus::Rig& rig) {
+  std::unique_ptr<Saved> saved = file.empty() ? nullptr : std::make_unique<Saved>(file, rig);
+  const Saved* const kept = saved.get();
+  auto service = std::make_shared<Service>(loop, heartbeat, rig, std::move(saved));
+  if (kept && !kept->refused().empty())
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), kept->refused().c_str());
+  return service;
+}
+
+}  // namespace egocal::services
