@@ -151,6 +151,21 @@ std::string goal_text(const Diagnosis& diagnosis) {
   return goal.next.empty() ? text : text + ". " + goal.next;
 }
 
+std::string with_cure(const Finding& finding) {
+  return finding.message + (finding.remedy.empty() ? "" : " Cure: " + finding.remedy);
+}
+
+namespace {
+
+/// ". Before: good. The motions agree."
+std::string before_that(const PairState& pair) {
+  if (!pair.verdict) return {};
+  const Diagnosis& diagnosis = pair.verdict->diagnosis;
+  return ". Before: " + std::string(to_string(diagnosis.verdict)) + ". " + diagnosis.reason;
+}
+
+}  // namespace
+
 std::string standing_text(const PairState& pair) {
   return "no new motion for " + age(pair.standing) + (pair.why_standing.empty() ? "" : ": ") +
          pair.why_standing;
@@ -158,31 +173,24 @@ std::string standing_text(const PairState& pair) {
 
 Label advice_of(const PairState& pair) {
   if (pair.old > 0)
-    return {(pairing_is_silent(pair) ? "pairing is silent for " + age(pair.old)
-                                     : "no solver answers what came in the last " + age(pair.old)) +
-                (pair.verdict ? ". Before: " + std::string(to_string(pair.verdict->diagnosis.verdict)) +
-                                    ". " + pair.verdict->diagnosis.reason
-                              : ""),
+    return {(pair.no_network           ? "no network, nothing received for " + age(pair.old)
+             : pairing_is_silent(pair) ? "pairing is silent for " + age(pair.old)
+                                       : "no solver answers what came in the last " + age(pair.old)) +
+                before_that(pair),
             Style::warning};
   if (pair.standing > 0 && !pair.why_standing.empty())
-    return {standing_text(pair) +
-                (pair.verdict ? ". Before: " + std::string(to_string(pair.verdict->diagnosis.verdict)) +
-                                    ". " + pair.verdict->diagnosis.reason
-                              : ""),
-            Style::warning};
+    return {standing_text(pair) + before_that(pair), Style::warning};
   if (!pair.verdict) return {"", Style::dim};
   const Diagnosis& diagnosis = pair.verdict->diagnosis;
   if (pair.verdict->old > 0)
-    return {"nothing is judged since " + age(pair.verdict->old) + ": is egocal-diagnosis running? Before: " +
-                std::string(to_string(diagnosis.verdict)) + ". " + diagnosis.reason,
+    return {"nothing has been judged for " + age(std::max(1.0, pair.verdict->old)) +
+                ": is egocal-diagnosis running?" + before_that(pair).substr(1),
             Style::warning};
   const Style style = style_of(diagnosis.verdict);
   for (const Finding& finding : diagnosis.findings)
-    if (finding.certain) return {finding.message + " Cure: " + finding.remedy, style};
-  if (diagnosis.verdict >= Verdict::doubtful && !diagnosis.findings.empty()) {
-    const Finding& possible = diagnosis.findings.front();
-    return {possible.message + " Cure: " + possible.remedy, style};
-  }
+    if (finding.certain) return {with_cure(finding), style};
+  if (diagnosis.verdict >= Verdict::doubtful && !diagnosis.findings.empty())
+    return {with_cure(diagnosis.findings.front()), style};
   if (diagnosis.verdict <= Verdict::incomplete && diagnosis.goal && !diagnosis.goal->reached)
     return {"goal " + goal_text(diagnosis), style};
   return {(diagnosis.goal && diagnosis.goal->reached ? "goal done. " : "") + diagnosis.reason, style};

@@ -54,6 +54,8 @@ Label verdict_of(const PairState& pair, Charset charset);
 Label proof_of(const calibration_t& answer);
 /// What to do about it, or why, in one line: the first finding with its cure, else the goal, else the reason.
 Label advice_of(const PairState& pair);
+/// "The clocks drift. Cure: ...".
+std::string with_cure(const Finding& finding);
 /// "no new motion for 12 s: camera sends nothing".
 std::string standing_text(const PairState& pair);
 /// "done", "weak: z yaw, about 2 min more; Take a ramp": empty without a goal.

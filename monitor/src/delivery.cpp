@@ -6,6 +6,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/decode.hpp"
+#include "egocal/bus/pair_messages.hpp"
 #include "egocal/bus/verdict.hpp"
 
 namespace egocal::monitor {
@@ -17,26 +18,26 @@ void Delivery::deliver(const std::string& channel, std::span<const std::byte> by
     return false;
   };
   // damaged names, or somebody else's: they must not show as another pair
-  const auto of_channel = [&](const auto& message, auto channel_of) {
-    if (channel == channel_of(message.sensor_a, message.sensor_b)) return true;
+  const auto of_channel = [&](const auto& message) {
+    if (channel == bus::channel_of(message)) return true;
     model_.note(Severity::warning, channel, "a message of another pair is refused", now);
     return false;
   };
   if (channel.starts_with(bus::problem_prefix)) {
     problem_t message{};
-    if (decoded(message) && of_channel(message, bus::problem_channel)) problem(message, now);
+    if (decoded(message) && of_channel(message)) problem(message, now);
   } else if (channel.starts_with(bus::calibration_prefix)) {
     calibration_t message{};
-    if (decoded(message) && of_channel(message, bus::calibration_channel)) calibration(message, now);
+    if (decoded(message) && of_channel(message)) calibration(message, now);
   } else if (channel.starts_with(bus::verdict_prefix)) {
     verdict_t message{};
-    if (decoded(message) && of_channel(message, bus::verdict_channel)) verdict(message, now);
+    if (decoded(message) && of_channel(message)) verdict(message, now);
   } else if (channel.starts_with(bus::scale_problem_prefix)) {
     scale_problem_t message{};
-    if (decoded(message) && of_channel(message, bus::scale_problem_channel)) scale_problem(message, now);
+    if (decoded(message) && of_channel(message)) scale_problem(message, now);
   } else if (channel.starts_with(bus::scale_prefix)) {
     scale_t message{};
-    if (decoded(message) && of_channel(message, bus::scale_channel)) scale(message, now);
+    if (decoded(message) && of_channel(message)) scale(message, now);
   } else if (channel == bus::status_channel) {
     status_t message{};
     if (decoded(message)) model_.on_status(message, now);

@@ -82,7 +82,9 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     pane.text(label_width + length + 1, y, pad_left(text, number_width),
               known || ground ? Style::dim : Style::bad);
   }
-  pane.text(2, 7, answer->hint.empty() ? "the motions show everything" : clean(answer->hint, 120),
+  const bool all_known = !pair.verdict || pair.verdict->diagnosis.verdict != Verdict::incomplete;
+  const std::string shown = all_known ? "the motions show everything" : "shown, not yet exact enough";
+  pane.text(2, 7, answer->hint.empty() ? shown : clean(answer->hint, 120),
             answer->hint.empty() ? Style::dim : Style::warning);
 }
 

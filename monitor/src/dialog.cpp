@@ -33,7 +33,7 @@ Text help(const ViewState& view, int width, int height) {
            "r        reset the calibration     p        pause or resume it", "s        the sensors' streams",
            "Ctrl-L   draw again                Ctrl-Z   suspend", "",
            "good, incomplete, doubtful, contradictory: can it be used?",
-           "optimal (proven): no other transform fits better. Not the same.",
+           "optimal (proven): the best fit to the motions, right or wrong.",
            "gap of 1: distance to that proof, in units of its limit.",
            std::string(symbols(view.charset).plus_minus) +
                " and the bars: how well the motions show it (one sigma).",

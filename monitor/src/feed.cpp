@@ -36,12 +36,7 @@ Feed::Feed(Model& model, const FeedOptions& options)
   loop_.subscribe_bytes(bus::status_channel, deliver, queue_capacity);
   loop_.subscribe_bytes(bus::command_channel, deliver);
   if (!options.sensors.empty()) watch_streams();
-  const auto report = [this](const std::string& error) {
-    if (error.empty())
-      model_.note(Severity::good, "network", "the network is back", now());
-    else
-      model_.note(Severity::bad, "network", error, now());
-  };
+  const auto report = [this](const std::string& error) { model_.set_network(error, now()); };
   if (!loop_.network_error().empty()) report(loop_.network_error());
   loop_.on_network(report);
   heartbeat_.set_state(bus::State::running);

@@ -185,7 +185,8 @@ std::string text_lines(const Model& model, Charset charset) {
   for (const ProcessState& process : model.processes()) {
     const status_t& status = process.status;
     text += clean(status.name, 40) + ": " +
-            (process.alive                        ? clean(status.state, 20)
+            (!process.known                       ? "unknown (no network)"
+             : process.alive                      ? clean(status.state, 20)
              : process.state == bus::State::ended ? "ended"
                                                   : "GONE") +
             ", pid " + std::to_string(status.pid) + " on " + clean(status.host, 40) + ", in " +
@@ -276,7 +277,7 @@ std::string json_line(const Model& model) {
                               {"role", clean(status.role, 200)},
                               {"host", clean(status.host, 200)},
                               {"pid", status.pid},
-                              {"alive", process.alive},
+                              {"alive", process.known ? json(process.alive) : json(nullptr)},
                               {"state", clean(status.state, 200)},
                               {"in", process.in},
                               {"out", process.out},

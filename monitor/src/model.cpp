@@ -40,15 +40,6 @@ bus::StandingRank rank_of(const SolverTrack& track) {
           {answer.session, answer.seq, optimality_of(answer), answer.cost}};
 }
 
-/// The mean distance of the motions between two problems shows whether the stream had a gap: problems that
-/// were skipped are no gap.
-bool is_gap(const problem_t& before, const problem_t& message, double max_gap) {
-  if (message.seq <= before.seq) return false;
-  const double motions = static_cast<double>(message.seq) - static_cast<double>(before.seq);
-  const double stride = std::clamp(message.stride, 1, 1000);
-  return seconds_between(before.utime, message.utime) > max_gap * (stride + motions - 1);
-}
-
 }  // namespace
 
 bool pair_is_paused(const Model& model, const PairState& pair) {
@@ -154,16 +145,10 @@ void Model::on_problem(const problem_t& message, Now now) {
   if (!pair) return;
   const std::string name = pair_name(pair->a, pair->b);
   if (pair->session != message.session) {
-    if (pair->has_problem) note(Severity::warning, name, "session reset: the calibration starts again", now);
+    if (pair->has_problem) note_new_session(*pair, message.session, now);
     begin_session(*pair, message.session);
   } else if (pair->has_problem) {
-    const double step = seconds_between(pair->problem.utime, message.utime);
-    if (step < 0) {
-      note(Severity::warning, name, "time ran backwards in the problems of one session", now);
-    } else if (is_gap(pair->problem, message, options_.max_gap)) {
-      ++pair->gap_count;
-      note(Severity::warning, name, "gap of " + rounded(step, 1) + " s in the stream", now);
-    }
+    watch_time(*pair, message, now);
     follow_back(*pair, message, now);
   }
   if (pair->paused && message.seq > pair->problem.seq && message.session == pair->problem.session &&
@@ -179,7 +164,7 @@ void Model::on_problem(const problem_t& message, Now now) {
   const bool sum = sums_strides(message);
   const bool chosen_anew = pair->has_problem && (sums_strides(pair->problem) != sum ||
                                                  (!sum && pair->problem.stride != message.stride));
-  pair->silent = false;
+  pair->silent = pair->no_network = false;
   pair->has_problem = true;
   pair->problem_at = now;
 
@@ -347,10 +332,12 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
       note(Severity::info, name,
            "solver added: " + solver + " (" + bounded(message.method) + ") answers as well", now);
   } else if (track->answer.method != bounded(message.method)) {
-    note(Severity::info, name,
-         "solver swapped: " + solver + " changed from " + track->answer.method + " to " +
-             bounded(message.method),
-         now);
+    // a fast solver's first answers are of another method: until it knows of the global solver, or is near
+    if (track->settled || track->role != Role::fast)
+      note(Severity::info, name,
+           "solver swapped: " + solver + " changed from " + track->answer.method + " to " +
+               bounded(message.method),
+           now);
   } else if (track->silent) {
     note(Severity::good, name, solver + " answers again", now);
   }
@@ -371,20 +358,40 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   } else if (!pair->only_fast_since && track->answer.status == 0) {
     pair->only_fast_since = time;
   }
-  if (message.fallback) {
-    if (!pair->fallback)
-      note(Severity::warning, name, "fallback: " + solver + " asked for the global solver", now);
-    pair->fallback = true;
-    pair->fallback_mono_us = now.mono_us;
-  } else if (pair->fallback && seconds_between(pair->fallback_mono_us, now.mono_us) > options_.settle) {
-    pair->fallback = false;
-    note(Severity::good, name, "only the fast solver runs again", now);
-  }
+  watch_fallback(*pair, *track, message, now);
 
   // every solver's own course, so that two can be compared
   if (time >= 0 && time < options_.longest_session)
     track->history.add(time, curve_values(shown_of(*pair, message), message, track->role));
   count_answer(*pair, now);
+}
+
+/// A fast solver that starts has no answer to start from, and asks for one: no fallback.
+void Model::watch_fallback(PairState& pair, SolverTrack& track, const calibration_t& message, Now now) {
+  const std::string name = pair_name(pair.a, pair.b);
+  if (track.role == Role::fast) {
+    const bool alone =
+        !message.fallback && track.answer.status == 0 && message.method != "dual" && message.method != "sdp";
+    if (!alone)
+      track.alone_mono_us.reset();
+    else if (!track.alone_mono_us)
+      track.alone_mono_us = now.mono_us;
+  }
+  if (message.fallback) {
+    if (!pair.fallback && track.settled)
+      note(Severity::warning, name, "fallback: " + track.name + " asked for the global solver", now);
+    else if (!pair.fallback)
+      note(Severity::info, name, track.name + " starts from answers of the global solver", now);
+    if (!pair.fallback) pair.fallback_at_start = !track.settled;
+    pair.fallback = true;
+    pair.fallback_mono_us = now.mono_us;
+  } else if (pair.fallback && seconds_between(pair.fallback_mono_us, now.mono_us) > options_.settle) {
+    pair.fallback = false;
+    note(Severity::good, name,
+         pair.fallback_at_start ? "only the fast solver runs" : "only the fast solver runs again", now);
+  }
+  if (track.alone_mono_us && seconds_between(*track.alone_mono_us, now.mono_us) > options_.settle)
+    track.settled = true;
 }
 
 /// A loop that opens, and one that closes again, as events.
@@ -406,35 +413,37 @@ void Model::watch_loops(Now now) {
 void Model::tick(Now now) {
   now_ = now;
   watch_loops(now);
-  for (ProcessState& process : processes_) {
-    if (is_own(process)) process.at = now;
-    if (process.alive && seconds_between(process.at.mono_us, now.mono_us) > options_.heartbeat_timeout) {
-      process.alive = false;
-      process.rate_in = process.rate_out = -1;
-      note(Severity::bad, process.status.name,
-           "process is gone: no heartbeat for " + rounded(options_.heartbeat_timeout, 0) + " s", now);
-    }
-  }
+  watch_processes(now);
+  watch_interruptions(now);
   for (PairState& pair : pairs_) {
-    const std::string name = pair_name(pair.a, pair.b);
-    if (pair.has_problem && !pair.silent &&
-        seconds_between(pair.problem_at.mono_us, now.mono_us) > options_.stream_timeout) {
+    const std::int64_t heard = std::max(pair.problem_at.mono_us, network_mono_us_);
+    const bool silent = seconds_between(heard, now.mono_us) > options_.stream_timeout;
+    if (network_away_)
+      pair.no_network = pair.has_problem;
+    else if (silent)
+      pair.no_network = false;
+    if (pair.has_problem && !pair.silent && !pair.no_network && silent) {
       pair.silent = true;
-      note(Severity::info, name,
+      note(Severity::info, pair_name(pair.a, pair.b),
            "the stream is silent: no new motion for " + rounded(options_.stream_timeout, 0) + " s", now);
     }
     watch_age_of_verdict(pair, now);
     watch_age_of_answer(pair, now);
     watch_motions(pair, now);
-    // a solver is missed only where there is something to solve, and only after it has had time to
-    if (!pair.has_problem || pair.silent || pair_is_paused(*this, pair)) pair.idle_mono_us = now.mono_us;
-    for (SolverTrack& track : pair.solvers) {
-      const double unanswered = seconds_between(std::max(track.at.mono_us, pair.idle_mono_us), now.mono_us);
-      if (track.role == Role::fast && !track.silent && unanswered > options_.stream_timeout) {
-        track.silent = true;
-        note(Severity::bad, name, "solver swapped: " + track.name + " no longer answers", now);
-      }
-    }
+    watch_solvers(pair, now);
+  }
+}
+
+/// A solver is missed only where there is something to solve, and only after it has had time to.
+void Model::watch_solvers(PairState& pair, Now now) {
+  if (!pair.has_problem || pair.silent || pair.no_network || pair_is_paused(*this, pair))
+    pair.idle_mono_us = now.mono_us;
+  for (SolverTrack& track : pair.solvers) {
+    const double unanswered = seconds_between(std::max(track.at.mono_us, pair.idle_mono_us), now.mono_us);
+    if (track.role != Role::fast || track.silent || unanswered <= options_.stream_timeout) continue;
+    track.silent = true;
+    note(Severity::bad, pair_name(pair.a, pair.b), "solver swapped: " + track.name + " no longer answers",
+         now);
   }
 }
 

@@ -20,10 +20,12 @@ void Model::note_unanswered(PairState& pair, Now now) {
 
 /// Solvers that hang leave an answer behind, and so does a pairing process.
 void Model::watch_age_of_answer(PairState& pair, Now now) {
+  if (pair.no_network || pair_is_paused(*this, pair)) pair.unanswered.forget();
   const double unanswered = pair.unanswered.old(now.mono_us, options_.answer_age);
   // where no problem was ever received, the answer is not verified, which is shown as well
-  const double silent =
-      pairing_is_silent(pair) && pair.has_problem ? seconds_between(pair.problem_at.mono_us, now.mono_us) : 0;
+  const double since = seconds_between(pair.problem_at.mono_us, now.mono_us);
+  const bool is_silent = pairing_is_silent(pair) || (pair.no_network && since > options_.stream_timeout);
+  const double silent = is_silent && pair.answer() && pair.has_problem ? since : 0;
   const bool was_old = pair.old > 0;
   pair.old = std::max(unanswered, silent);
   if (unanswered > 0 && !was_old)
@@ -33,9 +35,9 @@ void Model::watch_age_of_answer(PairState& pair, Now now) {
 
 /// Pairing sends its problem every second, with new motions or without.
 void Model::watch_motions(PairState& pair, Now now) {
-  const double since = seconds_between(pair.motion_mono_us, now.mono_us);
-  const bool stands =
-      pair.has_problem && !pair.silent && !pair_is_paused(*this, pair) && since > options_.standing;
+  const double since = seconds_between(std::max(pair.motion_mono_us, pair.idle_mono_us), now.mono_us);
+  const bool stands = pair.has_problem && !pair.silent && !pair.no_network && !pair_is_paused(*this, pair) &&
+                      since > options_.standing;
   pair.standing = stands ? since : 0;
   if (!stands || pair.standing_reported || pair.why_standing.empty()) return;
   pair.standing_reported = true;

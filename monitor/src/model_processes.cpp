@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the model makes of the processes: their states, errors, counts and rates, and the commands to them.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -28,18 +29,8 @@ status_t bounded_status(const status_t& message) {
   return status;
 }
 
-void sum_counters(ProcessState& process, const status_t& message) {
-  process.in = process.out = process.lost = process.rejected = 0;
-  for (const counter_t& counter : message.counters) {
-    // a hostile count must not overflow the sums
-    const std::int64_t value =
-        std::clamp<std::int64_t>(counter.value, -(std::int64_t{1} << 50), std::int64_t{1} << 50);
-    const auto add = [&](std::int64_t& sum) { sum = std::min(sum + value, std::int64_t{1} << 60); };
-    if (counter.name == "in") add(process.in);
-    if (counter.name == "out") add(process.out);
-    if (counter.name.starts_with("lost") || counter.name.starts_with("dropped")) add(process.lost);
-    if (counter.name.starts_with("rejected")) add(process.rejected);
-  }
+std::string rounded(double seconds) {
+  return std::to_string(std::llround(seconds));
 }
 
 /// Messages per second since the last update; -1 where they are not known.
@@ -79,6 +70,8 @@ void Model::on_status(const status_t& message, Now now) {
       process = &candidate;
   const std::string state_text = bounded(message.state), error = bounded(message.last_error);
   const std::optional<bus::State> state = bus::state_from_name(message.state);
+  const bool is_new = !process;
+  const bool restarted = process && process->status.run != message.run;
   if (!process) {
     if (processes_.size() == max_processes) {
       auto gone = std::find_if(processes_.begin(), processes_.end(), [](const auto& p) { return !p.alive; });
@@ -92,33 +85,86 @@ void Model::on_status(const status_t& message, Now now) {
     process->rate_in = process->rate_out = -1;
     process->alive = state != bus::State::ended;
     if (process->alive) note(Severity::good, name, "process is there (" + state_text + ")", now);
-    if (!error.empty()) note(Severity::warning, name, error, now);
   } else {
     const bool ended = state == bus::State::ended;
-    const bool restarted = process->status.run != message.run;
-    if (restarted && process->alive && process->status.pid != message.pid &&
-        message.run < process->status.run) {
+    const std::pair<std::int64_t, std::int32_t> run{message.run, message.pid};
+    if (restarted && process->alive && !ended && process->run_before == run) {
       note(Severity::warning, name, "a second process of this name is running", now);
     } else if (restarted) {
       note(Severity::good, name, process->alive ? "process was restarted" : "process is back", now);
     } else if (!process->alive && !ended) {
       note(Severity::good, name, "process is back", now);
     } else if (process->status.state != state_text) {
-      const bool healthy = ended || state == bus::State::running || state == bus::State::standby;
+      // a pause was asked for
+      const bool healthy = ended || state == bus::State::running || state == bus::State::standby ||
+                           state == bus::State::paused;
       note(healthy ? Severity::info : Severity::warning, name,
            "changed from " + process->status.state + " to " + state_text, now);
     }
-    if (error != process->status.last_error && !error.empty()) note(Severity::warning, name, error, now);
+    if (process->state == bus::State::paused && state != bus::State::paused)
+      process->resumed_mono_us = now.mono_us;
     process->alive = !ended;
-    if (restarted) process->rate_mono_us = 0;
+    if (restarted) {
+      process->run_before = {process->status.run, process->status.pid};
+      process->rate_mono_us = 0;
+      for (PairState& pair : pairs_)
+        for (SolverTrack& track : pair.solvers)
+          if (track.name == name) track.settled = false;
+    }
   }
   process->at = now;
   process->status = bounded_status(message);
   process->state = state;
 
-  watch_rejections(*process, message, now);
-  sum_counters(*process, message);
+  watch_error(*process, error, now);
+  watch_seeks(*process, message, is_new || restarted, now);
+  count_messages(*process, message, is_new, now);
   update_rates(*process, now);
+}
+
+/// Processes that resume, or that have a network again, hear of each other one after the other: what they
+/// miss for a moment is not missing.
+void Model::watch_error(ProcessState& process, const std::string& error, Now now) {
+  if (error.empty()) process.reported_error.clear();
+  if (error == process.reported_error || network_away_) return;
+  const std::int64_t since = std::max(process.resumed_mono_us.value_or(0), network_mono_us_);
+  if (since > 0 && seconds_between(since, now.mono_us) < options_.heartbeat_timeout) return;
+  process.reported_error = error;
+  note(Severity::warning, process.status.name, error, now);
+}
+
+/// Without a network this monitor cannot know who is gone.
+void Model::watch_processes(Now now) {
+  for (ProcessState& process : processes_) {
+    const bool own = is_own(process);
+    if (own) process.at = now;
+    process.known = own || !network_away_;
+    if (!process.known) process.rate_in = process.rate_out = -1;
+    const std::int64_t heard = std::max(process.at.mono_us, network_mono_us_);
+    if (!process.alive || !process.known || seconds_between(heard, now.mono_us) <= options_.heartbeat_timeout)
+      continue;
+    process.alive = false;
+    process.rate_in = process.rate_out = -1;
+    note(Severity::bad, process.status.name,
+         "process is gone: no heartbeat for " + rounded(options_.heartbeat_timeout) + " s", now);
+  }
+}
+
+bool Model::heard_others() const {
+  return std::any_of(processes_.begin(), processes_.end(), [this](const auto& p) { return !is_own(p); }) ||
+         std::any_of(pairs_.begin(), pairs_.end(), [](const auto& p) { return p.answer() || p.has_problem; });
+}
+
+void Model::set_network(const std::string& error, Now now) {
+  now_ = now;
+  if (error.empty())
+    note(Severity::good, "network", "the network is back", now);
+  else
+    note(Severity::bad, "network", error, now);
+  if (network_away_ == !error.empty()) return;
+  network_away_ = !error.empty();
+  network_mono_us_ = now.mono_us;
+  watch_processes(now);
 }
 
 void Model::on_command(const command_t& message, Now now) {
@@ -134,7 +180,13 @@ void Model::on_command(const command_t& message, Now now) {
       if (!all && (message.sensor_a != pair.a || message.sensor_b != pair.b)) continue;
       pair.paused = message.verb == "pause";
       pair.paused_mono_us = now.mono_us;
+      if (pair.paused) interrupt(pair, Interruption::Kind::pause, 1, now);
     }
+  if (to_pairing && message.verb == "reset")
+    for (PairState& pair : pairs_)
+      if ((message.sensor_a.empty() && message.sensor_b.empty()) ||
+          (message.sensor_a == pair.a && message.sensor_b == pair.b))
+        pair.reset_asked = pair.session;
   const std::string subject = message.sensor_a.empty() && message.sensor_b.empty()
                                   ? std::string("all pairs")
                                   : pair_name(bounded(message.sensor_a), bounded(message.sensor_b));

@@ -7,27 +7,16 @@
 
 namespace egocal::monitor {
 
-namespace {
-
-const std::string prefix = "rejected: ";
-
-}  // namespace
-
 /// The first of each kind is an event.
-void Model::watch_rejections(ProcessState& process, const status_t& message, Now now) {
-  for (const counter_t& counter : message.counters) {
-    if (counter.value <= 0 || !counter.name.starts_with(prefix)) continue;
-    const std::string reason = counter.name.substr(prefix.size(), max_text);
-    const auto known = std::find_if(process.rejections.begin(), process.rejections.end(),
-                                    [&](const bus::Refusal& refusal) { return refusal.reason == reason; });
-    if (known != process.rejections.end()) {
-      known->count = counter.value;
-    } else if (process.rejections.size() < options_.most_reasons) {
-      process.rejections.push_back({reason, bus::cure_of_rejection(reason), counter.value});
-      const std::string& cure = process.rejections.back().cure;
-      note(Severity::info, process.status.name, "rejects: " + reason + (cure.empty() ? "" : ": " + cure),
-           now);
-    }
+void Model::watch_rejections(ProcessState& process, const std::string& reason, std::int64_t count, Now now) {
+  const auto known = std::find_if(process.rejections.begin(), process.rejections.end(),
+                                  [&](const bus::Refusal& refusal) { return refusal.reason == reason; });
+  if (known != process.rejections.end()) {
+    known->count = count;
+  } else if (process.rejections.size() < options_.most_reasons) {
+    process.rejections.push_back({reason, bus::cure_of_rejection(reason), count});
+    const std::string& cure = process.rejections.back().cure;
+    note(Severity::info, process.status.name, "rejects: " + reason + (cure.empty() ? "" : ": " + cure), now);
   }
 }
 

@@ -22,9 +22,7 @@ void Model::on_scale(const scale_t& message, const bus::CheckedScale& scale, Now
   PairState* pair = find_pair(message.sensor_a, message.sensor_b);
   if (!pair || (pair->has_problem && scale.session < pair->session)) return;
   if (scale.session != pair->session) {
-    if (pair->has_problem)
-      note(Severity::warning, pair_name(pair->a, pair->b), "session reset: the calibration starts again",
-           now);
+    if (pair->has_problem) note_new_session(*pair, scale.session, now);
     begin_session(*pair, scale.session);
     pair->has_problem = false;  // its problem comes once the scale is known
   }

@@ -49,6 +49,8 @@ void Model::on_verdict(const verdict_t& message, const bus::ReceivedVerdict& rec
   } else if (pair->has_problem && pair->problem.seq > message.seq) {
     verdict.behind_mono_us = now.mono_us;
   }
+  std::string& reason = verdict.diagnosis.reason;
+  reason.erase(reason.find_last_not_of(' ') + 1);  // a sentence that is empty comes behind a blank
   watch_verdict(*pair, verdict, now);
   pair->verdict = verdict;
 }
@@ -72,6 +74,18 @@ void Model::watch_verdict(const PairState& pair, const PairVerdict& verdict, Now
 /// A diagnosis that hangs leaves a verdict behind, and the mount may move after it.
 void Model::watch_age_of_verdict(PairState& pair, Now now) {
   if (!pair.verdict || !pair.verdict->behind_mono_us) return;
+  const auto is_pairing = [](const ProcessState& process) {
+    return process.status.role == bus::role_name(Role::pairing);
+  };
+  const bool over = std::any_of(processes_.begin(), processes_.end(), is_pairing) &&
+                    std::all_of(processes_.begin(), processes_.end(), [&](const ProcessState& process) {
+                      return !is_pairing(process) || process.state == bus::State::ended;
+                    });
+  if (pair.no_network || over || pair_is_paused(*this, pair)) {  // nobody is to judge, or nothing of it comes
+    pair.verdict->behind_mono_us = now.mono_us;
+    pair.verdict->old = 0;
+    return;
+  }
   const bool gone = std::any_of(processes_.begin(), processes_.end(), [&](const ProcessState& process) {
     return process.status.name == pair.verdict->sender && !process.alive;
   });

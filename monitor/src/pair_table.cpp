@@ -57,9 +57,9 @@ const char* heading_of(PairColumn column, ErrorKind error, Charset charset) {
     case PairColumn::proof:
       return "optimal";
     case PairColumn::error_translation:
-      return error.spread ? "spread" : error.nominal ? "off" : "error";
+      return error.spread ? "spread t" : error.nominal ? "off" : "error t";
     case PairColumn::error_rotation:
-      return error.spread ? "spread" : error.nominal ? "nominal" : "error";
+      return error.spread ? "spread R" : error.nominal ? "nominal" : "error R";
     case PairColumn::frames:
       return "frames";
     case PairColumn::solver:

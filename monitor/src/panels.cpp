@@ -42,15 +42,17 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     const status_t& status = process->status;
     const bool ended = process->state == bus::State::ended;
     const bool healthy = process->state == bus::State::running || process->state == bus::State::standby;
-    const Style style = process->alive ? (healthy ? Style::good : Style::warning)
-                        : ended        ? Style::dim
-                                       : Style::bad;
-    int x = pane.text(2, y, process->alive ? s.alive : s.gone, style) + 1;
+    const Style style = !process->known  ? Style::dim
+                        : process->alive ? (healthy ? Style::good : Style::warning)
+                        : ended          ? Style::dim
+                                         : Style::bad;
+    int x = pane.text(2, y, !process->known ? "?" : process->alive ? s.alive : s.gone, style) + 1;
     x = pane.text(x, y, pad_right(clean(status.name, 16), 16)) + 1;
     x = pane.text(x, y,
-                  pad_right(process->alive ? clean(status.state, 8)
-                            : ended        ? "ended"
-                                           : "GONE",
+                  pad_right(ended             ? "ended"
+                            : !process->known ? "unknown"
+                            : process->alive  ? clean(status.state, 8)
+                                              : "GONE",
                             8),
                   style) +
         1;

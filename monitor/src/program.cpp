@@ -220,12 +220,6 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
   }
 }
 
-bool parse_size(const std::string& text, int& width, int& height) {
-  char rest = 0;
-  return std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) == 2 && width >= 1 && height >= 1 &&
-         width <= 1000 && height <= 1000;
-}
-
 bool print(const std::string& text) {
   return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
 }
@@ -236,6 +230,13 @@ void handle_stop() {
   sigemptyset(&action.sa_mask);
   for (int signal_number : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal_number, &action, nullptr);
   signal(SIGPIPE, SIG_IGN);  // a reader that has seen enough ends us through print()
+}
+
+/// Throws Error where nothing was received: what this process sends comes back to it, and does not count.
+void require_messages(const Model& model, const Source& source) {
+  if (model.heard_others()) return;
+  if (!source.network_error().empty()) throw Error(source.network_error());
+  throw Error(source.live() ? "nothing received on " + source.name() : no_session(source.name()));
 }
 
 int run_once(const ProgramOptions& options, Model& model, Source& source, Charset charset) {
@@ -258,19 +259,14 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
     ViewState view = first_view(options, source);
     view.charset = charset;
     view.network_error = source.network_error();
-    int width = 0, height = 0;
-    parse_size(options.size, width, height);
-    Canvas canvas(width, height);
+    const Size size = size_from_text(options.size).value_or(Size{});
+    Canvas canvas(size.width, size.height);
     draw(canvas, model, view);
     print(canvas.to_text());
   } else {
     print(options.json ? json_line(model) + "\n" : text_lines(model, charset));
   }
-  const bool heard = std::any_of(model.pairs().begin(), model.pairs().end(),
-                                 [](const PairState& p) { return p.answer() || p.has_problem; }) ||
-                     !model.processes().empty();
-  if (!heard && !source.network_error().empty()) throw Error(source.network_error());
-  if (!heard) throw Error(source.live() ? "nothing received on " + source.name() : no_session(source.name()));
+  if (!stop_flag) require_messages(model, source);
   return 0;
 }
 
@@ -303,6 +299,7 @@ int run_follow(const ProgramOptions& options, Model& model, Source& source, Char
       if (over && !options.json) text = text_lines(model, charset);
       if (!print(text)) return 0;
     }
+    if (over && !stop_flag) require_messages(model, source);
     if (over) return 0;
     source.wait(50);
   }
@@ -312,7 +309,7 @@ int run_follow(const ProgramOptions& options, Model& model, Source& source, Char
 
 int run(const ProgramOptions& options) {
   std::setlocale(LC_CTYPE, "");
-  if (int w = 0, h = 0; !options.size.empty() && !parse_size(options.size, w, h)) {
+  if (!options.size.empty() && !size_from_text(options.size)) {
     std::fprintf(stderr, "egocal-monitor: --size: expected WIDTHxHEIGHT, e.g. 100x30, got '%s'\n",
                  clean(options.size, 40).c_str());
     return 2;

@@ -3,6 +3,7 @@
 #include "egocal/monitor/text.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -237,6 +238,20 @@ std::string clock_time(std::int64_t wall_us, int utc_offset_s) {
   std::snprintf(buffer, sizeof buffer, "%02d:%02d:%02d", static_cast<int>(s / 3600),
                 static_cast<int>(s / 60 % 60), static_cast<int>(s % 60));
   return buffer;
+}
+
+std::optional<Size> size_from_text(const std::string& text) {
+  constexpr int most = 1000;  // cells; no terminal has more
+  const auto number = [](const char* begin, const char* end) {
+    int value = 0;
+    const auto [rest, error] = std::from_chars(begin, end, value);
+    return error == std::errc() && rest == end && value >= 1 && value <= most ? value : 0;
+  };
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) return std::nullopt;
+  const char* const middle = text.data() + cross;
+  const Size size{number(text.data(), middle), number(middle + 1, text.data() + text.size())};
+  return size.width > 0 && size.height > 0 ? std::optional(size) : std::nullopt;
 }
 
 }  // namespace egocal::monitor

@@ -20,15 +20,13 @@ std::vector<LabelledLine> lines_of(const PairVerdict& verdict, Charset charset) 
   const Diagnosis& diagnosis = verdict.diagnosis;
   std::vector<LabelledLine> lines;
   for (const Finding& finding : diagnosis.findings)
-    if (finding.certain)
-      lines.push_back({"finding", finding.message + " Cure: " + finding.remedy, Style::warning});
+    if (finding.certain) lines.push_back({"finding", with_cure(finding), Style::warning});
   if (diagnosis.goal)
     lines.push_back({"goal", goal_text(diagnosis), diagnosis.goal->reached ? Style::good : Style::normal});
   const std::string fit = fit_text(verdict, charset);
   if (!fit.empty()) lines.push_back({"fit", fit, Style::normal});
   for (const Finding& finding : diagnosis.findings)
-    if (!finding.certain)
-      lines.push_back({"possible", finding.message + " Cure: " + finding.remedy, Style::dim});
+    if (!finding.certain) lines.push_back({"possible", with_cure(finding), Style::dim});
   return lines;
 }
 

@@ -23,6 +23,12 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
   if (view.frozen) right = "VIEW PAUSED  " + right;
   // items from left to right as far as there is room before the clock
   const int end = pane.width() - (pane.width() >= 40 || view.frozen ? width_of(right) + 3 : 0);
+  constexpr const char* no_network = "NO NETWORK";
+  // before the clock: nothing else here is of the present
+  const bool away = !view.network_error.empty();
+  const auto say_away = [&] {
+    if (away && x + width_of(no_network) <= pane.width()) x = pane.text(x, 0, no_network, Style::bad) + 2;
+  };
   const auto item = [&](const std::string& text, Style style) {
     if (x + width_of(text) > end) return false;
     x = pane.text(x, 0, text, style);
@@ -31,13 +37,16 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
   if (view.screen == Screen::detail && pair) {
     x = pane.text(x, 0, pair_title(*pair, view.charset, pane.width() >= 60 ? 24 : 12), Style::title) + 2;
     const bool paused = pair_is_paused(model, *pair);
+    say_away();
     if (paused) item("PAUSED ", Style::warning);
     const Label verdict = verdict_of(*pair, view.charset);
     item(verdict.text, verdict.style);
     const std::string between = std::string(" ") + s.dot + " ";
     const calibration_t* answer = pair->answer();
-    if (answer && item(" by ", Style::dim))
+    if (answer && x + 4 + width_of(clean(answer->solver, 16)) <= end) {
+      item(" by ", Style::dim);
       item(clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
+    }
     if (answer) {
       item(between + count(answer->pairs) + " frames", Style::dim);
     }
@@ -69,7 +78,7 @@ void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
         std::count_if(model.pairs().begin(), model.pairs().end(), [](const PairState& p) {
           return p.verdict && p.verdict->diagnosis.verdict == Verdict::contradictory;
         });
-    if (!view.network_error.empty() && item("NO NETWORK", Style::bad)) x += 2;
+    say_away();
     if (contradictory > 0 && item(std::to_string(contradictory) + " contradictory", Style::bad)) x += 2;
     if (old > 0 && item(std::to_string(old) + " old", Style::warning)) x += 2;
     if (pane.width() >= 50)

@@ -149,6 +149,13 @@ void Player::seek(double seconds) {
   reported_jumps_ = tape_.damage().jumps;
   in_flight_.clear();
   ended_ = false;
+  say_it_jumps();
+}
+
+/// Before the first message from there: what listeners miss, or hear twice, is no fault.
+void Player::say_it_jumps() {
+  ++heartbeat_.counter("seeks");
+  heartbeat_.publish();
 }
 
 void Player::load() {
@@ -163,8 +170,10 @@ bool Player::begin_again() {
   reported_regions_ = reported_jumps_ = 0;
   tape_.rewind(options_.range.start);
   load();
-  if (next_) anchor(next_->time_us);
-  return next_.has_value();
+  if (!next_) return false;
+  anchor(next_->time_us);
+  say_it_jumps();
+  return true;
 }
 
 /// Where in the recording the clock is; at most at the next event, which has not been sent yet.
@@ -282,6 +291,8 @@ void Player::play() {
 void Player::watch_over() {
   const std::int64_t now = loop_.mono_us();
   show_progress(false);
+  // without a network nobody can be heard: the waits begin when it is back
+  if (!loop_.network_error().empty()) started_mono_us_ = progress_mono_us_ = now;
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {
     alone_ = true;
     say(std::string("no pairing process acknowledges anything; going on without keeping in step") +

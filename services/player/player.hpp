@@ -45,6 +45,7 @@ class Player {
   void wait_until(std::int64_t mono_us);
   void load();
   bool begin_again();
+  void say_it_jumps();
   bool send(const bus::LogEvent& event);
   bool network_may_return();
   void send_again();
@@ -65,10 +66,11 @@ class Player {
   TerminalKeys terminal_keys_;
   Keys keys_;
   std::optional<bus::LogEvent> next_;
-  std::int64_t played_us_ = 0;       ///< recorded time of the event that was sent last
-  std::int64_t anchor_us_ = 0;       ///< recorded time that ...
-  std::int64_t anchor_mono_us_ = 0;  ///< ... is played at this time of the clock
-  std::int64_t started_mono_us_ = 0, progress_mono_us_ = 0, shown_mono_us_ = 0;
+  std::int64_t played_us_ = 0;        ///< recorded time of the event that was sent last
+  std::int64_t anchor_us_ = 0;        ///< recorded time that ...
+  std::int64_t anchor_mono_us_ = 0;   ///< ... is played at this time of the clock
+  std::int64_t started_mono_us_ = 0;  ///< with a network
+  std::int64_t progress_mono_us_ = 0, shown_mono_us_ = 0;
   std::int64_t pairing_mono_us_ = 0;              ///< when a status of pairing was heard last
   std::optional<std::int64_t> refused_mono_us_;   ///< since when the next message cannot be sent
   std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported

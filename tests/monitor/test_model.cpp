@@ -33,7 +33,8 @@ TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
   EXPECT_THAT(drive.texts(),
               ElementsAre("lidar -> camera: optimal (proven), by egocal-global",
                           "lidar -> camera: solver added: egocal-fast (sqp) answers as well",
-                          "lidar -> camera: fallback: egocal-fast asked for the global solver"));
+                          "lidar -> camera: egocal-fast starts from answers of the global solver"));
+  for (const Event& event : drive.model.events()) EXPECT_LT(event.severity, Severity::warning) << event.text;
   EXPECT_FALSE(drive.pair().only_fast_since);
   drive.run(35);
   drive.global = false;
@@ -42,11 +43,43 @@ TEST(ModelEvents, FallbackCertificateAndTheFastSolverAlone) {
   EXPECT_NEAR(*drive.pair().only_fast_since, 3.9, 1e-6) << "right after the global one's last answer";
   EXPECT_EQ(drive.pair().counted_solver()->name, "egocal-fast");
   // the first fallback of a session has ended more than a second ago: said once, when it was over
-  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: only the fast solver runs again").Times(1));
+  EXPECT_THAT(drive.texts(), Contains("lidar -> camera: only the fast solver runs").Times(1));
 
+  drive.fresh();
   drive.change_answer = [](calibration_t& answer) { answer.fallback = 1; };
   drive.run(1);
   EXPECT_FALSE(drive.pair().only_fast_since);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("lidar -> camera: fallback: egocal-fast asked for the global solver"));
+  EXPECT_EQ(drive.model.events().back().severity, Severity::warning);
+  drive.change_answer = [](calibration_t&) {};
+  drive.run(15);
+  EXPECT_THAT(drive.fresh(), ElementsAre("lidar -> camera: only the fast solver runs again"));
+}
+
+// It solves globally itself until it knows of the global solver, and then asks that one.
+TEST(ModelEvents, AFastSolverThatStartsOrIsRestartedIsNoSwapAndNoFallback) {
+  PairDrive drive;
+  drive.heartbeat(status_of("egocal-fast", "fast", 1));
+  const auto start = [&] {
+    drive.change_answer = [](calibration_t& answer) { answer.method = "dual"; };
+    drive.run(3);
+    drive.change_answer = [](calibration_t& answer) {
+      answer.method = "sqp";
+      answer.fallback = 1;
+    };
+    drive.run(3);
+    drive.change_answer = [](calibration_t&) {};
+    drive.run(20);
+    for (const Event& event : drive.model.events())
+      EXPECT_LT(event.severity, Severity::warning) << event.text;
+    EXPECT_THAT(drive.fresh(), Not(Contains(HasSubstr("swapped"))));
+  };
+  start();
+  status_t restarted = status_of("egocal-fast", "fast", 1);
+  restarted.run = 2;
+  drive.heartbeat(restarted);
+  start();
 }
 
 TEST(ModelEvents, CertificateLostAndFoundButNotForAMoment) {
@@ -122,6 +155,22 @@ TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
   EXPECT_THAT(about, ElementsAre("process is there (running)", "process is gone: no heartbeat for 3 s",
                                  "process is back", "process was restarted", "changed from running to paused",
                                  "no global solver", "changed from paused to ended"));
+}
+
+// A clock that is set back between a death and the restart gives the new run the smaller number.
+TEST(ModelEvents, ASecondProcessIsOneThatIsHeardBesideTheFirst) {
+  PairDrive drive;
+  status_t first = status_of("egocal-fast", "fast", 1), second = first;
+  first.run = 100;
+  second.run = 50;
+  second.pid = first.pid + 1;
+  drive.heartbeat(first);
+  drive.heartbeat(second);
+  drive.heartbeat(second);
+  EXPECT_THAT(drive.fresh(),
+              ElementsAre("egocal-fast: process is there (running)", "egocal-fast: process was restarted"));
+  drive.heartbeat(first);
+  EXPECT_THAT(drive.fresh(), ElementsAre("egocal-fast: a second process of this name is running"));
 }
 
 TEST(ModelEvents, ThisProcessIsThereWithoutANetwork) {

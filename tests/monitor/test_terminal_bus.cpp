@@ -105,9 +105,9 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
     EXPECT_THAT(read_text(tmux.folder() / file), HasSubstr("lidar")) << file;
   }
   tmux.keys("?");
-  ASSERT_TRUE(until([&] { return tmux.shows("no other transform fits"); }));
+  ASSERT_TRUE(until([&] { return tmux.shows("the best fit to the motions"); }));
   tmux.keys("q");  // closes the help, no more
-  ASSERT_TRUE(until([&] { return !tmux.shows("no other transform fits"); }));
+  ASSERT_TRUE(until([&] { return !tmux.shows("the best fit to the motions"); }));
   tmux.keys("q");
   expect_shell_is_back(tmux);
 }
@@ -168,8 +168,7 @@ TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
       << tmux.screen();
   tmux.keys("r");
   tmux.keys("y");
-  ASSERT_TRUE(until([&] { return tmux.shows("session reset: the calibration starts again"); }))
-      << tmux.screen();
+  ASSERT_TRUE(until([&] { return tmux.shows("session reset, as asked for"); })) << tmux.screen();
   ASSERT_TRUE(until([&] { return tmux.shows("optimal (proven)"); })) << tmux.screen();
 
   global.signal(SIGKILL);
@@ -239,6 +238,17 @@ TEST(WithoutATerminal, LinesAndObjectsForPipes) {
   const Output follow = output_of(environment("xterm", "C") + program + log + " < /dev/null 2>&1 | head -3");
   EXPECT_THAT(follow.text, HasSubstr("standard input and output are no terminal: printing lines instead"));
   for (char c : follow.text) EXPECT_TRUE(static_cast<unsigned char>(c) < 0x7f) << follow.text;
+}
+
+// Its own heartbeat comes back to it, and is nothing received.
+TEST(WithoutATerminal, NothingReceivedIsAFailure) {
+  for (const std::string arguments :
+       {"--once --timeout 1.5", "--once --timeout 1.5 --json", "--follow --duration 1.5"}) {
+    const Output output = output_of(environment("xterm") + program +
+                                    " --lcm-url udpm://239.255.76.67:7689?ttl=0 " + arguments + " 2>&1");
+    EXPECT_EQ(output.status, 1) << arguments;
+    EXPECT_THAT(output.text, HasSubstr("egocal-monitor: nothing received on udpm://239.255.76.67:7689"));
+  }
 }
 
 TEST(WithoutARoute, OneClearLine) {

@@ -137,6 +137,19 @@ TEST(Text, PaddedToTheCell) {
   EXPECT_EQ(width_of("→ ±°"), 4);
 }
 
+// 4294967396 is 2^32 + 100, and was 100
+TEST(Text, SizesAreNumbersOfCells) {
+  const std::optional<Size> size = size_from_text("100x30");
+  ASSERT_TRUE(size);
+  EXPECT_EQ(size->width, 100);
+  EXPECT_EQ(size->height, 30);
+  EXPECT_TRUE(size_from_text("1x1000"));
+  for (const char* text :
+       {"4294967396x30", "100x4294967326", "99999999999999999999x30", "0x30", "100x0", "-1x30", "1001x30",
+        "100x1001", "100x30x", "100x30 ", " 100x30", "100x", "x30", "100", "", "+1x1"})
+    EXPECT_FALSE(size_from_text(text)) << text;
+}
+
 TEST(Text, AsciiIsAscii) {
   const Symbols& s = symbols(Charset::ascii);
   for (const char* word : {s.arrow, s.plus_minus, s.degree, s.micro, s.yes, s.no, s.alive, s.gone, s.cursor,

@@ -95,6 +95,22 @@ TEST_F(VerdictShown, AtEverySizeThatShowsTheProof) {
     }
 }
 
+TEST_F(VerdictShown, ASentenceThatIsEmptyLeavesNoTrace) {
+  Diagnosis diagnosis = clean();
+  diagnosis.verdict = Verdict::incomplete;
+  diagnosis.reason = "Not known to 1 deg and 60 cm yet: z. ";
+  judge(diagnosis);
+  EXPECT_THAT(pair_lines(model, Charset::ascii), HasSubstr("yet: z; optimal (proven)"));
+  EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("shown, not yet exact enough"));
+  EXPECT_THAT(shown(Screen::detail, 110, 42), Not(HasSubstr("the motions show everything")));
+
+  diagnosis = without_scale();
+  diagnosis.findings[0].remedy.clear();
+  judge(diagnosis);
+  EXPECT_THAT(shown(Screen::overview, 110, 42), Not(HasSubstr("Cure:")));
+  EXPECT_THAT(shown(Screen::detail, 110, 42), Not(HasSubstr("Cure:")));
+}
+
 TEST_F(VerdictShown, AFindingComesWithItsCure) {
   judge(without_scale());
   for (const Screen screen : {Screen::overview, Screen::detail}) {
@@ -178,7 +194,7 @@ TEST_F(VerdictShown, AnOldOneIsNotCalledGood) {
   }
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("0 of 1 good"));
   EXPECT_THAT(pair_lines(model, Charset::ascii),
-              HasSubstr("lidar -> camera: ? old verdict: nothing is judged"));
+              HasSubstr("lidar -> camera: ? old verdict: nothing has been judged for 20 s: is egocal-d"));
   EXPECT_EQ(nlohmann::json::parse(json_line(model))["pairs"][0]["verdict_old"], true);
   EXPECT_THAT(events(), Contains(HasSubstr("the verdict is old")).Times(1));
   judge(without_scale(), test::begin_utime, problem.seq + 1199);

@@ -227,6 +227,51 @@ TEST_F(View, PausedIsSeenOnEveryScreen) {
       EXPECT_THAT(shown(screen, width, height), HasSubstr("PAUSED")) << width << "x" << height;
 }
 
+TEST_F(View, NoPartOfAHeaderStandsAlone) {
+  command_t command{};
+  command.to = "*";
+  command.verb = "pause";
+  for (const bool paused : {false, true}) {
+    if (paused) model.on_command(command, some_time);
+    for (int w = 20; w < 160; ++w) {
+      std::string first = shown(Screen::detail, w, 8);
+      first = first.substr(0, first.find('\n'));
+      EXPECT_THAT(first, Not(testing::ContainsRegex("by +[0-9:]*$"))) << first;
+    }
+  }
+}
+
+TEST_F(View, EveryColumnHasAHeadingOfItsOwn) {
+  const std::string truth = shown(Screen::overview, 60, 10);
+  EXPECT_THAT(truth, HasSubstr("error t"));
+  EXPECT_THAT(truth, HasSubstr("error R"));
+  send(
+      [](problem_t& p) {
+        p.sensor_b = "radar";
+        p.has_truth = p.has_prior = 0;
+      },
+      [](calibration_t& answer) { answer.sensor_b = "radar"; });
+  const std::string spread = shown(Screen::overview, 60, 12);
+  EXPECT_THAT(spread, HasSubstr("spread t"));
+  EXPECT_THAT(spread, HasSubstr("spread R"));
+}
+
+TEST_F(View, HelpSaysWhatAProofIsNot) {
+  view.dialog = Dialog::help;
+  for (const auto& [w, h] : {std::pair{80, 24}, {66, 16}}) {
+    const std::string text = shown(Screen::overview, w, h);
+    EXPECT_THAT(text, HasSubstr("the best fit to the motions, right or wrong.")) << w << "x" << h;
+    EXPECT_THAT(text, HasSubstr("magenta: global solver")) << w << "x" << h;
+  }
+}
+
+TEST_F(View, ANetworkThatIsAwayIsSeenOnEveryScreen) {
+  view.network_error = "no multicast";
+  for (const auto& [width, height] : {std::pair{120, 40}, std::pair{80, 24}, std::pair{40, 8}})
+    for (const Screen screen : {Screen::overview, Screen::detail, Screen::events, Screen::streams})
+      EXPECT_THAT(shown(screen, width, height), HasSubstr("NO NETWORK")) << width << "x" << height;
+}
+
 TEST_F(View, DialogsAreWholeOnSmallScreens) {
   const struct {
     Dialog dialog;

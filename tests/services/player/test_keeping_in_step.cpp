@@ -92,6 +92,44 @@ TEST_F(InStep, NothingIsSentAgainToAProcessThatIsStopped) {
   EXPECT_EQ(repeats(), 0);
 }
 
+// Listeners join the network one after the other: what is sent before pairing is heard may be lost.
+TEST_F(InStep, WithoutANetworkAtTheStartTheLogWaitsForPairing) {
+  test::run_for(clock_, {&loop_}, 10ms);  // what pairing has said already
+  network_.set_away(true);
+  Player player(loop_, heartbeat_, {.log = file_.string(), .range = {}});
+  test::run_for(clock_, {&loop_, &other_}, 20s);
+  EXPECT_EQ(heard_.size(), 0u);
+  network_.set_away(false);
+  loses_ = 2;
+  test::run_for(clock_, {&loop_, &other_}, 15s);
+  EXPECT_EQ(heard_.size(), static_cast<std::size_t>(messages));
+}
+
+// A seek is announced before the first message from there, to listeners that would miss what is skipped.
+TEST_F(InStep, SeeksAreCountedInTheStatusAtOnce) {
+  std::vector<std::int64_t> seeks;
+  std::size_t heard_before = 0;
+  other_.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    for (const counter_t& counter : status.counters)
+      if (counter.name == "seeks" && (seeks.empty() || seeks.back() != counter.value)) {
+        seeks.push_back(counter.value);
+        heard_before = heard_.size();
+      }
+  });
+  Player player(loop_, heartbeat_, {.log = file_.string(), .range = {}});
+  test::run_for(clock_, {&loop_, &other_}, 1s);
+  const std::size_t before = heard_.size();
+  command_t command{};
+  command.to = "egocal-player";
+  for (const char* verb : {"seek 2", "seek 0.5"}) {
+    command.verb = verb;
+    other_.publish(bus::command_channel, command);
+    test::run_for(clock_, {&loop_, &other_}, 5ms);
+  }
+  EXPECT_EQ(seeks, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_LE(heard_before, before + 1);
+}
+
 TEST_F(InStep, WhatIsLostAtTheEndIsSentAgain) {
   Player player(loop_, heartbeat_, {.log = file_.string(), .range = {}});
   test::run_for(clock_, {&loop_, &other_}, 3950ms);

@@ -47,6 +47,9 @@ struct ModelOptions {
   /// A certificate, a fallback or a pause must have lasted this long before its end is an event [s]: solvers
   /// alternate, people do not.
   double settle = 1;
+  /// What processes lose and reject within this time after a pause or a seek comes of it [s]: pairing waits a
+  /// second at most for what is missing, and a status comes once a second.
+  double excused = 5;
   double repeat = 30;           ///< the same event again within this time is only counted [s]
   double many_outliers = 0.05;  ///< a larger part of the motions says that a sensor is at fault
   /// No session lasts longer: a time beyond it is not drawn [s]. A leap year.
@@ -79,7 +82,10 @@ struct SolverTrack {
   Now at;                  ///< its arrival
   bool silent = false;
   std::int64_t answers = 0;
-  History history;  ///< over seconds of measured time since the session began
+  /// Since when it answers on its own, without the global solver; empty: it does not.
+  std::optional<std::int64_t> alone_mono_us{};
+  bool settled = false;  ///< it once did for ModelOptions::settle: what it asks for before is no fallback
+  History history;       ///< over seconds of measured time since the session began
 };
 
 enum class ReferenceKind { none, truth, nominal };
@@ -103,6 +109,13 @@ struct PairVerdict {
   /// Since when motions come that it does not know; empty: it knows all.
   std::optional<std::int64_t> behind_mono_us{};
   double old = 0;  ///< longer than that of a diagnosis that works: for so long [s]
+};
+
+/// Why the motions of a pair do not follow each other in time, where a user asked for it.
+struct Interruption {
+  enum class Kind { pause, seek } kind = Kind::pause;
+  int jumps = 1;             ///< seeks whose jump has not been seen yet
+  std::int64_t mono_us = 0;  ///< when it ended, or now while it lasts
 };
 
 struct PairState {
@@ -133,7 +146,7 @@ struct PairState {
   bool certified = false;  ///< as shown; a moment without a certificate does not unset it
   std::int64_t certified_mono_us = 0;
   std::int64_t fallback_mono_us = 0;
-  bool fallback = false;
+  bool fallback = false, fallback_at_start = false;
   double reported_time_offset = 0;
   bool time_offset_known = false;
   double reported_left_out = 0;  ///< share of the motions that contradict the others, as last reported
@@ -142,6 +155,10 @@ struct PairState {
   bool paused = false;
   std::int64_t paused_mono_us = 0;
   std::int64_t idle_mono_us = 0;  ///< when last there was nothing to solve
+  std::optional<Interruption> interruption;
+  std::optional<std::int64_t> reset_asked;  ///< the session that a command asked to forget
+  /// The monitor has no network, or nothing of pairing has come since: the silence is not pairing's.
+  bool no_network = false;
 
   const calibration_t* answer() const {
     return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;
@@ -156,10 +173,21 @@ struct ProcessState {
   std::optional<bus::State> state;  ///< its state; empty: unknown to this version
   Now at;
   bool alive = true;
+  bool known = true;                 ///< false: the monitor has no network, alive is of before
   double rate_in = 0, rate_out = 0;  ///< [1/s]; negative: unknown
-  std::int64_t in = 0, out = 0, lost = 0, rejected = 0;
+  std::int64_t in = 0, out = 0;
+  std::int64_t lost = 0, rejected = 0;   ///< without what comes of a pause or a seek
   std::vector<bus::Refusal> rejections;  ///< by reason, with its cure where one is known
   std::int64_t rate_mono_us = 0, rate_in_count = 0, rate_out_count = 0;
+  struct Tally {
+    std::int64_t newest = 0, excused = 0;
+  };
+  std::map<std::string, Tally> tallies{};         ///< of the counters that a pause or a seek raises
+  std::int64_t seeks = 0;                         ///< of a player
+  std::string reported_error{};                   ///< the last event
+  std::optional<std::int64_t> resumed_mono_us{};  ///< when its last pause ended
+  /// The process before this one: heard again, both are running.
+  std::optional<std::pair<std::int64_t, std::int32_t>> run_before{};
 };
 
 /// Everything the monitor knows: messages in, plain data out. Names are kept as sent, drawing makes them
@@ -186,6 +214,9 @@ class Model {
   /// Why a pair has no new motion, see bus::why_no_motion().
   void set_why_standing(std::size_t pair, const std::string& why) { pairs_.at(pair).why_standing = why; }
 
+  /// Why this monitor has no network; empty: it has.
+  void set_network(const std::string& error, Now now);
+
   /// A line for the list of events from outside, e.g. captured standard error.
   void note(Severity severity, const std::string& subject, const std::string& text, Now now);
   /// Lets time pass: finds out who has gone silent. To be called a few times a second.
@@ -199,6 +230,8 @@ class Model {
   std::int64_t events_seen() const { return events_seen_; }    ///< ever, also those that are no longer kept
   std::int64_t ignored() const { return ignored_; }
   std::int64_t messages() const { return messages_; }
+  /// Anything of a process that is not this one.
+  bool heard_others() const;
   Now now() const { return now_; }
   const ModelOptions& options() const { return options_; }
 
@@ -212,7 +245,7 @@ class Model {
   void begin_session(PairState& pair, std::int64_t session);
   Role role_of(const calibration_t& message) const;
   void count_answer(PairState& pair, Now now);
-  void watch_rejections(ProcessState& process, const status_t& message, Now now);
+  void watch_rejections(ProcessState& process, const std::string& reason, std::int64_t count, Now now);
   void watch_certificate(PairState& pair, Now now);
   void watch_verdict(const PairState& pair, const PairVerdict& verdict, Now now);
   void watch_age_of_verdict(PairState& pair, Now now);
@@ -220,6 +253,16 @@ class Model {
   void watch_age_of_answer(PairState& pair, Now now);
   void watch_motions(PairState& pair, Now now);
   void watch_loops(Now now);
+  void watch_processes(Now now);
+  void watch_solvers(PairState& pair, Now now);
+  void watch_fallback(PairState& pair, SolverTrack& track, const calibration_t& message, Now now);
+  void watch_time(PairState& pair, const problem_t& message, Now now);
+  void note_new_session(PairState& pair, std::int64_t session, Now now);
+  void watch_error(ProcessState& process, const std::string& error, Now now);
+  void watch_seeks(ProcessState& process, const status_t& message, bool is_first, Now now);
+  void interrupt(PairState& pair, Interruption::Kind kind, int jumps, Now now);
+  void watch_interruptions(Now now);
+  void count_messages(ProcessState& process, const status_t& message, bool is_new, Now now);
   bool is_own(const ProcessState& process) const;
 
   ModelOptions options_;
@@ -231,6 +274,9 @@ class Model {
   std::int64_t ignored_ = 0;
   std::int64_t events_seen_ = 0;
   std::int64_t messages_ = 0;
+  std::int64_t excused_mono_us_ = 0;  ///< until then processes lose and reject because of a pause or a seek
+  bool network_away_ = false;
+  std::int64_t network_mono_us_ = 0;  ///< when the network went away or came back
   Now now_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,13 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t max, std::si
 /// Where a text is wider than this, its paths lose their folders, from the first one on: what is wrong with a
 /// file is behind its name ("~/pairing.state: cannot be written").
 std::string without_folders(std::string_view text, std::size_t max);
+
+/// Of a screen [cells].
+struct Size {
+  int width = 0, height = 0;
+};
+/// "100x30", each from 1 to 1000; empty where it is anything else.
+std::optional<Size> size_from_text(const std::string& text);
 
 /// Decodes UTF-8; broken bytes become '?'.
 std::u32string decode(std::string_view text);
