@@ -10,6 +10,7 @@
 #include <string>
 
 #include "answers/answers.hpp"
+#include "egocal/certificate/certificate.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::tools {
@@ -51,7 +52,7 @@ class AnswersTest : public ::testing::Test {
     Pose pose = to_pose(poor.T_a_b);
     pose.translation.x() += metres;
     poor.T_a_b = to_dual_quaternion(pose);
-    poor.certificate = bus::verify_answer(problem, poor.T_a_b);
+    poor.certificate = verify(certified_cost(problem), poor.T_a_b);
     calibration_t message = bus::to_message(poor, to);
     message.solver = "egocal-fast";
     return message;

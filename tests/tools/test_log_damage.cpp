@@ -87,6 +87,31 @@ TEST_F(LogDamage, CheckNamesItAndRepairLeavesALogWithoutAny) {
   }
 }
 
+// They said nothing: a log that was cut off or destroyed for the most part looked like a short one.
+TEST_F(LogDamage, EveryAnswerOfADamagedLogWarns) {
+  ASSERT_EQ(
+      egocal({"simulate", "--out", path("drive.log"), "--rig-out", path("rig.toml"), "--poses", "300"}).code,
+      0);
+  const std::string whole = test::read_bytes(path("drive.log"));
+  test::write_bytes(path("cut.log"), whole.substr(0, whole.size() * 2 / 3 + 50));
+  test::write_bytes(path("noise.log"), whole.substr(0, whole.size() * 2 / 3) + std::string(20'000, '\x5a'));
+  const std::vector<std::string> channels{"ODOMETRY_LIDAR", "ODOMETRY_CAMERA"};
+  for (const auto& [file, lost] : {std::pair{"cut.log", "its end is cut off"}, std::pair{"noise.log", "20"}})
+    for (std::vector<std::string> command : std::vector<std::vector<std::string>>{
+             {"solve", channels[0], channels[1]},
+             {"solve", "--rig", path("rig.toml")},
+             {"check", channels[0], channels[1]},
+             {"report", channels[0], channels[1], "--out", path("page.html")}}) {
+      command.insert(command.end(), {"--log", path(file)});
+      const Outcome run = egocal(command);
+      EXPECT_THAT(run.said, HasSubstr("egocal: warning: " + path(file) + ": the log is damaged: "))
+          << command[0];
+      EXPECT_THAT(run.said, HasSubstr(lost)) << command[0];
+      EXPECT_EQ(run.said.find("is damaged"), run.said.rfind("is damaged")) << "once: " << run.said;
+    }
+  EXPECT_THAT(test::read_bytes(path("page.html")), HasSubstr("the log is damaged"));
+}
+
 TEST_F(LogDamage, InfoIsJsonWhateverTheNamesAre) {
   std::string bytes = log.bytes;
   bytes[log.begin[7] + test::log_header_size + 2] ^= static_cast<char>(0x80);  // no UTF-8 any more

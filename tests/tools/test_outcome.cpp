@@ -26,14 +26,32 @@ class OutcomeTest : public AnswersTest {
                    {"right", "RIGHT", bus::OdometryType::odometry, {}}};
     rig.pairs.emplace_back().a = "left";
     rig.pairs.back().b = "right";
-    extent.sensors["left"] = {begin_us, begin_us + 10 * second};
-    extent.sensors["right"] = {begin_us + second / 10, begin_us + 10 * second};
+    extent.sensors["left"] = {begin_us, begin_us + 10 * second, {}};
+    extent.sensors["right"] = {begin_us + second / 10, begin_us + 10 * second, {}};
     read_until = {{"LEFT", begin_us + 10 * second}, {"RIGHT", begin_us + 10 * second}};
     const problem_t end = problem(100);
     answers.hear(end);
     answers.hear(answer(end));
     const DualQuaternion judged = answers.best(pair_name)->checked.answer.T_a_b;
     answers.hear(verdict(Verdict::good, begin_us, 100, judged));
+  }
+  /// The log goes on for so long, at 10 Hz.
+  void log_goes_on_to(std::int64_t seconds) {
+    for (auto& [name, stream] : extent.sensors) {
+      stream.last_us = begin_us + seconds * second;
+      stream.poses.clear();
+      for (std::int64_t time_us = stream.first_us; time_us <= stream.last_us; time_us += second / 10)
+        stream.poses.add(time_us);
+    }
+    for (auto& [channel, until] : read_until) until = begin_us + seconds * second;
+  }
+  /// A problem and its answer. rejected: motions of the session so far that gave none.
+  void hear(std::int64_t seconds, std::int64_t seq, std::int64_t rejected = 0) {
+    problem_t next = problem(seq);
+    next.utime = begin_us + seconds * second;
+    next.rejected = rejected;
+    answers.hear(next);
+    answers.hear(answer(next));
   }
   Outcome outcome() const { return outcome_of(rig, answers, extent, read_until); }
 
@@ -102,7 +120,55 @@ TEST_F(OutcomeTest, WhoseLastMotionIsFarFromTheEndSaysSo) {
 TEST_F(OutcomeTest, OfADamagedLogSaysSo) {
   extent.damage.lost_events = 12;
   EXPECT_FALSE(outcome().unusable);
-  EXPECT_THAT(outcome().text, HasSubstr("the log is damaged: about 12 of its events could not be read"));
+  EXPECT_THAT(outcome().text,
+              HasSubstr("\nthe log is damaged: at least 12 events are lost and in no answer; see "
+                        "egocal log check\n"));
+}
+
+// A region of most of the log was "about 1 of its events".
+TEST_F(OutcomeTest, OfALogOfWhichMostIsDestroyedStatesTheBytes) {
+  extent.damage = {.regions = 1, .bytes = 249958, .lost_events = 1, .jumps = 0, .truncated = true};
+  EXPECT_THAT(outcome().text,
+              HasSubstr("the log is damaged: 249958 bytes in 1 region and at least 1 event are lost "
+                        "and in no answer, and its end is cut off; see egocal log check\n"));
+}
+
+// By a seek of the player, a pause of pairing, or messages that are lost. It was "good", without a remark.
+TEST_F(OutcomeTest, WithAHoleInItsMiddleSaysSo) {
+  log_goes_on_to(150);
+  hear(27, 270);
+  hear(131, 280);
+  hear(150, 470);
+  EXPECT_FALSE(outcome().unusable);
+  EXPECT_THAT(outcome().text,
+              HasSubstr("  about 103.0 s in the middle of the log are not in this answer, between 27.0 "
+                        "and 131.0 s: pairing did not get them, or was paused\n"));
+}
+
+TEST_F(OutcomeTest, ThatHoldsEveryMotionOfTheLogHasNoHole) {
+  log_goes_on_to(150);
+  hear(27, 270);
+  hear(131, 1290);
+  hear(150, 1460, 20);  // 20 were rejected, and some are lost around them
+  EXPECT_THAT(outcome().text, Not(HasSubstr("middle")));
+}
+
+// Motions of a second begin every quarter of one where the scale is to be found.
+TEST_F(OutcomeTest, OfAScaleThatWasFoundHasNoHole) {
+  rig.sensors[1].find_scale = true;
+  log_goes_on_to(150);
+  hear(27, 157);
+  hear(131, 500);
+  hear(150, 564);
+  EXPECT_THAT(outcome().text, Not(HasSubstr("middle")));
+}
+
+TEST_F(OutcomeTest, WithManySmallHolesSaysSo) {
+  log_goes_on_to(150);
+  for (std::int64_t seconds = 11; seconds <= 150; ++seconds) hear(seconds, 100 + 7 * (seconds - 10));
+  EXPECT_THAT(outcome().text,
+              HasSubstr("  about 42.0 s in the middle of the log are not in this answer, between 0.0 "
+                        "and 150.0 s"));
 }
 
 TEST_F(OutcomeTest, TheExtentOfALogIsInTheSensorsTime) {
@@ -125,6 +191,11 @@ TEST_F(OutcomeTest, TheExtentOfALogIsInTheSensorsTime) {
   ASSERT_EQ(found.sensors.size(), 1u);
   EXPECT_EQ(found.sensors.at("left").first_us, begin_us);
   EXPECT_EQ(found.sensors.at("left").last_us, begin_us + 4 * second);
+  const PoseCounts& poses = found.sensors.at("left").poses;
+  EXPECT_EQ(poses.between(begin_us - 1'000'000, begin_us + 4 * second), 5);
+  EXPECT_EQ(poses.between(begin_us, begin_us + 2 * second), 2);
+  EXPECT_EQ(poses.between(begin_us + 4 * second, begin_us + 9 * second), 0);
+  EXPECT_DOUBLE_EQ(poses.period(), 1);
   EXPECT_FALSE(found.damage.any());
 }
 

@@ -40,6 +40,21 @@ using test::until;
 using ::testing::HasSubstr;
 using tools::Program;
 
+// Where several users write, such as /tmp, a folder of that name may be somebody else's.
+TEST_F(Supervision, APrivateFolderIsNobodyElses) {
+  tools::require_private_folder(path("new"));
+  tools::require_private_folder(path("new"));
+  using std::filesystem::perms;
+  EXPECT_EQ(std::filesystem::status(path("new")).permissions(), perms::owner_all);
+  std::filesystem::create_directory(path("open"));
+  std::filesystem::permissions(path("open"), perms::all);
+  std::filesystem::create_directory_symlink(path("new"), path("link"));
+  std::ofstream(path("file")) << "";
+  for (const char* name : {"open", "link", "file"})
+    EXPECT_THROW(tools::require_private_folder(path(name)), Error) << name;
+  EXPECT_THROW(tools::require_private_folder(path("none/new")), Error);
+}
+
 TEST_F(Supervision, WhatDiesAtOnceIsStartedAgainWithGrowingPausesForEver) {
   start({waiting("good"), script("bad", "date +%s%N >>$F/starts; echo 'no network' >&2; exit 1")});
   ASSERT_TRUE(until([&] { return lines(path("starts")).size() >= 40; }, 60s));

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <sstream>
 #include <thread>
 
@@ -166,16 +167,22 @@ TEST_F(Up, APageThatContradictsEndsWithThreeWhateverTheProcessesSaid) {
   EXPECT_THAT(read(path("said")), HasSubstr("report-lidar-camera.html: contradictory: The mounting changed"));
 }
 
-// Here by solvers that were started with another rig; one that hangs leaves the same.
+// Here by solvers that are gone; one that hangs leaves the same.
 TEST_F(Up, AnAnswerWithoutTheEndOfTheLogIsNotOneOfTheLog) {
-  ChildProcess egocal = up({"--log", log, "--speed", "4"});
+  std::filesystem::create_directory(path("bin"));
+  std::filesystem::copy_file(paths::bin_dir() + "/egocal", path("bin/egocal"));
+  for (const char* name :
+       {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-diagnosis", "egocal-player"})
+    std::filesystem::create_symlink(paths::bin_dir() + "/" + name, path("bin/" + std::string(name)));
+  ChildProcess egocal({path("bin/egocal"), "up", rig, "--log", log, "--speed", "4", "--output-dir",
+                       path("out"), "--lcm-url", "udpm://239.255.76.67:7756?ttl=0"},
+                      path("said"));
   ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
   std::this_thread::sleep_for(3s);
-  const std::string text = read(rig);
-  std::string renamed = text;
-  for (std::size_t at = 0; (at = renamed.find("\"camera\"", at)) != std::string::npos;) renamed[at + 1] = 'k';
-  std::ofstream(rig) << renamed;
-  for (const char* name : {"egocal-fast", "egocal-global"}) kill(child(egocal.pid(), name), SIGKILL);
+  for (const char* name : {"egocal-fast", "egocal-global"}) {
+    std::filesystem::remove(path("bin/" + std::string(name)));
+    kill(child(egocal.pid(), name), SIGKILL);
+  }
   EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
   const std::string said = read(path("said"));
   EXPECT_THAT(said, HasSubstr("lidar -> camera: no solver answers the motions of the last 5 s"));
@@ -226,13 +233,34 @@ TEST_F(Up, ALogThatIsRemovedWhileItIsPlayedIsStillPlayedAndJudged) {
   EXPECT_THAT(read(path("said")), HasSubstr(", 400 motion pairs; "));
 }
 
-TEST_F(Up, SaysThatItsOwnListenerWasKilled) {
+// As by the kernel where memory is short. What it had heard is sent again each second.
+TEST_F(Up, StartsItsOwnListenerAgain) {
   ChildProcess egocal = up({"--log", log, "--speed", "10"});
   ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
+  std::this_thread::sleep_for(1100ms);
   kill(child(egocal.pid(), "egocal"), SIGKILL);
-  EXPECT_EQ(egocal.wait(60s), 1);
-  EXPECT_THAT(read(path("said")), HasSubstr("egocal up: the process that listens to the bus was killed"));
-  EXPECT_THAT(read(path("said")), HasSubstr("what was calibrated is not known; egocal solve --rig "));
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")),
+              HasSubstr("egocal up: the process that listens to the bus has ended; it is started"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: good: "));
+}
+
+// As an unmounted disk is: nothing can be kept there any more, but the drive goes on.
+TEST_F(Up, APairingThatDiesWhenTheOutputFolderIsGoneCalibratesOn) {
+  ChildProcess egocal = up({"--log", log, "--speed", "5"});
+  ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
+  std::filesystem::remove_all(path("out"));
+  std::ofstream(path("out")) << "in its place\n";
+  const pid_t killed = child(egocal.pid(), "egocal-pairing");
+  kill(killed, SIGKILL);
+  EXPECT_TRUE(until([&] {
+    const pid_t now = child(egocal.pid(), "egocal-pairing");
+    return now > 0 && now != killed;
+  }));
+  egocal.wait(60s);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing starts without the state file there"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: "));
+  EXPECT_THAT(read(path("said")), Not(HasSubstr("egocal-pairing ended with exit code")));
 }
 
 // When a driver process dies, the last answer is still shown. Only the report says that it is old.
@@ -312,6 +340,10 @@ TEST_F(Up, AKilledPairingCostsNothing) {
         [&] {
           loop.run_once(5ms);
           if (killed && problem.seq > 150) {
+            // edited meanwhile: the one that takes its place knows the rig that was checked
+            std::string other = read(rig);
+            other.replace(other.find("camera"), 6, "kamera");
+            std::ofstream(rig) << other;
             kill(child(egocal.pid(), "egocal-pairing"), SIGKILL);
             killed = false;
           }
@@ -406,6 +438,82 @@ TEST_F(Up, SaysInOneLineWhatIsWrong) {
   refused({rig, "--output-dir", rig + "/in"});
   refused({rig, "--state", "/nonexistent/x"});
   refused({rig, "--state", path("")});
+}
+
+// Each of them was tried again and again, without an end.
+TEST_F(Up, RefusesAStateThatCanNeverBeOne) {
+  std::filesystem::copy_file(rig, path("text"));
+  std::filesystem::create_symlink("loop", path("loop"));
+  std::filesystem::create_directory(path("a.lock"));
+  std::filesystem::copy_file(rig, path("b.diagnosis"));
+  std::ofstream(path("c")) << "egocal-diagnosis state 4l\n";
+  const std::map<std::string, std::string> why{{"text", "text: is not a state of egocal-pairing"},
+                                               {"loop", "loop: cannot be read"},
+                                               {"a", "a.lock: is there and is not a file"},
+                                               {"b", "b.diagnosis: is not a state of egocal-diagnosis"},
+                                               {"c", "c: is not a state of egocal-pairing"}};
+  std::filesystem::create_directory(path("said"));
+  std::map<std::string, ChildProcess> started;  // each listens for a second first
+  for (const auto& [state, what] : why)
+    started.emplace(
+        state, ChildProcess({paths::bin_dir() + "/egocal", "up", rig, "--state", path(state), "--output-dir",
+                             path("out"), "--lcm-url", "udpm://239.255.76.67:7759?ttl=0"},
+                            path("said/" + state)));
+  for (auto& [state, egocal] : started) {
+    EXPECT_EQ(egocal.wait(30s), 1) << state;
+    const std::string said = read(path("said/" + state));
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_THAT(said, ::testing::StartsWith("egocal up: "));
+    EXPECT_THAT(said, HasSubstr(why.at(state)));
+  }
+  std::vector<std::string> there;
+  for (const auto& entry : std::filesystem::directory_iterator(path("")))
+    there.push_back(entry.path().filename());
+  EXPECT_THAT(there, ::testing::UnorderedElementsAre("drive.toml", "drive.log", "said", "text", "loop",
+                                                     "a.lock", "b.diagnosis", "c"));
+}
+
+// The processes read it again and found it empty, without an end. A report that could not be written ended
+// all.
+TEST_F(Up, TakesARigThatCanBeReadOnceAndNeedsNoStandardError) {
+  const std::string command = "cat '" + rig + "' | " + paths::bin_dir() + "/egocal up /dev/stdin --log '" +
+                              log + "' --speed 0 --lcm-url 'udpm://239.255.76.67:7757?ttl=0' --output-dir '" +
+                              path("out") + "' 2>&-";
+  ChildProcess egocal({"sh", "-c", command}, path("said"));
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: good: "));
+  ChildProcess full({"sh", "-c", paths::bin_dir() + "/egocal up '" + path("none.toml") + "' 2>/dev/full"});
+  EXPECT_EQ(full.wait(10s), 1);
+}
+
+// It was "nothing was calibrated: pairing found no motion".
+TEST_F(Up, SaysThatNobodyTakesTheMonitorsLines) {
+  ChildProcess egocal({"sh", "-c",
+                       paths::bin_dir() + "/egocal up '" + rig + "' --log '" + log +
+                           "' --follow --lcm-url 'udpm://239.255.76.67:7758?ttl=0' --output-dir '" +
+                           path("out") + "' 2>'" + path("said") + "' >/dev/full"});
+  EXPECT_EQ(egocal.wait(30s), 1);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal up: standard output is gone"));
+  EXPECT_THAT(read(path("said")), Not(HasSubstr("no motion")));
+}
+
+// It was killed by the signal, in the time in which it looks for another pairing.
+TEST_F(Up, EndsWithCtrlCBeforeAnythingIsStarted) {
+  const auto ended = [&](const std::vector<std::string>& more) {
+    ChildProcess egocal = up(more);
+    EXPECT_TRUE(until([&] {
+      std::uint64_t caught = 0;
+      for (const std::string& line : lines("/proc/" + std::to_string(egocal.pid()) + "/status"))
+        if (line.starts_with("SigCgt:")) caught = std::stoull(line.substr(7), nullptr, 16);
+      return (caught >> (SIGINT - 1) & 1) != 0;
+    }));
+    egocal.signal(SIGINT);
+    return egocal.wait(10s);
+  };
+  EXPECT_EQ(ended({}), 0);
+  EXPECT_EQ(ended({"--log", log}), 1);
+  EXPECT_THAT(read(path("said")), HasSubstr("egocal up: ended before the log was played"));
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
 TEST_F(Up, ChecksTheLogBeforeItPlaysIt) {

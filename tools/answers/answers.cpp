@@ -246,7 +246,38 @@ void Answers::note(const problem_t& message) {
   const bool older = std::tie(message.session, message.seq) < std::tie(newest.session, newest.seq);
   newest.older_in_a_row = older ? newest.older_in_a_row + 1 : 0;
   if (older && newest.older_in_a_row < confirmations) return;
-  newest = {message.session, message.seq, message.utime, message.time_offset, 0};
+  if (newest.session != message.session) newest.passed.clear();
+  newest.session = message.session;
+  newest.seq = message.seq;
+  newest.utime = message.utime;
+  newest.time_offset = message.time_offset;
+  newest.older_in_a_row = 0;
+  note_passed(message, newest);
+}
+
+/// The last one is always the newest.
+void Answers::note_passed(const problem_t& message, Newest& newest) {
+  constexpr std::size_t most_passed = 20'000;  // a limit on memory
+  std::vector<Passed>& passed = newest.passed;
+  // a session is named by the time at which it began
+  if (passed.empty()) passed.push_back({message.session, 0, 0, message.stride, message.time_offset});
+  while (!passed.empty() && (passed.back().seq > message.seq || passed.back().utime > message.utime))
+    passed.pop_back();
+  const bool replaces =
+      passed.size() > 1 && message.utime - passed[passed.size() - 2].utime < newest.passed_step_us;
+  if (replaces) passed.pop_back();
+  passed.push_back({message.utime, message.seq, message.rejected, message.stride, message.time_offset});
+  if (passed.size() <= most_passed) return;
+  for (std::size_t i = 0; i < passed.size() / 2; ++i) passed[i] = passed[2 * i];
+  passed[passed.size() / 2] = passed.back();
+  passed.resize(passed.size() / 2 + 1);
+  newest.passed_step_us *= 2;
+}
+
+const std::vector<Answers::Passed>& Answers::passed(const PairName& pair) const {
+  static const std::vector<Passed> none;
+  const auto newest = newest_.find(pair);
+  return newest == newest_.end() ? none : newest->second.passed;
 }
 
 /// Of a problem that is no longer the newest although it has the higher number.

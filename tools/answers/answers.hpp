@@ -59,6 +59,16 @@ class Answers {
   /// End of the newest motion that was heard of [us, time of a], and what is added to the time of b [s];
   /// nothing: none was.
   std::optional<std::pair<std::int64_t, double>> end_of_motions(const PairName& pair) const;
+  /// What pairing had made of the drive when a motion was its newest.
+  struct Passed {
+    std::int64_t utime = 0;              ///< end of that motion [us, time of a]
+    std::int64_t seq = 0, rejected = 0;  ///< motions since the session's begin, and what gave none
+    std::int64_t stride = 1;
+    double time_offset = 0;  ///< what is added to the time of b [s]
+  };
+  /// Of the session of the newest problem, from its begin on, thinned to some thousands; empty: there is
+  /// none.
+  const std::vector<Passed>& passed(const PairName& pair) const;
   /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
   /// The scale of one of the pair's sensors is to be found, and none that was verified is known of the
@@ -81,9 +91,12 @@ class Answers {
     std::int64_t session = 0, seq = 0, utime = 0;
     double time_offset = 0;
     int older_in_a_row = 0;
+    std::vector<Passed> passed;
+    std::int64_t passed_step_us = 1'000'000;  ///< between two of them
   };
   const Judgement* judgement(const PairName& pair) const;
   void note(const problem_t& message);
+  static void note_passed(const problem_t& message, Newest& newest);
   bool is_ahead(const PairName& pair, const calibration_t& message) const;
   void consider(const PairName& pair, Best candidate);
 

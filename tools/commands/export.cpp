@@ -13,12 +13,15 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/pair_messages.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/extrinsic_tree.hpp"
 #include "egocal/io/whole_file.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -71,23 +74,9 @@ Found heard(const Options& options) {
   Found found{options.all ? pairs : std::vector<PairName>{chosen(options.pair, pairs)}, {}};
   found.answers.expect_scales(rig);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
-  for (const auto& [a, b] : found.pairs) {
-    loop.subscribe<problem_t>(bus::problem_channel(a, b), [&](const problem_t& message, const bus::Arrival&) {
-      found.answers.hear(message);
-    });
-    loop.subscribe<calibration_t>(
-        bus::calibration_channel(a, b),
-        [&](const calibration_t& message, const bus::Arrival&) { found.answers.hear(message); });
-    loop.subscribe<verdict_t>(bus::verdict_channel(a, b), [&](const verdict_t& message, const bus::Arrival&) {
-      found.answers.hear(message);
-    });
-    loop.subscribe<scale_problem_t>(
-        bus::scale_problem_channel(a, b),
-        [&](const scale_problem_t& message, const bus::Arrival&) { found.answers.hear(message); });
-    loop.subscribe<scale_t>(bus::scale_channel(a, b), [&](const scale_t& message, const bus::Arrival&) {
-      found.answers.hear(message);
-    });
-  }
+  for (const auto& [a, b] : found.pairs)
+    bus::subscribe_pair(loop, a, b,
+                        [&](const auto& message, const bus::Arrival&) { found.answers.hear(message); });
   // verdicts are sent again every second, as heartbeats are: without a diagnosis none is waited for
   bool judged_here = false;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
@@ -105,6 +94,9 @@ Found heard(const Options& options) {
   };
   while (!done() && std::chrono::steady_clock::now() < end)
     if (!loop.run_once(std::chrono::milliseconds(50))) break;
+  for (const auto& [channel, count] : loop.undecodable())
+    say(fmt::format("egocal: warning: {}: {} refused: not decodable, or of another pair",
+                    bus::printable(channel, 63), counted(static_cast<std::uint64_t>(count), "message")));
   return found;
 }
 
@@ -122,23 +114,22 @@ NamedExtrinsic named(const PairName& pair, const Answers& answers, bool live) {
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Answer& answer = best.checked.answer;
   if (best.checked.standing == bus::Standing::unverified)
-    fmt::print(
-        stderr, "egocal: warning: {}: this answer could not be verified: its problem was not received{}\n",
-        text(pair), live ? ", so pairing is silent and the answer may be old; it is marked unusable" : "");
+    say(fmt::format("egocal: warning: {}: this answer could not be verified: its problem was not received{}",
+                    text(pair),
+                    live ? ", so pairing is silent and the answer may be old; it is marked unusable" : ""));
   else if (!best.certified())
-    fmt::print(stderr, "egocal: warning: {}: this answer is not certified\n", text(pair));
+    say(fmt::format("egocal: warning: {}: this answer is not certified", text(pair)));
   if (answers.lacks_scale(pair))
-    fmt::print(stderr,
-               "egocal: warning: {}: the scale of this answer could not be verified: it was not received\n",
-               text(pair));
+    say(fmt::format(
+        "egocal: warning: {}: the scale of this answer could not be verified: it was not received",
+        text(pair)));
   if (const double rest = answers.seconds_not_answered(pair); rest > longest_not_judged)
-    fmt::print(stderr, "egocal: warning: {}: the last {:.0f} s of the drive are not in this answer\n",
-               text(pair), rest);
+    say(fmt::format("egocal: warning: {}: the last {:.0f} s of the drive are not in this answer", text(pair),
+                    rest));
   if (const double rest = answers.seconds_not_judged(pair).value_or(0); rest > longest_not_judged)
-    fmt::print(stderr, "egocal: warning: {}: the last {:.0f} s of the drive are not judged\n", text(pair),
-               rest);
+    say(fmt::format("egocal: warning: {}: the last {:.0f} s of the drive are not judged", text(pair), rest));
   if (diagnosis && diagnosis->verdict != Verdict::good)
-    fmt::print(stderr, "egocal: {}: {}\n", text(pair), verdict_line(*diagnosis));
+    say(fmt::format("egocal: {}: {}", text(pair), verdict_line(*diagnosis)));
   NamedExtrinsic extrinsic{pair.first,
                            pair.second,
                            to_pose(answer.T_a_b),
@@ -161,8 +152,8 @@ std::string text_of(const std::vector<NamedExtrinsic>& extrinsics, const Options
   if (extrinsics.empty()) throw Error("export: there is no answer for any pair");
   const ExtrinsicTree tree = extrinsic_tree(extrinsics);
   for (const NamedExtrinsic& pair : tree.unused)
-    fmt::print(stderr, "egocal: note: {},{} closes a loop and is not part of the tree\n", pair.parent,
-               pair.child);
+    say(fmt::format("egocal: note: {},{} closes a loop and is not part of the tree", pair.parent,
+                    pair.child));
   return extrinsic_tree_text(tree, format);
 }
 
@@ -171,7 +162,8 @@ void run(const Options& options) {
   const bool live = options.log.empty();
   const Found found = live ? heard(options) : recorded(options);
   for (const auto& [reason, count] : found.answers.refused())
-    fmt::print(stderr, "egocal: warning: {} answers were refused: {}\n", count, reason);
+    say(fmt::format("egocal: warning: {} refused: {}", counted(static_cast<std::uint64_t>(count), "answer"),
+                    reason));
   std::vector<NamedExtrinsic> extrinsics;
   bool refused = false;
   for (const PairName& pair : found.pairs)
@@ -180,7 +172,7 @@ void run(const Options& options) {
       refused = refused || (diagnosis && unusable(*diagnosis)) || !is_current(pair, found.answers, live);
       extrinsics.push_back(named(pair, found.answers, live));
     } else if (options.all)
-      fmt::print(stderr, "egocal: warning: there is no answer for the pair {}\n", text(pair));
+      say(fmt::format("egocal: warning: there is no answer for the pair {}", text(pair)));
     else
       throw Error("export: there is no answer for the pair " + text(pair));
   const std::string content = text_of(extrinsics, options);

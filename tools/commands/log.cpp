@@ -104,24 +104,6 @@ struct Info {
   std::uint64_t size = 0;
 };
 
-std::string type_of(const bus::LogEvent& event) {
-  odometry_t odometry{};
-  if (bus::decode(event.data, odometry)) return "egocal.odometry_t";
-  bot_core::pose_t pose{};
-  if (bus::decode(event.data, pose)) return "bot_core.pose_t";
-  problem_t problem{};
-  if (bus::decode(event.data, problem)) return "egocal.problem_t";
-  calibration_t calibration{};
-  if (bus::decode(event.data, calibration)) return "egocal.calibration_t";
-  motion_pair_t motion{};
-  if (bus::decode(event.data, motion)) return "egocal.motion_pair_t";
-  status_t status{};
-  if (bus::decode(event.data, status)) return "egocal.status_t";
-  command_t command{};
-  if (bus::decode(event.data, command)) return "egocal.command_t";
-  return "other";
-}
-
 Info inspect(const std::string& file) {
   bus::LogReader log(file);
   Info info;
@@ -133,7 +115,7 @@ Info inspect(const std::string& file) {
     Channel& channel = shown ? info.channels[event->channel] : info.others;
     if (channel.count++ == 0) {
       channel.first_us = event->time_us;
-      channel.type = type_of(*event);
+      channel.type = bus::type_name(event->data);
     }
     channel.last_us = event->time_us;
     channel.bytes += event->data.size();

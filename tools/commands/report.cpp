@@ -9,6 +9,7 @@
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
 #include "egocal/io/whole_file.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -50,6 +51,7 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
 
 void run(const Options& options, const std::string& command) {
   const ReportInput input = write_report(understood(options.request), options.out, command);
+  print_warnings(input.warnings);
   fmt::print("{}\n{}\n", input.verdict, options.out);
   if (input.calibration.verdict == Verdict::contradictory ||
       (input.calibration.goal && !input.calibration.goal->reached))

@@ -88,7 +88,7 @@ void run(const Options& options, const std::string& command_line) {
   const bool written = !options.format.empty() || !options.out.empty();
   if (written) write_extrinsic(options, result);
   if (written && calibration.verdict == Verdict::contradictory)
-    fmt::print(stderr, "egocal: the motions contradict each other: do not use this extrinsic\n");
+    say("egocal: the motions contradict each other: do not use this extrinsic");
   if (!written || !options.out.empty())
     fmt::print("{}\n", options.json ? json_text(options, request, result, command_line)
                                     : report_text(result, request.truth));

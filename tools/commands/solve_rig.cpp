@@ -85,8 +85,8 @@ RigRequest rig_request(const RequestOptions& typed, const RigOptionsTyped& rig) 
 void write_tree(const RigReport& report, const RigOutput& output) {
   for (const std::string& name : report.names)
     if (!is_frame_name(name))
-      fmt::print(stderr, "egocal: the name '{}' is written with _ for what is no letter, digit or _ - . /\n",
-                 name);
+      say(fmt::format("egocal: the name '{}' is written with _ for what is no letter, digit or _ - . /",
+                      name));
   const std::string text = extrinsic_tree_text(
       rig_tree(report), *extrinsic_format_from_name(output.format.empty() ? "yaml" : output.format));
   if (output.out.empty())
@@ -134,7 +134,7 @@ void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, 
   const bool written = !output.format.empty() || !output.out.empty();
   if (written) write_tree(report, output);
   if (written && report.contradictory)
-    fmt::print(stderr, "egocal: the sensors contradict each other: do not use these extrinsics\n");
+    say("egocal: the sensors contradict each other: do not use these extrinsics");
   if (!written || !output.out.empty())
     fmt::print("{}\n", output.json ? json_text(report, request, common, output) : rig_text(report));
   if (report.contradictory) throw cli::Exit{3};

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -15,12 +17,16 @@
 #include "commands/report.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/log_channels.hpp"
 #include "supervision/bus_watch.hpp"
 #include "supervision/output_file.hpp"
 #include "supervision/passing_state.hpp"
+#include "supervision/rig_copy.hpp"
 #include "supervision/supervisor.hpp"
+#include "supervision/usable_state.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -34,16 +40,84 @@ struct Options {
 /// Every process sends its status once a second.
 constexpr std::chrono::milliseconds listen_before_start{1200};
 
+void report(const std::string& line) {
+  say("egocal up: " + line);
+}
+
+/// A signal ends this command as a user means it, at any time: with what was calibrated so far, of which
+/// there is nothing at first. An output that nobody reads ends nothing.
+class Interruptions {
+ public:
+  /// player: a log is to be played, which is a failure where nothing is calibrated.
+  explicit Interruptions(bool player) {
+    self_ = getpid();
+    sigemptyset(&signals_);
+    for (std::size_t i = 0; i < std::size(before_); ++i) {
+      sigaddset(&signals_, numbers[i]);
+      sigaction(numbers[i], nullptr, &before_[i]);
+      if (before_[i].sa_handler != SIG_IGN)
+        handle(numbers[i], player ? end_before_the_log : end_before_the_start);
+    }
+    handle(SIGPIPE, SIG_IGN);
+  }
+  ~Interruptions() { release(); }
+  Interruptions(const Interruptions&) = delete;
+  Interruptions& operator=(const Interruptions&) = delete;
+
+  /// From now on they wait for the supervisor.
+  void hold() {
+    sigprocmask(SIG_BLOCK, &signals_, &mask_);
+    held_ = true;
+  }
+  /// From now on they end this process, as any other one.
+  void release() {
+    if (!held_) return;
+    held_ = false;
+    for (std::size_t i = 0; i < std::size(before_); ++i) sigaction(numbers[i], &before_[i], nullptr);
+    sigprocmask(SIG_SETMASK, &mask_, nullptr);
+  }
+
+ private:
+  static constexpr int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+  static void handle(int number, void (*handler)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigemptyset(&action.sa_mask);
+    sigaction(number, &action, nullptr);
+  }
+  // in a signal handler: only what is safe there
+  static void end_before_the_start(int) { _exit(0); }
+  static void end_before_the_log(int) {
+    if (getpid() != self_) _exit(0);  // the process that listens is ended by us
+    constexpr char text[] = "egocal up: ended before the log was played: nothing was calibrated\n";
+    if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(1);
+    _exit(1);
+  }
+
+  static inline volatile std::sig_atomic_t self_ = 0;  ///< this process, for handlers
+
+  sigset_t signals_{}, mask_{};
+  struct sigaction before_[std::size(numbers)]{};
+  bool held_ = false;
+};
+
+/// The reader of a pipe has gone, or the device takes nothing.
+bool output_is_gone() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return (poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLNVAL)) != 0) ||
+         write(STDOUT_FILENO, "", 0) < 0;
+}
+
 /// The folder of our own executable: the other programs are beside it.
 std::filesystem::path programs_directory() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) throw Error("up: cannot find the folder of this program: " + error.message());
+  if (error) throw Error("cannot find the folder of this program: " + error.message());
   return self.parent_path();
 }
 
 /// One clear line here instead of one from each process, again and again.
-void check_state(const std::string& file) {
+void check_place_of_state(const std::string& file) {
   const std::filesystem::path target(without_links(file)), folder = target.parent_path();
   std::error_code none;
   if (!std::filesystem::is_directory(folder, none))
@@ -54,6 +128,11 @@ void check_state(const std::string& file) {
     throw error_at(file, 0, "--state", "cannot be written: " + std::string(std::strerror(errno)));
 }
 
+void check_state(const std::string& file) {
+  require_usable_state(file, "egocal-pairing");
+  require_usable_state(PassingState::of_diagnosis(file), "egocal-diagnosis");
+}
+
 std::string output_directory(const Options& options) {
   if (options.output_dir == "-") return {};
   std::string directory = options.output_dir.empty() ? default_output_directory() + "/" +
@@ -62,17 +141,17 @@ std::string output_directory(const Options& options) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw error_at(directory, 0, "", "cannot be made: " + error.message());
-  fmt::print(stderr, "egocal up: the processes' outputs are in {}\n", directory);
+  report("the processes' outputs are in " + directory);
   return directory;
 }
 
 void report_left_behind(const std::string& directory) {
   const std::vector<std::string> files = PassingState::left_behind(directory);
   if (files.empty()) return;
-  fmt::print(stderr,
-             "egocal up: statistics of an earlier run that did not end as it should are kept in {}{}; "
-             "--state FILE continues with them, delete what is not needed\n",
-             files.back(), files.size() > 1 ? fmt::format(" and {} others", files.size() - 1) : "");
+  report(
+      fmt::format("statistics of an earlier run that did not end as it should are kept in {}{}; --state FILE "
+                  "continues with them, delete what is not needed",
+                  files.back(), files.size() > 1 ? " and " + counted(files.size() - 1, "other") : ""));
 }
 
 /// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
@@ -93,26 +172,28 @@ bool write_reports(const Options& options, const bus::Rig& rig, const std::strin
     try {
       const ReportInput page = write_report(
           request, file, fmt::format("egocal up {} --log {} --report", options.rig, options.log));
-      fmt::print(stderr, "egocal up: {}: {}\n", file, page.verdict);
+      report(file + ": " + page.verdict);
       usable = usable && page.calibration.verdict != Verdict::contradictory;
     } catch (const Error& error) {
-      fmt::print(stderr, "egocal up: no report of {} and {}: {}\n", pair.a, pair.b, error.what());
+      report(fmt::format("no report of {} and {}: {}", pair.a, pair.b, error.what()));
     }
   }
   return usable;
 }
 
-void run(const Options& options) {
+void run(const Options& options, Interruptions& interruptions) {
   if (options.report && options.log.empty())
     throw cli::UsageError("--report: goes with --log, whose drive it shows");
-  const bus::Rig rig = bus::read_rig(options.rig);
+  const RigCopy copy(options.rig);
+  const bus::Rig& rig = copy.rig();
   const std::string url = options.url.empty() ? rig.lcm_url : options.url;
   if (!options.log.empty()) require_a_pair(options.log, rig);
-  if (!options.state.empty()) check_state(options.state);
+  if (!options.state.empty()) check_place_of_state(options.state);
   const std::optional<std::string> other = pairing_heard(url, listen_before_start);
   if (other && !options.join)
-    throw Error("up: " + *other + " is running on " + url +
+    throw Error(*other + " is running on " + url +
                 ": the two would disturb each other; end the other one, take another --lcm-url, or --join");
+  if (!options.state.empty()) check_state(options.state);
   const std::filesystem::path directory = programs_directory();
   SupervisorOptions supervisor;
   supervisor.output_dir = output_directory(options);
@@ -121,11 +202,15 @@ void run(const Options& options) {
   const auto program = [&](const char* name, const std::vector<std::string>& more) {
     Program result;
     result.name = name;
-    result.command = {(directory / name).string(), "--rig", options.rig};
+    result.command = {(directory / name).string(), "--rig", copy.name_for_programs()};
     if (!options.url.empty()) result.command.insert(result.command.end(), {"--lcm-url", options.url});
     result.command.insert(result.command.end(), more.begin(), more.end());
     return result;
   };
+  BusWatchOptions watched;
+  watched.news.live = options.log.empty();
+  BusWatch watch(rig, url, options.log, watched);
+  interruptions.hold();  // what is left behind from here on is to be removed
   // what a killed pairing process had accumulated is for the one that takes its place; for another day only
   // if asked for
   std::vector<std::string> pairing, diagnosis;
@@ -150,38 +235,52 @@ void run(const Options& options) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  BusWatchOptions watched;
-  watched.news.live = options.log.empty();
-  BusWatch watch(rig, url, options.log, watched);
   supervisor.silence = [&watch](pid_t pid) { return watch.silence(pid); };
   supervisor.lines = watch.lines();
+  supervisor.lines_again = [&watch] { return watch.listen_again(); };
   if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };
+  bool monitor_ended = false;
+  supervisor.foreground_ended = [&monitor_ended] { monitor_ended = true; };
   const int code = supervise(programs, supervisor);
+  interruptions.release();
   if (code == 0 && passing) passing->discard();
   if (code != 0) {
     if (passing && std::filesystem::exists(passing->file()))
-      fmt::print(stderr, "egocal up: the statistics are kept in {}; --state FILE continues with them\n",
-                 passing->file());
+      report("the statistics are kept in " + passing->file() + "; --state FILE continues with them");
     throw cli::Exit{1};
   }
+  if (options.follow && monitor_ended && output_is_gone())
+    throw Error(
+        "standard output is gone: the monitor's lines could not be written, and with it all have ended");
   if (options.log.empty()) return;
   const Outcome outcome = [&] {
     try {
       return watch.outcome();
     } catch (const Error& error) {
-      throw Error(fmt::format("up: {}; egocal solve --rig {} --log {} computes it from the log", error.what(),
+      throw Error(fmt::format("{}; egocal solve --rig {} --log {} computes it from the log", error.what(),
                               options.rig, options.log));
     }
   }();
+  if (!outcome.answered && monitor_ended)
+    throw Error("nothing was calibrated: the monitor was ended, and with it all others");
   if (!outcome.answered)
-    throw Error(
-        "up: nothing was calibrated: " + (outcome.text.empty() ? "no solver answered" : outcome.text) +
-        "; see " + (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
+    throw Error("nothing was calibrated: " + (outcome.text.empty() ? "no solver answered" : outcome.text) +
+                "; see " + (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
   fmt::print("{}", outcome.text);
   const bool pages_usable =
       !options.report ||
       write_reports(options, rig, supervisor.output_dir.empty() ? "." : supervisor.output_dir);
   if (outcome.unusable || !pages_usable) throw cli::Exit{not_to_be_used};
+}
+
+void run_up(const Options& options) {
+  Interruptions interruptions(!options.log.empty());
+  try {
+    run(options, interruptions);
+  } catch (const Error& error) {
+    report(error.what());
+    throw cli::Exit{1};
+  }
 }
 
 }  // namespace
@@ -214,7 +313,7 @@ void add_up(cli::App program) {
   command.add_flag("--join", options->join, "also where pairing is running on this bus already");
   command.add_option("--state", options->state, "file in which the statistics outlive this command");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_up(*options); });
 }
 
 }  // namespace egocal::tools

@@ -12,14 +12,12 @@
 #include "arguments.hpp"
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/calibrate_beside.hpp"
+#include "egocal/certificate/certificate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/microseconds.hpp"
+#include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
-#include "egocal/solvers/global.hpp"
-#include "egocal/solvers/sdp.hpp"
-#include "egocal/solvers/slsqp.hpp"
-#include "egocal/solvers/sqp.hpp"
 #include "offline/append.hpp"
 #include "offline/beside.hpp"
 #include "offline/log_trajectory.hpp"
@@ -69,8 +67,8 @@ Motions read_motions(const MotionSource& source) {
       [&] { a = read_log_trajectory(source.log, source.a); },
       [&] { b = read_log_trajectory(source.log, source.b); });
   Motions motions{std::move(a.poses), std::move(b.poses), {}, {}};
-  for (std::string* not_used : {&a.not_used, &b.not_used})
-    if (!not_used->empty()) motions.warnings.push_back(std::move(*not_used));
+  for (std::string* warning : {&a.not_used, &b.not_used, &a.damage})  // damage is of both
+    if (!warning->empty()) motions.warnings.push_back(std::move(*warning));
   return motions;
 }
 
@@ -104,38 +102,26 @@ Calibration calibrate_motions(const MotionSource& source, const Motions& motions
   }
 }
 
-/// Median time of one call, of as many as fit into a tenth of a second, at least five [us].
-double median_us(const std::function<void()>& call) {
-  using Clock = std::chrono::steady_clock;
+using Clock = std::chrono::steady_clock;
+
+/// The median of a duration that is measured again and again, for a tenth of a second or at least five times.
+double median_us(const std::function<double()>& measure_us) {
   std::vector<double> times;
   const auto begin = Clock::now();
-  while (times.size() < 5 || (times.size() < 201 && Clock::now() - begin < std::chrono::milliseconds(100))) {
-    const auto start = Clock::now();
-    call();
-    times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-  }
+  while (times.size() < 5 || (times.size() < 201 && Clock::now() - begin < std::chrono::milliseconds(100)))
+    times.push_back(measure_us());
   std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
   return times[times.size() / 2];
 }
 
+/// Of the solver, as it answered: without proof and observability.
 double time_of_method(Method method, const Problem& problem) {
-  const Matrix8d Q = cost_matrix(problem);
-  const bool planar = problem.mode == Mode::planar;
-  volatile double keep = 0;
-  const double time = median_us([&] {
-    if (planar)
-      keep = method == Method::slsqp ? solve_slsqp_planar(Q, {}).cost : solve_planar(Q).cost;
-    else if (method == Method::dual)
-      keep = solve_dual(Q).cost;
-    else if (method == Method::sdp)
-      keep = solve_sdp(Q).cost;
-    else if (method == Method::sqp)
-      keep = solve_sqp(Q, {}).cost;
-    else
-      keep = solve_slsqp(Q, {}).cost;
-  });
-  (void)keep;
-  return time;
+  const NanosecondClock clock = [] {
+    return static_cast<std::int64_t>(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count());
+  };
+  return median_us(
+      [&] { return 1e-3 * static_cast<double>(solve(problem, method, std::nullopt, clock).solve_ns); });
 }
 
 /// The motions that the answer was made from: as their poses were read, with their scale.
@@ -200,7 +186,11 @@ void answer_by_baseline(const std::string& method, const std::vector<MotionPair>
   calibration.problem.prior.reset();  // the baselines know none
   calibration.certificate = verify(cost_matrix(calibration.problem), q);
   result.note = baseline.valid ? "" : baseline.note;
-  result.solve_us = median_us([&] { run(); });
+  result.solve_us = median_us([&] {
+    const auto start = Clock::now();
+    run();
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  });
 }
 
 /// Where the scale that was estimated changes along the drive: one extrinsic for all of its segments.

@@ -11,6 +11,7 @@
 #include "egocal/error.hpp"
 #include "offline/channel_list.hpp"
 #include "offline/lcm_pose.hpp"
+#include "offline/log_damage.hpp"
 
 namespace egocal::tools {
 
@@ -33,7 +34,7 @@ class Collector {
   LogTrajectory finished(const std::string& file, const std::string& channel) {
     add(stream_.flush());
     const std::string text = not_used(file, channel);  // counts the poses
-    return {std::move(poses_), text};
+    return {std::move(poses_), text, {}};
   }
   bool empty() const { return messages_ == 0; }
 
@@ -89,10 +90,14 @@ LogTrajectory read_log_trajectory(const std::string& file, const std::string& ch
     else
       channels.add(event->channel);
   }
+  const std::string damage = damage_in_words(log.damage());
   if (collector.empty())
-    throw error_at(file, 0, channel, "no such channel in the log; there are: " + channels.text());
+    throw error_at(
+        file, 0, channel,
+        "no such channel in the log; there are: " + channels.text() + (damage.empty() ? "" : "; " + damage));
   LogTrajectory result = collector.finished(file, channel);
   if (result.poses.empty()) throw error_at(file, 0, channel, "no pose in this channel: " + result.not_used);
+  if (!damage.empty()) result.damage = file + ": " + damage;
   return result;
 }
 

@@ -15,6 +15,7 @@ struct LogTrajectory {
   Trajectory poses;  ///< times strictly ascending
   /// One line: what the log holds of this channel and the poses do not; empty: nothing.
   std::string not_used;
+  std::string damage;  ///< one line: of the log as a whole, see damage_in_words(); empty: none
 };
 
 /// The poses of one channel of an LCM log (egocal.odometry_t or bot_core.pose_t, recognised by their

@@ -56,6 +56,7 @@ void take_from_rig(RigRequest& request, std::vector<GroundPlane>& planes) {
 /// The sensors' first drive.
 std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
   std::vector<Trajectory> trajectories;
+  std::string damage;  // of the log, whichever channel is read
   for (const std::string& source : request.sources) {
     if (request.log.empty()) {
       trajectories.push_back(read_noting(source, request.reading, report.warnings));
@@ -63,8 +64,10 @@ std::vector<Trajectory> read(const RigRequest& request, RigReport& report) {
     }
     LogTrajectory channel = read_log_trajectory(request.log, source);
     if (!channel.not_used.empty()) report.warnings.push_back(channel.not_used);
+    damage = std::move(channel.damage);
     trajectories.push_back(std::move(channel.poses));
   }
+  if (!damage.empty()) report.warnings.push_back(damage);
   return trajectories;
 }
 

@@ -53,6 +53,12 @@ void answer_samples(const SolveRequest& request, const Trajectory& a, const Traj
   result.eye_to_hand = request.samples->eye_to_hand;
   if (result.matched.without_partner > 0)
     result.warnings.push_back("no partner, not used: " + counted(result.matched.without_partner, "row"));
+  const SampleCalibration& samples = *result.samples;
+  if (samples.repeated > 0)
+    result.warnings.push_back("repeat another row exactly, count once: " + counted(samples.repeated, "row"));
+  if (samples.different > 0 && samples.different + samples.repeated < samples.residuals.size())
+    result.warnings.push_back("samples that share a pose count as one: " +
+                              counted(samples.different, "different sample"));
   if (!result.matched.by_stamp)
     result.warnings.push_back("the stamps do not agree: row i of a belongs to row i of b");
 }

@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 #include "answers/answers.hpp"
@@ -23,6 +24,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/pair_messages.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/error.hpp"
 #include "supervision/bus_news.hpp"
@@ -46,7 +48,24 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
   return found;
 }
 
+void Descriptor::reset() {
+  if (const int fd = std::exchange(fd_, -1); fd >= 0) close(fd);
+}
+
 namespace {
+
+struct Pipe {
+  Descriptor read, write;
+};
+
+Pipe make_pipe(int flags) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC | flags) != 0) throw Error(std::string("pipe: ") + std::strerror(errno));
+  return {Descriptor(ends[0]), Descriptor(ends[1])};
+}
+
+/// In place of the outcome: why there is none.
+constexpr char failed = '!';
 
 /// Of our processes and of others on this host: a limit on memory.
 constexpr std::size_t most_processes = 32;
@@ -95,18 +114,13 @@ class Listening {
   Listening(const bus::Rig& rig, const std::string& url, const BusWatchOptions& options)
       : rig_(rig), options_(options), loop_(url, {.require_network = false}), news_(rig, options.news) {
     answers_.expect_scales(rig);
-    const auto hear = [this](const auto& message, const bus::Arrival&) { answers_.hear(message); };
-    for (const bus::PairConfig& pair : rig.pairs) {
-      loop_.subscribe<problem_t>(bus::problem_channel(pair.a, pair.b),
-                                 [this](const problem_t& problem, const bus::Arrival& arrival) {
-                                   answers_.hear(problem);
-                                   news_.hear(problem, arrival.mono_us);
-                                 });
-      loop_.subscribe<calibration_t>(bus::calibration_channel(pair.a, pair.b), hear);
-      loop_.subscribe<verdict_t>(bus::verdict_channel(pair.a, pair.b), hear);
-      loop_.subscribe<scale_problem_t>(bus::scale_problem_channel(pair.a, pair.b), hear);
-      loop_.subscribe<scale_t>(bus::scale_channel(pair.a, pair.b), hear);
-    }
+    for (const bus::PairConfig& pair : rig.pairs)
+      bus::subscribe_pair(loop_, pair.a, pair.b,
+                          [this]<class Message>(const Message& message, const bus::Arrival& arrival) {
+                            answers_.hear(message);
+                            if constexpr (std::is_same_v<Message, problem_t>)
+                              news_.hear(message, arrival.mono_us);
+                          });
     loop_.subscribe<command_t>(bus::command_channel, [this](const command_t& command, const bus::Arrival&) {
       news_.hear(command, loop_.mono_us());
     });
@@ -156,20 +170,19 @@ class Listening {
 
 }  // namespace
 
-void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::string& log,
-                      const BusWatchOptions& options, Shared& shared, int out, int lines) {
+void BusWatch::listen(int out, int lines) {
   try {
     // held open, as the player holds it: the log may be moved, removed or recorded on meanwhile
     std::optional<bus::LogReader> reader;
-    if (!log.empty()) reader.emplace(log);
-    Listening listening(rig, url, options);
+    if (!log_.empty()) reader.emplace(log_);
+    Listening listening(rig_, url_, options_);
     bus::Loop& loop = listening.loop();
     loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
       listening.hear(status);
-      if (status.host == loop.host()) shared.heard(status.pid, mono_ms());
+      if (status.host == loop.host()) shared_->heard(status.pid, mono_ms());
     });
     loop.every(milliseconds(100), [&] {
-      shared.awaited = listening.awaited();
+      shared_->awaited = listening.awaited();
       // does not block: where the supervisor does not read them, lines are dropped
       write_all(lines, listening.news());
     });
@@ -179,46 +192,76 @@ void BusWatch::listen(const bus::Rig& rig, const std::string& url, const std::st
       write_all(out,
                 std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
     }
-  } catch (const std::exception&) {
-    // the supervisor reads the end of the lines
+  } catch (const std::exception& error) {
+    write_all(lines, fmt::format("the process that listens to the bus failed: {}\n", error.what()));
+    write_all(out, failed + std::string(error.what()));
   }
   _exit(0);
 }
 
+namespace {
+
+/// A process that is forked has the signals that the supervisor blocks, and its open files: descriptors of
+/// other children, whose ends are waited for.
+void as_at_the_start(int out, int lines) {
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  const auto [first, second] = std::minmax(out, lines);
+  const auto close_from_to = [](int from, int to) {
+    if (from <= to) close_range(static_cast<unsigned>(from), static_cast<unsigned>(to), 0);
+  };
+  close_from_to(3, first - 1);
+  close_from_to(first + 1, second - 1);
+  close_range(static_cast<unsigned>(second) + 1, ~0U, 0);
+}
+
+}  // namespace
+
 BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log,
-                   const BusWatchOptions& options) {
+                   const BusWatchOptions& options)
+    : rig_(rig), url_(url), log_(log), options_(options) {
   void* const memory =
       mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw Error(std::string("mmap: ") + std::strerror(errno));
-  shared_ = new (memory) Shared;
-  int ends[2], line_ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0 || pipe2(line_ends, O_CLOEXEC | O_NONBLOCK) != 0)
-    throw Error(std::string("pipe: ") + std::strerror(errno));
+  shared_.reset(new (memory) Shared);
+  start();
+}
+
+void BusWatch::start() {
+  Pipe outcome = make_pipe(0), lines = make_pipe(O_NONBLOCK);
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(0);
     setpgid(0, 0);  // a Ctrl-C is not for it
-    close(ends[0]);
-    close(line_ends[0]);
-    listen(rig, url, log, options, *shared_, ends[1], line_ends[1]);
+    as_at_the_start(outcome.write.get(), lines.write.get());
+    listen(outcome.write.get(), lines.write.get());
   }
-  close(ends[1]);
-  close(line_ends[1]);
-  pipe_ = ends[0];
-  lines_ = line_ends[0];
-  if (pid_ > 0) return;
-  close(pipe_);
-  close(lines_);
-  throw Error(std::string("fork: ") + std::strerror(errno));
+  if (pid_ < 0) throw Error(std::string("fork: ") + std::strerror(errno));
+  outcome_ = std::move(outcome.read);
+  lines_ = std::move(lines.read);
+  started_ = std::chrono::steady_clock::now();
+}
+
+std::optional<int> BusWatch::listen_again() {
+  if (pid_ < 0 || std::chrono::steady_clock::now() - started_ < options_.least_life) return std::nullopt;
+  try {
+    end();
+    start();
+    return lines();
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 BusWatch::~BusWatch() {
   end();
-  close(pipe_);
-  close(lines_);
-  munmap(shared_, sizeof(Shared));
+}
+
+void BusWatch::Unmap::operator()(Shared* shared) const {
+  munmap(shared, sizeof(Shared));
 }
 
 std::optional<milliseconds> BusWatch::silence(pid_t pid) const {
@@ -233,11 +276,11 @@ int BusWatch::awaited() const {
 
 void BusWatch::end() {
   if (pid_ < 0) return;
-  kill(pid_, SIGTERM);
-  // what it still writes must not block it
   const pid_t pid = std::exchange(pid_, -1);
+  if (waitpid(pid, nullptr, WNOHANG) == 0) kill(pid, SIGTERM);
+  // what it still writes must not block it
   char rest[4096];
-  while (read(pipe_, rest, sizeof rest) > 0) {
+  while (read(outcome_.get(), rest, sizeof rest) > 0) {
   }
   while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
   }
@@ -248,10 +291,13 @@ Outcome BusWatch::outcome() {
   std::string text;
   char part[4096];
   for (ssize_t n = 1; n > 0 || (n < 0 && errno == EINTR);) {
-    n = read(pipe_, part, sizeof part);
+    n = read(outcome_.get(), part, sizeof part);
     if (n > 0) text.append(part, static_cast<std::size_t>(n));
   }
   end();
+  if (text.starts_with(failed))
+    throw Error("the process that listened to the bus failed, what was calibrated is not known: " +
+                text.substr(1));
   if (text.size() < 2)
     throw Error("the process that listened to the bus was killed: what was calibrated is not known");
   return {text[0] == '1', text[1] == '1', text.substr(2)};

@@ -5,8 +5,10 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "egocal/bus/rig.hpp"
 #include "supervision/bus_news.hpp"
@@ -17,16 +19,35 @@ namespace egocal::tools {
 /// A pairing process that is alive on the bus within this time, as text: "egocal-pairing (pid 7 on car)".
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
 
+/// Of an open file, which is closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { reset(); }
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  int get() const { return fd_; }
+  void reset();
+
+ private:
+  int fd_;
+};
+
 struct BusWatchOptions {
   BusNewsOptions news;
   OutcomeOptions outcome;
+  /// A listening process that ends sooner than this is not started again: it would end again.
+  std::chrono::milliseconds least_life{1000};
 };
 
 /// Listens to the processes, answers and verdicts of a rig while this object exists: a process of its own, so
 /// that the supervisor has no threads. Ends with us.
 class BusWatch {
  public:
-  /// Of a bus on which this log is played; empty: none is.
+  /// Of a bus on which this log is played; empty: none is. The rig must exist as long as this.
   BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log,
            const BusWatchOptions& options = {});
   ~BusWatch();
@@ -38,21 +59,32 @@ class BusWatch {
   /// Pairs whose newest answer or verdict is not about the newest motions: those of a drive's end still come.
   int awaited() const;
   /// Readable, without blocking: lines of text, see BusNews.
-  int lines() const { return lines_; }
+  int lines() const { return lines_.get(); }
+  /// Starts another listening process where the first one was killed, and returns the new lines(): problems
+  /// and answers are sent again each second, so it soon knows what the first one knew. Empty where it cannot
+  /// be started, or the first one ended at once.
+  std::optional<int> listen_again();
   /// Stops listening and reads the log for what is missing in the answers. Once. Throws Error where the
-  /// listening process was killed.
+  /// listening process failed or was killed.
   Outcome outcome();
 
  private:
   struct Shared;
   /// The listening process, until it gets SIGTERM. Then the outcome goes to `out`.
-  [[noreturn]] static void listen(const bus::Rig& rig, const std::string& url, const std::string& log,
-                                  const BusWatchOptions& options, Shared& shared, int out, int lines);
+  [[noreturn]] void listen(int out, int lines);
+  void start();
   void end();
 
+  struct Unmap {
+    void operator()(Shared* shared) const;
+  };
+  const bus::Rig& rig_;
+  std::string url_, log_;
+  BusWatchOptions options_;
+  std::unique_ptr<Shared, Unmap> shared_;  ///< memory of both processes
+  Descriptor outcome_, lines_;             ///< what the listening process writes
   pid_t pid_ = -1;
-  int pipe_ = -1, lines_ = -1;
-  Shared* shared_ = nullptr;  ///< memory of both processes
+  std::chrono::steady_clock::time_point started_;
 };
 
 }  // namespace egocal::tools

@@ -2,24 +2,84 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "supervision/log_extent.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "egocal/bus/odometry.hpp"
+#include "egocal/pairing/stream.hpp"
 
 namespace egocal::tools {
 
+namespace {
+
+constexpr std::int64_t tenth_us = 100'000;  // a fiftieth of the shortest hole that is reported
+
+/// The poses of a sensor as pairing counts them: in order, each time once, without damaged times.
+class Counting {
+ public:
+  void push(const StampedPose& pose, PoseCounts& counts) {
+    count(stream_.push({pose, -1, 0, false}), counts);
+  }
+  void finish(PoseCounts& counts) { count(stream_.flush(), counts); }
+
+ private:
+  void count(const std::vector<NumberedPose>& in_order, PoseCounts& counts) {
+    for (const NumberedPose& next : in_order) {
+      if (next.begins_anew) counts.clear();
+      if (next.begins_anew || !newest_us_ || next.pose.time_us > *newest_us_) {
+        newest_us_ = next.pose.time_us;
+        counts.add(*newest_us_);
+      }
+    }
+  }
+
+  Stream stream_{StreamOptions{.look_ahead = true}};
+  std::optional<std::int64_t> newest_us_;
+};
+
+}  // namespace
+
+void PoseCounts::add(std::int64_t time_us) {
+  constexpr std::int64_t gap_us = 2'000'000;  // between poses of slow sensors a second passes
+  if (const std::int64_t step_us = time_us - last_us_; step_us < gap_us) {
+    ++steps_;
+    stepped_us_ += step_us;
+  }
+  last_us_ = time_us;
+  const std::int64_t number = time_us / tenth_us;
+  if (tenths_.empty() || tenths_.back().number != number)
+    tenths_.push_back({number, tenths_.empty() ? 0 : tenths_.back().poses});
+  ++tenths_.back().poses;
+}
+
+std::int64_t PoseCounts::until(std::int64_t time_us) const {
+  const auto after =
+      std::upper_bound(tenths_.begin(), tenths_.end(), time_us / tenth_us,
+                       [](std::int64_t number, const Tenth& tenth) { return number < tenth.number; });
+  return after == tenths_.begin() ? 0 : std::prev(after)->poses;
+}
+
+std::int64_t PoseCounts::between(std::int64_t from_us, std::int64_t to_us) const {
+  return std::max<std::int64_t>(0, until(to_us) - until(from_us));
+}
+
 LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig) {
   LogExtent extent;
+  std::map<std::string, Counting> countings;
   log.rewind();
   while (const std::optional<bus::LogEvent> event = log.next())
     for (const bus::Sensor& sensor : rig.sensors) {
       if (sensor.channel != event->channel) continue;
       const bus::ReceivedOdometry odometry = bus::decode_odometry(sensor, event->data);
       if (!odometry.decoded || !odometry.pose) continue;
-      const std::int64_t time_us = odometry.pose.value->time_us;
-      extent.sensors.try_emplace(sensor.name, LogExtent::Stream{time_us, time_us}).first->second.last_us =
-          time_us;
+      const StampedPose& pose = *odometry.pose.value;
+      LogExtent::Stream& stream =
+          extent.sensors.try_emplace(sensor.name, LogExtent::Stream{pose.time_us, pose.time_us, {}})
+              .first->second;
+      stream.last_us = pose.time_us;
+      countings[sensor.name].push(pose, stream.poses);
     }
+  for (auto& [name, counting] : countings) counting.finish(extent.sensors.at(name).poses);
   extent.damage = log.damage();
   return extent;
 }

@@ -5,16 +5,39 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
 
 namespace egocal::tools {
 
+/// How many poses a stream has in any part of a drive: counted by tenths of a second, so that the memory does
+/// not grow with its rate.
+class PoseCounts {
+ public:
+  /// Times ascend.
+  void add(std::int64_t time_us);
+  void clear() { *this = {}; }
+  /// After `from_us` and up to `to_us`; wrong by the poses of a tenth of a second at either end.
+  std::int64_t between(std::int64_t from_us, std::int64_t to_us) const;
+  /// Between two poses in the mean, where the stream has no gap [s].
+  double period() const { return steps_ > 0 ? 1e-6 * static_cast<double>(stepped_us_ / steps_) : 0; }
+
+ private:
+  struct Tenth {
+    std::int64_t number = 0, poses = 0;  ///< of the tenth, since 1970; in it and before it
+  };
+  std::int64_t until(std::int64_t time_us) const;
+  std::vector<Tenth> tenths_;  ///< those that hold poses
+  std::int64_t last_us_ = 0, steps_ = 0, stepped_us_ = 0;
+};
+
 /// From when to when a log holds poses of each sensor of a rig: what an answer of the whole log is about.
 struct LogExtent {
   struct Stream {
     std::int64_t first_us = 0, last_us = 0;  ///< in the sensor's own time, in the log's order [us]
+    PoseCounts poses;                        ///< of the last timeline
   };
   std::map<std::string, Stream> sensors;  ///< by name; one whose channel holds no pose is missing
   bus::LogDamage damage;

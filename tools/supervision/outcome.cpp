@@ -5,10 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "egocal/bus/convert.hpp"
+#include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
+#include "egocal/scale/scale_drive.hpp"
+#include "offline/log_damage.hpp"
 
 namespace egocal::tools {
 
@@ -51,6 +55,56 @@ double without_motion(const PairName& pair, const LogExtent& extent, const Answe
   return std::min(of_a, of_b) > options.standing ? std::min(of_a, of_b) : 0;
 }
 
+/// What is missing between the first and the last motion of a pair.
+struct Hole {
+  double seconds = 0;         ///< of all of them
+  double begin = 0, end = 0;  ///< of the largest one, or of the span that many small ones are spread over [s]
+};
+
+/// The poses from the begin of one motion to that of the next one.
+double poses_per_motion(const bus::Rig& rig, const bus::PairConfig& config, double period) {
+  if (!bus::unscaled_side(rig, config)) return 1;
+  const ScaleDriveOptions options;
+  return std::ceil(options.motion / static_cast<double>(options.starts) / std::max(period, 1e-6));
+}
+
+/// Of one that is told by the log's poses: no motion was made of them, and none was rejected. A motion that
+/// was rejected costs those of the stride around it, too. Where the log itself has a gap, nothing is missing.
+Hole hole_in(const bus::Rig& rig, const bus::PairConfig& config, const LogExtent& extent,
+             const Answers& answers, const OutcomeOptions& options) {
+  const PairName pair{config.a, config.b};
+  const auto a = extent.sensors.find(pair.first), b = extent.sensors.find(pair.second);
+  const std::vector<Answers::Passed>& passed = answers.passed(pair);
+  if (a == extent.sensors.end() || b == extent.sensors.end() || passed.size() < 2) return {};
+  Hole hole;
+  double all = 0, largest = 0;
+  const auto into_log = [&](std::int64_t time_us) { return to_seconds(time_us - a->second.first_us); };
+  for (std::size_t i = 1; i < passed.size(); ++i) {
+    const Answers::Passed &from = passed[i - 1], &to = passed[i];
+    const std::int64_t shift_us = std::llround(1e6 * to.time_offset);
+    const std::int64_t of_a = a->second.poses.between(from.utime, to.utime),
+                       of_b = b->second.poses.between(from.utime - shift_us, to.utime - shift_us),
+                       in_log = std::min(of_a, of_b);
+    if (in_log == 0) continue;
+    const double period = (of_a < of_b ? a : b)->second.poses.period();
+    const auto motions = static_cast<double>(to.seq - from.seq),
+               rejected = static_cast<double>(std::max<std::int64_t>(to.rejected - from.rejected, 0));
+    const double known = motions * poses_per_motion(rig, config, period) +
+                         rejected * static_cast<double>(std::max<std::int64_t>(to.stride, 1));
+    const double seconds = (static_cast<double>(in_log) - known) * period;
+    all += seconds;
+    if (seconds <= options.standing) continue;
+    hole.seconds += seconds;
+    if (seconds <= largest) continue;
+    largest = seconds;
+    hole.begin = into_log(from.utime);
+    hole.end = into_log(to.utime);
+  }
+  const double span = to_seconds(passed.back().utime - passed.front().utime);
+  if (hole.seconds > 0 || all <= std::max(options.standing, options.least_part * span)) return hole;
+  return {all, into_log(passed.front().utime), into_log(passed.back().utime)};
+}
+
 /// What neither the answer (missing: how much, and why) nor the verdict knows of the end of the drive comes
 /// first.
 std::string judgement_of(const PairName& pair, const Answers& answers, const std::string& missing) {
@@ -72,21 +126,28 @@ std::string missing_end(const PairName& pair, const Answers& answers, double unr
 
 /// Of a pair that has an answer.
 std::string line_of(const PairName& pair, const Answers& answers, const std::string& missing,
-                    double not_in_session, double without_motion) {
+                    double not_in_session, const Hole& hole, double without_motion) {
   const Answers::Best& best = *answers.best(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Pose T = to_pose(best.checked.answer.T_a_b);
   const Eigen::Quaterniond& q = T.rotation;
   std::string text = fmt::format(
-      "{} -> {}: {}\n  {}, {} motion pairs; "
+      "{} -> {}: {}\n  {}, {}; "
       "translation {:.4f} {:.4f} {:.4f} m, rotation w x y z {:.5f} {:.5f} {:.5f} {:.5f}\n",
       pair.first, pair.second, judgement_of(pair, answers, missing),
-      answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal", best.message.pairs,
-      T.translation.x(), T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
+      answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal",
+      counted(static_cast<std::uint64_t>(best.message.pairs), "motion pair"), T.translation.x(),
+      T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
   if (not_in_session > 0)
     text += fmt::format(
         "  the first {:.1f} s of the log are not in this answer: its statistics begin after them\n",
         not_in_session);
+  if (hole.seconds > 0)
+    text += fmt::format(
+        "  about {:.1f} s in the middle of the log are not in this answer, between {:.1f} and {:.1f} s: "
+        "pairing "
+        "did not get them, or was paused\n",
+        hole.seconds, hole.begin, hole.end);
   if (without_motion > 0)
     text += fmt::format(
         "  the last {:.1f} s of the log are not in this answer: no new motion was found in them\n",
@@ -114,15 +175,6 @@ std::string possible_of_all(const bus::Rig& rig, const Answers& answers) {
   return text;
 }
 
-std::string damage_of(const LogExtent& extent) {
-  if (!extent.damage.any()) return {};
-  const std::uint64_t events = std::max(extent.damage.lost_events, extent.damage.regions);
-  return fmt::format(
-      "the log is damaged: about {} of its events could not be read and are in no answer; see "
-      "egocal log check\n",
-      std::max<std::uint64_t>(events, 1));
-}
-
 }  // namespace
 
 Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent& extent,
@@ -141,9 +193,12 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
     outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis));
     outcome.text +=
         line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options),
+                hole_in(rig, config, extent, answers, options),
                 missing.empty() ? without_motion(pair, extent, answers, options) : 0);
   }
-  outcome.text += possible_of_all(rig, answers) + damage_of(extent);
+  outcome.text += possible_of_all(rig, answers);
+  if (const std::string damage = damage_in_words(extent.damage); !damage.empty())
+    outcome.text += damage + "\n";
   if (outcome.answered && extent.sensors.empty()) {
     outcome.unusable = true;
     outcome.text += "the log holds no poses any more: whether its end is in the answers is not known\n";

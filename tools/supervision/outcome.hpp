@@ -29,15 +29,19 @@ struct OutcomeOptions {
   /// (../shared/data) the begins and ends of 93 are less than 1 s apart, of three up to 4 s.
   double least_missing = 1;
   /// The end of a log is reported as missing in an answer where the pair's last motion is farther from it
-  /// [s]. As BusNewsOptions::standing.
+  /// [s], and so is a hole in its middle that is longer. As BusNewsOptions::standing.
   double standing = 5;
+  /// What is missing in many short pieces is reported from this part of the drive on: single messages may be
+  /// lost or late.
+  double least_part = 0.1;
 };
 
 /// How far pairing has read each channel, by its acknowledgements [us, the sensor's time].
 using ReadUntil = std::map<std::string, std::int64_t>;
 
 /// At the end of a log. An answer without the log's end is not one of the log, whatever its verdict: it is
-/// unusable. One that begins late is usable, and what is missing is named, as is damage of the log.
+/// unusable. One that begins late or has a hole in its middle is usable, and what is missing is
+/// named, as is damage of the log.
 Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent& extent,
                    const ReadUntil& read_until, const OutcomeOptions& options = {});
 

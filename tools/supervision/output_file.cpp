@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,8 +32,26 @@ std::string default_output_directory() {
   const char* state = std::getenv("XDG_STATE_HOME");
   if (state && *state) return std::string(state) + "/egocal";
   const char* home = std::getenv("HOME");
-  if (home && *home) return std::string(home) + "/.local/state/egocal";
-  return fmt::format("/tmp/egocal-{}", getuid());
+  std::error_code none;
+  // users of services have a home that is not there
+  if (home && *home && std::filesystem::is_directory(home, none))
+    return std::string(home) + "/.local/state/egocal";
+  const std::string folder = fmt::format("/tmp/egocal-{}", geteuid());
+  require_private_folder(folder);
+  return folder;
+}
+
+void require_private_folder(const std::string& folder) {
+  if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+    throw error_at(folder, 0, "", std::string("cannot be made: ") + std::strerror(errno));
+  struct stat status {};
+  const bool known = lstat(folder.c_str(), &status) == 0;
+  if (known && S_ISDIR(status.st_mode) && status.st_uid == geteuid() &&
+      (status.st_mode & (S_IWGRP | S_IWOTH)) == 0)
+    return;
+  throw error_at(folder, 0, "",
+                 "is not a folder that this user alone can write to: remove it, or name another one by "
+                 "--output-dir");
 }
 
 int open_output(const std::string& file) {

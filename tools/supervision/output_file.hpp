@@ -7,8 +7,13 @@
 namespace egocal::tools {
 
 /// Where the outputs of supervised processes go by default: egocal in the user's folder for states
-/// (XDG_STATE_HOME, ~/.local/state), or in /tmp.
+/// (XDG_STATE_HOME, ~/.local/state), or, where there is no such user's folder, our private folder in /tmp.
+/// Throws Error where that one is not private.
 std::string default_output_directory();
+
+/// Made where it is not there. Throws Error where it is not a folder that nobody but this user can write to:
+/// in a folder of all users, such as /tmp, it may be somebody else's.
+void require_private_folder(const std::string& folder);
 
 /// Opens it for appending, with a line that says when; one of more than 10 MB becomes FILE.old first. The
 /// file descriptor is closed in programs that are executed. Throws Error.

@@ -35,6 +35,13 @@ int owned(const std::string& file) {
   return -1;
 }
 
+/// Something that no process can use as its state or its lock.
+bool is_in_the_way(const std::string& file) {
+  std::error_code none;
+  const fs::file_type type = fs::status(file, none).type();
+  return type != fs::file_type::not_found && type != fs::file_type::regular;
+}
+
 void remove_all_of(const std::string& file) {
   std::error_code none;
   for (const char* more : {"", ".lock", owner_suffix}) fs::remove(file + more, none);
@@ -48,9 +55,12 @@ PassingState::PassingState(const std::string& folder) {
     file_ = fmt::format("{}/{}{}{}", folder, prefix, n, suffix);
     std::error_code none;
     if (fs::exists(file_, none)) continue;  // of another command, running or not
+    const std::string diagnosis = of_diagnosis(file_);
+    if (is_in_the_way(file_ + ".lock") || is_in_the_way(diagnosis) || is_in_the_way(diagnosis + ".lock"))
+      continue;
     owner_ = owned(file_);
     if (owner_ < 0 && errno != EWOULDBLOCK)
-      throw error_at(file_, 0, "", std::string("cannot be written: ") + std::strerror(errno));
+      throw error_at(file_ + owner_suffix, 0, "", std::string("cannot be written: ") + std::strerror(errno));
   }
 }
 
@@ -69,6 +79,7 @@ std::vector<std::string> PassingState::left_behind(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename();
     if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
+    if (!entry.is_regular_file(error)) continue;
     const int fd = owned(entry.path());
     if (fd < 0) continue;
     close(fd);

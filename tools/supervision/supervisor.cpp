@@ -21,6 +21,7 @@
 
 #include "egocal/error.hpp"
 #include "supervision/output_file.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -51,11 +52,12 @@ struct Child {
 
 /// In the child, between fork and exec: only what is safe there.
 [[noreturn]] void become(const Program& program, char* const* arguments, int output, pid_t parent,
-                         const sigset_t& old_mask) {
+                         const sigset_t& mask) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);  // whatever happens to us, nothing is left behind
   if (getppid() != parent) _exit(exec_failed);
   if (!program.foreground) setpgid(0, 0);
-  sigprocmask(SIG_SETMASK, &old_mask, nullptr);
+  signal(SIGPIPE, SIG_DFL);  // that it is ignored would be inherited
+  sigprocmask(SIG_SETMASK, &mask, nullptr);
   if (!program.foreground) {
     if (output >= 0) {
       dup2(output, STDOUT_FILENO);
@@ -88,7 +90,7 @@ class Messages {
 
   void report(const std::string& line, bool at_the_end_too = false) {
     if (!options_.quiet || options_.output_dir.empty()) {
-      fmt::print(stderr, "egocal up: {}\n", line);
+      say("egocal up: " + line);
       return;
     }
     if (at_the_end_too) last_line_ = line;
@@ -103,7 +105,7 @@ class Messages {
   }
 
   void end() {
-    if (!last_line_.empty()) fmt::print(stderr, "egocal up: {}\n", last_line_);
+    if (!last_line_.empty()) say("egocal up: " + last_line_);
   }
 
  private:
@@ -139,6 +141,9 @@ class Supervisor {
       sigaddset(&mask, SIGTSTP);
     }
     sigprocmask(SIG_BLOCK, &mask, &old_mask_);
+    // the caller may hold signals back for us
+    programs_mask_ = old_mask_;
+    for (const int signal : {SIGINT, SIGTERM, SIGCHLD, SIGHUP, SIGTSTP}) sigdelset(&programs_mask_, signal);
     signals_ = signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
     if (signals_ < 0) throw Error(std::string("signalfd: ") + std::strerror(errno));
   }
@@ -234,13 +239,14 @@ class Supervisor {
 
   void start(Child& child) {
     const int output = output_of(child);
+    std::vector<std::string> command = command_of(child);
     std::vector<char*> arguments;
-    for (std::string& argument : child.program.command) arguments.push_back(argument.data());
+    for (std::string& argument : command) arguments.push_back(argument.data());
     arguments.push_back(nullptr);
     const pid_t parent = getpid();
     child.started = awake();
     child.pid = fork();
-    if (child.pid == 0) become(child.program, arguments.data(), output, parent, old_mask_);
+    if (child.pid == 0) become(child.program, arguments.data(), output, parent, programs_mask_);
     const int reason = errno;
     if (output >= 0) close(output);
     child.has_started = true;
@@ -249,6 +255,23 @@ class Supervisor {
       child.restarts.not_started();
       start_again(child, std::string("fork: ") + std::strerror(reason));
     }
+  }
+
+  /// Without its state file where the folder is gone and cannot be made: a process that cannot lock its state
+  /// does not begin, and the drive goes on.
+  std::vector<std::string> command_of(const Child& child) {
+    std::vector<std::string> command = child.program.command;
+    const auto option = std::find(command.begin(), command.end(), "--state");
+    if (!child.has_started || option == command.end() || option + 1 == command.end()) return command;
+    const std::filesystem::path folder = std::filesystem::absolute(*(option + 1)).parent_path();
+    std::error_code none;
+    std::filesystem::create_directories(folder, none);
+    if (std::filesystem::is_directory(folder, none)) return command;
+    messages_.report(
+        fmt::format("{}: is gone and cannot be made again; {} starts without the state file there",
+                    folder.string(), child.program.name));
+    command.erase(option, option + 2);
+    return command;
   }
 
   /// -1: where ours goes. A disk that has become full or a folder that is gone must not end what runs.
@@ -303,10 +326,12 @@ class Supervisor {
         said_.erase(0, end + 1);
       }
     } else if (n == 0 || errno != EAGAIN) {
-      lines_ = -1;
-      messages_.report(
-          "the process that listens to the bus was killed: nothing that hangs, errs or is not answered is "
-          "reported any more");
+      const std::optional<int> again = options_.lines_again ? options_.lines_again() : std::nullopt;
+      lines_ = again.value_or(-1);
+      messages_.report(again
+                           ? "the process that listens to the bus has ended; it is started again"
+                           : "the process that listens to the bus has ended: nothing that hangs, errs or is "
+                             "not answered is reported any more");
     }
   }
 
@@ -352,6 +377,7 @@ class Supervisor {
     switch (child.restarts.ended(child.program, code, lived)) {
       case Restarts::Next::finished:
         child.finished = true;
+        if (child.program.foreground && options_.foreground_ended) options_.foreground_ended();
         wanted_at_once_ = wanted_at_once_ || child.program.foreground;
         end_at_ = awake() + (wanted_at_once_ ? milliseconds(0) : options_.settle);
         return;
@@ -417,7 +443,7 @@ class Supervisor {
   std::vector<Child> children_;
   Clock::time_point looked_at_ = Clock::now(), awake_ = looked_at_;  ///< see awake()
   Clock::time_point watched_at_ = awake_;
-  sigset_t old_mask_{};
+  sigset_t old_mask_{}, programs_mask_{};
   int signals_ = -1;
   Messages messages_{options_};
   std::optional<TerminalModes> terminal_;  ///< where a program has the terminal

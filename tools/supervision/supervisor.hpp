@@ -33,6 +33,10 @@ struct SupervisorOptions {
   /// Another one is heard: within this time, in which each of them sends two statuses.
   std::chrono::milliseconds heard{2500};
   int lines = -1;  ///< lines from this file descriptor are reported as well; it does not block. -1: none
+  /// Asked where `lines` has ended: the file descriptor of whoever writes them from then on; empty: nobody.
+  std::function<std::optional<int>()> lines_again;
+  /// A foreground program has ended as it should, and with it everything.
+  std::function<void()> foreground_ended{};
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
 
@@ -45,7 +49,7 @@ struct SupervisorOptions {
 /// SIGKILL included, the others get SIGTERM. Returns 0 when they ended because they should, 1 when something
 /// could not be started (reported on standard error). Throws Error where an output file cannot be written at
 /// the first start; nothing is left running then. Later the output of a process whose file cannot be written
-/// goes to /dev/null.
+/// goes to /dev/null. The caller ignores SIGPIPE, or a report that nobody reads ends us; the programs do not.
 int supervise(const std::vector<Program>& programs, const SupervisorOptions& options);
 
 }  // namespace egocal::tools
