@@ -345,10 +345,11 @@ void Player::report() {
   show_progress(true);
   const bus::LogDamage& damage = tape_.damage();
   if (damage.any())
-    say(text(
-        "%s: %llu damaged regions skipped, %llu bytes and at least %llu events lost%s", options_.log.c_str(),
-        static_cast<unsigned long long>(damage.regions), static_cast<unsigned long long>(damage.bytes),
-        static_cast<unsigned long long>(damage.lost_events), damage.truncated ? "; the log is cut off" : ""));
+    say(text("%s: %llu damaged region%s skipped, %llu bytes and at least %llu event%s lost%s",
+             options_.log.c_str(), static_cast<unsigned long long>(damage.regions),
+             damage.regions == 1 ? "" : "s", static_cast<unsigned long long>(damage.bytes),
+             static_cast<unsigned long long>(damage.lost_events), damage.lost_events == 1 ? "" : "s",
+             damage.truncated ? "; the log is cut off" : ""));
   if (tape_.damaged_times() > 0)
     say(text("%llu events with damaged times were played when their neighbours were",
              static_cast<unsigned long long>(tape_.damaged_times())));

@@ -129,12 +129,12 @@ std::string damage_text(const bus::LogDamage& damage) {
   if (!damage.any()) return "no damage";
   std::string text;
   if (damage.regions > 0)
-    text = fmt::format("{} damaged regions, {} bytes and at least {} events lost", damage.regions,
-                       damage.bytes, damage.lost_events);
+    text = fmt::format("{}, {} and at least {} lost", counted(damage.regions, "damaged region"),
+                       counted(damage.bytes, "byte"), counted(damage.lost_events, "event"));
   if (damage.jumps > 0)
-    text +=
-        fmt::format("{}the numbers of the events jump at {} places{}", text.empty() ? "" : "; ", damage.jumps,
-                    damage.regions > 0 ? "" : fmt::format(", {} events are missing", damage.lost_events));
+    text += fmt::format(
+        "{}the numbers of the events jump at {}{}", text.empty() ? "" : "; ", counted(damage.jumps, "place"),
+        damage.regions > 0 ? "" : fmt::format(", {} missing", counted(damage.lost_events, "event")));
   return text + (damage.truncated ? "; cut off at the end" : "");
 }
 
