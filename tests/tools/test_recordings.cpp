@@ -265,8 +265,9 @@ TEST_F(Recordings, APackedLogOfLcmIsRefusedByEveryCommandWithTheSameLine) {
     const Outcome run = egocal(command);
     EXPECT_EQ(run.code, 1) << command;
     EXPECT_EQ(run.out, "") << command;
+    const std::string name = command.starts_with("up ") ? "egocal up" : "egocal";
     EXPECT_EQ(run.err,
-              "egocal: " + file + ": is packed by zstd, and a log is read unpacked: unzstd '" + file + "'\n")
+              name + ": " + file + ": is packed by zstd, and a log is read unpacked: unzstd '" + file + "'\n")
         << command;
   }
 }
