@@ -11,6 +11,7 @@
 #include <map>
 
 #include "egocal/bus/loop.hpp"
+#include "egocal/in_words.hpp"
 #include "support/child_process.hpp"
 #include "support/damaged_log.hpp"
 #include "support/network_namespace.hpp"
@@ -67,7 +68,7 @@ TEST_F(LogDamage, CheckNamesItAndRepairLeavesALogWithoutAny) {
     EXPECT_EQ(std::count(check.said.begin(), check.said.end(), '\n'), 1) << check.said;
     if (reader.damage().regions > 0) {
       EXPECT_THAT(check.said, HasSubstr(std::to_string(reader.damage().bytes) + " bytes and at least " +
-                                        std::to_string(reader.damage().lost_events) + " events lost"));
+                                        counted(reader.damage().lost_events, "event") + " lost"));
     }
     const Outcome repair = egocal({"log", "repair", path("damaged.log"), "--out", path("repaired.log")});
     ASSERT_EQ(repair.code, 0) << repair.said;
