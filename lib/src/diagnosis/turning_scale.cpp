@@ -28,13 +28,13 @@ struct End {
 };
 
 /// What the motions of one stream are made of.
-struct Turning {
+struct AboutAxis {
   Vector3d axis;  ///< of most turning, in the stream's world
   std::vector<End> begins, ends;
 };
 
 /// Of the motions that motions_of() makes of the same instants, by their times.
-Turning turning_of(const Instants& instants, const Motions& motions, Side side) {
+AboutAxis turning_of(const Instants& instants, const Motions& motions, Side side) {
   std::vector<Matrix3d> orientations;
   std::vector<Vector3d> turns;
   Matrix3d squares = Matrix3d::Zero();
@@ -45,7 +45,7 @@ Turning turning_of(const Instants& instants, const Motions& motions, Side side) 
     turns.push_back(rotation_log(Rotation(orientations[i] * orientations[i - 1].transpose())));
     squares += turns.back() * turns.back().transpose();
   }
-  Turning result;
+  AboutAxis result;
   result.axis = symmetric_eigen<3>(squares).vectors.col(2);
   std::vector<double> turned{0};
   for (const Vector3d& turn : turns) turned.push_back(turned.back() + result.axis.dot(turn));
@@ -63,7 +63,8 @@ Turning turning_of(const Instants& instants, const Motions& motions, Side side) 
 
 /// The motions with a part of the turning of one stream taken off. right_positions: those of the file, else
 /// those that were summed in its own frame.
-Motions without(const Motions& given, const Turning& turning, Side side, double part, bool right_positions) {
+Motions without(const Motions& given, const AboutAxis& turning, Side side, double part,
+                bool right_positions) {
   Motions motions = given;
   for (std::size_t i = 0; i < motions.all.size(); ++i) {
     Motion& motion = motions.all[i];
@@ -94,7 +95,7 @@ double excess(const Motions& motions, Side side) {
   return ratios.empty() ? 0 : 1 - median(std::move(ratios));
 }
 
-double most_turned(const Turning& turning) {
+double most_turned(const AboutAxis& turning) {
   double most = 0;
   for (const End& end : turning.ends) most = std::max(most, std::abs(end.turned));
   return most;
@@ -108,7 +109,7 @@ struct Scaled {
 };
 
 /// centre, around: where the part is looked for.
-Scaled fitted(const Explained& given, const Turning& turning, Side side, double centre, double around,
+Scaled fitted(const Explained& given, const AboutAxis& turning, Side side, double centre, double around,
               bool right_positions, const DiagnosisOptions& options, const TurningScaleOptions& search) {
   constexpr double golden = 0.6180339887498949;  // mathematics: the golden section
   const auto left_over = [&](double part) {
@@ -163,7 +164,7 @@ std::vector<Finding> turning_scale(const Instants& instants, const Explained& gi
   for (const Side side : {Side::b, Side::a}) {
     const double centre = excess(given.motions, side);
     if (!(std::abs(centre) >= turning.least && std::abs(centre) <= turning.most)) continue;
-    const Turning of_side = turning_of(instants, given.motions, side);
+    const AboutAxis of_side = turning_of(instants, given.motions, side);
     // right positions show the part more exactly, but only near it: beyond, their headings are turned round
     const double most = most_turned(of_side);
     double near = centre, around = turning.around;
