@@ -398,7 +398,7 @@ TEST(Moves, ALargeBumpIsFoundInAHundredMotions) {
 // Neighbouring blocks are alike, and there are too few motions for longer ones. Of 400 such drives these had
 // an alarm at the chance that holds for blocks of eight motions.
 TEST(Moves, NoiseThatWandersIsNoneInAHundredMotions) {
-  for (const std::uint64_t seed : {4, 24, 80, 192, 302}) {
+  for (const std::uint64_t seed : {4u, 24u, 80u, 192u, 302u}) {
     SimulationOptions options = drive(seed % 2 == 0 ? Terrain::rough : Terrain::free, seed, 12);
     options.random_walk = true;
     EXPECT_TRUE(moves_of(options).moves.empty()) << seed;
