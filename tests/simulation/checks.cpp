@@ -220,8 +220,12 @@ void Checks::check_wishes(const Process& from, const std::string& channel, std::
   Commands::Wish& wish = commands_.of("egocal-pairing", channel.substr(bus::problem_prefix.size()));
   const auto before = sessions_.find(channel);
   const bool anew = before != sessions_.end() && before->second != session;
-  if (anew && wish.reset_us < 0) fail('e', "a session of " + channel + " begins anew without a reason");
-  if (anew || before == sessions_.end()) wish.reset_us = -1;
+  if (anew && wish.reset_us < 0 && !wish.on_its_way)
+    fail('e', "a session of " + channel + " begins anew without a reason");
+  if (anew || before == sessions_.end()) {
+    wish.on_its_way = !anew && wish.reset_us >= 0 && now <= wish.reset_us + heard_us;
+    wish.reset_us = -1;
+  }
   sessions_[channel] = session;
   // a process that started after the command has not received it
   if (from.lives() > 1) return;

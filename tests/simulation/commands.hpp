@@ -16,6 +16,7 @@ class Commands {
  public:
   struct Wish {
     std::int64_t reset_us = -1;    ///< a reset was sent; -1: none since the newest session began
+    bool on_its_way = false;       ///< a reset was, when the first session began: another one may follow
     std::int64_t paused_us = -1;   ///< a pause; -1: it runs
     std::int64_t paused_seq = -1;  ///< of pairing: the newest problem some time after the pause
   };
