@@ -243,13 +243,17 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   return true;
 }
 
+std::vector<Finding>::const_iterator certain_axes_of_both(const std::vector<Finding>& findings) {
+  return std::find_if(findings.begin(), findings.end(),
+                      [](const Finding& one) { return one.certain && one.code == "axes_both"; });
+}
+
 /// Axes that are turned alike in both files by any angle explain a part of what a mount that moved does, or
 /// of one that fell back: the moves are named instead where they explain more.
 bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                       const DiagnosisOptions& options, std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return false;
-  const auto axes = std::find_if(findings.begin(), findings.end(),
-                                 [](const Finding& one) { return one.certain && one.code == "axes_both"; });
+  const auto axes = certain_axes_of_both(findings);
   if (axes == findings.end()) return false;
   std::vector<Finding> moves = moved_mount(evidence.instants, answered, options).findings;
   if (moves.empty() || std::exp(gain_of_parts(evidence, moves, options)) <= axes->improvement) return false;
@@ -263,8 +267,7 @@ bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, c
 bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
                              const DiagnosisOptions& options, std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return false;
-  const auto axes = std::find_if(findings.begin(), findings.end(),
-                                 [](const Finding& one) { return one.certain && one.code == "axes_both"; });
+  const auto axes = certain_axes_of_both(findings);
   if (axes == findings.end()) return false;
   std::vector<Finding> wrong = wrong_stream(evidence, options);
   if (wrong.empty() || wrong.front().improvement <= axes->improvement) return false;

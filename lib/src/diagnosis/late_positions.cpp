@@ -2,30 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/late_positions.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "diagnosis/changed_motions.hpp"
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
-#include "linear_algebra/cross_matrix.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
+using Changes = std::vector<Vector3d>;
 
 /// What a second of delay adds to the translation of each motion, in the frame of its begin [m/s].
-struct Changes {
-  std::vector<Vector3d> a, b;
+struct ByDelay {
+  Changes a, b;
+  const Changes& of(Side side) const { return side == Side::a ? a : b; }
 };
 
 /// Of the positions of a stream about an instant, by those on either side.
@@ -51,16 +49,11 @@ class Speeds {
   std::size_t side_;
 };
 
-/// The changes of the motions that motions_of() makes of the same instants, by their times.
-Changes changes_of(const Instants& instants, const Motions& motions, const LatePositionsOptions& late) {
+ByDelay changes_of(const Instants& instants, const Motions& motions, const LatePositionsOptions& late) {
   const Speeds speeds(instants, late);
   const auto span = static_cast<std::size_t>(motions.stride);
-  Changes changes;
-  std::size_t i = 0;
-  for (const Motion& motion : motions.all) {
-    while (i + span + 1 < instants.size() &&
-           0.5 * (instants.time(i) + instants.time(i + span)) < motion.time - 1e-9)
-      ++i;
+  ByDelay changes;
+  for (const std::size_t i : begins_of(instants, motions)) {
     const PosePair begin = instants.at(i);
     const auto [from_a, from_b] = speeds.at(i);
     const auto [to_a, to_b] = speeds.at(i + span);
@@ -70,46 +63,15 @@ Changes changes_of(const Instants& instants, const Motions& motions, const LateP
   return changes;
 }
 
-void set_translation(DualQuaternion& motion, const Vector3d& t) {
-  motion = canonical_sign(to_dual_quaternion(Pose{to_pose(motion).rotation, t}));
-}
-
 /// The motions with the positions of one stream taken `delay` later.
 Motions later(const Motions& given, const Changes& changes, Side side, double delay) {
   Motions motions = given;
   for (std::size_t i = 0; i < motions.all.size(); ++i) {
     Motion& motion = motions.all[i];
-    if (side == Side::a) {
-      motion.t_a += delay * changes.a[i];
-      set_translation(motion.a, motion.t_a);
-    } else {
-      motion.t_b += delay * changes.b[i];
-      set_translation(motion.b, motion.t_b);
-    }
+    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
+               (side == Side::a ? motion.t_a : motion.t_b) + delay * changes[i]);
   }
   return motions;
-}
-
-/// The delay that suits the translations best, beside a change of the extrinsic: linear least squares.
-double best_delay(const Explained& given, const Changes& changes, Side side) {
-  const Pose T = to_pose(given.fit.T);
-  const Matrix3d R = T.rotation.toRotationMatrix();
-  Matrix7d sum = Matrix7d::Zero();
-  Vector7d right = Vector7d::Zero();
-  for (std::size_t i = 0; i < given.motions.all.size(); ++i) {
-    const Motion& motion = given.motions.all[i];
-    const double weight = given.fit.weights[i];
-    const Vector3d there = R * motion.t_b;
-    const Vector3d residual = motion.R_a * T.translation + motion.t_a - there - T.translation;
-    Eigen::Matrix<double, 3, 7> rows;
-    rows.leftCols<3>() = motion.R_a - Matrix3d::Identity();
-    rows.middleCols<3>(3) = cross_matrix(there);
-    rows.col(6) = side == Side::a ? changes.a[i] : Vector3d(-(R * changes.b[i]));
-    sum += weight * rows.transpose() * rows;
-    right -= weight * rows.transpose() * residual;
-  }
-  sum.diagonal().array() += 1e-9 * sum.trace() / 7 + 1e-300;  // what the drive does not show stays as it is
-  return sum.ldlt().solve(right)[6];
 }
 
 struct Late {
@@ -122,7 +84,7 @@ struct Late {
 Late fitted(const Explained& given, const Changes& changes, Side side, const DiagnosisOptions& options) {
   Late late{side, 0, given, {}};
   for (int round = 0; round < options.fit.rounds; ++round) {
-    late.delay += best_delay(late.explained, changes, side);
+    late.delay += best_numbers<1>(late.explained, changes, side)[0];
     late.explained.motions = later(given.motions, changes, side, late.delay);
     late.explained.fit = robust_fit(late.explained.motions, options.fit);
   }
@@ -136,11 +98,11 @@ std::optional<Finding> late_positions(const Instants& instants, const Explained&
                                       const DiagnosisOptions& options, std::optional<Side> only,
                                       const LatePositionsOptions& late) {
   if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
-  const Changes changes = changes_of(instants, given.motions, late);
+  const ByDelay changes = changes_of(instants, given.motions, late);
   std::optional<Late> best;
   for (const Side side : {Side::b, Side::a}) {
     if (only && side != *only) continue;
-    Late here = fitted(given, changes, side, options);
+    Late here = fitted(given, changes.of(side), side, options);
     if (!std::isfinite(here.delay) || std::abs(here.delay) < late.least ||
         !explains(here.explained, options) || !better(here.comparison, options.gain, options))
       continue;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/changed_motions.hpp"
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
@@ -33,7 +34,6 @@ struct AboutAxis {
   std::vector<End> begins, ends;
 };
 
-/// Of the motions that motions_of() makes of the same instants, by their times.
 AboutAxis turning_of(const Instants& instants, const Motions& motions, Side side) {
   std::vector<Matrix3d> orientations;
   std::vector<Vector3d> turns;
@@ -50,11 +50,7 @@ AboutAxis turning_of(const Instants& instants, const Motions& motions, Side side
   std::vector<double> turned{0};
   for (const Vector3d& turn : turns) turned.push_back(turned.back() + result.axis.dot(turn));
   const auto span = static_cast<std::size_t>(motions.stride);
-  std::size_t i = 0;
-  for (const Motion& motion : motions.all) {
-    while (i + span + 1 < instants.size() &&
-           0.5 * (instants.time(i) + instants.time(i + span)) < motion.time - 1e-9)
-      ++i;
+  for (const std::size_t i : begins_of(instants, motions)) {
     result.begins.push_back({orientations[i], turned[i]});
     result.ends.push_back({orientations[i + span], turned[i + span]});
   }
@@ -72,12 +68,12 @@ Motions without(const Motions& given, const AboutAxis& turning, Side side, doubl
       return Matrix3d(rotation_exp(-part * end.turned * turning.axis).toRotationMatrix() * end.R);
     };
     const Matrix3d begin = corrected(turning.begins[i]), end = corrected(turning.ends[i]);
-    Vector3d& t = side == Side::a ? motion.t_a : motion.t_b;
+    Vector3d t = side == Side::a ? motion.t_a : motion.t_b;
     if (right_positions) t = begin.transpose() * (turning.begins[i].R * t);
     const Rotation rotation(begin.transpose() * end);
-    DualQuaternion& pose = side == Side::a ? motion.a : motion.b;
-    pose = canonical_sign(to_dual_quaternion(Pose{rotation, t}));
-    (side == Side::a ? motion.angle_a : motion.angle_b) = rotation_angle(pose);
+    set_motion(motion, side, rotation, t);
+    (side == Side::a ? motion.angle_a : motion.angle_b) =
+        rotation_angle(side == Side::a ? motion.a : motion.b);
     if (side == Side::a) motion.R_a = rotation.toRotationMatrix();
   }
   return motions;
