@@ -355,7 +355,7 @@ Rig parse_rig(const std::string& text, const std::string& file) {
   }
 }
 
-Rig read_rig(const std::string& file) {
+std::string rig_text(const std::string& file) {
   std::error_code none;  // what cannot be looked at cannot be opened either, which is said below
   if (std::filesystem::is_directory(file, none))
     throw error_at(file, 0, "", "is a folder, expected a rig file");
@@ -364,8 +364,12 @@ Rig read_rig(const std::string& file) {
   if (in.is_open()) in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.is_open() || in.bad())
     throw error_at(file, 0, "", std::string("cannot be read as a rig file: ") + std::strerror(errno));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse_rig(text, file);
+  text.resize(static_cast<std::size_t>(in.gcount()));  // one byte more than a rig can have is refused
+  return text;
+}
+
+Rig read_rig(const std::string& file) {
+  return parse_rig(rig_text(file), file);
 }
 
 const Sensor& sensor(const Rig& rig, const std::string& name) {

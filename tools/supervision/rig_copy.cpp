@@ -7,34 +7,13 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "egocal/error.hpp"
 
 namespace egocal::tools {
 
-namespace {
-
-/// At most one byte more than a rig can have, which parse_rig() then refuses.
-std::string text_of_rig(const std::string& file) {
-  constexpr std::size_t enough = (std::size_t{1} << 20) + 1;  // [bytes]
-  std::error_code none;  // what cannot be looked at cannot be opened either
-  if (std::filesystem::is_directory(file, none))
-    throw error_at(file, 0, "", "is a folder, expected a rig file");
-  std::ifstream in(file, std::ios::binary);
-  std::string text(enough, '\0');
-  if (in.is_open()) in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in.is_open() || in.bad())
-    throw error_at(file, 0, "", std::string("cannot be read as a rig file: ") + std::strerror(errno));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
-
-}  // namespace
-
 RigCopy::RigCopy(const std::string& file) {
-  const std::string text = text_of_rig(file);
+  const std::string text = bus::rig_text(file);
   rig_ = bus::parse_rig(text, file);
   fd_ = memfd_create("rig", 0);  // programs that are executed inherit it
   std::size_t done = 0;

@@ -62,6 +62,8 @@ struct Rig {
 /// Reads a rig file (TOML, docs/rig.md). Throws Error naming file, line and key on anything that is not
 /// understood: a misspelt key is an error, not ignored.
 Rig read_rig(const std::string& file);
+/// Its text alone, for parse_rig(): of what can be read only once. Throws Error where it cannot be read.
+std::string rig_text(const std::string& file);
 /// The same from text; file is the name that errors carry.
 Rig parse_rig(const std::string& text, const std::string& file);
 
