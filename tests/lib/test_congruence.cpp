@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -54,6 +55,31 @@ TEST(Congruence, TooFewToTellAreNotJudged) {
   const std::vector<bool> found = incongruent(pairs);
   EXPECT_EQ(std::count(found.begin(), found.end(), true), 0);
   EXPECT_TRUE(incongruent({}).empty());
+}
+
+/// Straight for a while, then around on the spot. The straight part shows nothing of a lever arm across it,
+/// and noise that grows with turning hardly shows there.
+TEST(Congruence, FirstTurnInPlaceIsNotRejected) {
+  for (const bool grows : {false, true})
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Random random(seed);
+      const DualQuaternion T = displacement({0.4, -1.1, 0.7}, {-1.5, 2, 0.3});
+      Trajectory a, b;
+      DualQuaternion at_a, at_b = T;
+      for (int i = 0; i < 100; ++i) {
+        a.push_back({100000LL * i, at_a});
+        b.push_back({100000LL * i, at_b});
+        const bool turns = i / 30 % 2 == 1;
+        const DualQuaternion step =
+            displacement({0.005 * std::sin(0.2 * i), 0.005 * std::sin(0.17 * i), turns ? 0.08 : 0},
+                         {turns ? 0 : 0.1, 0, 0});
+        const double noise = grows && !turns ? 1e-4 : 3e-4;
+        at_a = normalized(at_a * step * normal_displacement(random, noise, 1e-3));
+        at_b = normalized(at_b * conjugate(T) * step * T * normal_displacement(random, noise, 1e-3));
+      }
+      const PairingCounts counts = pair_motions({}, a, b).drive.counts();
+      for (const std::uint64_t rejected : counts.rejected) EXPECT_EQ(rejected, 0u) << grows << " " << seed;
+    }
 }
 
 /// What ScreeningOptions::doubtful and CongruenceOptions::most_growing rest on: real odometry has heavy

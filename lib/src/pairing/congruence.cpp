@@ -197,8 +197,26 @@ double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
   return seen.difference / (typical.constant + typical.growing * seen.size + floor);
 }
 
-double unexplained_length(const MotionDifference& d, const CongruenceScale& scale) {
-  return std::max(0.0, d.length.difference - scale.arm * d.angle.size);
+/// By far more than the larger motions seen: the first turn in place after a straight road.
+bool turns_unlike_those_seen(const MotionDifference& d, double steps, const CongruenceScale& scale,
+                             const CongruenceOptions& options) {
+  return d.angle.size > options.turns_more * steps * scale.angle.large;
+}
+
+/// How noise grows with turning is not known of such a turn either.
+double sigmas_of_angle(const MotionDifference& d, double steps, const CongruenceScale& scale,
+                       const CongruenceOptions& options) {
+  double floor = options.angle_floor;
+  if (turns_unlike_those_seen(d, steps, scale, options)) floor += options.noise_of_turns * d.angle.size;
+  return sigmas(d.angle, scale.angle, floor, options);
+}
+
+/// A straight road shows the lever arm along the road alone, a turn unlike those seen may show all of it.
+double unexplained_length(const MotionDifference& d, double steps, const CongruenceScale& scale,
+                          const CongruenceOptions& options) {
+  const bool unlike = turns_unlike_those_seen(d, steps, scale, options);
+  const double arm = unlike ? options.longest_lever_arm : scale.arm;
+  return std::max(0.0, d.length.difference - arm * d.angle.size);
 }
 
 /// The first motions after a vehicle stood: what was seen says nothing of them.
@@ -234,13 +252,13 @@ bool knows_typical(const CongruenceScale& scale, const CongruenceOptions& option
 double incongruence(const MotionDifference& d, double steps, const CongruenceScale& scale,
                     const CongruenceOptions& options) {
   if (!knows_typical(scale, options)) return 0;
-  const double unexplained = unexplained_length(d, scale);
+  const double unexplained = unexplained_length(d, steps, scale, options);
   const bool longer = longer_than_all_seen(d, steps, scale, options);
   if (longer || turns_more_than_all_seen(d, steps, scale, options)) {
     if (d.angle.difference > options.gross_angle) return std::numeric_limits<double>::infinity();
     return longer ? unexplained / (options.unknown_noise * d.length.size) : 0;
   }
-  return std::max({sigmas(d.angle, scale.angle, options.angle_floor, options),
+  return std::max({sigmas_of_angle(d, steps, scale, options),
                    d.turns ? sigmas(d.slide, scale.slide, options.length_floor, options) : 0,
                    sigmas({d.length.size, unexplained}, scale.length, options.length_floor, options)});
 }
@@ -248,7 +266,7 @@ double incongruence(const MotionDifference& d, double steps, const CongruenceSca
 bool grossly_incongruent(const MotionDifference& d, double steps, const CongruenceScale& scale,
                          const CongruenceOptions& options) {
   return d.angle.difference > options.gross_angle ||
-         unexplained_length(d, scale) > options.gross_lengths * steps * scale.length.large;
+         unexplained_length(d, steps, scale, options) > options.gross_lengths * steps * scale.length.large;
 }
 
 void update_congruence(const MotionDifference& d, bool doubtful, CongruenceScale& scale,
