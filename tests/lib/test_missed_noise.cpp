@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "../support/simulated_drive.hpp"
 #include "egocal/online/answer.hpp"
@@ -20,13 +19,6 @@ TEST(MissedNoise, LongMotionsHideTheNoiseOfTheirSteps) {
   EXPECT_NEAR(detail::missed_noise({64}, {1}, 1e6, 4), std::sqrt(64.0 / 8), 0.1);
   EXPECT_EQ(detail::missed_noise({64}, {1}, 1e6, 32), 1);
   EXPECT_EQ(detail::missed_noise({64}, {1}, 0, 4), 1);
-}
-
-TEST(MissedNoise, GrowthIsWhatTheVariancesShowBeyondDoubt) {
-  const std::vector<double> growths{0, 0.01, 0.1, 1, 10};
-  const std::vector<double> strides{4, 8, 16, 32}, independent{25, 12, 6, 3};
-  EXPECT_EQ(detail::least_growth({strides, {2.4, 2.8, 3.6, 5.2}, {2500, 1200, 600, 300}}, growths, 1), 0.1);
-  EXPECT_EQ(detail::least_growth({strides, {2.0, 2.0, 2.1, 2.2}, independent}, growths, 1), 0);
 }
 
 TEST(MissedNoise, ShortDrivesWithNoiseOnMotionsAreCovered) {

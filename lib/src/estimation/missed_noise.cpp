@@ -8,29 +8,6 @@
 
 namespace egocal::detail {
 
-double least_growth(const StrideVariances& seen, const std::vector<double>& growths, double errors) {
-  // The logarithm of a variance of n motions with three axes each has the variance 2 / (3 n).
-  constexpr double variance_of_one = 2.0 / 3;
-  std::vector<double> misfits;
-  for (const double growth : growths) {
-    double total = 0, mean = 0, squares = 0;
-    for (std::size_t i = 0; i < seen.strides.size(); ++i) {
-      const double count = seen.independent[i];
-      if (!(count > 0)) continue;
-      total += count;
-      const double log_ratio = std::log(seen.variances[i] / (2 + growth * seen.strides[i]));
-      const double step = log_ratio - mean;
-      mean += count / total * step;
-      squares += count * step * (log_ratio - mean);
-    }
-    misfits.push_back(squares / variance_of_one);
-  }
-  const double limit = *std::min_element(misfits.begin(), misfits.end()) + errors * errors;
-  const auto first =
-      std::find_if(misfits.begin(), misfits.end(), [&](double misfit) { return misfit <= limit; });
-  return growths[static_cast<std::size_t>(first - misfits.begin())];
-}
-
 double missed_noise(const std::vector<double>& strides, const std::vector<double>& weights, double growth,
                     std::uint64_t block_length) {
   const auto longest = static_cast<std::size_t>(strides.back());

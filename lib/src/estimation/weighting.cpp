@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "estimation/missed_noise.hpp"
+#include "estimation/noise_growth.hpp"
 #include "estimation/spread_by_poses.hpp"
 #include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -93,8 +94,13 @@ Residuals residuals(const Ladder& ladder, const DualQuaternion& q) {
   return result;
 }
 
-double growth_of_grid(const ResidualWeightOptions& o, int k) {
-  return o.least_growth * std::pow(o.most_growth / o.least_growth, static_cast<double>(k) / o.grid);
+/// Ascending; of 0, noise on poses alone, the fitted weights are those of all strides alike.
+std::vector<double> growths(const ResidualWeightOptions& o) {
+  std::vector<double> result{0};
+  for (int k = 0; k <= o.grid; ++k)
+    result.push_back(o.least_growth *
+                     std::pow(o.most_growth / o.least_growth, static_cast<double>(k) / o.grid));
+  return result;
 }
 
 /// lambda of variances 2 a + b s of motions of s steps: lambda + 1 / lambda = 2 + b / a, from the precision
@@ -103,8 +109,7 @@ double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
                      const std::vector<double>& counts) {
   double best = std::numeric_limits<double>::infinity(), lambda = 0;
   const ResidualWeightOptions& o = ladder.options;
-  for (int k = 0; k <= o.grid; ++k) {
-    const double growth = growth_of_grid(o, k);
+  for (const double growth : growths(o)) {
     double total = 0, mean = 0, squares = 0;
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       const double count = counts[i] / ladder.strides[i];  // independent ones
@@ -220,20 +225,42 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
   return text;
 }
 
+std::vector<double> independent(const Ladder& ladder, const std::vector<double>& counts) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < ladder.size(); ++i) result.push_back(counts[i] / ladder.strides[i]);
+  return result;
+}
+
 /// By how much the noise of motions grows with their steps, relative to that of poses: what the residuals of
 /// the rotations show beyond doubt. Those of translations also grow with the rotations' noise. Noise that is
 /// forgotten within a block of instants is noise on poses as far as omitting blocks is concerned.
-double noise_growth(const Ladder& ladder, const DualQuaternion& q, std::uint64_t block_length,
+double noise_growth(const Ladder& ladder, const Residuals& residual, std::uint64_t block_length,
                     const WeightingOptions& options) {
-  detail::StrideVariances seen{ladder.strides, residuals(ladder, q).rotation, {}};
-  for (std::size_t i = 0; i < ladder.size(); ++i) {
-    const bool longer = ladder.strides[i] >= static_cast<double>(block_length);
-    seen.independent.push_back(longer ? ladder.turns[i] / ladder.strides[i] : 0);
+  detail::StrideVariances seen{ladder.strides, residual.rotation, independent(ladder, ladder.turns)};
+  for (std::size_t i = 0; i < ladder.size(); ++i)
+    if (ladder.strides[i] < static_cast<double>(block_length)) seen.independent[i] = 0;
+  return detail::least_growth(seen, growths(options.residuals), options.growth_evidence);
+}
+
+/// The memories that may be better than the weights by the residuals. Where noise on poses and on motions
+/// explains the residuals, no memory is that they refute: the smallest of several noisy spreads would
+/// mislead.
+std::vector<double> possible_memories(const Ladder& ladder, const Residuals& residual,
+                                      const WeightingOptions& options) {
+  const auto fit = [&](const std::vector<double>& variances, const std::vector<double>& counts) {
+    return detail::fit_noise({ladder.strides, variances, independent(ladder, counts)},
+                             growths(options.residuals), options.least_independent);
+  };
+  const detail::NoiseFit rotation = fit(residual.rotation, ladder.turns);
+  const detail::NoiseFit translation = fit(residual.translation, ladder.motions);
+  if (std::max(rotation.misfit, translation.misfit) > options.explained) return options.memories;
+  std::vector<double> possible;
+  for (const double memory : options.memories) {
+    const double growth = 2 * std::cosh(1 / memory) - 2;  // lambda + 1 / lambda - 2
+    if (!rotation.refutes(growth, options.refuted) && !translation.refutes(growth, options.refuted))
+      possible.push_back(memory);
   }
-  std::vector<double> growths{0};
-  const ResidualWeightOptions& o = options.residuals;
-  for (int k = 0; k <= o.grid; ++k) growths.push_back(growth_of_grid(o, k));
-  return detail::least_growth(seen, growths, options.growth_evidence);
+  return possible;
 }
 
 class Trials {
@@ -242,8 +269,10 @@ class Trials {
          const WeightingOptions& options)
       : sums_(sums), problem_(problem), ladder_(ladder), block_length_(block_length), options_(options) {}
 
-  /// Of the residuals at q; without it no spread is corrected.
-  void judge_noise(const DualQuaternion& q) { growth_ = noise_growth(ladder_, q, block_length_, options_); }
+  /// Without it no spread is corrected.
+  void judge_noise(const Residuals& residual) {
+    growth_ = noise_growth(ladder_, residual, block_length_, options_);
+  }
   /// False where the blocks are too few for a spread.
   bool set(const StrideWeights& weights) {
     sums_.weighted(weights).fill(problem_);
@@ -339,13 +368,14 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   const Ladder ladder(blocks, sums, options.residuals);
   std::optional<WeightChoice> best = residual_weights(ladder, problem.mode);
   if (!best) return std::nullopt;
+  const Residuals residual = residuals(ladder, best->q);
   std::vector<WeightChoice> others;
-  for (const double memory : options.memories)
+  for (const double memory : possible_memories(ladder, residual, options))
     others.push_back(with_memory(ladder, problem.mode, memory, best->q));
 
   // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights
   Trials trials(sums, problem, ladder, blocks.state().block_length, options);
-  trials.judge_noise(best->q);
+  trials.judge_noise(residual);
   SeenDirections seen{};
   if (!others.empty() && trials.set(others.back().weights)) seen = trials.seen();
   if (!trials.set(best->weights)) return std::nullopt;

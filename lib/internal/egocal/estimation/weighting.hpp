@@ -43,6 +43,14 @@ struct WeightingOptions {
   /// Memories [steps] that are tried besides the one that the residuals suggest. Geometric, from "neighbours
   /// only" to "all strides alike": neighbours of the list differ by less than the spread can tell.
   std::vector<double> memories{1, 4, 16, 64, 1e9};
+  /// Where noise on poses and on motions explains how the mean squared residuals of rotation and of
+  /// translation grow with the stride, no memory is tried that is off by more than `refuted` standard errors
+  /// of that growth. Explained: a chi-square of at most this per degree of freedom, of the strides with
+  /// enough motions that share no step. Study: 6 machines x 8 kinds of noise x 40 drives (docs/accuracy.md,
+  /// "Noise that the residuals explain"); nine of ten are below 1, noise with a memory of four steps is
+  /// above 12.
+  double refuted = 3;
+  double explained = 2.5, least_independent = 3;
   /// A memory is preferred to what the residuals suggest where its spread is smaller by this many standard
   /// errors of the difference (of the sum of the logarithms of rotation's and translation's). The smallest of
   /// ten noisy spreads misleads: 0.090 instead of 0.075 deg on simulated drives of 200 motions.

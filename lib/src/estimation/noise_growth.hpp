@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+namespace egocal::detail {
+
+/// What the mean squared residuals of many strides say of the noise. Noise on poses and on motions together
+/// gives motions of s steps the variance 2 + growth * s, up to a common factor.
+struct StrideVariances {
+  std::vector<double> strides;      ///< [steps]
+  std::vector<double> variances;    ///< mean squared residuals of one motion
+  std::vector<double> independent;  ///< motions that share no step; 0: not used
+};
+
+/// The smallest of these growths (ascending) that fits within `errors` standard errors of the best one.
+double least_growth(const StrideVariances& seen, const std::vector<double>& growths, double errors);
+
+/// How well the noise is of this kind, by the strides that have at least `least_independent` motions.
+struct NoiseFit {
+  StrideVariances used;
+  double least = 0;  ///< chi-square of the best growth
+  /// The same per degree of freedom: about one or less where the noise is of this kind. Infinite where less
+  /// than three strides are used.
+  double misfit = 0;
+
+  /// Whether this growth is off by more standard errors than this.
+  bool refutes(double growth, double errors) const;
+};
+NoiseFit fit_noise(const StrideVariances& seen, const std::vector<double>& growths, double least_independent);
+
+}  // namespace egocal::detail
