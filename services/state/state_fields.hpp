@@ -54,10 +54,10 @@ void fields(auto& archive, services::Is<ClockOptions> auto& value) {
 void fields(auto& archive, services::Is<CongruenceOptions> auto& value) {
   auto& [least_turn, angle_floor, length_floor, memory, first_estimate, estimate_every,
          estimate_every_when_full, doubtful_remembered, most_growing, still, beyond, unknown_noise,
-         gross_angle, gross_lengths, longest_lever_arm] = value;
+         gross_angle, gross_lengths, longest_lever_arm, noise_of_turns, turns_more] = value;
   archive(least_turn, angle_floor, length_floor, memory, first_estimate, estimate_every,
           estimate_every_when_full, doubtful_remembered, most_growing, still, beyond, unknown_noise,
-          gross_angle, gross_lengths, longest_lever_arm);
+          gross_angle, gross_lengths, longest_lever_arm, noise_of_turns, turns_more);
 }
 
 void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
