@@ -285,6 +285,39 @@ TEST(Explanations, APositionWithoutHeightIsNamedAndNotGood) {
   EXPECT_NE(find(calibration, "flat_b"), nullptr);
 }
 
+/// A minute with noise of this part of every motion.
+testing::Streams drive_with_noise(Terrain terrain, double noise) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = 601;
+  options.relative_noise = noise;
+  return testing::simulated_drive(options);
+}
+
+/// Wheels know no slopes: x, y and the heading. Its own rotations do not tilt then, those of the other
+/// sensor do.
+TEST(Explanations, AnOdometryInTwoDimensionsBesideOneThatTiltsIsNamedAndNotGood) {
+  testing::Streams streams = drive(Terrain::rough);
+  const auto level = [](const Trajectory& poses) {
+    return testing::changed(poses, [](const Pose& pose) {
+      const Eigen::Vector3d ahead = pose.rotation * Eigen::Vector3d::UnitX();
+      return Pose{rotation_exp({0, 0, std::atan2(ahead.y(), ahead.x())}),
+                  {pose.translation.x(), pose.translation.y(), 0}};
+    });
+  };
+  const Calibration calibration = calibrate(streams.a, level(streams.a));
+  EXPECT_GE(calibration.verdict, Verdict::doubtful);
+  const Finding* finding = find(calibration, "flat_b");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_TRUE(finding->certain);
+  EXPECT_NE(finding->message.find("a tilts"), std::string::npos) << finding->message;
+  // on level ground it is right, whatever the rotations of the other one are wrong by
+  for (const double noise : {1e-3, 0.1}) {
+    const testing::Streams ground = drive_with_noise(Terrain::flat, noise);
+    EXPECT_EQ(find(calibrate(ground.a, level(ground.a)), "flat_b"), nullptr) << noise;
+  }
+}
+
 TEST(Explanations, AStreamGivenTwiceIsNamedAndNotGood) {
   const testing::Streams streams = drive(Terrain::free);
   const Calibration calibration = calibrate(streams.a, streams.a);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -74,6 +75,75 @@ TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherIsNamed) {
   ASSERT_NE(finding, nullptr) << calibration.reason;
   EXPECT_FALSE(finding->certain);
   EXPECT_NE(finding->message.find("agree to rounding"), std::string::npos) << finding->message;
+}
+
+/// The same, written with few digits: rounding hides that the motions agree as those of no two sensors do.
+TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherAndRoundedIsNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  const Pose wrong{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}};
+  const auto decimals = [](int count) {
+    return [unit = std::pow(10, -count)](double x) { return unit * std::round(x / unit); };
+  };
+  const auto six_digits = [](double x) {
+    const double unit = x == 0 ? 1 : std::pow(10, std::floor(std::log10(std::abs(x))) - 5);
+    return unit * std::round(x / unit);
+  };
+  using Write = std::function<double(double)>;
+  const auto written = [](Trajectory poses, const Write& position, const Write& rotation) {
+    for (StampedPose& stamped : poses) {
+      const Pose pose = to_pose(stamped.pose);
+      const Eigen::Vector4d q = pose.rotation.coeffs().unaryExpr(rotation);
+      stamped.pose = canonical_sign(to_dual_quaternion(
+          Pose{Rotation(Eigen::Vector4d(q.normalized())), pose.translation.unaryExpr(position)}));
+    }
+    return poses;
+  };
+  Trajectory made = right.a;
+  for (StampedPose& pose : made)
+    pose.pose = canonical_sign(normalized(pose.pose * to_dual_quaternion(wrong)));
+  for (const auto& [position, rotation] : {std::pair<Write, Write>{decimals(3), decimals(4)},
+                                           {decimals(4), decimals(5)},
+                                           {six_digits, six_digits}}) {
+    const Calibration calibration = calibrate(right.a, written(made, position, rotation));
+    const Finding* finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_FALSE(finding->certain);
+    EXPECT_NE(finding->message.find("agree to the rounding"), std::string::npos) << finding->message;
+    EXPECT_EQ(find(calibrate(right.a, written(right.b, position, rotation)), "same_stream"), nullptr);
+  }
+}
+
+/// A minute with noise of this part of every motion.
+testing::Streams drive_with_noise(Terrain terrain, double noise) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = 601;
+  options.relative_noise = noise;
+  return testing::simulated_drive(options);
+}
+
+/// A gyroscope that sits askew turns in other axes than its positions, which an odometry beside it measures.
+/// Where the sensors turn, lengths of both streams are unlike, and no scale of b.
+TEST(HiddenMistakes, RotationsInAxesThatAreTiltedAgainstThePositionsAreNamed) {
+  for (const double degrees : {1.5, 3.0}) {
+    testing::Streams streams = drive_with_noise(Terrain::free, 1e-3);
+    const DualQuaternion far_off = to_dual_quaternion(Pose{Rotation::Identity(), {3, -4, 2}});
+    for (StampedPose& pose : streams.b) pose.pose = canonical_sign(normalized(pose.pose * far_off));
+    streams.T = streams.T * far_off;
+    EXPECT_EQ(find(calibrate(streams.a, streams.b), "axes_b"), nullptr);
+    const Rotation tilt = rotation_exp(degrees * std::numbers::pi / 180 * Eigen::Vector3d(0.6, -0.8, 0));
+    const Rotation first = to_pose(streams.b.front().pose).rotation;
+    streams.b = testing::changed(streams.b, [&](const Pose& pose) {
+      return Pose{first * tilt * first.conjugate() * pose.rotation * tilt.conjugate(), pose.translation};
+    });
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory) << degrees << ": " << calibration.reason;
+    const Finding* finding = find(calibration, "axes_b");
+    ASSERT_NE(finding, nullptr) << degrees << ": " << calibration.reason;
+    EXPECT_TRUE(finding->certain);
+    EXPECT_GT(finding->improvement, 50);
+    EXPECT_EQ(find(calibration, "axes_a"), nullptr);
+  }
 }
 
 /// Positions in another world frame: twelve linear unknowns and what noise makes of them are only the start.
@@ -161,6 +231,27 @@ TEST(HiddenMistakes, HeadingsThatTurnTooFarAreNamed) {
       ASSERT_NE(finding, nullptr) << factor << ": " << calibration.reason;
       EXPECT_TRUE(finding->certain);
       EXPECT_NEAR(finding->value.value_or(0), factor, 0.003);
+      EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+      ASSERT_TRUE(finding->T_a_b);
+      EXPECT_LT(extrinsic_error(s.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.02);
+    }
+}
+
+/// Quaternions of rotation vectors without the half of the angle, or with degrees for radians: all of the
+/// motions contradict.
+TEST(HiddenMistakes, RotationVectorsOfAnotherLengthAreNamed) {
+  for (const Side side : {Side::a, Side::b})
+    for (const double factor : {2.0, 0.5, std::numbers::pi / 180}) {
+      testing::Streams s = drive(Terrain::rough, 2);
+      Trajectory& wrong = side == Side::a ? s.a : s.b;
+      wrong = testing::changed(wrong, [&](const Pose& pose) {
+        return Pose{rotation_exp(factor * rotation_log(pose.rotation)), pose.translation};
+      });
+      const Calibration calibration = calibrate(s.a, s.b);
+      const Finding* finding = find(calibration, side == Side::a ? "turning_scale_a" : "turning_scale_b");
+      ASSERT_NE(finding, nullptr) << factor << ": " << calibration.reason;
+      EXPECT_TRUE(finding->certain);
+      EXPECT_NEAR(finding->value.value_or(0), factor, 1e-9);
       EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
       ASSERT_TRUE(finding->T_a_b);
       EXPECT_LT(extrinsic_error(s.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.02);

@@ -25,7 +25,9 @@ using Eigen::Vector3d;
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
 using Rows = Eigen::Matrix<double, 3, 12>;
-using TurnRows = Eigen::Matrix<double, 3, 6>;
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+using TurnRows = Eigen::Matrix<double, 3, 7>;
 
 /// One motion of the right stream s, and of the wrong one w as its file has it.
 struct Step {
@@ -222,27 +224,39 @@ std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
   return {one, U * Vector3d(1, 1, -1).asDiagonal() * V.transpose()};
 }
 
+/// Of which stream the positions are wrong.
+enum class WrongAxes { of_one, of_both };
+
 /// The orthogonal matrix, mirrored as W is, that suits the steps best: from W, which has six unknowns more
-/// and what noise makes of them. Gauss-Newton for it and the lever arm t: (R_s - 1) t + t_s + R_world_s' W
-/// d_s - R R_world' W d = 0.
-Matrix3d refined(const std::vector<Step>& steps, const Matrix3d& R, Matrix3d W, int rounds) {
+/// and what noise makes of them. Gauss-Newton for it, the lever arm t, and the scale c of w, which differs
+/// from what like lengths leave of it where the sensors turn: (R_s - 1) t + t_s + R_world_s' W d_s - c R
+/// R_world' W d = 0. Where both streams are wrong it stays: both are of one program.
+Matrix3d refined(const std::vector<Step>& steps, const Matrix3d& R, Matrix3d W, WrongAxes wrong, int rounds) {
+  double scale = 1;
   for (int round = 0; round < rounds; ++round) {
-    Matrix6d A = Matrix6d::Zero();
-    Vector6d g = Vector6d::Zero();
+    Matrix7d A = Matrix7d::Zero();
+    Vector7d g = Vector7d::Zero();
     for (const Step& step : steps) {
-      const Matrix3d of_s = step.R_world_s.transpose() * W, of_w = R * step.R_world.transpose() * W;
+      const Matrix3d of_s = step.R_world_s.transpose() * W, of_w = scale * R * step.R_world.transpose() * W;
       const Vector3d residual = step.t_s + of_s * step.d_s - of_w * step.d;
       TurnRows J;
       J.leftCols<3>() = step.R_s - Matrix3d::Identity();
-      J.rightCols<3>() = of_w * cross_matrix(step.d) - of_s * cross_matrix(step.d_s);
+      J.middleCols<3>(3) = of_w * cross_matrix(step.d) - of_s * cross_matrix(step.d_s);
+      J.rightCols<1>() = -of_w * step.d;
       A += step.weight * J.transpose() * J;
       g -= step.weight * J.transpose() * residual;
     }
     A.diagonal().head<3>().array() += 1e-6 * A.diagonal().head<3>().sum() + 1e-300;
-    A.diagonal().tail<3>().array() += 1e-6 * A.diagonal().tail<3>().sum() + 1e-300;
-    const Vector6d x = A.ldlt().solve(g);  // t, and the turn of W
+    A.diagonal().segment<3>(3).array() += 1e-6 * A.diagonal().segment<3>(3).sum() + 1e-300;
+    A(6, 6) += 1e-6 * A(6, 6) + 1e-300;
+    Vector7d x = Vector7d::Zero();  // t, the turn of W, and the logarithm of c
+    if (wrong == WrongAxes::of_one)
+      x = A.ldlt().solve(g);
+    else
+      x.head<6>() = A.topLeftCorner<6, 6>().ldlt().solve(g.head<6>());
     if (!x.allFinite()) break;
-    W = W * rotation_exp(x.tail<3>()).toRotationMatrix();
+    W = W * rotation_exp(x.segment<3>(3)).toRotationMatrix();
+    scale *= std::exp(x[6]);
   }
   return W;
 }
@@ -285,7 +299,8 @@ std::vector<PoseReading> common_axes_readings(const Instants& instants, int stri
     const Matrix3d R = orientation(steps, options.fit);
     for (const Matrix3d& W : nearest_orthogonal(common_map(steps, R, options.fit)))
       for (const std::optional<Matrix3d>& axes :
-           {nearest_permutation(W), std::optional(refined(steps, R, W, options.fit.rounds))}) {
+           {nearest_permutation(W),
+            std::optional(refined(steps, R, W, WrongAxes::of_both, options.fit.rounds))}) {
         // mirrored at the origin both streams have the same motions, but for the sign of the lever arm
         if (!axes || axes->isIdentity(1e-12) || (-*axes).isIdentity(1e-12)) continue;
         PoseReading reading;
@@ -313,7 +328,7 @@ std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int
     const Matrix3d R = orientation(steps, options.fit);
     for (const Matrix3d& W : nearest_orthogonal(linear_map(steps, R, options.fit))) {
       if (const std::optional<Matrix3d> permutation = nearest_permutation(W)) add(*permutation, conjugated);
-      add(refined(steps, R, W, options.fit.rounds), conjugated);
+      add(refined(steps, R, W, WrongAxes::of_one, options.fit.rounds), conjugated);
     }
   }
   // the position of the inverse pose beside the right rotation: inverse of what the inverse rotation gives

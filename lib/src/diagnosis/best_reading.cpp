@@ -219,6 +219,9 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     std::swap(turned, turned_here);
     if (turned_other && !fits_better(turned_other, *turned)) std::swap(turned, turned_other);
   }
+  // a lever arm that is long tells the two streams apart
+  if (turned_other && compare(turned_other->explained, turned->explained).gain > options.alike)
+    turned_other.reset();
   BestReading result = given;
   if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options), {}};
   if (turned && better(compare(result.best.explained, turned->explained), options.gain, options))

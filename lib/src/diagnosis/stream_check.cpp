@@ -7,8 +7,11 @@
 #include <numbers>
 #include <optional>
 
+#include "diagnosis/rounded_copy.hpp"
+#include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -93,6 +96,49 @@ struct Flatness {
   double tilt = 0;      ///< root mean square of the turning out of the plane of the other two [rad]
 };
 
+/// How a stream tilts in motions of one length beside one that turns in a plane, whatever its axes are: root
+/// mean squares [rad].
+struct Tilting {
+  double tilt = 0;   ///< of the axis that tilts least
+  double noise = 0;  ///< difference of what both streams turn about that axis and in the plane
+};
+
+const DualQuaternion& motion_of(const Motion& motion, Side side) {
+  return side == Side::a ? motion.a : motion.b;
+}
+
+/// The axis of a sensor that its motions move least, and the root mean square of how far [rad].
+std::pair<Eigen::Vector3d, double> stillest_axis(const Motions& motions, Side side) {
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Motion& motion : motions.all) {
+    const Eigen::Matrix3d moved = rotation_of(motion_of(motion, side)) - Eigen::Matrix3d::Identity();
+    squares += moved.transpose() * moved;
+  }
+  const SymmetricEigen<3> eigen = symmetric_eigen<3>(squares);
+  return {eigen.vectors.col(0),
+          std::sqrt(std::max(0.0, eigen.values[0]) / static_cast<double>(motions.all.size()))};
+}
+
+Tilting tilting(const Instants& instants, Side side, const StreamCheckOptions& options) {
+  const int stride = std::max(1, static_cast<int>(instants.size() / options.parts));
+  const Motions motions = motions_of(instants, {}, {}, stride, options.most);
+  if (motions.all.size() < options.least) return {};
+  const Side plane = side == Side::a ? Side::b : Side::a;
+  const auto [axis, tilt] = stillest_axis(motions, side);
+  const Eigen::Vector3d normal = stillest_axis(motions, plane).first;
+  const auto about = [](const Eigen::Vector3d& up, const QuaternionVector& q) {
+    return 2 * std::atan2(up.dot(q.tail<3>()), q[0]);
+  };
+  double same = 0, opposite = 0;  // either end of an axis may be up
+  for (const Motion& motion : motions.all) {
+    const double turned = about(axis, motion_of(motion, side).real),
+                 in_plane = about(normal, motion_of(motion, plane).real);
+    same += std::pow(turned - in_plane, 2);
+    opposite += std::pow(turned + in_plane, 2);
+  }
+  return {tilt, std::sqrt(std::min(same, opposite) / static_cast<double>(motions.all.size()))};
+}
+
 Flatness flatness(const Trajectory& trajectory, const StreamCheckOptions& options) {
   Flatness result;
   if (trajectory.size() < options.least) return result;
@@ -117,13 +163,20 @@ Flatness flatness(const Trajectory& trajectory, const StreamCheckOptions& option
   return result;
 }
 
-Finding flat(char which, const Flatness& flatness) {
+/// tilt: its own, or that of the other stream where it has none itself [rad].
+Finding flat(char which, char coordinate, double tilt, bool of_other) {
   Finding finding;
   finding.code = std::string("flat_") + which;
   finding.certain = true;
   finding.message =
-      format("The positions of %c never change in %c although it tilts by %.1f deg: a coordinate is missing.",
-             which, flatness.coordinate, flatness.tilt * 180 / std::numbers::pi);
+      of_other ? format(
+                     "The positions of %c never change in %c, and it turns about that axis alone, although "
+                     "%c tilts by %.1f deg: an odometry in two dimensions beside one in three.",
+                     which, coordinate, which == 'a' ? 'b' : 'a', tilt * 180 / std::numbers::pi)
+               : format(
+                     "The positions of %c never change in %c although it tilts by %.1f deg: a coordinate is "
+                     "missing.",
+                     which, coordinate, tilt * 180 / std::numbers::pi);
   finding.remedy = format("Give positions of %c in three dimensions, or ground planes (planar mode).", which);
   return finding;
 }
@@ -234,13 +287,21 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
   };
   for (const char which : {'a', 'b'}) {
     const Flatness found = flatness(which == 'a' ? a : b, options);
-    if (found.coordinate != 0 && found.tilt > options.least_tilt) findings.push_back(flat(which, found));
+    if (found.coordinate != 0 && found.tilt > options.least_tilt)
+      findings.push_back(flat(which, found.coordinate, found.tilt, false));
+    else if (found.coordinate != 0 && found.tilt <= options.level) {
+      const Tilting other = tilting(instants, which == 'a' ? Side::b : Side::a, options);
+      if (other.tilt > options.least_tilt && other.tilt > options.over_noise * other.noise)
+        findings.push_back(flat(which, found.coordinate, other.tilt, true));
+    }
     if (std::optional<Finding> missing =
             which == 'a' ? without_part('a', a, b, options) : without_part('b', b, a, options))
       findings.push_back(*std::move(missing));
   }
   check('a', steps.frozen_a, steps.travelled_a);
   check('b', steps.frozen_b, steps.travelled_b);
+  if (findings.empty())
+    if (std::optional<Finding> copy = rounded_copy(a, b, instants)) findings.push_back(*std::move(copy));
   return findings;
 }
 

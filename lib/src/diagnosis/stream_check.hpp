@@ -45,10 +45,16 @@ struct StreamCheckOptions {
   /// Half of the motions agree to less [rad, and as a part of their length]: rounding, and a hundredth of
   /// what two sensors leave.
   double of_rounding = 1e-5;
+  /// A stream with a flat coordinate that turns out of that plane by less was given in two dimensions [rad].
+  double level = 1e-5;
+  /// The other one tilts where it does by more than least_tilt in this part of the drive, and by more than so
+  /// many times what both streams differ by in turning in the plane: noise of rotations has no plane.
+  std::size_t parts = 32;
+  double over_noise = 3;
 };
 
-/// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream,
-/// samples.
+/// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream
+/// (uncertain where it was rounded), samples.
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
                                    const StreamCheckOptions& options = {});
 
