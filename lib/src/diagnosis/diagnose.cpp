@@ -14,8 +14,10 @@
 
 #include "diagnosis/back_and_forth.hpp"
 #include "diagnosis/clock_check.hpp"
+#include "diagnosis/contradicting_parts.hpp"
 #include "diagnosis/explanations.hpp"
 #include "diagnosis/fit.hpp"
+#include "diagnosis/following_mount.hpp"
 #include "diagnosis/forward.hpp"
 #include "diagnosis/interpolated_stream.hpp"
 #include "diagnosis/judge.hpp"
@@ -158,6 +160,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
             static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
   if (turned < options.least_turning) {
     findings.push_back(too_little_motion(motions.all.size(), options));
+    // what the rotations leave is noise: the translations alone can contradict the answer
+    misfit.at_answer = misfit.median = fit.translation_relative_median;
     return;
   }
   const double correlation = turning_correlation(motions);
@@ -219,6 +223,11 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   if (answered.problem.mode != Mode::planar) last = back_and_forth(evidence.instants, answered, options);
   if (!last && answered.problem.mode != Mode::planar)
     last = swaying_mount(evidence.instants, answered, options);
+  if (!last && answered.problem.mode != Mode::planar)
+    last = following_mount(evidence.instants, evidence.stride, answered, options);
+  if (!last)
+    last = contradicting_parts_finding(
+        contradicting_parts(evidence.instants, evidence.stride, to_pose(answered.T_a_b), options.motions));
   if (!last) last = contradicting_times(moved.unexplained, options);
   if (last) findings.insert(findings.begin(), *std::move(last));
 }
@@ -392,7 +401,6 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     return result;
   }
   Diagnosis result;
-  const RobustFit at_answer = evaluated(motions, answered.T_a_b);
   result.fit =
       fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period, options.motions);
   result.findings = foreseen.findings;
@@ -400,8 +408,12 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     for (Finding& finding :
          check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
       result.findings.push_back(std::move(finding));
-  Misfit misfit{detail::misfit(motions, at_answer), detail::misfit(motions, evidence.given.explained.fit),
-                median_misfit(motions, at_answer)};
+  // of what stands, noise would be compared with noise
+  const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
+  const RobustFit at_answer = evaluated(moving, answered.T_a_b);
+  Misfit misfit{detail::misfit(moving, at_answer),
+                detail::misfit(moving, evaluated(moving, evidence.given.explained.fit.T)),
+                median_misfit(moving, at_answer)};
   // pairing rejects the motions of a frozen stream: what contradicts the answer is something else
   const bool more_than_frozen = misfit.at_answer > options.doubtful_misfit;
   if (more_than_frozen)

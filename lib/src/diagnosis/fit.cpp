@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/robust_fit.hpp"
+#include "diagnosis/standing_still.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -32,13 +33,13 @@ double median_ratio(const std::vector<Motion>& motions, double (*size_a)(const M
 struct Residuals {
   std::vector<double> rotation, translation, relative;
 
-  void add(const Motion& motion, const Pose& T) {
+  void add(const Motion& motion, const Pose& T, bool rests) {
     const Residual residual = residual_at(motion, T);
     rotation.push_back(residual.rotation);
     translation.push_back(residual.translation);
     const double length = 0.5 * (motion.t_a.norm() + motion.t_b.norm());
     // at rest there is nothing to compare with
-    if (length > 1e-9) relative.push_back(residual.translation / length);
+    if (!rests && length > 1e-9) relative.push_back(residual.translation / length);
   }
 };
 
@@ -52,12 +53,14 @@ Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds,
   const std::size_t parts = std::max<std::size_t>(1, options.time_parts);
   const double begin = motions.all.front().time, end = motions.all.back().time;
   const double width = (end - begin) / static_cast<double>(parts);
+  const std::vector<bool> rest = at_rest(motions, T_a_b);
   Residuals whole;
   std::vector<Residuals> tenths(parts);
-  for (const Motion& motion : motions.all) {
-    whole.add(motion, T_a_b);
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    const Motion& motion = motions.all[i];
+    whole.add(motion, T_a_b, rest[i]);
     const auto place = width > 0 ? static_cast<std::size_t>((motion.time - begin) / width) : 0;
-    tenths[std::min(parts - 1, place)].add(motion, T_a_b);
+    tenths[std::min(parts - 1, place)].add(motion, T_a_b, rest[i]);
   }
   fit.rotation_median = quantile(whole.rotation, 0.5);
   fit.rotation_95 = quantile(whole.rotation, 0.95);

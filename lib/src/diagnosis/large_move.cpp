@@ -8,6 +8,7 @@
 
 #include "diagnosis/correction.hpp"
 #include "diagnosis/robust_fit.hpp"
+#include "diagnosis/standing_still.hpp"
 #include "diagnosis/wording.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -133,8 +134,10 @@ Finding worded(const Division& found, double time, const Comparison& comparison)
 }
 
 /// Single steps show the time best: longer motions that cross it fit neither answer.
-double time_of(const Division& division, const Instants& instants, const DiagnosisOptions& options) {
-  const Motions steps = motions_of(instants, {}, {}, 1, options.motions.most, options.motions);
+double time_of(const Division& division, const Instants& instants, const Pose& whole,
+               const DiagnosisOptions& options) {
+  const Motions steps =
+      without_rest(motions_of(instants, {}, {}, 1, options.motions.most, options.motions), whole);
   if (steps.all.empty()) return 0;
   const double floor = 0.25 * std::min(evaluated(steps, division.before.T).typical,
                                        evaluated(steps, division.after.T).typical);
@@ -145,11 +148,15 @@ double time_of(const Division& division, const Instants& instants, const Diagnos
 /// By motions of one length.
 std::optional<Finding> move_of(const Instants& instants, int stride, const DiagnosisOptions& options,
                                const LargeMoveOptions& large) {
-  const Motions motions = motions_of(instants, {}, {}, stride, options.motions.most, options.motions);
+  const Motions all = motions_of(instants, {}, {}, stride, options.motions.most, options.motions);
+  if (all.all.empty()) return std::nullopt;
+  const RobustFit of_all = robust_fit(all, options.fit);
+  // while the sensors stand only noise moves, which has an answer of its own
+  const Motions motions = without_rest(all, to_pose(of_all.T));
   const std::size_t n = motions.all.size();
   const std::size_t margin = large.least_blocks * n / motions.blocks;
   if (n < 2 * margin || margin == 0) return std::nullopt;
-  const RobustFit whole = robust_fit(motions, options.fit);
+  const RobustFit whole = n < all.all.size() ? robust_fit(motions, options.fit) : of_all;
   const double floor = 0.25 * whole.typical;
   Division best;
   double least = misfit_of(whole.squares, floor);
@@ -170,7 +177,11 @@ std::optional<Finding> move_of(const Instants& instants, int stride, const Diagn
   best.after = robust_fit(after, options.fit);
   if (!contradict(before, after, best, large) || suits_both(before, after, best, whole.T, large))
     return std::nullopt;
-  const double time = time_of(best, instants, options);
+  const double time = time_of(best, instants, to_pose(whole.T), options);
+  // on either side as many motions that share no time, which moved
+  const double least_seconds = static_cast<double>(large.least_blocks) * stride * instants.period;
+  if (std::min(time - motions.all.front().time, motions.all.back().time - time) < least_seconds)
+    return std::nullopt;
   if (!contradict_around(motions, best, time, stride * instants.period, options, large)) return std::nullopt;
 
   Explained two{motions, {}};

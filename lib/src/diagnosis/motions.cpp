@@ -77,6 +77,8 @@ Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
   return motion;
 }
 
+}  // namespace
+
 void measure_sizes(Motions& motions) {
   double angle_a = 0, angle_b = 0, length_a = 0, length_b = 0;
   for (const Motion& motion : motions.all) {
@@ -89,8 +91,6 @@ void measure_sizes(Motions& motions) {
   motions.rotation = std::sqrt(angle_a * angle_b) / n;
   motions.translation = std::sqrt(length_a * length_b) / n;
 }
-
-}  // namespace
 
 PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,
                                 const PoseReading& read_other) const {

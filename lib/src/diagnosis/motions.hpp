@@ -145,6 +145,9 @@ Motions motions_of(const Instants& instants, const PoseReading& read_a, const Po
 /// Motions that come as such; their order takes the place of time.
 Motions motions_of(std::span<const MotionPair> pairs, const MotionSampleOptions& options = {});
 
+/// Sets the typical motion from all of them.
+void measure_sizes(Motions& motions);
+
 /// The motions [first, last), measured by the typical motion of the whole drive.
 Motions part_of(const Motions& motions, std::size_t first, std::size_t last);
 

@@ -12,6 +12,7 @@
 #include "diagnosis/axes.hpp"
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
+#include "diagnosis/standing_still.hpp"
 #include "diagnosis/wandering_scale.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/error.hpp"
@@ -98,6 +99,25 @@ Explained in_parts(const Explained& given, const std::vector<Finding>& moves,
   return result;
 }
 
+/// Whether sensors that move show more than one scale: of those that stand the noise has one.
+bool changes_while_moving(const ScaleCourse& course, const Explained& given, std::int64_t origin_us) {
+  const Motions moving = without_rest(given.motions, to_pose(given.fit.T));
+  if (moving.all.size() == given.motions.all.size()) return true;
+  std::vector<const ScaleSegment*> shown;
+  for (const ScaleSegment& segment : course.segments) {
+    const double begin = to_seconds(segment.begin_us - origin_us),
+                 end = to_seconds(segment.end_us - origin_us);
+    const auto within = [&](const Motion& motion) { return motion.time >= begin && motion.time < end; };
+    const auto count = [&](const Motions& motions) {
+      return std::count_if(motions.all.begin(), motions.all.end(), within);
+    };
+    if (2 * count(moving) > count(given.motions)) shown.push_back(&segment);
+  }
+  return std::any_of(shown.begin(), shown.end(), [&](const ScaleSegment* one) {
+    return one->begin_scale != one->end_scale || one->begin_scale != shown.front()->begin_scale;
+  });
+}
+
 /// With the scale of b as it is found from a first guess; empty where it does not change, or where a mount
 /// still moves.
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
@@ -106,7 +126,8 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   const Trajectory& a = evidence.streams.a;
   const Trajectory& b = evidence.streams.b;
   const ScaleCourse course = find_scale_course(a, b, pairing, guess, Side::b);
-  if (!course.changes()) return std::nullopt;
+  if (!course.changes() || !changes_while_moving(course, evidence.given.explained, a.front().time_us))
+    return std::nullopt;
   const Trajectory followed = scaled(b, course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
   if (!moved_mount(instants, answered, options).findings.empty() ||

@@ -3,6 +3,10 @@
 #include "diagnosis/standing_still.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "diagnosis/robust_fit.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -25,6 +29,60 @@ bool standing_still(const Instants& instants, const StandingStillOptions& option
     if (static_cast<double>(still) < options.part * static_cast<double>(pairs)) return false;
   }
   return true;
+}
+
+namespace {
+
+double length_of(const Motion& motion) {
+  return std::max(motion.t_a.norm(), motion.t_b.norm());
+}
+
+double angle_of(const Motion& motion) {
+  return std::max(motion.angle_a, motion.angle_b);
+}
+
+/// Half of the whole is made of larger ones; of both sensors the smaller one, as wrong poses are large.
+double usual_size(const Motions& motions, double (*size)(const Motion&)) {
+  std::vector<std::pair<double, double>> sizes;
+  for (const Motion& motion : motions.all) sizes.emplace_back(size(motion), size(motion));
+  return weighted_median(std::move(sizes));
+}
+
+}  // namespace
+
+std::vector<bool> at_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options) {
+  const auto shorter = [](const Motion& one) { return std::min(one.t_a.norm(), one.t_b.norm()); };
+  const auto smaller = [](const Motion& one) { return std::min(one.angle_a, one.angle_b); };
+  const double longest = options.length * usual_size(motions, shorter),
+               largest = options.angle * usual_size(motions, smaller);
+  std::vector<bool> rest;
+  std::vector<double> rotations, translations;
+  for (const Motion& motion : motions.all) {
+    rest.push_back(length_of(motion) <= longest && angle_of(motion) <= largest);
+    if (!rest.back()) continue;
+    const Residual residual = residual_at(motion, T_a_b);
+    rotations.push_back(residual.rotation);
+    translations.push_back(residual.translation);
+  }
+  if (rotations.empty()) return rest;
+  const double angle = options.of_noise * median(std::move(rotations)),
+               length = options.of_noise * median(std::move(translations));
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    rest[i] = rest[i] && length_of(motions.all[i]) <= length && angle_of(motions.all[i]) <= angle;
+  return rest;
+}
+
+Motions without_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options) {
+  const std::vector<bool> rest = at_rest(motions, T_a_b, options);
+  const auto count = static_cast<double>(std::count(rest.begin(), rest.end(), true));
+  if (count < options.least_part * static_cast<double>(rest.size())) return motions;
+  Motions moving = motions;
+  moving.all.clear();
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    if (!rest[i]) moving.all.push_back(motions.all[i]);
+  moving.blocks = std::max<std::size_t>(1, motions.blocks * moving.all.size() / motions.all.size());
+  measure_sizes(moving);
+  return moving;
 }
 
 }  // namespace egocal::detail

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "diagnosis/motions.hpp"
 
 namespace egocal::detail {
@@ -17,5 +19,24 @@ struct StandingStillOptions {
 
 /// Whether neither sensor moves: all that their motions show is noise, which contradicts every extrinsic.
 bool standing_still(const Instants& instants, const StandingStillOptions& options = {});
+
+/// What counts as a motion at rest, in a drive that moves otherwise. Half of the way is travelled in longer
+/// motions than the usual one, and half of the turning in larger ones.
+struct RestOptions {
+  double length = 0.1;  ///< at most, as a part of the usual one
+  double angle = 0.5;   ///< the same: a train turns by little more than its noise
+  /// And at most this many times the median residual of motions that are so short: what is slow and exact is
+  /// no rest.
+  double of_noise = 3;
+  /// The motions at rest are left out where they are at least this part: of less no median is one of noise.
+  double least_part = 0.2;
+};
+
+/// Which motions are those of sensors that stand, by their residuals at an extrinsic: noise, compared with
+/// noise.
+std::vector<bool> at_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options = {});
+
+/// The motions without those at rest, measured by what they are without them; all of them where few are.
+Motions without_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options = {});
 
 }  // namespace egocal::detail

@@ -42,8 +42,8 @@ double mean_square(const std::vector<double>& squares, const SwayOptions& option
   return mean(squares, options.longest_square * mean(squares, INFINITY));
 }
 
-/// Of the change of the rotations at an instant by interpolation through `poses` [rad^2]; zero where no pose
-/// is interpolated.
+}  // namespace
+
 double mean_square_by_interpolation(const Instants& instants, std::size_t poses, const SwayOptions& options) {
   const Instants other = instants.through(poses);
   const std::size_t each = std::max<std::size_t>(1, instants.size() / options.most_motions);
@@ -56,8 +56,6 @@ double mean_square_by_interpolation(const Instants& instants, std::size_t poses,
   }
   return squares.empty() ? 0 : mean_square(squares, options);
 }
-
-}  // namespace
 
 std::vector<RotationChange> rotation_changes(const Instants& instants, const DualQuaternion& T_a_b,
                                              const MotionSampleOptions& motions, const SwayOptions& options) {

@@ -42,6 +42,11 @@ struct RotationChange {
   double mean_square = 0;  ///< [rad^2]
 };
 
+/// Of the change of the rotations at an instant by interpolation through `poses` [rad^2]; zero where no pose
+/// is interpolated.
+double mean_square_by_interpolation(const Instants& instants, std::size_t poses,
+                                    const SwayOptions& options = {});
+
 /// At T_a_b, for times from that between two instants to a third of the drive.
 std::vector<RotationChange> rotation_changes(const Instants& instants, const DualQuaternion& T_a_b,
                                              const MotionSampleOptions& motions,
