@@ -92,7 +92,7 @@ ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const Pa
     // at first a whole part of the drive may fit badly
     if (round > 0) std::erase_if(samples, [&](const detail::ScaleSample&) { return residuals[i++] > limit; });
     ScaleCourse next;
-    next.segments = detail::scale_segments(samples, options);
+    next.segments = detail::scale_segments(samples, options, round == 0);
     if (!next.changes()) return unchanged;
     const bool same = alike(course, next);
     course = std::move(next);

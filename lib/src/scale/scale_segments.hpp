@@ -18,7 +18,9 @@ struct ScaleSample {
 ScaleSample scale_sample(const MotionPair& pair, const DualQuaternion& q, Side side);
 
 /// Segments of consecutive samples, with scales of the samples' own estimate. One where nothing changes.
+/// whole_only: several changes are tested together in the whole drive alone, not in a part of it. For an
+/// extrinsic found at one scale: if that is wrong, the parts' own scales seem to vary with the motion.
 std::vector<ScaleSegment> scale_segments(std::span<const ScaleSample> samples,
-                                         const ScaleCourseOptions& options);
+                                         const ScaleCourseOptions& options, bool whole_only);
 
 }  // namespace egocal::detail

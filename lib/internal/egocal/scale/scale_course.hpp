@@ -23,6 +23,13 @@ struct ScaleCourseOptions {
   std::size_t least_blocks = 12;   ///< fewer say too little about the noise between them
   std::size_t least_block = 8;     ///< motions of one block
   std::size_t most_segments = 16;  ///< a limit on time
+  /// Changes of a stretch that are tested together, where fewer show nothing: one of them passes for noise
+  /// that wanders while the others are not allowed for. Each more has this part of the chance of a false
+  /// alarm, and each must show between its neighbours by itself, with at most this chance.
+  std::size_t most_at_once = 4;
+  double of_one_more = 0.1;
+  double confirmation = 1e-2;
+  double least_part = 0.1;  ///< of the stretch, between two such changes
   /// A motion that fits this many times worse than the median one is rejected. Five standard deviations.
   double most_residual = 25;
   double motion = 1;  ///< length of the motions [s]: long enough to be more than noise
