@@ -97,6 +97,52 @@ TEST(Rig, AnExtrinsicOfOnePairThatContradictsTheOthersOpensTheLoop) {
       1, 0.2);
 }
 
+TEST(Rig, ALoopWithinWhatItsPairsStateIsNotOpen) {
+  Random random(5);
+  RandomRig rig = random_rig(3, 0.005, random);
+  const DualQuaternion slip = testing::displacement({0, 0, 1 / degrees}, {0, 0, 0});
+  for (MotionPair& motion : rig.pairs[2].pairs) motion.b = conjugate(slip) * motion.b * slip;
+  const double rotation = 1 / degrees;
+  for (RigPair& pair : rig.pairs) pair.stated = {10, 10, 10, rotation, rotation, rotation};
+  EXPECT_TRUE(solve_rig(3, rig.pairs).loops.at(0).closed);
+  for (RigPair& pair : rig.pairs) pair.stated = {0.01, 0.01, 0.01, 1e-4, 1e-4, 1e-4};
+  EXPECT_FALSE(solve_rig(3, rig.pairs).loops.at(0).closed);
+}
+
+TEST(Rig, ALoopOfAVehicleThatStandsIsUnknown) {
+  Random random(7);
+  RandomRig rig = random_rig(3, 0.005, random);
+  for (RigPair& pair : rig.pairs)
+    for (MotionPair& motion : pair.pairs) {
+      motion.a = testing::displacement(random.normal3(1e-4), random.normal3(1e-3));
+      motion.b = testing::displacement(random.normal3(1e-4), random.normal3(1e-3));
+    }
+  EXPECT_EQ(solve_rig(3, rig.pairs).loops.at(0).known, 0u);
+}
+
+TEST(Rig, TheJointSpreadCoversItsErrors) {
+  Random random(8);
+  int covered = 0, all = 0;
+  for (int k = 0; k < 20; ++k) {
+    const RandomRig rig = random_rig(4, 0.01, random);
+    const ConsistentSet set = solve_rig(4, rig.pairs).set;
+    ASSERT_EQ(set.stddev.size(), 4u);
+    for (std::size_t s = 1; s < 4; ++s) {
+      const Pose found = to_pose(set.poses[s]), truth = to_pose(rig.mounts[s]);
+      const Eigen::Vector3d t = found.translation - truth.translation,
+                            r = rotation_log(found.rotation * truth.rotation.conjugate());
+      for (std::size_t i = 0; i < 6; ++i) {
+        const double error = std::abs(i < 3 ? t[static_cast<int>(i)] : r[static_cast<int>(i) - 3]);
+        covered += error <= 1.96 * set.stddev[s][i];
+        ++all;
+      }
+    }
+  }
+  std::printf("joint spread: %d of %d within 1.96\n", covered, all);
+  EXPECT_GE(covered, 0.88 * all);
+  EXPECT_LT(covered, all);
+}
+
 TEST(Rig, WhatIsMissingIsNamed) {
   Random random(6);
   RandomRig rig = random_rig(3, 0.01, random, 50);

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include "egocal/geometry/pose.hpp"
 #include "support/paths.hpp"
@@ -124,6 +125,150 @@ TEST_F(Command, ARigOfThreeClosesItsLoopAndIsCertified) {
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_NEAR(tree[k]["translation"][i].get<double>(), expected[k][i], 0.05);
+}
+
+/// Of a file of poses, those from one time to another [s] from its begin.
+std::string part_of(const testing::ScratchFolder& folder, const std::string& file, const std::string& name,
+                    double from, double to) {
+  std::ifstream all(file);
+  std::ofstream part(folder.path(name));
+  double begin = -1;
+  for (std::string line; std::getline(all, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const double time = std::stod(line);
+    if (begin < 0) begin = time;
+    if (time - begin >= from && time - begin <= to) part << line << "\n";
+  }
+  return folder.path(name);
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+TEST_F(Command, APairsAnswerIsThatOfItsTwoStreamsAlone) {
+  // the third sensor was on for three seconds: all three share next to nothing
+  const std::vector<std::string> files = words_of(rig("drive"));
+  const std::string shortened = part_of(folder, files[2], "short.tum", 0, 3);
+  const std::string two = files[0] + " " + files[1];
+  const json alone = run("solve --json " + two).object();
+  const Result whole = run("solve --json " + two + " " + shortened);
+  const json object = whole.object();
+  const json& pair = object["extrinsics"][0];
+  for (const char* key : {"translation", "rotation_wxyz", "stddev", "cost"})
+    EXPECT_EQ(pair[key], alone[key]) << key;
+  EXPECT_EQ(pair["verdict"], "good");
+  // and the tree is that answer, with what it states
+  EXPECT_EQ(object["joint"]["source"], "pairs");
+  EXPECT_FALSE(object["joint"]["reason"].get<std::string>().empty());
+  bool found = false;
+  for (const json& edge : object["joint"]["tree"]) {
+    if (edge["child"] != pair["b"] || edge["parent"] != pair["a"]) continue;
+    found = true;
+    EXPECT_EQ(edge["translation"], pair["translation"]);
+    EXPECT_EQ(edge["stddev"], pair["stddev"]);
+    EXPECT_EQ(edge["verdict"], pair["verdict"]);
+  }
+  EXPECT_TRUE(found);
+  // a loop that nobody knows is neither open nor closed
+  ASSERT_EQ(object["loops"].size(), 1u);
+  EXPECT_EQ(object["loops"][0]["known_directions"], 0);
+  EXPECT_TRUE(object["loops"][0]["closed"].is_null());
+  EXPECT_NE(run("solve " + two + " " + shortened).out.find(": unknown"), std::string::npos);
+}
+
+TEST_F(Command, TheJointAnswerStatesItsOwnSpread) {
+  const json object = run("solve --json" + rig("drive")).object();
+  EXPECT_EQ(object["joint"]["source"], "joint");
+  for (std::size_t k = 0; k < 2; ++k) {
+    const json &edge = object["joint"]["tree"][k], &pair = object["extrinsics"][k];
+    EXPECT_EQ(edge["verdict"], "good");
+    EXPECT_NE(edge["stddev"], pair["stddev"]);
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_GT(edge["stddev"][i], 0);
+      EXPECT_LT(edge["stddev"][i].get<double>(), 3 * pair["stddev"][i].get<double>());
+    }
+  }
+}
+
+TEST_F(Command, TwoSensorsThatShareNoTimeLeaveTheOthers) {
+  const std::vector<std::string> files = words_of(rig("drive"));
+  const std::string first = part_of(folder, files[0], "first.tum", 0, 30),
+                    last = part_of(folder, files[2], "last.tum", 35, 70);
+  const Result result = run("solve --json " + first + " " + files[1] + " " + last);
+  ASSERT_EQ(result.code, 0) << result.error;
+  const json object = result.object();
+  EXPECT_EQ(object["extrinsics"].size(), 2u);
+  ASSERT_EQ(object["unsolved"].size(), 1u);
+  EXPECT_EQ(object["unsolved"][0]["a"], "first");
+  EXPECT_EQ(object["unsolved"][0]["b"], "last");
+  EXPECT_EQ(object["joint"]["tree"].size(), 2u);
+  // without the one that connects them
+  const Result apart = run("solve " + first + " " + last + " " + last);
+  EXPECT_EQ(apart.code, 1);
+  EXPECT_NE(apart.error.find("first"), std::string::npos) << apart.error;
+}
+
+TEST_F(Command, EachKeyOfTheRigFileIsUsed) {
+  const std::vector<std::string> files =
+      words_of(rig("drive", "--scale camera=2.7 --clock-offset radar=0.2"));
+  const auto solve_with = [&](const std::string& of_camera, const std::string& of_radar,
+                              const std::string& of_pair = "") {
+    std::string text;
+    for (const char* name : {"lidar", "camera", "radar"})
+      text += std::string("[[sensor]]\nname = \"") + name + "\"\nchannel = \"" + name + "\"\n" +
+              (name == std::string("camera") ? of_camera : "");
+    text += "[[pair]]\na = \"lidar\"\nb = \"camera\"\n" + of_pair;
+    text += "[[pair]]\na = \"lidar\"\nb = \"radar\"\n" + of_radar;
+    const std::string toml = folder.file("rig.toml", text);
+    return run("solve --json --rig " + toml + " --from lidar=" + files[0] + " --from camera=" + files[1] +
+               " --from radar=" + files[2]);
+  };
+  const std::string truth = "truth = [1.5, 0.2, -0.3, 0.5, -0.5, 0.5, -0.5]\n";
+  const json as_given = solve_with("", "").object();
+  EXPECT_EQ(as_given["extrinsics"][0]["verdict"], "contradictory");
+  // number, sign and cure are those of the sensor that is named
+  bool scale = false, clock = false;
+  double lacking = 0;
+  for (const json& finding : as_given["findings"]) {
+    EXPECT_EQ(finding["remedy"].dump().find("--scale"), std::string::npos) << finding["remedy"];
+    if (finding["code"] == "scale" && finding["sensor"] == "camera") {
+      scale = true;
+      EXPECT_NEAR(finding["value"].get<double>(), 2.7, 0.05);
+      EXPECT_NE(finding["message"].dump().find("The lengths of camera times 2."), std::string::npos);
+      EXPECT_NE(finding["remedy"].dump().find("for camera"), std::string::npos);
+    }
+    if (finding["code"] == "clock_offset" && finding["sensor"] == "radar") {
+      clock = true;
+      lacking = finding["value"].get<double>();
+      EXPECT_NEAR(std::abs(lacking), 0.2, 0.01);
+      EXPECT_NE(finding["message"].dump().find("the stamps of radar"), std::string::npos);
+    }
+  }
+  EXPECT_TRUE(scale) << as_given["findings"];
+  EXPECT_TRUE(clock) << as_given["findings"];
+  for (const std::string& offset : {std::to_string(lacking), std::string("\"auto\"")}) {
+    const Result cured = solve_with("scale = 2.7\n", "time_offset = " + offset + "\n", truth);
+    ASSERT_EQ(cured.code, 0) << cured.out;
+    const json object = cured.object();
+    for (const json& extrinsic : object["extrinsics"]) EXPECT_EQ(extrinsic["verdict"], "good") << offset;
+    EXPECT_LT(object["extrinsics"][0]["error_translation_m"], 0.05);
+    EXPECT_NEAR(object["extrinsics"][1]["time_offset_s"].get<double>(), lacking, 0.01);
+  }
+  const std::string cured = "time_offset = " + std::to_string(lacking) + "\n";
+  const Result goal = solve_with("scale = 2.7\n", cured, "goal = \"0.0001deg,0.001cm\"\n");
+  EXPECT_EQ(goal.code, 3);
+  EXPECT_FALSE(goal.object()["extrinsics"][0]["goal"]["reached"]);
+  const json stride = solve_with("scale = 2.7\n", cured, "stride = 3\nweights = \"equal\"\n").object();
+  EXPECT_EQ(stride["extrinsics"][0]["stride"], 3);
+  EXPECT_EQ(stride["extrinsics"][0]["weights"]["translation"], 1);
+  const Result unknown = solve_with("scale = \"auto\"\n", "");
+  EXPECT_EQ(unknown.code, 1);
+  for (const char* part : {"rig.toml", "camera", "scale = \"auto\"", "solve A B"})
+    EXPECT_NE(unknown.error.find(part), std::string::npos) << unknown.error;
 }
 
 TEST_F(Command, TheConsistentSetIsWrittenAsOneTree) {

@@ -11,6 +11,7 @@
 #include "egocal/io/whole_file.hpp"
 #include "offline/provenance.hpp"
 #include "offline/rig_report.hpp"
+#include "progress.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -82,11 +83,18 @@ RigRequest rig_request(const RequestOptions& typed, const RigOptionsTyped& rig) 
   return request;
 }
 
+RigReport with_progress(RigRequest request) {
+  Progress progress("egocal solve");
+  request.progress = [&progress](double part) { progress(part); };
+  return calibrate_rig(request);
+}
+
 void write_tree(const RigReport& report, const RigOutput& output) {
   for (const std::string& name : report.names)
     if (!is_frame_name(name))
       say(fmt::format("egocal: the name '{}' is written with _ for what is no letter, digit or _ - . /",
                       name));
+  for (const std::string& line : tree_remarks(report)) say("egocal: " + line);
   const std::string text = extrinsic_tree_text(
       rig_tree(report), *extrinsic_format_from_name(output.format.empty() ? "yaml" : output.format));
   if (output.out.empty())
@@ -129,15 +137,13 @@ void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, 
   const SolveRequest common = common_request(typed);
   RigRequest request = rig_request(typed, rig);
   request.calibration = common.calibration;
-  const RigReport report = calibrate_rig(request);
+  const RigReport report = with_progress(request);
   print_warnings(report.warnings);
   const bool written = !output.format.empty() || !output.out.empty();
   if (written) write_tree(report, output);
-  if (written && report.contradictory)
-    say("egocal: the sensors contradict each other: do not use these extrinsics");
   if (!written || !output.out.empty())
     fmt::print("{}\n", output.json ? json_text(report, request, common, output) : rig_text(report));
-  if (report.contradictory) throw cli::Exit{3};
+  if (report.contradictory || report.short_of_goal) throw cli::Exit{3};
 }
 
 }  // namespace egocal::tools

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct RigRequest {
   ReadOptions reading;                      ///< of all files
   std::vector<std::string> append;          ///< further drives, one file per sensor, in turn
   CalibrationOptions calibration;           ///< common to all pairs
+  std::function<void(double)> progress;     ///< is told the part that is done, 0 to 1; one call at a time
 };
 
 /// Something that is wrong with one sensor, or with one of a pair.
@@ -30,21 +32,36 @@ struct RigFinding {
   std::optional<std::size_t> sensor;  ///< the one that all pairs which show it have in common
   std::string message, remedy;
   std::optional<double> time;   ///< mount_moved: since the first pose of the first sensor [s]
-  std::optional<double> value;  ///< as Finding::value, of the pair that shows it best
+  std::optional<double> value;  ///< as Finding::value, of the sensor; of b of the pair where none is named
+  std::size_t pair = 0;         ///< index of the pair that shows it best
   std::optional<RigMove> move;  ///< mount_moved
+};
+
+/// Two sensors without an answer, and why.
+struct UnsolvedPair {
+  std::size_t a = 0, b = 0;
+  std::string reason;
 };
 
 struct RigReport {
   std::vector<std::string> names, sources;
-  std::vector<Calibration> pairs;  ///< in the order of the solution's pairs
+  std::vector<Calibration> pairs;           ///< each with the answer of its own two streams
+  std::vector<std::optional<Pose>> truths;  ///< of each of them, where the rig file has one
+  std::vector<UnsolvedPair> unsolved;       ///< the others
+  /// pairs: sensors, answer and certificate of those above, in their order. The rest is of the motions that
+  /// several sensors have in common.
   RigSolution solution;
+  bool joint = false;         ///< the tree is the joint minimum; otherwise the most certain pairs
+  std::string why_not_joint;  ///< why not
   std::vector<RigFinding> findings;
   std::optional<std::size_t> blamed;  ///< the sensor to blame
   bool contradictory = false;         ///< an answer that should not be used
+  bool short_of_goal = false;         ///< a pair is known less well than the rig file asks for
   std::vector<std::string> warnings;
 };
 
-/// Throws Error where a source cannot be read or a pair has no motions, UsageError where options contradict.
+/// Throws Error where a source cannot be read, or the pairs that have motions do not connect all sensors;
+/// UsageError where options contradict.
 RigReport calibrate_rig(const RigRequest& request);
 
 }  // namespace egocal::tools

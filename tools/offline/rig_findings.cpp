@@ -5,9 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 
 #include "degrees.hpp"
+#include "egocal/microseconds.hpp"
+#include "egocal/rig/rig_moves.hpp"
+#include "offline/rig_words.hpp"
 
 namespace egocal::tools {
 
@@ -33,6 +38,7 @@ RigFinding moved(const RigReport& report, const RigMove& move, double begin) {
   finding.sensor = move.sensor;
   finding.time = begin + move.time;
   finding.move = move;
+  finding.pair = move.pair;
   const std::string name = who(report, move.sensor, move.pair);
   const std::string size = size_of(move.move);
   if (move.kind == MoveKind::creep) {
@@ -54,12 +60,14 @@ struct PairFinding {
   const Finding* finding = nullptr;
 };
 
+using PairFindings = std::vector<PairFinding>;
+
 /// Findings by code, without the _a and _b that name a sensor already.
-std::map<std::string, std::vector<PairFinding>> findings_by_code(const RigReport& report) {
-  std::map<std::string, std::vector<PairFinding>> result;
+std::map<std::string, PairFindings> findings_by_code(const RigReport& report) {
+  std::map<std::string, PairFindings> result;
   for (std::size_t i = 0; i < report.pairs.size(); ++i)
     for (const Finding& finding : report.pairs[i].findings) {
-      if (!finding.certain || finding.code == "mount_moved") continue;
+      if (!finding.certain) continue;
       PairFinding found{i, std::nullopt, &finding};
       std::string code = finding.code;
       const RigPairAnswer& answer = report.solution.pairs[i];
@@ -71,8 +79,20 @@ std::map<std::string, std::vector<PairFinding>> findings_by_code(const RigReport
   return result;
 }
 
+/// Right streams: docs/trust.md, "Findings". They say how well an answer is known, and blame nobody.
+bool leaves_the_answer_right(const std::string& code) {
+  return code == "undersampled" || code == "frozen" || code == "too_little_motion";
+}
+
+/// Whether a pair that shows it should not be used as it is.
+bool makes_bad(const RigReport& report, const PairFinding& found) {
+  std::string code = found.finding->code;
+  if (found.sensor) code.resize(code.size() - 2);
+  return !leaves_the_answer_right(code) && report.pairs[found.pair].verdict >= Verdict::doubtful;
+}
+
 /// The one sensor that every finding names or has; empty where there is none or more than one.
-std::optional<std::size_t> common_sensor(const RigReport& report, const std::vector<PairFinding>& of_code) {
+std::optional<std::size_t> common_sensor(const RigReport& report, const PairFindings& of_code) {
   if (report.names.size() < 3) return std::nullopt;
   std::vector<std::size_t> common;
   for (std::size_t s = 0; s < report.names.size(); ++s)
@@ -85,54 +105,128 @@ std::optional<std::size_t> common_sensor(const RigReport& report, const std::vec
   return common.front();
 }
 
-std::vector<RigFinding> of_pairs(const RigReport& report) {
+const PairFinding& best_of(const PairFindings& of_code) {
+  return *std::max_element(of_code.begin(), of_code.end(), [](const PairFinding& i, const PairFinding& k) {
+    return i.finding->improvement < k.finding->improvement;
+  });
+}
+
+/// Of one code, in the words of the rig.
+RigFinding of_pairs(const RigReport& report, const std::string& code, const PairFindings& of_code,
+                    const RigRequest& request, const RigSettings& settings) {
+  RigFinding finding;
+  finding.code = code;
+  finding.sensor = common_sensor(report, of_code);
+  const PairFinding& best = best_of(of_code);
+  finding.pair = best.pair;
+  const RigPairAnswer& answer = report.solution.pairs[best.pair];
+  RigWords words;
+  words.rig = request.rig;
+  words.offset_found = request.calibration.estimate_time_offset;
+  words.name_a = report.names[answer.a];
+  words.name_b = report.names[answer.b];
+  words.scale_a = settings.scales[answer.a];
+  words.scale_b = settings.scales[answer.b];
+  words.time_offset = report.pairs[best.pair].time_offset_applied;
+  std::optional<bool> of_b;
+  if (finding.sensor) of_b = *finding.sensor == answer.b;
+  word_for_rig(*best.finding, of_b, words, finding);
+  finding.message = fmt::format("{}: {}", who(report, finding.sensor, best.pair), finding.message);
+  return finding;
+}
+
+/// A move of which the motions that all sensors share show nothing.
+RigFinding moved_by_pairs(const RigReport& report, const PairFindings& of_move, double begin) {
+  const PairFinding& first = of_move.front();
+  RigFinding finding;
+  finding.code = "mount_moved";
+  finding.sensor = of_move.size() > 1 ? common_sensor(report, of_move) : std::nullopt;
+  finding.pair = first.pair;
+  finding.time = begin + first.finding->time.value_or(0);
+  finding.message = fmt::format("{}: {}", who(report, finding.sensor, first.pair), first.finding->message);
+  finding.remedy = first.finding->remedy;
+  return finding;
+}
+
+/// Moves that the diagnosis of some pair shows, and whose they are.
+std::vector<RigFinding> moves_in_rig(const RigReport& report, const PairFindings& of_moves,
+                                     const CommonMotions& motions,
+                                     const std::vector<Trajectory>& trajectories) {
+  const std::int64_t start_us = trajectories.front().front().time_us;
+  // since the first pose of the rig's first sensor [s]
+  const auto time_of = [&](const PairFinding& found) {
+    const std::size_t a = report.solution.pairs[found.pair].a;
+    return to_seconds(trajectories[a].front().time_us - start_us) + found.finding->time.value_or(0);
+  };
+  std::vector<RigMove> moves;
+  if (!motions.pairs.empty() && report.unsolved.empty()) {
+    std::vector<ShownMove> shown;
+    for (const PairFinding& found : of_moves)
+      if (found.finding->time) shown.push_back({found.pair, time_of(found) - motions.begin});
+    const auto chance = [](const std::vector<RigMove>& found) {
+      double least = 1;
+      for (const RigMove& move : found) least = std::min(least, move.move.false_alarm);
+      return least;
+    };
+    moves = find_rig_moves(report.names.size(), motions.pairs, shown);
+    if (!motions.single_steps.empty()) {
+      std::vector<RigMove> others = find_rig_moves(report.names.size(), motions.single_steps, shown);
+      if (chance(others) < chance(moves)) moves = std::move(others);
+    }
+  }
   std::vector<RigFinding> findings;
-  for (const auto& [code, of_code] : findings_by_code(report)) {
-    const PairFinding& best =
-        *std::max_element(of_code.begin(), of_code.end(), [](const PairFinding& i, const PairFinding& k) {
-          return i.finding->improvement < k.finding->improvement;
-        });
-    RigFinding finding;
-    finding.code = code;
-    finding.sensor = common_sensor(report, of_code);
-    finding.value = best.finding->value;
-    finding.message = fmt::format("{}: {}", who(report, finding.sensor, best.pair), best.finding->message);
-    finding.remedy = best.finding->remedy;
-    findings.push_back(std::move(finding));
+  for (const RigMove& move : moves) findings.push_back(moved(report, move, motions.begin));
+  // what is left, the findings of one time as one
+  PairFindings left;
+  const double same_time = RigMovesOptions{}.same_time;
+  for (const PairFinding& found : of_moves) {
+    const double time = time_of(found);
+    if (std::none_of(moves.begin(), moves.end(), [&](const RigMove& move) {
+          return motions.begin + move.earliest - same_time <= time &&
+                 time <= motions.begin + move.latest + same_time;
+        }))
+      left.push_back(found);
+  }
+  while (!left.empty()) {
+    const double time = time_of(left.front());
+    const auto is_same = [&](const PairFinding& found) {
+      return std::abs(time_of(found) - time) <= 2 * same_time;
+    };
+    PairFindings same;
+    std::copy_if(left.begin(), left.end(), std::back_inserter(same), is_same);
+    std::erase_if(left, is_same);
+    findings.push_back(moved_by_pairs(report, same, time - same.front().finding->time.value_or(0)));
   }
   return findings;
 }
 
-/// Of both, what is the least likely by chance.
-std::vector<RigMove> moves_of(std::size_t sensors, std::span<const RigPair> pairs,
-                              std::span<const RigPair> single_steps) {
-  const auto chance = [](const std::vector<RigMove>& moves) {
-    double least = 1;
-    for (const RigMove& move : moves) least = std::min(least, move.move.false_alarm);
-    return least;
-  };
-  std::vector<RigMove> moves = find_rig_moves(sensors, pairs);
-  if (single_steps.empty()) return moves;
-  std::vector<RigMove> others = find_rig_moves(sensors, single_steps);
-  return chance(others) < chance(moves) ? others : moves;
+bool is_open(const Loop& loop) {
+  return loop.known > 0 && !loop.closed;
 }
 
 }  // namespace
 
-void find_in_rig(std::span<const RigPair> pairs, std::span<const RigPair> single_steps, double begin,
-                 RigReport& report) {
-  std::vector<RigFinding> of_data = of_pairs(report);
-  // wrong data of one sensor change its answers all through the drive: that is no moved mount
-  if (of_data.empty())
-    for (const RigMove& move : moves_of(report.names.size(), pairs, single_steps))
-      report.findings.push_back(moved(report, move, begin));
-  for (RigFinding& finding : of_data) report.findings.push_back(std::move(finding));
-  for (const RigFinding& finding : report.findings)
+void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& trajectories,
+                 const RigRequest& request, const RigSettings& settings, RigReport& report) {
+  const std::map<std::string, PairFindings> by_code = findings_by_code(report);
+  std::vector<RigFinding> bad, others;
+  for (const auto& [code, of_code] : by_code) {
+    if (code == "mount_moved") {
+      for (RigFinding& move : moves_in_rig(report, of_code, motions, trajectories))
+        bad.push_back(std::move(move));
+      continue;
+    }
+    const bool is_bad = std::any_of(of_code.begin(), of_code.end(),
+                                    [&](const PairFinding& found) { return makes_bad(report, found); });
+    (is_bad ? bad : others).push_back(of_pairs(report, code, of_code, request, settings));
+  }
+  for (const RigFinding& finding : bad)
     if (finding.sensor && !report.blamed) report.blamed = finding.sensor;
-  const bool open = std::any_of(report.solution.loops.begin(), report.solution.loops.end(),
-                                [](const Loop& loop) { return !loop.closed; });
+  const bool open = std::any_of(report.solution.loops.begin(), report.solution.loops.end(), is_open);
   if (open && !report.blamed) report.blamed = report.solution.blamed;
-  report.contradictory = report.contradictory || open || !report.findings.empty();
+  report.contradictory = report.contradictory || open || !bad.empty();
+  report.findings = std::move(bad);
+  for (RigFinding& finding : others) report.findings.push_back(std::move(finding));
 }
 
 }  // namespace egocal::tools

@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
+#include <vector>
 
 #include "offline/rig_calibration.hpp"
+#include "offline/rig_joint.hpp"
 
 namespace egocal::tools {
 
-/// Sets findings and the sensor to blame from what the pairs found, the moves of the mounts and the noise.
-/// single_steps: the shortest motions, where the pairs have longer ones; moves are looked for in both. begin:
-/// of the first motion, since the first pose of the first sensor [s].
-void find_in_rig(std::span<const RigPair> pairs, std::span<const RigPair> single_steps, double begin,
-                 RigReport& report);
+/// Sets findings and the sensor to blame from what the pairs found, the moves of the mounts, the loops and
+/// the noise. motions: of all sensors; a move that a pair's diagnosis shows is looked for in the longer and
+/// in the shorter ones, to name the sensor.
+void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& trajectories,
+                 const RigRequest& request, const RigSettings& settings, RigReport& report);
 
 }  // namespace egocal::tools

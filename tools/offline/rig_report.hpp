@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "egocal/io/extrinsic_tree.hpp"
 #include "offline/rig_calibration.hpp"
@@ -14,7 +15,12 @@ namespace egocal::tools {
 nlohmann::ordered_json rig_json(const RigReport& report);
 std::string rig_text(const RigReport& report);
 
+/// Of a rig whose answer should not be used: why, one sentence.
+std::string contradiction(const RigReport& report);
+
 /// The consistent set as a tree with the first sensor as its root.
 ExtrinsicTree rig_tree(const RigReport& report);
+/// What whoever writes that tree must know, one line each, for standard error; empty: nothing.
+std::vector<std::string> tree_remarks(const RigReport& report);
 
 }  // namespace egocal::tools

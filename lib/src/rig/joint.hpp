@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "egocal/rig/rig.hpp"
 #include "solvers/tangent.hpp"
 
 namespace egocal::detail {
@@ -50,6 +52,14 @@ struct JointOptions {
 std::vector<DualQuaternion> minimise_joint(std::span<const JointPair> pairs,
                                            std::vector<DualQuaternion> poses,
                                            const JointOptions& options = {});
+
+/// Standard deviations of the poses of the joint minimum (ConsistentSet::stddev): parts of the drive, the
+/// same for all pairs, are omitted from all of them together. edges: the costs of the whole drive; without:
+/// the same of the drive without each part; optima: T_a_b of each pair alone.
+std::vector<std::array<double, 6>> joint_spread(std::span<const RigEdge> edges,
+                                                std::span<const std::vector<RigEdge>> without,
+                                                std::span<const DualQuaternion> optima,
+                                                const std::vector<DualQuaternion>& poses);
 
 /// What docs/rigs.md proves of a joint minimum.
 struct JointProof {

@@ -3,6 +3,7 @@
 #include "rig/loops.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -34,8 +35,8 @@ class Extrinsics {
   std::map<std::pair<std::size_t, std::size_t>, DualQuaternion> T_;
 };
 
-/// How far noisy rotations pull a translation towards zero, r'Dr inv(D) t (docs/method.md): pairs whose
-/// sensors have unlike noise are pulled unlike far, and a loop does not close by that. Sensor a's frame [m].
+}  // namespace
+
 Eigen::Vector3d attenuation(const Statistics& statistics, const DualQuaternion& T_a_b) {
   const QuaternionMatrix R = right_matrix(T_a_b.real);
   const QuaternionMatrix D = R.transpose() * (statistics.dual_rows.bottomRightCorner<4, 4>() * R);
@@ -45,6 +46,8 @@ Eigen::Vector3d attenuation(const Statistics& statistics, const DualQuaternion& 
   const Eigen::Vector3d pull = std::max(0.0, D(0, 0)) * factor.solve(to_pose(T_a_b).translation);
   return pull.allFinite() ? pull : Eigen::Vector3d(Eigen::Vector3d::Zero());
 }
+
+namespace {
 
 /// The squares of the attenuations of the loop's pairs, in the frame of its first sensor.
 Matrix6d attenuations(const Loop& loop, const Extrinsics& whole, std::span<const RigPair> pairs,
@@ -61,10 +64,40 @@ Matrix6d attenuations(const Loop& loop, const Extrinsics& whole, std::span<const
   return sum;
 }
 
+/// The directions of a misfit that its covariance knows, in units of what counts as known.
+struct Known {
+  std::size_t directions = 0;
+  Vector6d units;             ///< [m, rad]
+  Eigen::MatrixXd basis;      ///< orthonormal, one column a direction
+  Eigen::VectorXd variances;  ///< along them
+};
+
+Known known_part(const Matrix6d& C, const RigOptions& options) {
+  Known known;
+  known.units.head<3>().setConstant(options.known_translation);
+  known.units.tail<3>().setConstant(options.known_rotation);
+  const Vector6d inverse = known.units.cwiseInverse();
+  const Matrix6d in_units = inverse.asDiagonal() * C * inverse.asDiagonal();
+  if (!in_units.allFinite()) return known;
+  // a translation is turned by what is not known of the rotation
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(in_units.bottomRightCorner<3, 3>());
+  if (rotation.info() != Eigen::Success || !(rotation.eigenvalues()[2] <= 1)) return known;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> all(in_units);
+  if (all.info() != Eigen::Success) return known;
+  while (known.directions < 6 && all.eigenvalues()[static_cast<Eigen::Index>(known.directions)] <= 1)
+    ++known.directions;
+  const auto columns = static_cast<Eigen::Index>(known.directions);
+  known.basis = all.eigenvectors().leftCols(columns);
+  // rounding: variances of perfect motions
+  known.variances = all.eigenvalues().head(columns).cwiseMax(1e-18);
+  return known;
+}
+
 /// The misfit against its covariance: what it varies by when parts of the drive are omitted in all its pairs
 /// together, and what is systematic.
 void judge(Loop& loop, const Vector6d& misfit, const std::vector<Vector6d>& without,
-           const Matrix6d& systematic, const RigOptions& options, std::size_t loops) {
+           const Matrix6d& systematic, const std::array<double, 2>& stated, const RigOptions& options,
+           std::size_t loops) {
   const double count = static_cast<double>(without.size());
   Vector6d mean = Vector6d::Zero();
   for (const Vector6d& m : without) mean += m / count;
@@ -76,15 +109,56 @@ void judge(Loop& loop, const Vector6d& misfit, const std::vector<Vector6d>& with
     loop.misfit[static_cast<std::size_t>(i)] = misfit[i];
     loop.stddev[static_cast<std::size_t>(i)] = std::sqrt(C(i, i));
   }
-  const double t2 = misfit.dot(C.ldlt().solve(misfit));
+  const Known known = known_part(C, options);
+  loop.known = known.directions;
+  if (loop.known == 0) return;
+  const Vector6d in_units = known.units.cwiseInverse().cwiseProduct(misfit);
+  const Eigen::VectorXd shown = known.basis.transpose() * in_units;
+  const double t2 = shown.cwiseAbs2().cwiseQuotient(known.variances).sum();
   loop.chi_square = std::isfinite(t2) ? t2 : 0;
-  loop.false_alarm = hotelling_exceeded(loop.chi_square, 6, count - 1);
-  const bool large =
-      misfit.head<3>().norm() > options.least_translation || misfit.tail<3>().norm() > options.least_rotation;
+  loop.false_alarm = hotelling_exceeded(loop.chi_square, static_cast<double>(loop.known), count - 1);
+  const Vector6d of_known = known.units.cwiseProduct(known.basis * shown);
+  const bool large = of_known.head<3>().norm() > std::max(options.least_translation, stated[0]) ||
+                     of_known.tail<3>().norm() > std::max(options.least_rotation, stated[1]);
   loop.closed = !large || loop.false_alarm >= options.false_alarms / static_cast<double>(loops);
 }
 
+/// What the answers of the loop's pairs state to be uncertain by, added up, which bounds the standard
+/// deviation of the loop however their errors depend on each other [m, rad].
+std::array<double, 2> stated_of(const Loop& loop, std::span<const RigPair> pairs) {
+  std::array<double, 2> sum{};
+  const std::array<std::size_t, 3>& s = loop.sensors;
+  for (const RigPair& pair : pairs) {
+    const auto in_loop = [&](std::size_t k) { return std::find(s.begin(), s.end(), k) != s.end(); };
+    if (!pair.stated || !in_loop(pair.a) || !in_loop(pair.b)) continue;
+    const Eigen::Map<const Vector6d> stddev(pair.stated->data());
+    sum[0] += stddev.head<3>().norm();
+    sum[1] += stddev.tail<3>().norm();
+  }
+  return sum;
+}
+
+bool enough_motions(const Loop& loop, std::span<const RigPair> pairs, std::span<const TimedPair> timed,
+                    const RigOptions& options) {
+  const std::array<std::size_t, 3>& s = loop.sensors;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto in_loop = [&](std::size_t k) { return std::find(s.begin(), s.end(), k) != s.end(); };
+    if (in_loop(pairs[i].a) && in_loop(pairs[i].b) &&
+        static_cast<std::size_t>(timed[i].all.count) < options.least_motions * options.blocks)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+Statistics without_block(const TimedPair& pair, std::size_t k) {
+  Statistics rest = pair.all;
+  rest.dual_rows -= pair.blocks[k].dual_rows;
+  rest.weight -= pair.blocks[k].weight;
+  rest.count -= pair.blocks[k].count;
+  return rest;
+}
 
 std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
                            std::span<const TimedPair> timed, const RigOptions& options) {
@@ -93,10 +167,7 @@ std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     whole.set(pairs[i].a, pairs[i].b, extrinsic_of(pairs[i].problem, timed[i].all));
     for (std::size_t k = 0; k < options.blocks; ++k) {
-      Statistics rest = timed[i].all;
-      rest.dual_rows -= timed[i].blocks[k].dual_rows;
-      rest.weight -= timed[i].blocks[k].weight;
-      rest.count -= timed[i].blocks[k].count;
+      const Statistics rest = without_block(timed[i], k);
       without[k].set(
           pairs[i].a, pairs[i].b,
           rest.count > 0 ? extrinsic_of(pairs[i].problem, rest) : whole.at(pairs[i].a, pairs[i].b));
@@ -111,8 +182,9 @@ std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
     std::vector<Vector6d> misfits;
     misfits.reserve(without.size());
     for (const Extrinsics& part : without) misfits.push_back(part.misfit(loop.sensors));
-    judge(loop, whole.misfit(loop.sensors), misfits, attenuations(loop, whole, pairs, timed), options,
-          loops.size());
+    judge(loop, whole.misfit(loop.sensors), misfits, attenuations(loop, whole, pairs, timed),
+          stated_of(loop, pairs), options, loops.size());
+    if (!enough_motions(loop, pairs, timed, options)) loop.known = 0, loop.closed = true;
   }
   return loops;
 }

@@ -15,6 +15,13 @@ struct TimedPair {
   Statistics all;
 };
 
+/// All of a pair but one part of the drive.
+Statistics without_block(const TimedPair& pair, std::size_t k);
+
+/// How far noisy rotations pull a translation towards zero, r'Dr inv(D) t (docs/method.md): pairs whose
+/// sensors have unlike noise are pulled unlike far, and a loop does not close by that. Sensor a's frame [m].
+Eigen::Vector3d attenuation(const Statistics& statistics, const DualQuaternion& T_a_b);
+
 /// All loops of three sensors that have all three pairs. timed: one of every pair, with options.blocks
 /// blocks.
 std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,

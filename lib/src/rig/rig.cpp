@@ -11,6 +11,7 @@
 
 #include "egocal/error.hpp"
 #include "moves/linear_blocks.hpp"
+#include "rig/joint.hpp"
 #include "rig/loops.hpp"
 #include "solvers/minimiser.hpp"
 #include "statistics/median.hpp"
@@ -155,6 +156,35 @@ void check(std::size_t sensors, std::span<const RigPair> pairs) {
     if (!known[k]) throw Error("rig: sensor " + std::to_string(k) + " has no pair with sensor 0");
 }
 
+/// What is stated of the joint minimum: its own jack-knife, and what noisy rotations take off each
+/// translation.
+std::vector<std::array<double, 6>> spread_of(std::span<const RigPair> pairs,
+                                             const std::vector<TimedPair>& timed,
+                                             const std::vector<RigPairAnswer>& answers,
+                                             const std::vector<RigEdge>& edges,
+                                             const std::vector<DualQuaternion>& poses) {
+  std::vector<std::vector<RigEdge>> without;
+  for (std::size_t k = 0; k < timed.front().blocks.size(); ++k) {
+    std::vector<RigEdge>& part = without.emplace_back();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      // sums, not means: a part that is left out changes the weight of what is left
+      const Statistics rest = detail::without_block(timed[i], k);
+      part.push_back({pairs[i].a, pairs[i].b,
+                      cost_matrix(rest, pairs[i].problem.balance) * (rest.weight / timed[i].all.weight)});
+    }
+  }
+  std::vector<DualQuaternion> optima;
+  for (const RigPairAnswer& answer : answers) optima.push_back(answer.T_a_b);
+  auto stddev = detail::joint_spread(edges, without, optima, poses);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i].a != 0) continue;
+    const Eigen::Vector3d pull = detail::attenuation(timed[i].all, answers[i].T_a_b);
+    for (std::size_t k = 0; k < 3; ++k)
+      stddev[pairs[i].b][k] = std::hypot(stddev[pairs[i].b][k], pull[static_cast<Eigen::Index>(k)]);
+  }
+  return stddev;
+}
+
 /// The joint minimum; in planar mode, which has none, the pairs with sensor 0.
 ConsistentSet set_of(std::size_t sensors, std::span<const RigPair> pairs, const std::vector<TimedPair>& timed,
                      const std::vector<RigPairAnswer>& answers) {
@@ -168,8 +198,10 @@ ConsistentSet set_of(std::size_t sensors, std::span<const RigPair> pairs, const 
     if (pairs[i].a == 0) star.poses[pairs[i].b] = answers[i].T_a_b;
   }
   if (planar) return star;
-  const ConsistentSet set = solve_consistent_set(sensors, edges);
-  return set.solved ? set : star;
+  ConsistentSet set = solve_consistent_set(sensors, edges);
+  if (!set.solved) return star;
+  set.stddev = spread_of(pairs, timed, answers, edges, set.poses);
+  return set;
 }
 
 }  // namespace

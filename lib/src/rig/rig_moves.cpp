@@ -72,11 +72,18 @@ std::optional<std::size_t> moved_sensor(std::size_t sensors, std::span<const Rig
 }  // namespace
 
 std::vector<RigMove> find_rig_moves(std::size_t sensors, std::span<const RigPair> pairs,
-                                    const RigMovesOptions& options) {
+                                    std::span<const ShownMove> shown, const RigMovesOptions& options) {
   std::vector<Seen> seen;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto is_here = [i](const ShownMove& move) { return move.pair == i; };
+    if (std::none_of(shown.begin(), shown.end(), is_here)) continue;
     for (Move& move : find_moves(pairs[i].pairs, pairs[i].problem, options.moves).moves)
-      seen.push_back({i, std::move(move)});
+      if (std::any_of(shown.begin(), shown.end(), [&](const ShownMove& other) {
+            return is_here(other) && move.earliest - options.same_time <= other.time &&
+                   other.time <= move.latest + options.same_time;
+          }))
+        seen.push_back({i, std::move(move)});
+  }
   const auto groups = grouped(std::move(seen), options.same_time);
   std::vector<RigMove> result;
   for (const std::vector<Seen>& group : groups) {

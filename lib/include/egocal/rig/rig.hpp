@@ -28,6 +28,10 @@ struct ConsistentSet {
   /// False where the pairs do not connect all sensors, or a cost matrix is not usable; nothing else is set.
   bool solved = false;
   std::vector<DualQuaternion> poses;  ///< of every sensor in sensor 0
+  /// Of these poses, x y z roll pitch yaw in sensor 0's frame [m, rad], by the jack-knife of the joint
+  /// minimum itself, with what noisy rotations take off the translations. Of solve_rig() alone, otherwise
+  /// empty.
+  std::vector<std::array<double, 6>> stddev{};
   /// Sum over the pairs of J / J_min: each pair's own minimum counts 1, so that noisy pairs count less.
   double cost = 0;
   /// What the pairs would cost one by one, less a margin: `cost` lies above by what the loops do not close.
@@ -50,6 +54,9 @@ struct RigPair {
   std::vector<MotionPair> pairs;  ///< consecutive, in the order of time; outliers are omitted
   /// Motions are rejected that fit this answer far worse than the median one does; empty: around their own.
   std::optional<DualQuaternion> T_a_b;
+  /// What the pair's own answer states to be uncertain by, x y z roll pitch yaw [m, rad], infinite where it
+  /// is not known: a loop that is off by less contradicts nothing. Empty: nothing is stated.
+  std::optional<std::array<double, 6>> stated{};
 };
 
 struct RigOptions {
@@ -61,6 +68,12 @@ struct RigOptions {
   /// repeat in every part of a drive (0.5 cm between three Tango devices, docs/rigs.md).
   double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
   double least_translation = 0.01;                        ///< [m]
+  /// Directions that the jack-knife of a loop knows less well say nothing about it. A jack-knife is linear,
+  /// and so is its covariance: where an answer changes by metres or by many degrees it means nothing.
+  double known_rotation = 2 * std::numbers::pi / 180;  ///< [rad]
+  double known_translation = 0.2;                      ///< [m]
+  /// Motions for each part of the drive: fewer do not show their spread.
+  std::size_t least_motions = 2;
   /// A motion that fits this many times worse than the median one is rejected: five standard deviations.
   double most_residual = 25;
   /// A sensor is blamed where its noise (variance) is this many times that of every other one.
@@ -84,9 +97,10 @@ struct Loop {
   std::array<double, 6> misfit{};  ///< x y z and rotation vector in the frame of the first [m, rad]
   std::array<double, 6> stddev{};  ///< by the jack-knife of the loop, whose answers share their errors, with
                                    ///< what noisy rotations take off the translations (docs/method.md)
-  double chi_square = 0;           ///< misfit against its covariance: Hotelling's T^2 of 6 components
-  double false_alarm = 1;          ///< chance of at least this in a consistent rig
-  bool closed = true;
+  std::size_t known = 6;   ///< directions that are known well enough to judge by; 0: the loop is unknown
+  double chi_square = 0;   ///< misfit against its covariance in these: Hotelling's T^2 of `known` components
+  double false_alarm = 1;  ///< chance of at least this in a consistent rig
+  bool closed = true;      ///< not open; of an unknown loop it says nothing
 };
 
 struct RigSolution {

@@ -22,6 +22,12 @@ struct RigMovesOptions {
   double most_decades = 30;
 };
 
+/// What the diagnosis of a pair by itself (diagnosis/mount.hpp) says of its mount.
+struct ShownMove {
+  std::size_t pair = 0;  ///< index
+  double time = 0;       ///< [s] from the begin of the pair's first motion
+};
+
 /// One change of the rig, as its pairs see it.
 struct RigMove {
   MoveKind kind = MoveKind::bump;
@@ -31,9 +37,10 @@ struct RigMove {
   Move move;                          ///< of that pair
 };
 
-/// Whether and when a mount of the rig moved, and which. pairs: of the same intervals (rig_motions()).
-/// In the order of time. Throws nothing.
+/// Whether and when a mount of the rig moved, and which. pairs: of the same intervals (rig_motions()). shown:
+/// only what some pair's own diagnosis shows, at the same time, is a move of the rig: it asks more than these
+/// motions do (other strides, no correction of an odometry). In the order of time. Throws nothing.
 std::vector<RigMove> find_rig_moves(std::size_t sensors, std::span<const RigPair> pairs,
-                                    const RigMovesOptions& options = {});
+                                    std::span<const ShownMove> shown, const RigMovesOptions& options = {});
 
 }  // namespace egocal

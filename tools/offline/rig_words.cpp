@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "offline/rig_words.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+
+namespace egocal::tools {
+
+namespace {
+
+bool is_letter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Whether the letter at this place stands for a stream: alone, and "a" not as an article.
+bool is_stream(const std::string& text, std::size_t at) {
+  if (at > 0 && (is_letter(text[at - 1]) || text[at - 1] == '-' || text[at - 1] == '_')) return false;
+  const std::string rest = text.substr(at + 1);
+  if (!rest.empty() && is_letter(rest.front())) return false;
+  if (text[at] == 'b' || rest.empty()) return true;
+  if (std::string(".,;:'").find(rest.front()) != std::string::npos) return true;
+  for (const char* verb : {" are ", " is ", " was ", " were ", " lie ", " fit", " and b", " at ", " by ",
+                           " do ", " does ", " has ", " have ", " in ", " with ", " repeat", " turn", " to "})
+    if (rest.starts_with(verb)) return true;
+  return false;
+}
+
+/// The streams a and b by their names.
+std::string named(const std::string& text, const RigWords& words) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if ((text[i] == 'a' || text[i] == 'b') && is_stream(text, i))
+      result += text[i] == 'a' ? words.name_a : words.name_b;
+    else
+      result += text[i];
+  }
+  return result;
+}
+
+/// What follows the first colon: how well it fits.
+std::string after_colon(const std::string& message) {
+  const std::size_t at = message.find(": ");
+  return at == std::string::npos ? "." : message.substr(at);
+}
+
+void word_scale(const Finding& found, bool of_b, const RigWords& words, RigFinding& finding) {
+  const double factor = of_b ? *found.value : 1 / *found.value;
+  const std::string& name = of_b ? words.name_b : words.name_a;
+  const std::string& other = of_b ? words.name_a : words.name_b;
+  const double in_all = factor * (of_b ? words.scale_b : words.scale_a);
+  finding.value = factor;
+  finding.message = fmt::format("The lengths of {} times {:.4g} fit those of {}{}", name, factor, other,
+                                named(after_colon(found.message), words));
+  finding.remedy =
+      words.rig.empty()
+          ? fmt::format(
+                "Multiply the positions of {} by {:.4g}, or name the sensors in a rig file (--rig), "
+                "with scale = {:.4g} for {}.",
+                name, factor, factor, name)
+          : fmt::format("In {}: scale = {:.4g} for {}.", words.rig, in_all, name);
+}
+
+void word_clock_offset(const Finding& found, bool of_b, const RigWords& words, RigFinding& finding) {
+  // streams are on one clock already: what is found is what they lack
+  const double lacking = of_b ? *found.value : -*found.value;
+  const double in_all = lacking + (of_b ? words.time_offset : -words.time_offset);
+  const std::string& name = of_b ? words.name_b : words.name_a;
+  finding.value = in_all;
+  const std::size_t at = found.message.find("; ");
+  finding.message = fmt::format("The clocks differ: {:+.4f} s has to be added to the stamps of {}{}", in_all,
+                                name, at == std::string::npos ? "." : named(found.message.substr(at), words));
+  finding.remedy = words.offset_found  ? "Synchronise the clocks, or correct the stamps of " + name + "."
+                   : words.rig.empty() ? "--time-offset auto"
+                                       : fmt::format(
+                                             "--time-offset auto, or time_offset = \"auto\" for the "
+                                             "pairs of {} in {}.",
+                                             name, words.rig);
+}
+
+/// Options that go with two streams are refused for rigs.
+std::string cure(const Finding& found, const RigWords& words) {
+  const std::string& code = found.code;
+  const std::string one = code.ends_with("_a") ? words.name_a : code.ends_with("_b") ? words.name_b : "";
+  const std::string whose = one.empty() ? words.name_a + " and " + words.name_b : one;
+  if (code.starts_with("inverted_"))
+    return found.certain ? "Give the inverse of each pose of " + whose + ": sensor to world."
+                         : "Make sure that the poses of " + whose + " are sensor-to-world.";
+  if (code.starts_with("quaternion_order_"))
+    return "Give the quaternions of " + whose + " in the order that their format says.";
+  if (code == "scale_change")
+    return "Calibrate " + words.name_a + " and " + words.name_b +
+           " by themselves: solve A B --scale-b auto finds the factors, --scale auto where " + words.name_b +
+           " is in metres.";
+  if (code == "clock_drift") return "Synchronise the clocks; for a short drive --time-offset auto.";
+  if (code == "samples") return "Calibrate two of them at a time: solve A B --samples.";
+  if (code.starts_with("plane_") && !words.rig.empty())
+    return "Correct the plane of " + whose + " in " + words.rig + ".";
+  return named(found.remedy, words);
+}
+
+}  // namespace
+
+void word_for_rig(const Finding& found, std::optional<bool> of_b, const RigWords& words,
+                  RigFinding& finding) {
+  finding.value = found.value;
+  const bool has_value = found.value && *found.value != 0;
+  if ((found.code == "scale" || found.code == "units") && has_value)
+    return word_scale(found, of_b.value_or(found.code != "units" || *found.value < 1), words, finding);
+  if (found.code == "clock_offset" && has_value)
+    return word_clock_offset(found, of_b.value_or(true), words, finding);
+  if (found.code == "clock_drift" && has_value && of_b && !*of_b) finding.value = -*found.value;
+  finding.message = named(found.message, words);
+  finding.remedy = cure(found, words);
+}
+
+}  // namespace egocal::tools
