@@ -70,6 +70,8 @@ Contents read_contents(const Options& options) {
     for (std::size_t i = 0; i < summarisers.size(); ++i)
       contents.rows.push_back({recording->streams()[i], summarisers[i].summary()});
     contents.notes = recording->notes();
+    for (const Row& row : contents.rows)
+      if (!row.stream.mixed.empty()) contents.notes.push_back(row.stream.name + ": " + row.stream.mixed);
   }
   for (const std::string& unused : recording->unused(options.reading)) contents.notes.push_back(unused);
   contents.format = recording->format();
@@ -113,6 +115,12 @@ void print_json(const Options& options, const Contents& contents, const std::str
   object["checksum_differs"] = contents.losses.checksum;
   object["refused"] = contents.losses.refused;
   object["notes"] = contents.notes;
+  if (contents.losses.parts > 0) {
+    ReadLosses parts;
+    parts.parts = contents.losses.parts;
+    parts.first_part = contents.losses.first_part;
+    object["notes"].push_back(losses_in_words(parts));
+  }
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 

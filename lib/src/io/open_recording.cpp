@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "egocal/error.hpp"
 #include "egocal/io/recording.hpp"
+#include "io/bag/bag_folder.hpp"
 #include "io/bag/bag_recording.hpp"
 #include "io/bag/mcap_reader.hpp"
 #include "io/bag/rosbag1_reader.hpp"
 #include "io/bag/rosbag2_reader.hpp"
+#include "io/stream_list.hpp"
 #include "io/text/colmap_images.hpp"
 #include "io/text/text_recording.hpp"
 
@@ -38,50 +38,52 @@ std::unique_ptr<detail::MessageReader> open_bag(std::unique_ptr<ByteSource>& sou
     format = "rosbag 2.0 (ROS 1)";
     return std::make_unique<detail::Rosbag1Reader>(std::move(source));
   }
-  if (begins_with(*source, "#ROSBAG"))
-    throw error_at(source->file(), 0, "", "is a ROS bag of an old format; convert it with `rosbag fix`");
+  for (const char* old : {"#ROSBAG", "#ROSRECORD", "#ROSLOG"})
+    if (begins_with(*source, old))
+      throw error_at(
+          source->file(), 0, "",
+          "is a ROS bag of an old format, before 2.0; migrate it with `rosbag fix OLD NEW` of ROS 1");
   if (begins_with(*source, detail::sqlite_magic)) {
-    if (source->plain_size() == 0)
-      throw error_at(source->file(), 0, "", "is a packed database; unpack it first (gunzip, unzstd)");
     format = "rosbag2 sqlite3";
+    // packed, or a pipe
+    if (source->plain_size() == 0) return detail::Rosbag2Reader::unpacked(*source);
     return std::make_unique<detail::Rosbag2Reader>(source->file());
   }
   return nullptr;
 }
 
-/// "drive_10.db3" after "drive_9.db3".
-bool natural_less(const std::string& a, const std::string& b) {
-  return a.size() != b.size() ? a.size() < b.size() : a < b;
-}
-
-std::string text_of_file(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+std::string in_words_of_strangers(const std::vector<std::string>& names) {
+  const std::string first = detail::printable(names.front());
+  if (names.size() == 1) return first + " is in the folder and not in metadata.yaml: it is not read";
+  return std::to_string(names.size()) +
+         " bags in the folder are not in metadata.yaml and are not read (first: " + first + ")";
 }
 
 /// A folder written by rosbag2: the files that its metadata.yaml names are parts of one bag.
 std::unique_ptr<Recording> open_folder(const std::string& folder) {
-  std::vector<std::string> files;
-  const std::string metadata = text_of_file(folder + "/metadata.yaml");
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    for (const char* part : {".mcap", ".db3"})
-      if (name.find(part) != std::string::npos && name.find("-wal") == std::string::npos &&
-          name.find("-shm") == std::string::npos &&
-          (metadata.empty() || metadata.find(name) != std::string::npos))
-        files.push_back(entry->path().string());
-  }
-  std::sort(files.begin(), files.end(), natural_less);
-  detail::BagRecording::Parts parts;
+  const detail::BagFolder bag = detail::look_into(folder);
+  detail::BagRecording::Parts readers;
+  detail::KnownOfBag known;
   std::string format;
-  for (const std::string& file : files) {
-    auto source = std::make_unique<ByteSource>(file);
-    if (auto reader = open_bag(source, format)) parts.push_back(std::move(reader));
+  for (const detail::BagFolder::Part& part : bag.parts) {
+    std::string problem = detail::printable(part.name) + ": is named by metadata.yaml and not there";
+    if (!part.path.empty()) try {
+        auto source = std::make_unique<ByteSource>(part.path);
+        problem = part.path + (source->peek(1).empty() ? ": is empty" : ": does not begin like a bag");
+        if (auto reader = open_bag(source, format)) {
+          readers.push_back(std::move(reader));
+          continue;
+        }
+      } catch (const Error& error) {
+        problem = error.what();
+      }
+    if (known.losses.parts++ == 0) known.losses.first_part = problem;
   }
-  if (parts.empty())
+  if (bag.parts.empty())
     throw error_at(folder, 0, "", "is a folder without .mcap or .db3 files: expected a bag of rosbag2");
-  return std::make_unique<detail::BagRecording>(folder, format, std::move(parts));
+  if (readers.empty()) throw error_at(folder, 0, "", losses_in_words(known.losses));
+  if (!bag.strangers.empty()) known.notes.push_back(in_words_of_strangers(bag.strangers));
+  return std::make_unique<detail::BagRecording>(folder, format, std::move(readers), std::move(known));
 }
 
 }  // namespace
@@ -97,6 +99,10 @@ std::vector<std::string> unused_by_messages(const ReadOptions& options) {
 std::unique_ptr<Recording> open_recording(const std::string& file, const ReadOptions& options) {
   std::error_code none;
   if (fs::is_directory(file, none)) return open_folder(file);
+  if (detail::is_bag_metadata(file)) {
+    const fs::path folder = fs::path(file).parent_path();
+    return open_folder(folder.empty() ? "." : folder.string());
+  }
   auto source = std::make_unique<ByteSource>(file);
   std::string format;
   if (auto reader = open_bag(source, format)) {

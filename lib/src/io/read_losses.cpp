@@ -7,6 +7,9 @@ namespace egocal {
 std::string losses_in_words(const ReadLosses& losses) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (losses.parts > 0)
+    add(std::to_string(losses.parts) + (losses.parts == 1 ? " part" : " parts") +
+        " of the bag cannot be read (" + (losses.parts == 1 ? "" : "first: ") + losses.first_part + ")");
   if (losses.regions > 0)
     add(std::to_string(losses.regions) + " damaged " + (losses.regions == 1 ? "region (" : "regions (") +
         std::to_string(losses.bytes) + " bytes) skipped");

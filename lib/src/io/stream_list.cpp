@@ -2,9 +2,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/stream_list.hpp"
 
-#include <algorithm>
+#include <string_view>
 
 namespace egocal::detail {
+
+namespace {
+
+/// What people take for an odometry, and what to do about it.
+struct OtherType {
+  std::string_view type, problem;
+};
+constexpr OtherType other_types[] = {
+    {"nav_msgs/Path", "which repeats a whole path in every message: record the odometry it is made of"},
+    {"geometry_msgs/Pose", "which has no time: record a PoseStamped"},
+    {"geometry_msgs/PoseArray", "which holds poses of several things: record a PoseStamped of one"},
+    {"geometry_msgs/Twist", "which has no time: record a TwistStamped, or the odometry"},
+    {"sensor_msgs/NavSatFix", "which has no orientation: record the pose of the GNSS/INS filter"},
+    {"sensor_msgs/Imu", "which has no position: run an odometry with it and record that"},
+    {"sensor_msgs/PointCloud2", "which is no pose: run an odometry on it and record that"},
+    {"sensor_msgs/LaserScan", "which is no pose: run an odometry on it and record that"},
+    {"sensor_msgs/Image", "which is no pose: run an odometry on it and record that"},
+    {"sensor_msgs/CompressedImage", "which is no pose: run an odometry on it and record that"}};
+
+}  // namespace
+
+std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::string& name) {
+  if (name.empty()) return {};
+  for (const RecordedStream& stream : streams) {
+    if (stream.poses || stream.type.empty() || (stream.name != name && stream.name != "/" + name)) continue;
+    std::string text = "is of type " + printable(stream.type).substr(0, 60);
+    for (const OtherType& other : other_types)
+      if (stream.type == other.type) return text + ", " + std::string(other.problem);
+    return text + ", which egocal reads no poses from";
+  }
+  return {};
+}
 
 std::string printable(const std::string& text) {
   std::string out;

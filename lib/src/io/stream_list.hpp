@@ -16,4 +16,8 @@ std::string printable(const std::string& text);
 /// what there is instead. At most some 700 characters.
 std::string topics_in_words(const std::vector<RecordedStream>& streams);
 
+/// Of a topic that is there and has no poses: "is of type nav_msgs/Path, whose ...". Empty for any other
+/// name.
+std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::string& name);
+
 }  // namespace egocal::detail

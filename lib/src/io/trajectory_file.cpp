@@ -8,6 +8,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/microseconds.hpp"
+#include "io/static_transform.hpp"
 #include "io/stream_list.hpp"
 #include "io/transform_chain.hpp"
 
@@ -38,18 +39,26 @@ void read_chain(Recording& recording, const std::string& topic, TrajectoryReadin
     throw error_at(recording.file(), 0, detail::printable(topic),
                    "no transforms lead from one frame to the other; " + detail::topics_in_words(streams));
   std::vector<TrajectoryReading> parts(links->size());
+  std::vector<detail::StaticTransform> values(links->size());
   std::vector<bool> fixed(links->size());
+  for (std::size_t i = 0; i < links->size(); ++i) {
+    const RecordedStream& link = streams[(*links)[i].stream];
+    fixed[i] = link.fixed;
+    if (link.fixed) values[i] = detail::StaticTransform(link);
+  }
   recording.read("", [&](std::size_t stream, const StampedPose& pose) {
+    const RecordedStream& from = recording.streams()[stream];
     for (std::size_t i = 0; i < links->size(); ++i)
-      if (recording.streams()[stream].name == streams[(*links)[i].stream].name) {
-        // of a static transform the newest one counts
-        if (streams[(*links)[i].stream].fixed) parts[i].trajectory.clear();
+      if (fixed[i])
+        values[i].add(from, pose);
+      else if (from.name == streams[(*links)[i].stream].name)
         parts[i].trajectory.push_back(pose);
-      }
   });
   std::vector<Trajectory> poses;
   for (std::size_t i = 0; i < links->size(); ++i) {
-    fixed[i] = streams[(*links)[i].stream].fixed;
+    if (fixed[i]) parts[i].trajectory = values[i].value();
+    if (std::string text = values[i].contradiction(); !text.empty())
+      reading.contradictions.push_back(std::move(text));
     put_in_order(parts[i]);
     reading.out_of_order += parts[i].out_of_order;
     reading.duplicates += parts[i].duplicates;
@@ -88,8 +97,11 @@ std::string full_name(const std::vector<RecordedStream>& streams, const std::str
 Error no_pose(const Recording& recording, const std::string& name) {
   const std::vector<RecordedStream>& streams = recording.streams();
   const bool nameless = streams.size() == 1 && streams.front().name.empty();
+  const std::string without = detail::why_no_poses(streams, name);
   return error_at(recording.file(), 0, detail::printable(name),
-                  (name.empty() ? "holds no pose that can be read" : "no pose under this name") +
+                  (name.empty()       ? "holds no pose that can be read"
+                   : !without.empty() ? without
+                                      : "no pose under this name") +
                       (nameless ? "" : "; " + detail::topics_in_words(streams)) +
                       (recording.losses().any() ? "; " + losses_in_words(recording.losses()) : ""));
 }
@@ -126,6 +138,7 @@ void refuse_repairs(const std::string& name, const TrajectoryReading& reading) {
                        ", expected increasing times; without --strict such poses are sorted "
                        "and merged");
   if (reading.losses.any()) throw error_at(name, 0, "", losses_in_words(reading.losses));
+  if (!reading.contradictions.empty()) throw error_at(name, 0, "", reading.contradictions.front());
 }
 
 TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic) {
@@ -165,7 +178,11 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
   reading.format = recording.format();
   reading.stream = name;
   put_in_order(reading);
+  for (const RecordedStream& stream : recording.streams())
+    if (stream.name == name && !stream.mixed.empty())
+      reading.contradictions.push_back(detail::printable(name) + ": " + stream.mixed);
   reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
+  reading.notes.insert(reading.notes.end(), reading.contradictions.begin(), reading.contradictions.end());
   if (reading.out_of_order > 0)
     reading.notes.push_back(std::to_string(reading.out_of_order) +
                             (reading.out_of_order == 1 ? " pose was" : " poses were") +

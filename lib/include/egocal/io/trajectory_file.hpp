@@ -18,7 +18,8 @@ struct ReadOptions {
   /// A unit may follow in brackets: t[ns], yaw[deg].
   std::string columns;
   double rate = 0;  ///< poses without times: their rate [Hz]; 0: 10 is assumed and reported in the notes
-  /// Nothing is repaired: an Error where poses are out of order, have the time of another one, or are lost.
+  /// Nothing is repaired: an Error where poses are out of order, have the time of another one, or are lost,
+  /// and where the recording contradicts itself.
   bool strict = false;
 };
 
@@ -30,8 +31,10 @@ struct ReadLosses {
   bool checksum = false;      ///< the checksum of the whole data differs, and nothing shows where
   std::uint64_t refused = 0;  ///< messages or rows that could be read but hold no pose: NaN, zero quaternion
   std::string first_refused;  ///< why the first of them was refused, and where
+  std::uint64_t parts = 0;    ///< whole files of a bag of several that are missing or cannot be read
+  std::string first_part;     ///< which the first of them is, and why
 
-  bool any() const { return regions > 0 || truncated || checksum || refused > 0; }
+  bool any() const { return regions > 0 || truncated || checksum || refused > 0 || parts > 0; }
 };
 
 /// "2 damaged regions (381 bytes) skipped, the end is cut off"; empty where nothing was lost.
@@ -47,6 +50,8 @@ struct TrajectoryReading {
   std::uint64_t duplicates = 0;    ///< poses with the time of another one: the first is kept
   std::string first_repair;        ///< the first of either, in words; empty: none
   std::vector<std::string> notes;  ///< assumptions and repairs in words, one sentence each
+  /// What the recording says in two ways of which one was taken; they are among the notes.
+  std::vector<std::string> contradictions;
 };
 
 /// Reads the trajectory `name`: FILE, or FILE:TOPIC where the file holds several. Formats are recognised by

@@ -23,6 +23,8 @@ struct RecordedStream {
   bool poses = false;          ///< whether poses can be taken from it
   std::string topic, parent, child;  ///< of a transform on a tf topic: topic and frames
   bool fixed = false;                ///< a static transform
+  /// "poses of several frames are mixed: map (600), odom (600)"; empty: all are of one frame.
+  std::string mixed;
 };
 
 /// What messages of a bag or log do not need: they name their fields and have times.
@@ -65,8 +67,8 @@ class Recording {
 };
 
 /// Opens a file by its content: MCAP, rosbag 1 and 2, or text (TUM, KITTI, EuRoC, tables with named columns),
-/// each also as .gz, .zst, .bz2 or .lz4. A folder is taken as a bag of rosbag2. Throws Error where the file
-/// cannot be opened, or is known and not readable.
+/// each also as .gz, .zst, .bz2 or .lz4. A folder, or the metadata.yaml in it, is taken as a bag of rosbag2.
+/// Throws Error where the file cannot be opened, or is known and not readable.
 std::unique_ptr<Recording> open_recording(const std::string& file, const ReadOptions& options = {});
 
 /// "drive.mcap:/lidar/odom" in its parts. A colon that belongs to the name of an existing file stays there.
@@ -81,8 +83,8 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
 /// Sorts by time and keeps the first of equal times; counts both.
 void put_in_order(TrajectoryReading& reading);
 
-/// ReadOptions::strict: throws Error naming the recording and the first pose that was put in order, or what
-/// was lost.
+/// ReadOptions::strict: throws Error naming the recording and the first pose that was put in order, what was
+/// lost, or the first contradiction.
 void refuse_repairs(const std::string& name, const TrajectoryReading& reading);
 
 }  // namespace egocal

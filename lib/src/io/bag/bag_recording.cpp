@@ -30,10 +30,11 @@ void BagRecording::read(const std::string& topic, const TakePose& take) {
   streams_.clear();
   topics_.clear();
   transforms_.clear();
-  losses_ = {};
-  notes_.clear();
+  losses_ = known_.losses;
+  notes_ = known_.notes;
   unstamped_ = 0;
   stamps_.clear();
+  frames_.clear();
   integrators_.clear();
   for (const auto& part : parts_) {
     if (read_before_) part->rewind();
@@ -45,6 +46,7 @@ void BagRecording::read(const std::string& topic, const TakePose& take) {
     losses_.checksum = losses_.checksum || lost.checksum;
   }
   read_before_ = true;
+  for (std::size_t i = 0; i < frames_.size(); ++i) streams_[i].mixed = frames_[i].mixed();
   for (const auto& [stream, integrator] : integrators_)
     notes_.push_back(streams_[stream].name +
                      ": poses are integrated from the velocities in the frame of the sensor");
@@ -128,14 +130,20 @@ void BagRecording::take_message(MessageReader& part, const BagMessage& message, 
   const auto refuse = [&](const std::string& reason) {
     if (losses_.refused++ == 0) losses_.first_refused = topic.name + ": " + reason;
   };
-  const bool decoded = decode_poses(topic.type, topic.encoding, message.data, [&](const MessagePose& pose) {
+  const std::optional<ByteSpan> data = unpacker_.unpacked(topic.encoding, message.data);
+  if (!data) return refuse("the message is packed and damaged, or longer than 64 MiB");
+  const bool decoded = decode_poses(topic.type, topic.encoding, *data, [&](const MessagePose& pose) {
     const std::size_t target = transforms ? transform_stream(topic, pose) : stream;
     if (target == streams_.size()) return refuse("too many frames");
     if (transforms) {
       ++streams_[target].messages;
-    } else if (streams_[target].parent.empty()) {
-      streams_[target].parent = frame(pose.parent);
-      streams_[target].child = frame(pose.child);
+    } else {
+      if (target >= frames_.size()) frames_.resize(target + 1);
+      frames_[target].add(frame(pose.parent), frame(pose.child));
+      if (streams_[target].parent.empty()) {
+        streams_[target].parent = frame(pose.parent);
+        streams_[target].child = frame(pose.child);
+      }
     }
     const CheckedPose checked = pose.velocity ? CheckedPose{} : checked_pose(pose.translation, pose.wxyz);
     if (!checked.reason.empty()) return refuse(checked.reason);

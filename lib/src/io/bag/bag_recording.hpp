@@ -12,18 +12,29 @@
 
 #include "egocal/io/recording.hpp"
 #include "egocal/io/twist_integrator.hpp"
+#include "io/bag/frame_counts.hpp"
 #include "io/bag/message_reader.hpp"
+#include "io/bag/packed_message.hpp"
 #include "io/bag/pose_messages.hpp"
 
 namespace egocal::detail {
+
+/// What is known of a bag before it is read.
+struct KnownOfBag {
+  ReadLosses losses{};  ///< parts that are missing
+  std::vector<std::string> notes{};
+};
 
 /// The poses of a bag: one stream a topic, and one a transform for tf topics. Several files are parts of one
 /// bag, in order.
 class BagRecording : public Recording {
  public:
   using Parts = std::vector<std::unique_ptr<MessageReader>>;
-  BagRecording(std::string file, std::string format, Parts parts)
-      : Recording(std::move(file)), format_(std::move(format)), parts_(std::move(parts)) {}
+  BagRecording(std::string file, std::string format, Parts parts, KnownOfBag known = {})
+      : Recording(std::move(file)),
+        format_(std::move(format)),
+        parts_(std::move(parts)),
+        known_(std::move(known)) {}
 
   std::string format() const override { return format_; }
   void read(const std::string& topic, const TakePose& take) override;
@@ -43,11 +54,14 @@ class BagRecording : public Recording {
 
   std::string format_;
   Parts parts_;
+  KnownOfBag known_;
   bool read_before_ = false;
   std::map<std::pair<std::string, std::string>, std::size_t> topics_;      ///< stream by topic and type
   std::map<std::pair<std::size_t, std::string>, std::size_t> transforms_;  ///< by stream of the topic, frames
   std::map<std::size_t, TwistIntegrator> integrators_;                     ///< by stream
   std::vector<Stamps> stamps_;                                             ///< by stream
+  std::vector<FrameCounts> frames_;  ///< by stream, of topics that are not split by frames
+  PackedMessage unpacker_;
   std::uint64_t unstamped_ = 0;
 };
 
