@@ -162,7 +162,7 @@ TEST_F(Commands, BadTrajectoriesAreRefused) {
                  "none.txt: cannot be opened for reading: No such");
   refused("", ": holds no data");
   refused(good_line + "1001 0 0 x1 0 0 0 1\n", ":2: field 4 (tz): expected a number, got 'x1'");
-  refused(good_line + "1001 0 nan 0 0 0 0 1\n", ":2: field 3 (ty): expected a finite number");
+  refused(good_line + "1001 0 inf 0 0 0 0 1\n", ":2: field 3 (ty): expected a finite number");
   refused(good_line + "1001 0 0 0 0 0 0 0\n", ":2: quaternion: is zero");
   const std::string later = file("later.tum", "9000 0 0 0 0 0 0 1\n9001 1 0 0 0 0 0 1\n9002 2 0 0 0 0 0 1\n");
   expect_refusal(egocal("solve " + good + " " + later), 1, "their times do not overlap: --time-offset auto");

@@ -30,6 +30,20 @@ void split_at_spaces(std::string_view text, std::vector<std::string_view>& field
   }
 }
 
+/// Of a field that begins with a double quote: behind the closing one. Two quotes stand for one in the text.
+/// Where none closes it, its begin: it is a field like any other.
+std::size_t behind_quotes(std::string_view text, std::size_t begin) {
+  std::size_t at = begin;
+  while (at < text.size() && blank(text[at])) ++at;
+  if (at == text.size() || text[at] != '"') return begin;
+  for (++at; at < text.size(); ++at) {
+    if (text[at] != '"') continue;
+    if (at + 1 == text.size() || text[at + 1] != '"') return at + 1;
+    ++at;
+  }
+  return begin;
+}
+
 }  // namespace
 
 std::string quoted(std::string_view text) {
@@ -62,11 +76,14 @@ std::vector<std::string_view> fields(std::string_view text, bool commas) {
   return result;
 }
 
-void split(std::string_view text, char separator, std::vector<std::string_view>& fields) {
+std::size_t split(std::string_view text, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   std::size_t begin = 0;
   if (separator == ' ') {
-    if (text.find('\t') == text.npos && text.find('\r') == text.npos) return split_at_spaces(text, fields);
+    if (text.find('\t') == text.npos && text.find('\r') == text.npos) {
+      split_at_spaces(text, fields);
+      return fields.size();
+    }
     while (begin < text.size()) {
       while (begin < text.size() && blank(text[begin])) ++begin;
       std::size_t end = begin;
@@ -74,7 +91,7 @@ void split(std::string_view text, char separator, std::vector<std::string_view>&
       if (end > begin) fields.push_back(text.substr(begin, end - begin));
       begin = end;
     }
-    return;
+    return fields.size();
   }
   const auto trimmed = [](std::string_view part) {
     while (!part.empty() && blank(part.front())) part.remove_prefix(1);
@@ -82,12 +99,35 @@ void split(std::string_view text, char separator, std::vector<std::string_view>&
     if (part.size() >= 2 && part.front() == '"' && part.back() == '"') part = part.substr(1, part.size() - 2);
     return part;
   };
+  const bool quotes = text.find('"') != text.npos;
   while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    const std::size_t from = quotes ? behind_quotes(text, begin) : begin;
+    const std::size_t end = std::min(text.find(separator, from), text.size());
     fields.push_back(trimmed(text.substr(begin, end - begin)));
     begin = end + 1;
   }
+  const std::size_t all = fields.size();
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
+  return all;
+}
+
+std::string_view without_comment(std::string_view line) {
+  bool quoted = false;
+  if (line.find('#') == line.npos) return line;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (line[i] == '#' && !quoted && (i == 0 || blank(line[i - 1]))) return line.substr(0, i);
+  }
+  return line;
+}
+
+bool is_missing_number(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  if (text.empty() || (text.front() != 'n' && text.front() != 'N')) return false;
+  std::string word(text.substr(0, 16));
+  for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return word == "nan" || word == "none" || word == "null" || word == "na" || word == "n/a" ||
+         word.starts_with("nan(");
 }
 
 bool parse_number(std::string_view text, double& value) {

@@ -25,8 +25,15 @@ std::vector<Line> read_lines(const std::string& file);
 
 /// Fields between blanks, or between commas.
 std::vector<std::string_view> fields(std::string_view text, bool commas);
-/// The same into a vector that is kept between lines; separator: ' ' for blanks and tabs, ',' or ';'.
-void split(std::string_view text, char separator, std::vector<std::string_view>& fields);
+/// The same into a vector that is kept between lines; separator: ' ' for blanks and tabs that merge, '\t',
+/// ',' or ';'. A field in double quotes (RFC 4180) may hold separators, and is taken without its quotes.
+/// Returns how many fields there are, empty ones at the end included, which are left away.
+std::size_t split(std::string_view text, char separator, std::vector<std::string_view>& fields);
+
+/// The line up to a '#' behind a blank, outside of quotes.
+std::string_view without_comment(std::string_view line);
+/// What programs write where there is no number: "nan", "-nan(ind)", "None", "null", "NA".
+bool is_missing_number(std::string_view text);
 
 /// The number that fills the whole text. False where there is none; it may be infinite or NaN.
 bool parse_number(std::string_view text, double& value);

@@ -3,198 +3,14 @@
 #include "io/text/columns.hpp"
 
 #include <algorithm>
-#include <initializer_list>
-#include <iterator>
 #include <optional>
+#include <utility>
+
+#include "io/text/column_meaning.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-using Words = std::initializer_list<std::string_view>;
-
-const Words rates = {"vel", "velocity", "rate"};
-const Words accelerations = {"acc", "accel", "acceleration"};
-const Words uncertainties = {"covariance", "cov", "std",  "sigma", "stddev",
-                             "sd",         "b",   "bias", "var",   "error"};
-
-bool is_one_of(std::string_view word, Words words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-/// A column's name in lower-case words, and its unit.
-struct ColumnName {
-  std::vector<std::string> words;
-  std::string joined;        ///< all words in one
-  std::string unit;          ///< "Yaw (deg)"
-  std::optional<int> index;  ///< "q[0]"
-
-  bool any_of(Words list) const {
-    return std::any_of(words.begin(), words.end(), [&](const std::string& w) { return is_one_of(w, list); });
-  }
-};
-
-bool is_known_unit(std::string_view unit) {
-  constexpr Dimension all[] = {Dimension::time,  Dimension::length,  Dimension::angle,
-                               Dimension::speed, Dimension::turning, Dimension::number};
-  return std::any_of(std::begin(all), std::end(all),
-                     [&](Dimension dimension) { return in_si(dimension, unit).has_value(); });
-}
-
-/// "[0]", "[m]", "(map) [m]": an index, and the unit that is known, else the last of the others.
-void read_brackets(std::string_view text, ColumnName& name) {
-  while (true) {
-    const std::size_t begin = text.find_first_of("[(");
-    if (begin == std::string_view::npos) return;
-    const std::size_t end = std::min(text.find_first_of("])", begin), text.size());
-    std::string unit;
-    for (const char c : text.substr(begin + 1, end - begin - 1))
-      if (c != ' ') unit += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (unit.size() == 1 && unit[0] >= '0' && unit[0] <= '9')
-      name.index = unit[0] - '0';
-    else if (!unit.empty() && !is_known_unit(name.unit))
-      name.unit = unit;
-    text.remove_prefix(end);
-  }
-}
-
-ColumnName parse(std::string_view text) {
-  ColumnName name;
-  const std::size_t bracket = std::min(text.find_first_of("[("), text.size());
-  read_brackets(text.substr(bracket), name);
-  text = text.substr(0, bracket);
-  std::string word;
-  const auto finish = [&] {
-    if (!word.empty()) name.words.push_back(word);
-    word.clear();
-  };
-  for (const char c : text) {
-    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if ((lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9'))
-      word += lower;
-    else
-      finish();
-  }
-  finish();
-  if (name.unit.empty() && name.words.size() > 1 && is_unit_word(name.words.back())) {
-    name.unit = name.words.back();
-    name.words.pop_back();
-    // "wz_rad_s"
-    const std::string per_second = name.words.back() + "/s";
-    if (name.unit == "s" && name.words.size() > 1 &&
-        (in_si(Dimension::speed, per_second) || in_si(Dimension::turning, per_second))) {
-      name.unit = per_second;
-      name.words.pop_back();
-    }
-  }
-  for (const std::string& w : name.words) name.joined += w;
-  return name;
-}
-
-struct Meaning {
-  Quantity quantity{};
-  int rank = 0;  ///< the more specific name is taken; 0: not understood
-};
-
-bool ends_with(std::string_view word, std::string_view end) {
-  return word.size() >= end.size() && word.substr(word.size() - end.size()) == end;
-}
-
-bool ends_with_any(std::string_view word, Words ends) {
-  return std::any_of(ends.begin(), ends.end(), [&](std::string_view end) { return ends_with(word, end); });
-}
-
-/// Velocities, rates, biases and uncertainties are named like poses; words may be written together
-/// ("angvel_z").
-bool is_no_pose(std::string_view word) {
-  return is_one_of(word, {"v", "linear", "angular", "twist", "gyro"}) || is_one_of(word, uncertainties) ||
-         ends_with_any(word, rates) || ends_with_any(word, accelerations);
-}
-
-/// Elements of an array: "q[0]" is w, as PX4 and Eigen's constructors order them; "position[0]" is x.
-Meaning meaning_of_element(const ColumnName& name) {
-  const std::string_view last = name.words.back();
-  const int index = *name.index;
-  constexpr Quantity rotations[] = {Quantity::qw, Quantity::qx, Quantity::qy, Quantity::qz};
-  constexpr Quantity positions[] = {Quantity::x, Quantity::y, Quantity::z};
-  if (index < 4 && is_one_of(last, {"q", "quat", "quaternion"})) return {rotations[index], 2};
-  if (index < 3 && is_one_of(last, {"p", "pos", "position", "translation"})) return {positions[index], 2};
-  return {};
-}
-
-Meaning meaning_of_time(const ColumnName& name) {
-  const std::string_view last = name.words.back();
-  if (is_one_of(last, {"nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"}))
-    return {Quantity::nanoseconds, 1};
-  if (is_one_of(last, {"sec", "secs", "seconds"})) return {Quantity::seconds, 1};
-  // "header.stamp", "ImageTimestamp", "GPSTime": words may be written together
-  if (ends_with(last, "stamp") || ends_with(last, "stamps")) return {Quantity::time, 3};
-  if (is_one_of(name.joined, {"t", "times", "ts", "epoch", "timestampns", "timens"}) ||
-      ends_with(last, "time"))
-    return {Quantity::time, 2};
-  return {};
-}
-
-Meaning meaning_of_axis(const ColumnName& name) {
-  const std::string_view last = name.words.back();
-  const char axis = last.back();
-  if (!is_one_of(std::string_view(&axis, 1), {"w", "x", "y", "z"})) return {};
-  const int index = axis == 'w' ? 0 : 1 + (axis - 'x');
-  const std::string_view stem = last.substr(0, last.size() - 1);
-  constexpr Quantity rotations[] = {Quantity::qw, Quantity::qx, Quantity::qy, Quantity::qz};
-  constexpr Quantity positions[] = {Quantity::time, Quantity::x, Quantity::y, Quantity::z};
-  const bool rotation = is_one_of(stem, {"q", "quat", "quaternion", "orientation", "rotation", "rot"});
-  const bool in_rotation = name.any_of({"q", "quat", "quaternion", "orientation", "rotation", "rot"});
-  if (rotation || (stem.empty() && (in_rotation || (index == 0 && name.words.size() == 1))))
-    return {rotations[index], 2};
-  if (index == 0 || in_rotation) return {};
-  if (is_one_of(stem, {"p", "t", "pos", "position", "trans", "translation", "loc", "location"}))
-    return {positions[index], 2};
-  if (!stem.empty()) return {};
-  const bool in_position = name.any_of({"p", "pos", "position", "translation", "trans", "t", "location"});
-  return {positions[index], in_position ? 3 : 1};
-}
-
-/// "vx", "v", "linear.x", "twist.angular.z", "yaw_rate", ...
-Meaning meaning_of_velocity(const ColumnName& name) {
-  const std::string_view last = name.words.back();
-  if (name.any_of(uncertainties) || name.any_of(accelerations)) return {};
-  if (is_one_of(name.joined, {"v", "vel", "velocity", "speed"})) return {Quantity::vx, 1};
-  if (is_one_of(name.joined, {"yawrate", "turnrate", "omega"})) return {Quantity::wz, 1};
-  const char axis = last.back();
-  if (axis < 'x' || axis > 'z') return {};
-  constexpr Quantity linear[] = {Quantity::vx, Quantity::vy, Quantity::vz};
-  constexpr Quantity angular[] = {Quantity::wx, Quantity::wy, Quantity::wz};
-  const int index = axis - 'x';
-  const std::string_view stem = last.substr(0, last.size() - 1);
-  if (is_one_of(stem, {"v", "vel"}) ||
-      (stem.empty() && name.words.size() > 1 && name.any_of({"v", "vel", "velocity", "linear"})))
-    return {linear[index], 2};
-  if (is_one_of(stem, {"w", "omega", "gyro"}) ||
-      (stem.empty() && name.words.size() > 1 && name.any_of({"w", "omega", "gyro", "angular", "rate"})))
-    return {angular[index], 2};
-  return {};
-}
-
-Meaning meaning_of(const ColumnName& name) {
-  if (name.words.empty()) return {};
-  if (name.index) return meaning_of_element(name);
-  if (const Meaning velocity = meaning_of_velocity(name); velocity.rank > 0) return velocity;
-  if (name.words.size() > 1 && std::any_of(name.words.begin(), name.words.end(), is_no_pose)) return {};
-  const std::string_view last = name.words.back();
-  if (is_one_of(last, {"lat", "latitude"})) return {Quantity::latitude, 2};
-  if (is_one_of(last, {"lon", "long", "lng", "longitude"})) return {Quantity::longitude, 2};
-  if (is_one_of(last, {"alt", "altitude", "height", "elevation"})) return {Quantity::height, 2};
-  if (is_one_of(last, {"easting", "east"})) return {Quantity::x, 1};
-  if (is_one_of(last, {"northing", "north"})) return {Quantity::y, 1};
-  if (is_one_of(last, {"up"})) return {Quantity::z, 1};
-  if (last == "roll") return {Quantity::roll, 2};
-  if (last == "pitch") return {Quantity::pitch, 2};
-  if (is_one_of(last, {"yaw", "theta", "psi"})) return {Quantity::yaw, 2};
-  if (is_one_of(last, {"heading", "azimuth"})) return {Quantity::heading, 2};
-  if (const Meaning axis = meaning_of_axis(name); axis.rank > 0) return axis;
-  return meaning_of_time(name);
-}
 
 ColumnMap::Column column_of(Quantity quantity, std::size_t index, const std::string& unit) {
   const Dimension dimension = dimension_of(quantity);
@@ -204,6 +20,86 @@ ColumnMap::Column column_of(Quantity quantity, std::size_t index, const std::str
   // "yaw_rate_deg"
   if (dimension == Dimension::turning && !column.in_si) column.in_si = in_si(Dimension::angle, column.unit);
   return column;
+}
+
+struct Candidate {
+  std::size_t index = 0;
+  int rank = 0;
+  const ColumnName* name = nullptr;
+};
+using Candidates = std::array<std::vector<Candidate>, quantities>;
+
+const std::vector<Candidate>& of(const Candidates& all, Quantity quantity) {
+  return all[static_cast<std::size_t>(quantity)];
+}
+
+/// Words that two names begin with: "car.pose.x" and "car.pose.qx" are of one thing.
+std::size_t agreement(const ColumnName& one, const ColumnName& other) {
+  const auto end = std::mismatch(one.words.begin(), one.words.end(), other.words.begin(), other.words.end());
+  return static_cast<std::size_t>(end.first - one.words.begin());
+}
+
+/// The first of those with the largest rank; of those of one rank that agrees best with the name `with`.
+/// agreement_first: a name that agrees is better than one of a larger rank.
+const Candidate* best_of(const std::vector<Candidate>& candidates, const ColumnName* with,
+                         bool agreement_first) {
+  const Candidate* best = nullptr;
+  std::pair<std::size_t, std::size_t> most;
+  for (const Candidate& candidate : candidates) {
+    std::pair<std::size_t, std::size_t> value{with ? agreement(*candidate.name, *with) : 0,
+                                              static_cast<std::size_t>(candidate.rank)};
+    if (!agreement_first) std::swap(value.first, value.second);
+    if (best && value <= most) continue;
+    best = &candidate;
+    most = value;
+  }
+  return best;
+}
+
+/// Position and orientation of one thing, where the names tell: first by the orientation, then, where no
+/// position goes with it, by the position.
+struct Chosen {
+  std::array<const Candidate*, quantities> of{};
+
+  const Candidate*& operator[](Quantity quantity) { return of[static_cast<std::size_t>(quantity)]; }
+  const ColumnName* name(Quantity quantity) { return (*this)[quantity] ? (*this)[quantity]->name : nullptr; }
+};
+
+Chosen choose(const Candidates& all) {
+  using enum Quantity;
+  constexpr Quantity positions[] = {x, y, z}, orientations[] = {qw, qx, qy, qz, roll, pitch, yaw, heading},
+                     times[] = {time, seconds, nanoseconds};
+  Chosen chosen;
+  for (std::size_t i = 0; i < quantities; ++i) chosen.of[i] = best_of(all[i], nullptr, false);
+  const ColumnName* orientation = nullptr;
+  for (const Quantity quantity : {qx, yaw, heading})
+    if (!orientation) orientation = chosen.name(quantity);
+  if (!orientation || !chosen[x]) return chosen;
+  for (const Quantity quantity : positions) chosen[quantity] = best_of(of(all, quantity), orientation, true);
+  const ColumnName* const position = chosen.name(x);
+  for (const Quantity quantity : orientations) chosen[quantity] = best_of(of(all, quantity), position, true);
+  for (const Quantity quantity : times) chosen[quantity] = best_of(of(all, quantity), position, false);
+  return chosen;
+}
+
+/// A later column that may be the same quantity: of the same rank, and of one thing with the orientation as
+/// well as the one that is taken, or with another orientation.
+std::optional<std::size_t> rival_of(const Candidates& all, Chosen& chosen, Quantity quantity) {
+  const Candidate& taken = *chosen[quantity];
+  const ColumnName* orientation = nullptr;
+  bool another = false;
+  for (const Quantity with : {Quantity::qx, Quantity::yaw, Quantity::heading}) {
+    if (!orientation) orientation = chosen.name(with);
+    another = another || of(all, with).size() > 1;
+  }
+  const bool position = quantity >= Quantity::x && quantity <= Quantity::z;
+  for (const Candidate& other : of(all, quantity)) {
+    if (&other == &taken || other.rank != taken.rank) continue;
+    if (!position || another || !orientation ||
+        agreement(*other.name, *orientation) == agreement(*taken.name, *orientation))
+      return other.index;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -249,23 +145,25 @@ Dimension dimension_of(Quantity quantity) {
 }
 
 bool same_name(std::string_view one, std::string_view other) {
-  const ColumnName a = parse(one), b = parse(other);
+  const ColumnName a = parse_column_name(one), b = parse_column_name(other);
   return a.words == b.words && a.index == b.index && a.unit == b.unit;
 }
 
 ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
+  std::vector<ColumnName> parsed;
+  parsed.reserve(names.size());
+  for (const std::string_view name : names) parsed.push_back(parse_column_name(name));
+  Candidates all;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (const Meaning meaning = meaning_of(parsed[i]); meaning.rank > 0)
+      all[static_cast<std::size_t>(meaning.quantity)].push_back({i, meaning.rank, &parsed[i]});
+  Chosen chosen = choose(all);
   ColumnMap map;
-  std::array<int, quantities> rank{};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const ColumnName parsed = parse(names[i]);
-    const Meaning meaning = meaning_of(parsed);
-    if (meaning.rank == 0) continue;
-    int& best = rank[static_cast<std::size_t>(meaning.quantity)];
-    std::optional<ColumnMap::Column>& column = map.of[static_cast<std::size_t>(meaning.quantity)];
-    if (meaning.rank == best && !column->rival) column->rival = i;
-    if (meaning.rank <= best) continue;
-    best = meaning.rank;
-    column = column_of(meaning.quantity, i, parsed.unit);
+  for (std::size_t i = 0; i < quantities; ++i) {
+    if (!chosen.of[i]) continue;
+    const auto quantity = static_cast<Quantity>(i);
+    map.of[i] = column_of(quantity, chosen.of[i]->index, chosen.of[i]->name->unit);
+    map.of[i]->rival = rival_of(all, chosen, quantity);
   }
   // poses are better than velocities, which are integrated
   if (map.has_pose())
@@ -289,10 +187,21 @@ ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
     const std::string unit = !only.unit.empty() ? only.unit : seconds ? "s" : "ns";
     map.of[static_cast<std::size_t>(Quantity::time)] = column_of(Quantity::time, only.index, unit);
   }
-  if (seconds != rest || map.has(Quantity::time)) {
-    map.of[static_cast<std::size_t>(Quantity::seconds)].reset();
-    map.of[static_cast<std::size_t>(Quantity::nanoseconds)].reset();
+  // both together are what a header holds; a time beside them is that of recording
+  const std::vector<Candidate>& times = of(all, Quantity::time);
+  const bool of_header = chosen[Quantity::time] && chosen[Quantity::time]->rank == time_of_header;
+  if (seconds && rest && !of_header) {
+    const auto least = std::min_element(
+        times.begin(), times.end(), [](const Candidate& a, const Candidate& b) { return a.rank < b.rank; });
+    if (least != times.end()) map.other_time = least->index;
+    map.of[static_cast<std::size_t>(Quantity::time)].reset();
+    return map;
   }
+  if (of_header)
+    for (const Candidate& time : times)
+      if (time.rank != time_of_header && !map.other_time) map.other_time = time.index;
+  map.of[static_cast<std::size_t>(Quantity::seconds)].reset();
+  map.of[static_cast<std::size_t>(Quantity::nanoseconds)].reset();
   return map;
 }
 

@@ -53,6 +53,7 @@ struct ColumnMap {
     std::optional<std::size_t> rival{};  ///< a later column that may be the same quantity
   };
   std::array<std::optional<Column>, quantities> of;
+  std::optional<std::size_t> other_time;  ///< a column with another time than that of the header
 
   bool has(Quantity quantity) const { return of[static_cast<std::size_t>(quantity)].has_value(); }
   const Column& operator[](Quantity quantity) const { return *of[static_cast<std::size_t>(quantity)]; }
@@ -62,6 +63,10 @@ struct ColumnMap {
   bool has_geodetic() const { return has(Quantity::latitude) && has(Quantity::longitude); }
   bool has_quaternion() const;
   bool has_attitude() const { return has_quaternion() || has(Quantity::yaw) || has(Quantity::heading); }
+  /// A heading instead of a yaw: its roll and pitch are those of a vehicle in a frame of north, east, down.
+  bool has_compass_angles() const {
+    return has(Quantity::heading) && !has(Quantity::yaw) && !has_quaternion();
+  }
   bool has_time() const { return has(Quantity::time) || has(Quantity::seconds); }
   bool has_pose() const { return (has_position() || has_geodetic()) && has_attitude(); }
   /// Velocities that are integrated to poses: speed and turning about the vertical axis at least.

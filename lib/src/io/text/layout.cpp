@@ -8,148 +8,13 @@
 #include <iterator>
 
 #include "egocal/error.hpp"
+#include "io/text/first_lines.hpp"
 #include "io/text/rotation_rows.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-constexpr std::size_t sniffed_bytes = 64 << 10;  // a limit: some hundred rows show the layout
-
-/// JSON, XML, point clouds and pose graphs are text, but no tables.
-void refuse_other_text(const std::string& file, std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  const std::string_view start = text.substr(begin, 16);
-  const auto begins = [&](std::string_view word) { return start.substr(0, word.size()) == word; };
-  const char* kind = begins("{") || begins("[")             ? "JSON"
-                     : begins("<")                          ? "XML"
-                     : begins("ply") || begins("# .PCD")    ? "a point cloud"
-                     : begins("VERTEX_") || begins("EDGE_") ? "a pose graph (g2o)"
-                                                            : nullptr;
-  if (kind)
-    throw error_at(file, 0, "",
-                   std::string("is ") + kind +
-                       ", not a trajectory; write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw");
-}
-
-/// What people have beside recordings, by its first bytes.
-struct BinaryKind {
-  std::string_view begin;
-  const char* words;
-};
-constexpr std::string_view lcm_log_begin = "\xed\xa1\xda\x01";
-constexpr BinaryKind binary_kinds[] = {
-    {"PK\x03\x04", "is a zip archive: unpack it (an .npz of numpy: numpy.savetxt)"},
-    {"\x93NUMPY", "is an array of numpy: write it as text by numpy.savetxt"},
-    {"\x89HDF", "is an HDF5 file: write a table of its poses, one a line: t,x,y,z,qx,qy,qz,qw"},
-    {"PAR1", "is a Parquet file: write it as csv"},
-    {"ARROW1", "is a Feather file: write it as csv"},
-    {lcm_log_begin,
-     "is an LCM log: the commands of egocal read it, the library does not (egocal log export writes it as "
-     "MCAP)"},
-    {"ULog", "is a log of PX4: ulog2csv writes its topics as csv"},
-    {"7z\xbc\xaf", "is a 7z archive: unpack it"},
-    {"\xff\xfe", "is text of two bytes a character (UTF-16): save it as UTF-8"},
-    {"\xfe\xff", "is text of two bytes a character (UTF-16): save it as UTF-8"}};
-
-[[noreturn]] void refuse_binary(const ByteSource& source, std::string_view bytes) {
-  const std::string& file = source.file();
-  const std::optional<Packing>& packing = source.packing();
-  if (packing && bytes.starts_with(lcm_log_begin))
-    throw error_at(file, 0, "", packed_log_refused(*packing, file));
-  if (packing && packing_of(bytes))  // by xz, or twice
-    throw error_at(file, 0, "",
-                   "is packed by " + std::string(packing->name) +
-                       ", unpack it first: " + unpacking_command(*packing, file));
-  for (const BinaryKind& kind : binary_kinds)
-    if (bytes.substr(0, kind.begin.size()) == kind.begin) throw error_at(file, 0, "", kind.words);
-  throw error_at(file, 0, "",
-                 "is neither text nor a known recording; expected TUM, KITTI, EuRoC csv, a table with named "
-                 "columns, MCAP, a ROS 1 bag or a rosbag2 database");
-}
-
-/// The first lines of a file.
-struct Sniffed {
-  std::vector<Line> comments;  ///< before the first data
-  std::vector<Line> data;      ///< the first may be a header
-};
-
-bool is_blank(std::string_view text) {
-  return text.find_first_not_of(" \t\r") == std::string_view::npos;
-}
-
-Sniffed sniff(ByteSource& source) {
-  ByteSpan bytes = source.peek(sniffed_bytes);
-  const bool all = bytes.size() < sniffed_bytes;
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.find('\0') != std::string_view::npos) refuse_binary(source, text);
-  if (text.rfind("version https://git-lfs", 0) == 0)
-    throw error_at(source.file(), 0, "", "is a pointer of git-lfs, not the file itself: run `git lfs pull`");
-  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
-  refuse_other_text(source.file(), text);
-  Sniffed sniffed;
-  long number = 0;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos && !all && !sniffed.data.empty()) break;  // a part of a line
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    ++number;
-    if (is_blank(line)) continue;
-    const char first = line[line.find_first_not_of(" \t")];
-    if (first == '#' || first == '%') {
-      if (sniffed.data.empty()) sniffed.comments.push_back({number, std::string(line)});
-    } else {
-      sniffed.data.push_back({number, std::string(line)});
-    }
-  }
-  return sniffed;
-}
-
-bool is_number(std::string_view text) {
-  double value = 0;
-  return parse_number(text, value);
-}
-
-/// Between blanks or tabs there are numbers only, some with a decimal comma.
-bool has_commas_in_numbers(std::string_view line) {
-  std::vector<std::string_view> fields;
-  split(line, ' ', fields);
-  return fields.size() >= 3 && std::all_of(fields.begin(), fields.end(), [](std::string_view field) {
-           return is_number(field) || has_decimal_comma(field);
-         });
-}
-
-char separator_of(std::string_view line) {
-  if (line.find(';') != std::string_view::npos) return ';';
-  return line.find(',') != std::string_view::npos && !has_commas_in_numbers(line) ? ',' : ' ';
-}
-
-/// Names instead of numbers: the first field is a word, and so are most of the others.
-bool is_header(std::string_view line, char separator) {
-  std::vector<std::string_view> fields;
-  split(line, separator, fields);
-  const auto words = std::count_if(fields.begin(), fields.end(), [](std::string_view field) {
-    return !is_number(field) && !has_decimal_comma(field);
-  });
-  return fields.size() >= 3 && !is_number(fields[0]) &&
-         2 * words > static_cast<std::ptrdiff_t>(fields.size());
-}
-
-/// In the numbers of a file that has no decimal point.
-bool has_decimal_commas(const Sniffed& sniffed, char separator) {
-  bool any = false;
-  std::vector<std::string_view> fields;
-  for (const Line& line : sniffed.data) {
-    split(line.text, separator, fields);
-    for (const std::string_view field : fields) {
-      any = any || has_decimal_comma(field);
-      if (field.find('.') != std::string_view::npos && is_number(field)) return false;
-    }
-  }
-  return any;
-}
 
 /// The header's names, of which those of a quantity become columns.
 std::vector<std::string_view> name_columns(TextLayout& layout, std::string_view header) {
@@ -191,12 +56,19 @@ void check_columns(const std::vector<std::string_view>& names, const ColumnMap& 
 /// Columns of another part of a table may have the same meaning, such as those of a second robot.
 void note_rivals(TextLayout& layout) {
   std::string text;
-  for (std::size_t i = static_cast<std::size_t>(Quantity::x); i < quantities; ++i)
+  for (std::size_t i = 0; i < quantities; ++i)
     if (layout.columns.of[i] && layout.columns.of[i]->rival)
       text += (text.empty() ? "" : ", ") + layout.names[layout.columns.of[i]->index] + " (not " +
               layout.names[*layout.columns.of[i]->rival] + ")";
   if (!text.empty())
     layout.notes.push_back("the first of similar columns are taken: " + text + "; --columns names others");
+  if (!layout.columns.other_time) return;
+  const bool parts = layout.columns.has(Quantity::seconds);
+  const std::size_t time = layout.columns[parts ? Quantity::seconds : Quantity::time].index;
+  layout.notes.push_back(
+      "the times are those of " + layout.names[time] +
+      (parts ? " and " + layout.names[layout.columns[Quantity::nanoseconds].index] : std::string()) +
+      ", not " + layout.names[*layout.columns.other_time] + "; --columns names others");
 }
 
 /// A name of --columns that is no quantity may be a mistyped one.
@@ -314,19 +186,20 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
   } else {
     // a header in a comment is taken where it makes sense
     std::vector<std::string_view> row;
-    split(sniffed.data.front().text, layout.separator, row);
+    const std::size_t width = split(sniffed.data.front().text, layout.separator, row);
     for (const Line& comment : sniffed.comments) {
       TextLayout named;
       named.separator = layout.separator;
       const std::vector<std::string_view> names =
           name_columns(named, std::string_view(comment.text).substr(comment.text.find_first_of("#%") + 1));
-      if (!named.columns.complete() || !named.columns.has_time() || named.names.size() != row.size())
-        continue;
+      if (!named.columns.complete() || !named.columns.has_time()) continue;
+      if (named.names.size() != row.size() && named.names.size() != width) continue;
       check_columns(names, named.columns, file, comment.number);
       layout.columns = named.columns;
       layout.names = named.names;
     }
     if (!layout.columns.complete()) return false;
+    note_rivals(layout);
   }
   layout.format = "table";
   layout.fields = layout.columns.width();
@@ -430,15 +303,16 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
   Sniffed sniffed = sniff(source);
   if (sniffed.data.empty()) throw error_at(source.file(), 0, "", "holds no data");
   TextLayout layout;
-  layout.separator = separator_of(sniffed.data.back().text);
+  layout.separator = separator_of(sniffed, options.columns);
   layout.decimal_comma = layout.separator != ',' && has_decimal_commas(sniffed, layout.separator);
   if (layout.decimal_comma)
     for (Line& line : sniffed.data)
       if (!is_header(line.text, layout.separator)) std::replace(line.text.begin(), line.text.end(), ',', '.');
+  const bool named = set_named(layout, sniffed, options, source.file());
+  if (!named && layout.separator == '\t') layout.separator = ' ';
   std::vector<std::string_view> row;
-  split(sniffed.data.front().text, layout.separator, row);
-  if (!set_named(layout, sniffed, options, source.file()) && !set_ros2_csv(layout, row) &&
-      !set_matrix(layout, row) && !set_untimed(layout, row)) {
+  split(first_whole_row(sniffed, layout.separator).text, layout.separator, row);
+  if (!named && !set_ros2_csv(layout, row) && !set_matrix(layout, row) && !set_untimed(layout, row)) {
     if (layout.separator == ' ') {
       set_tum(layout);
     } else {

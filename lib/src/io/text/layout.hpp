@@ -16,7 +16,7 @@ namespace egocal::detail {
 /// How the rows of a text file are to be read.
 struct TextLayout {
   std::string format;          ///< "TUM", "EuRoC csv", "KITTI", "table"
-  char separator = ' ';        ///< ' ' for blanks and tabs, ',' or ';'
+  char separator = ' ';        ///< ' ' for blanks and tabs that merge, '\t', ',' or ';'
   bool decimal_comma = false;  ///< 1,5 between semicolons, blanks or tabs
   long header_line = 0;        ///< that holds names and no data; 0: none
   ColumnMap columns;           ///< of formats with columns

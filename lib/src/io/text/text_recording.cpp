@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/text/text_recording.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
+#include <cstdio>
 #include <numbers>
 
 #include "egocal/error.hpp"
@@ -13,94 +11,18 @@
 #include "egocal/microseconds.hpp"
 #include "io/checked_pose.hpp"
 #include "io/text/geodesy.hpp"
-#include "io/text/line_reader.hpp"
 #include "io/text/rotation_rows.hpp"
+#include "io/text/text_rows.hpp"
+#include "io/text/times_file.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double radians_a_degree = std::numbers::pi / 180;
 constexpr double metres_a_degree = 111e3;  // of latitude, roughly: directions need no more
 
-bool is_data(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t\r");
-  return first != std::string_view::npos && line[first] != '#' && line[first] != '%';
-}
-
 }  // namespace
-
-/// The rows of the file, one at a time.
-struct TextRecording::Rows {
-  Rows(ByteSource& source, const TextLayout& text_layout) : lines(source), layout(text_layout) {
-    if (layout.matrix && layout.times) stamp = 0;
-    if (!layout.matrix && layout.columns.has(Quantity::time)) stamp = layout.columns[Quantity::time].index;
-  }
-
-  bool next() {
-    std::string_view line;
-    while (lines.next(line)) {
-      if (lines.number() == layout.header_line || !is_data(line)) continue;
-      if (layout.decimal_comma) {
-        points.assign(line);
-        std::replace(points.begin(), points.end(), ',', '.');
-        line = points;
-      }
-      if (layout.separator != ' ' || !split_numbers(line)) {
-        numbers.clear();
-        split(line, layout.separator, fields);
-      }
-      width = layout.separator == ' '
-                  ? fields.size()
-                  : static_cast<std::size_t>(std::count(line.begin(), line.end(), layout.separator)) + 1;
-      ++count;
-      return true;
-    }
-    return false;
-  }
-
-  /// split() at blanks of a row of numbers, which are read on the way: a field ends where its number does.
-  /// False where one is none.
-  bool split_numbers(std::string_view line) {
-    fields.clear();
-    numbers.clear();
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    while (true) {
-      while (at != end && *at == ' ') ++at;
-      if (at == end) return true;
-      const char* const begin = at;
-      double number = 0;
-      if (fields.size() == stamp) {
-        while (at != end && *at != ' ' && *at != '\t' && *at != '\r') ++at;
-      } else {
-        const auto [behind, error] = std::from_chars(begin, end, number);
-        if (error != std::errc() || !std::isfinite(number)) return false;
-        at = behind;
-      }
-      if (at != end && *at != ' ') return false;
-      fields.emplace_back(begin, static_cast<std::size_t>(at - begin));
-      numbers.push_back(number);
-    }
-  }
-
-  /// The finite number in this field, which is there.
-  std::optional<double> number(std::size_t index) const {
-    double value = 0;
-    if (index < numbers.size() && index != stamp) return numbers[index];
-    if (!parse_number(fields[index], value) || !std::isfinite(value)) return std::nullopt;
-    return value;
-  }
-
-  LineReader lines;
-  const TextLayout& layout;
-  std::vector<std::string_view> fields;
-  std::vector<double> numbers;   ///< of the fields; empty where they are not all numbers
-  std::size_t stamp = SIZE_MAX;  ///< field that is read as text, for a double cannot hold nanoseconds
-  std::string points;
-  std::size_t count = 0;  ///< rows so far
-  std::size_t width = 0;  ///< fields of this row, empty ones at its end included
-};
 
 TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions options)
     : Recording(source->file()), source_(std::move(source)), options_(std::move(options)) {
@@ -109,36 +31,20 @@ TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions opt
     if (!layout_.matrix || layout_.first_column != 0)
       throw error_at(file_, 0, "",
                      "a file of times belongs to KITTI poses (12 fields a line), this is not one");
-    read_times();
+    times_ = read_times_file(options_.times_file);
   }
   if (options_.rate != 0 && !rates_of_poses.contains(options_.rate))
     throw error_at(file_, 0, "--rate", "expected 0.001 to 1e6 Hz");
   if (options_.rate > 0) rate_ = options_.rate;
   find_angle_unit();
-  if (layout_.columns.has(Quantity::heading) && !layout_.columns.has_quaternion() &&
-      !layout_.columns.has(Quantity::yaw) && !layout_.columns.has_geodetic())
-    layout_.notes.push_back("heading is taken clockwise from north (y); call the column yaw if it is not");
-}
-
-void TextRecording::read_times() {
-  ByteSource source(options_.times_file);
-  const std::string& file = options_.times_file;
-  ReadOptions one_column;
-  LineReader lines(source);
-  std::string_view line;
-  std::vector<std::string_view> fields;
-  while (lines.next(line)) {
-    if (!is_data(line)) continue;
-    split(line, ' ', fields);
-    if (fields.size() != 1)
-      throw error_at(file, lines.number(), "",
-                     "expected one time, got " + std::to_string(fields.size()) + " fields");
-    double size = 0;
-    const bool epoch_ns = parse_number(fields[0], size) && std::abs(size) > 4.1e15;
-    times_.push_back(
-        time_us(file, lines.number(), fields[0], epoch_ns ? TimeUnit::nanoseconds : TimeUnit::seconds));
-  }
-  if (times_.empty()) throw error_at(file, 0, "", "holds no data");
+  if (layout_.columns.has_compass_angles())
+    layout_.notes.push_back(
+        std::string("heading is taken clockwise from north (y)") +
+        (layout_.columns.has(Quantity::pitch) || layout_.columns.has(Quantity::roll)
+             ? ", pitch with the nose up and roll with the right side down, as GNSS/INS devices give them; "
+               "the poses are those of axes x forward, y left, z up"
+             : "") +
+        "; call the column yaw if it is not");
 }
 
 /// All of the file counts: a drive may begin straight.
@@ -163,7 +69,7 @@ void TextRecording::find_angle_unit() {
   }
   const AngleUnit::Decision decision = unit_by_rows(unknown).decide();
   if (!decision.degrees) throw unit_of_angles_needed(unknown);
-  if (*decision.degrees) angle_in_si_ = degree;
+  if (*decision.degrees) angle_in_si_ = radians_a_degree;
   layout_.notes.push_back(std::string("angles are taken as ") + (*decision.degrees ? "degrees" : "radians") +
                           ", " + decision.reason);
 }
@@ -173,7 +79,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
   using enum Quantity;
   const ColumnMap& columns = layout_.columns;
   AngleUnit unit;
-  Rows rows(*source_, layout_);
+  TextRows rows(*source_, layout_);
   while (rows.next()) {
     const auto number = [&](Quantity quantity) -> std::optional<double> {
       if (!columns.has(quantity) || columns[quantity].index >= rows.fields.size()) return std::nullopt;
@@ -184,7 +90,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
     if (const auto east = number(x), north = number(y); east && north)
       position = Eigen::Vector2d(*east, *north) * columns[x].in_si.value_or(1);
     else if (const auto at = number(latitude), along = number(longitude); at && along)
-      position = Eigen::Vector2d(*along * std::cos(*at * degree), *at) * metres_a_degree;
+      position = Eigen::Vector2d(*along * std::cos(*at * radians_a_degree), *at) * metres_a_degree;
     for (const Quantity quantity : angles) {
       const std::optional<double> angle = number(quantity);
       if (!angle) continue;
@@ -199,7 +105,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
 }
 
 /// Of a row that may be unreadable, then 0.
-double TextRecording::seconds_of_row(const Rows& rows) const {
+double TextRecording::seconds_of_row(const TextRows& rows) const {
   if (rows.fields.size() < layout_.fields) return 0;
   try {
     return to_seconds(time_of_row(rows));
@@ -239,7 +145,7 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
   integrator_ = {};
   if (!layout_.matrix && !layout_.columns.has_pose())
     notes_.push_back("poses are integrated from the velocities in the frame of the sensor");
-  Rows rows(*source_, layout_);
+  TextRows rows(*source_, layout_);
   while (rows.next()) {
     const std::optional<StampedPose> pose = pose_of_row(rows);
     if (pose) {
@@ -267,14 +173,16 @@ std::vector<std::string> TextRecording::unused(const ReadOptions& options) const
 }
 
 /// Empty: the row is skipped and counted.
-std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
+std::optional<StampedPose> TextRecording::pose_of_row(const TextRows& rows) {
   const std::size_t n = rows.fields.size();
-  const auto empty_field = [&] {
+  const auto skip = [&](const char* why) {
     if (losses_.refused++ == 0)
-      losses_.first_refused = "line " + std::to_string(rows.lines.number()) + ": an empty field";
+      losses_.first_refused = "line " + std::to_string(rows.lines.number()) + ": " + why;
     return std::nullopt;
   };
-  if (layout_.format == "table" && n < layout_.fields && rows.width >= layout_.fields) return empty_field();
+  constexpr const char* empty_field = "an empty field";
+  if (layout_.format == "table" && n < layout_.fields && rows.width >= layout_.fields)
+    return skip(empty_field);
   if (layout_.more_fields ? n < layout_.fields : n != layout_.fields) {
     if (!rows.lines.terminated() && n < layout_.fields && rows.count > 1) {
       losses_.truncated = true;
@@ -290,24 +198,31 @@ std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
                        std::to_string(n) +
                        (rows.count == 1 && !layout_.matrix ? "; name other columns with --columns" : ""));
   }
-  if (layout_.header_line > 0 && options_.columns.empty() && n > layout_.names.size())
+  // between blanks a missing field cannot be seen: those behind it would be read as others
+  const bool too_few = layout_.separator == ' ' && n < layout_.names.size();
+  if (layout_.header_line > 0 && options_.columns.empty() && (too_few || n > layout_.names.size())) {
+    if (too_few && !rows.lines.terminated() && rows.count > 1) {
+      losses_.truncated = true;
+      return std::nullopt;
+    }
     throw error_at(file_, rows.lines.number(), "",
                    "expected " + std::to_string(layout_.names.size()) +
                        " fields, as the header has names, got " + std::to_string(n) +
-                       (layout_.separator == ',' ? "; write decimals with a point, or" : ";") +
+                       (too_few                    ? "; separate them with tabs or commas, or"
+                        : layout_.separator == ',' ? "; write decimals with a point, or"
+                                                   : ";") +
                        " name the columns with --columns t,x,y,z,qx,qy,qz,qw");
+  }
   if (layout_.format == "table")
     for (const auto& column : layout_.columns.of)
-      if (column && rows.fields[column->index].empty()) return empty_field();
+      if (column && rows.fields[column->index].empty()) return skip(empty_field);
+  if (rows.without_a_number()) return skip("a field without a number, such as nan");
   StampedPose pose;
   pose.time_us = time_of_row(rows);
   if (!layout_.matrix && !layout_.columns.has_pose()) {
     const std::optional<DualQuaternion> integrated = pose_of_twist(rows, pose.time_us);
     if (!integrated) {
-      if (losses_.refused++ == 0)
-        losses_.first_refused =
-            "line " + std::to_string(rows.lines.number()) + ": a velocity that is not later";
-      return std::nullopt;
+      return skip("a velocity that is not later");
     }
     pose.pose = *integrated;
     return pose;
@@ -316,7 +231,7 @@ std::optional<StampedPose> TextRecording::pose_of_row(const Rows& rows) {
   return pose;
 }
 
-std::int64_t TextRecording::time_of_row(const Rows& rows) const {
+std::int64_t TextRecording::time_of_row(const TextRows& rows) const {
   const long line = rows.lines.number();
   if (!times_.empty()) return rows.count <= times_.size() ? times_[rows.count - 1] : 0;
   if (!layout_.times) {
@@ -333,7 +248,7 @@ std::int64_t TextRecording::time_of_row(const Rows& rows) const {
   return time_us(file_, line, rows.fields[column], layout_.unit);
 }
 
-double TextRecording::value(const Rows& rows, std::size_t index) const {
+double TextRecording::value(const TextRows& rows, std::size_t index) const {
   const std::optional<double> number = rows.number(index);
   if (!number) {
     constexpr const char* matrix[] = {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty",
@@ -352,17 +267,17 @@ double TextRecording::value(const Rows& rows, std::size_t index) const {
   return *number;
 }
 
-double TextRecording::value(const Rows& rows, Quantity quantity, double in_si) const {
+double TextRecording::value(const TextRows& rows, Quantity quantity, double in_si) const {
   if (!layout_.columns.has(quantity)) return 0;
   const ColumnMap::Column& column = layout_.columns[quantity];
   return value(rows, column.index) * column.in_si.value_or(in_si);
 }
 
-double TextRecording::angle(const Rows& rows, Quantity quantity) const {
+double TextRecording::angle(const TextRows& rows, Quantity quantity) const {
   return value(rows, quantity, angle_in_si_);
 }
 
-DualQuaternion TextRecording::pose_of_matrix(const Rows& rows) const {
+DualQuaternion TextRecording::pose_of_matrix(const TextRows& rows) const {
   double v[12];
   for (std::size_t i = 0; i < 12; ++i) v[i] = value(rows, layout_.first_column + i);
   Eigen::Matrix3d R;
@@ -375,7 +290,7 @@ DualQuaternion TextRecording::pose_of_matrix(const Rows& rows) const {
 }
 
 /// Empty: the time does not increase.
-std::optional<DualQuaternion> TextRecording::pose_of_twist(const Rows& rows, std::int64_t time_us) {
+std::optional<DualQuaternion> TextRecording::pose_of_twist(const TextRows& rows, std::int64_t time_us) {
   using enum Quantity;
   Twist twist;
   twist.time_us = time_us;
@@ -384,7 +299,7 @@ std::optional<DualQuaternion> TextRecording::pose_of_twist(const Rows& rows, std
   return integrator_.add(twist);
 }
 
-DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {
+DualQuaternion TextRecording::pose_of_columns(const TextRows& rows) {
   using enum Quantity;
   const ColumnMap& columns = layout_.columns;
   const long line = rows.lines.number();
@@ -394,15 +309,19 @@ DualQuaternion TextRecording::pose_of_columns(const Rows& rows) {
   if (columns.has_quaternion()) {
     q = {value(rows, qw), value(rows, qx), value(rows, qy), value(rows, qz)};
   } else {
-    // mathematical yaw, or a heading clockwise from north in a frame of east and north
-    const double about_z = columns.has(yaw) ? angle(rows, yaw) : std::numbers::pi / 2 - angle(rows, heading);
-    const Eigen::Quaterniond R = rotation_exp({0, 0, about_z}) * rotation_exp({0, angle(rows, pitch), 0}) *
+    // Mathematical angles, or those of a compass: axes forward, right, down in a frame of north, east, down.
+    // With forward, left, up in east, north, up the sense of heading and pitch changes, that of roll does
+    // not.
+    const bool compass = columns.has_compass_angles();
+    const double about_z = compass ? std::numbers::pi / 2 - angle(rows, heading) : angle(rows, yaw);
+    const double about_y = compass ? -angle(rows, pitch) : angle(rows, pitch);
+    const Eigen::Quaterniond R = rotation_exp({0, 0, about_z}) * rotation_exp({0, about_y, 0}) *
                                  rotation_exp({angle(rows, roll), 0, 0});
     q = {R.w(), R.x(), R.y(), R.z()};
   }
   if (columns.has_geodetic() && !columns.has_position()) {
-    const GeodeticPosition place{value(rows, latitude, degree), value(rows, longitude, degree),
-                                 value(rows, height)};
+    const GeodeticPosition place{value(rows, latitude, radians_a_degree),
+                                 value(rows, longitude, radians_a_degree), value(rows, height)};
     if (!(std::abs(place.latitude) <= std::numbers::pi / 2 &&
           std::abs(place.longitude) <= 2 * std::numbers::pi))
       throw error_at(file_, line, "latitude, longitude", "expected at most 90 and 360 degrees");

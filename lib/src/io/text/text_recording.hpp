@@ -17,8 +17,10 @@
 
 namespace egocal::detail {
 
+struct TextRows;
+
 /// A trajectory as text: one stream without a name. A row that makes no sense is an Error; only a last row
-/// that is cut off, and rows of a table with empty fields, are counted and skipped.
+/// that is cut off, rows with NaN and rows of a table with empty fields are counted and skipped.
 class TextRecording : public Recording {
  public:
   TextRecording(std::unique_ptr<ByteSource> source, ReadOptions options);
@@ -28,21 +30,19 @@ class TextRecording : public Recording {
   std::vector<std::string> unused(const ReadOptions& options) const override;
 
  private:
-  struct Rows;
-  void read_times();
   void find_angle_unit();
   AngleUnit unit_by_rows(const std::vector<Quantity>& angles);
-  double seconds_of_row(const Rows& rows) const;
+  double seconds_of_row(const TextRows& rows) const;
   Error unit_of_angles_needed(const std::vector<Quantity>& angles) const;
-  std::optional<StampedPose> pose_of_row(const Rows& rows);
-  std::int64_t time_of_row(const Rows& rows) const;
-  DualQuaternion pose_of_matrix(const Rows& rows) const;
-  DualQuaternion pose_of_columns(const Rows& rows);
-  std::optional<DualQuaternion> pose_of_twist(const Rows& rows, std::int64_t time_us);
-  double value(const Rows& rows, std::size_t index) const;
+  std::optional<StampedPose> pose_of_row(const TextRows& rows);
+  std::int64_t time_of_row(const TextRows& rows) const;
+  DualQuaternion pose_of_matrix(const TextRows& rows) const;
+  DualQuaternion pose_of_columns(const TextRows& rows);
+  std::optional<DualQuaternion> pose_of_twist(const TextRows& rows, std::int64_t time_us);
+  double value(const TextRows& rows, std::size_t index) const;
   /// In m, rad, m/s; in_si: of a unit that is not given.
-  double value(const Rows& rows, Quantity quantity, double in_si = 1) const;
-  double angle(const Rows& rows, Quantity quantity) const;
+  double value(const TextRows& rows, Quantity quantity, double in_si = 1) const;
+  double angle(const TextRows& rows, Quantity quantity) const;
 
   std::unique_ptr<ByteSource> source_;
   ReadOptions options_;
