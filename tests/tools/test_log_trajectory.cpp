@@ -84,6 +84,31 @@ TEST_F(LogTrajectoryTest, ASecondSessionIsNotUsedAndReported) {
   EXPECT_THAT(twice.not_used, HasSubstr("300 of 600 messages are used; 300 of a later session"));
 }
 
+/// Their senders fill in no time: that of recording is taken, unless other messages of the channel have one.
+TEST_F(LogTrajectoryTest, MessagesWithoutATimeTakeThatOfRecording) {
+  constexpr std::int64_t start = 1'700'000'000'000'000;
+  const auto write = [&](bool some_have_one) {
+    bus::LogWriter writer(path("zero.log"));
+    for (int i = 0; i < 20; ++i) {
+      StampedPose pose;
+      pose.time_us = some_have_one && i % 2 == 0 ? start + 100'000 * i : 0;
+      writer.write(start + 100'000 * i, "POSE", bus::encode(bus::to_pose_message(pose)));
+    }
+    writer.close();
+  };
+  write(false);
+  const LogTrajectory all = read_log_trajectory(path("zero.log"), "POSE");
+  ASSERT_EQ(all.poses.size(), 20u);
+  EXPECT_EQ(all.poses[7].time_us, start + 700'000);
+  EXPECT_EQ(all.not_used, "");
+  EXPECT_EQ(all.times, "POSE: 20 messages have no time stamp: the time of recording was taken");
+  write(true);
+  const LogTrajectory some = read_log_trajectory(path("zero.log"), "POSE");
+  EXPECT_EQ(some.poses.size(), 10u);
+  EXPECT_THAT(some.not_used, HasSubstr("no time stamp, others of the channel have one"));
+  EXPECT_EQ(some.times, "");
+}
+
 TEST_F(LogTrajectoryTest, AMissingChannelIsOneShortLineHoweverManyThereAre) {
   {
     bus::LogWriter writer(path("many.log"));

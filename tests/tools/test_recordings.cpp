@@ -126,8 +126,15 @@ TEST_F(Recordings, ColumnsAndRateGoWithEveryCommand) {
           << what;
   };
   expect_usual(parsed("solve --json " + own_a + " " + own_b + columns), "both");
+  // the same poses would be the same recording
+  const auto elsewhere = [](Trajectory trajectory) {
+    const DualQuaternion world = to_dual_quaternion({rotation_exp({0, 0, 1}), {3, 2, 1}});
+    for (StampedPose& pose : trajectory) pose.pose = world * pose.pose;
+    return trajectory;
+  };
   const json twice =
-      parsed("solve --json " + own_a + " " + own_b + columns + " --append " + own_a + " " + own_b);
+      parsed("solve --json " + own_a + " " + own_b + columns + " --append " +
+             turned("c.txt", elsewhere(drive[0])) + " " + turned("d.txt", elsewhere(drive[1])));
   EXPECT_GT(twice["pairs"].get<int>(), 1.8 * usual["pairs"].get<int>());
   // the same file twice is the same stream: an answer that should not be used
   const Outcome same = egocal("solve --json " + own_a + " " + own_b + " " + own_a + columns);
@@ -248,6 +255,7 @@ TEST_F(Recordings, RosShapedTypesOfLcmAreRead) {
   EXPECT_EQ(info["streams"][0]["type"], "nav_msgs.Odometry");
   EXPECT_NEAR(info["streams"][0]["path_length_m"].get<double>(), 4.9, 1e-9);
   EXPECT_NEAR(info["streams"][0]["rate_hz"].get<double>(), 100, 1e-3);
+  EXPECT_EQ(parsed("log info --json " + folder.path("ros.log"))["channels"][0]["type"], "nav_msgs.Odometry");
 }
 
 // Commands that take FILE:CHANNEL as those that take a log: it was the line of the library.

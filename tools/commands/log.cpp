@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
@@ -115,7 +118,8 @@ Info inspect(const std::string& file) {
     Channel& channel = shown ? info.channels[event->channel] : info.others;
     if (channel.count++ == 0) {
       channel.first_us = event->time_us;
-      channel.type = bus::type_name(event->data);
+      const std::string known = decode_lcm_pose(event->data).type;  // the ROS-shaped types as well
+      channel.type = known.empty() ? bus::type_name(event->data) : known;
     }
     channel.last_us = event->time_us;
     channel.bytes += event->data.size();
@@ -188,16 +192,37 @@ void repair(const std::string& file, const std::string& out) {
   fmt::print("{}: {} events; {}\n", out, events, damage_text(log.damage()));
 }
 
-/// Poses of every channel as topics and transforms, calibrations as transforms: for ROS 2 and Foxglove.
+/// Solvers send their answer again once a second: the pair's last one is written once.
+class NewAnswers {
+ public:
+  bool is_new(const calibration_t& answer) {
+    const Sent sent{answer.session,
+                    answer.seq,
+                    answer.utime,
+                    {answer.pos, answer.pos + 3},
+                    {answer.quat, answer.quat + 4}};
+    const auto [last, first] = last_.try_emplace({answer.sensor_a, answer.sensor_b, answer.solver}, sent);
+    if (first) return true;
+    return std::exchange(last->second, sent) != sent;
+  }
+
+ private:
+  using Sent = std::tuple<std::int64_t, std::int64_t, std::int64_t, std::vector<double>, std::vector<double>>;
+  std::map<std::array<std::string, 3>, Sent> last_;
+};
+
+/// Poses of every channel as topics and transforms, calibrations as transforms: for ROS 2 and Foxglove. All
+/// at the times of the drive, which may have been played and recorded on another day.
 void export_mcap(const std::string& file, const std::string& out) {
   bus::LogReader log(file);
   McapWriter mcap(out);
   Progress progress("writing");
   std::uint64_t poses = 0, transforms = 0, refused = 0;
+  NewAnswers answers;
   while (const auto event = log.next()) {
     const std::string name = bus::printable(event->channel, 63);
     calibration_t calibration{};
-    if (const LcmPose message = decode_lcm_pose(event->data); !message.type.empty()) {
+    if (const LcmPose message = decode_lcm_pose(event->data, event->time_us); !message.type.empty()) {
       if (!message.pose) {
         ++refused;
         continue;
@@ -211,8 +236,9 @@ void export_mcap(const std::string& file, const std::string& out) {
         ++refused;
         continue;
       }
+      if (!answers.is_new(calibration)) continue;
       mcap.write_transform(bus::printable(calibration.sensor_a, 63), bus::printable(calibration.sensor_b, 63),
-                           {event->time_us, answer.value->T_a_b});
+                           {calibration.utime, answer.value->T_a_b});
       ++transforms;
     }
     progress(static_cast<double>(log.position()) / static_cast<double>(log.size()));

@@ -36,8 +36,10 @@ void LcmRecording::read(const std::string& topic, const TakePose& take) {
   streams_.clear();
   channels_.clear();
   losses_ = {};
+  notes_.clear();
   bus::LogReader log(file_);
   std::map<std::size_t, TwistIntegrator> integrators;  // by stream
+  std::map<std::size_t, ChannelTimes> times;
   while (const auto event = log.next()) {
     const std::size_t index = stream_of(event->channel);
     ++streams_[index].messages;
@@ -48,7 +50,8 @@ void LcmRecording::read(const std::string& topic, const TakePose& take) {
       streams_[index].poses = !streams_[index].type.empty();
       continue;
     }
-    const LcmPose message = with_integrated_pose(decode_lcm_pose(event->data), integrators[index]);
+    const LcmPose message = with_integrated_pose(
+        times[index].checked(decode_lcm_pose(event->data, event->time_us)), integrators[index]);
     if (message.type.empty()) continue;
     streams_[index].type = message.type;
     streams_[index].poses = true;
@@ -57,6 +60,9 @@ void LcmRecording::read(const std::string& topic, const TakePose& take) {
     else if (losses_.refused++ == 0)
       losses_.first_refused = event->channel + ": " + message.pose.reason;
   }
+  for (const auto& [stream, time] : times)
+    if (const std::string note = time.note(); !note.empty())
+      notes_.push_back(streams_[stream].name + ": " + note);
   losses_.regions = log.damage().regions + log.damage().jumps;
   losses_.bytes = log.damage().bytes;
   losses_.truncated = log.damage().truncated;

@@ -34,7 +34,7 @@ class Collector {
   LogTrajectory finished(const std::string& file, const std::string& channel) {
     add(stream_.flush());
     const std::string text = not_used(file, channel);  // counts the poses
-    return {std::move(poses_), text, {}};
+    return {std::move(poses_), text, {}, {}};
   }
   bool empty() const { return messages_ == 0; }
 
@@ -83,10 +83,12 @@ LogTrajectory read_log_trajectory(const std::string& file, const std::string& ch
   bus::LogReader log(file);
   Collector collector;
   TwistIntegrator integrator;
+  ChannelTimes times;
   ChannelList channels;
   while (const std::optional<bus::LogEvent> event = log.next()) {
     if (event->channel == channel)
-      collector.take(with_integrated_pose(decode_lcm_pose(event->data), integrator));
+      collector.take(
+          with_integrated_pose(times.checked(decode_lcm_pose(event->data, event->time_us)), integrator));
     else
       channels.add(event->channel);
   }
@@ -97,6 +99,7 @@ LogTrajectory read_log_trajectory(const std::string& file, const std::string& ch
         "no such channel in the log; there are: " + channels.text() + (damage.empty() ? "" : "; " + damage));
   LogTrajectory result = collector.finished(file, channel);
   if (result.poses.empty()) throw error_at(file, 0, channel, "no pose in this channel: " + result.not_used);
+  if (const std::string note = times.note(); !note.empty()) result.times = channel + ": " + note;
   if (!damage.empty()) result.damage = file + ": " + damage;
   return result;
 }

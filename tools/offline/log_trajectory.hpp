@@ -15,6 +15,7 @@ struct LogTrajectory {
   Trajectory poses;  ///< times strictly ascending
   /// One line: what the log holds of this channel and the poses do not; empty: nothing.
   std::string not_used;
+  std::string times;   ///< one line: which times were taken where the messages have none; empty: their own
   std::string damage;  ///< one line: of the log as a whole, see damage_in_words(); empty: none
 };
 

@@ -36,6 +36,7 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   for (std::string* note : {&log.not_used, &log.damage})
     if (!note->empty()) reading.notes.push_back(std::move(*note));
   if (options.strict && !reading.notes.empty()) throw error_at(name, 0, "", reading.notes.front());
+  if (!log.times.empty()) reading.notes.push_back(log.times);
   return with(std::move(reading), unused_by_messages(options));
 }
 
