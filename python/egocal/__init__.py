@@ -4,13 +4,17 @@
 
     import egocal
     calibration = egocal.solve("lidar.tum", "camera.tum")
-    calibration.T_a_b, calibration.certified, calibration.stddev
+    calibration.verdict, calibration.T_a_b, calibration.stddev
+
+An answer that is not good gives an EgocalWarning with the verdict and its reason, and so do data that were
+repaired or lost while reading. To stop there instead: warnings.simplefilter("error", egocal.EgocalWarning).
 """
 import json as _json
 import math as _math
 
 from ._egocal import (  # noqa: F401
     Calibration,
+    EgocalWarning,
     Error,
     Statistics,
     __version__,
@@ -20,12 +24,14 @@ from ._egocal import (  # noqa: F401
     verify,
 )
 
-__all__ = ["Calibration", "Error", "Statistics", "calibrate_hand_eye", "solve", "solve_dual", "verify"]
+__all__ = ["Calibration", "EgocalWarning", "Error", "Statistics", "calibrate_hand_eye", "solve", "solve_dual", "verify"]
 
 
 def _to_dict(self):
     """The fields as plain Python values, with the names of `egocal solve --json`."""
     return {
+        "verdict": self.verdict,
+        "reason": self.reason,
         "translation": self.translation.tolist(),
         "rotation_wxyz": self.rotation_wxyz.tolist(),
         "pairs": self.pairs,
@@ -42,6 +48,7 @@ def _to_dict(self):
         "time_offset_s": self.time_offset,
         "outliers": self.outliers,
         "rejected": self.rejected,
+        "notes": self.notes,
     }
 
 

@@ -11,6 +11,7 @@ __version__: str
 Trajectory = Union[str, PathLike, ArrayLike, Tuple[ArrayLike, ArrayLike]]
 
 class Error(RuntimeError): ...
+class EgocalWarning(UserWarning): ...
 
 class Calibration:
     T_a_b: NDArray[float64]
@@ -34,6 +35,7 @@ class Calibration:
     stride: int
     weights: Tuple[float, float]
     time_offset: float
+    notes: List[str]
     def to_dict(self) -> Dict[str, Any]: ...
     def to_json(self, indent: Optional[int] = 2) -> str: ...
 

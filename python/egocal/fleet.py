@@ -12,6 +12,7 @@ import sys
 import numpy as np
 
 import egocal
+from egocal._egocal import solve_quietly
 
 #: Least number of drives of a rig whose spread is a standard deviation: the spread of four is off by a factor of two in one case of ten.
 LEAST_DRIVES = 5
@@ -23,12 +24,13 @@ def solve_drive(drive, options):
     """One row: the columns of the drive, its answer, and its statistics; or an error."""
     row = dict(drive, error="")
     try:
-        calibration = egocal.solve(drive["a"], drive["b"], **options)
+        calibration = solve_quietly(drive["a"], drive["b"], **options)
     except (egocal.Error, ValueError, KeyError) as error:
         row["error"] = f"{type(error).__name__}: {error}"
         return row
-    row.update(verdict=calibration.verdict, certified=calibration.certified, pairs=calibration.pairs,
-               stride=calibration.stride, weight_rotation=calibration.weights[0], weight_translation=calibration.weights[1])
+    row.update(verdict=calibration.verdict, reason=calibration.reason, notes="; ".join(calibration.notes))
+    row.update(certified=calibration.certified, pairs=calibration.pairs, stride=calibration.stride,
+               weight_rotation=calibration.weights[0], weight_translation=calibration.weights[1])
     row.update(zip(POSE, (*calibration.translation.tolist(), *calibration.rotation_wxyz.tolist())))
     row.update(zip((f"stddev_{name}" for name in DIRECTIONS), calibration.stddev.tolist()))
     row["statistics"] = calibration.statistics

@@ -5,10 +5,13 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "convert.hpp"
 #include "python_words.hpp"
+#include "warn.hpp"
 
 namespace egocal::python {
 
@@ -72,15 +75,34 @@ CalibrationOptions options_of(const std::string& method, const py::object& plane
   return options;
 }
 
-Calibration solve_trajectories(const py::object& a, const py::object& b, const std::string& method,
+/// A calibration with what was noted while its streams were read.
+struct NotedCalibration : Calibration {
+  std::vector<std::string> notes;
+};
+
+NotedCalibration solve_quietly(const py::object& a, const py::object& b, const std::string& method,
                                const py::object& plane_a, const py::object& plane_b,
                                std::optional<int> stride, const py::object& weights,
                                const py::object& time_offset, double max_gap, const py::object& nominal) {
   const CalibrationOptions options =
       options_of(method, plane_a, plane_b, stride, weights, time_offset, max_gap, nominal);
-  const Trajectory trajectory_a = to_trajectory(a, "a"), trajectory_b = to_trajectory(b, "b");
+  NotedCalibration result;
+  const Trajectory trajectory_a = to_trajectory(a, "a", result.notes),
+                   trajectory_b = to_trajectory(b, "b", result.notes);
   const py::gil_scoped_release release;
-  return calibrate(trajectory_a, trajectory_b, options);
+  static_cast<Calibration&>(result) = calibrate(trajectory_a, trajectory_b, options);
+  return result;
+}
+
+NotedCalibration solve_trajectories(const py::object& a, const py::object& b, const std::string& method,
+                                    const py::object& plane_a, const py::object& plane_b,
+                                    std::optional<int> stride, const py::object& weights,
+                                    const py::object& time_offset, double max_gap,
+                                    const py::object& nominal) {
+  NotedCalibration result =
+      solve_quietly(a, b, method, plane_a, plane_b, stride, weights, time_offset, max_gap, nominal);
+  warn_of(result, result.notes);
+  return result;
 }
 
 constexpr const char* solve_doc = R"(The extrinsic of two rigidly mounted sensors from their trajectories.
@@ -96,69 +118,144 @@ time_offset: added to the times of b [s], or 'auto'.
 max_gap: poses further apart are never interpolated between [s].
 nominal: (4, 4), taken where the motions show nothing.
 
-Returns a Calibration. Raises egocal.Error where nothing can be paired, ValueError for arguments that cannot be
+Returns a Calibration. Its verdict tells whether it can be used: an EgocalWarning is given where that is not
+'good', and for what was assumed, repaired or lost while reading (Calibration.notes). Raises egocal.Error where nothing can be paired, ValueError for arguments that cannot be
 understood. Releases the GIL.)";
 
-void bind_answer(py::class_<Calibration>& type) {
+/// The verdict first: the numbers are those of a mount only where it is good.
+std::string in_brackets(const NotedCalibration& c) {
+  std::string text = "<egocal.Calibration " + std::string(to_string(c.verdict)) + ": translation [";
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool known = c.observability.observable[i] || c.problem.mode == Mode::planar || c.problem.prior;
+    text += (i > 0 ? ", " : "") +
+            (known ? std::to_string(c.T_a_b.translation[static_cast<Eigen::Index>(i)]) : "unknown");
+  }
+  return text + "] m, " + std::string(to_string(c.certificate.optimality)) + ">";
+}
+
+constexpr int state_version = 1;  // of what is pickled
+
+py::tuple numbers_of(const Pose& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return py::make_tuple(t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+Pose pose_of(const py::handle& numbers) {
+  const auto x = numbers.cast<std::array<double, 7>>();
+  return {Eigen::Quaterniond(x[3], x[4], x[5], x[6]), {x[0], x[1], x[2]}};
+}
+
+/// All that Python can ask for.
+py::tuple state_of(const NotedCalibration& c) {
+  const Certificate& certificate = c.certificate;
+  const Observability& observability = c.observability;
+  return py::make_tuple(
+      state_version, numbers_of(c.T_a_b), numbers_of(c.T_b_a),
+      py::make_tuple(static_cast<int>(c.verdict), c.reason),
+      py::make_tuple(static_cast<int>(certificate.optimality), certificate.cost, certificate.lower_bound,
+                     certificate.gap),
+      py::make_tuple(observability.observable, observability.stddev, observability.hint),
+      py::make_tuple(c.problem.mode == Mode::planar, c.problem.prior.has_value(),
+                     sum_blocks(c.problem.blocks)),
+      py::make_tuple(c.counts.outliers, c.counts.rejected),
+      py::make_tuple(c.choice.stride, c.choice.balance.rotation, c.choice.balance.translation),
+      c.time_offset_applied, c.notes);
+}
+
+NotedCalibration from_state(const py::tuple& state) {
+  if (state.size() != 11 || state[0].cast<int>() != state_version)
+    throw py::value_error("Calibration: pickled by another version of egocal");
+  const auto part = [&](std::size_t i) { return state[i].cast<py::tuple>(); };
+  NotedCalibration c;
+  c.T_a_b = pose_of(state[1]);
+  c.T_b_a = pose_of(state[2]);
+  const py::tuple verdict = part(3), certificate = part(4), seen = part(5), problem = part(6),
+                  counts = part(7), choice = part(8);
+  c.verdict = static_cast<Verdict>(verdict[0].cast<int>());
+  c.reason = verdict[1].cast<std::string>();
+  c.certificate.optimality = static_cast<Optimality>(certificate[0].cast<int>());
+  c.certificate.cost = certificate[1].cast<double>();
+  c.certificate.lower_bound = certificate[2].cast<double>();
+  c.certificate.gap = certificate[3].cast<double>();
+  c.observability.observable = seen[0].cast<std::array<bool, 6>>();
+  c.observability.stddev = seen[1].cast<std::array<double, 6>>();
+  c.observability.hint = seen[2].cast<std::string>();
+  c.problem.mode = problem[0].cast<bool>() ? Mode::planar : Mode::spatial;
+  if (problem[1].cast<bool>()) c.problem.prior.emplace();
+  c.problem.blocks = {problem[2].cast<Statistics>()};
+  c.counts.outliers = counts[0].cast<std::uint64_t>();
+  c.counts.rejected = counts[1].cast<decltype(c.counts.rejected)>();
+  c.choice.stride = choice[0].cast<int>();
+  c.choice.balance = {choice[1].cast<double>(), choice[2].cast<double>()};
+  c.time_offset_applied = state[9].cast<double>();
+  c.notes = state[10].cast<std::vector<std::string>>();
+  return c;
+}
+
+void bind_answer(py::class_<NotedCalibration>& type) {
   type.def_property_readonly(
-          "T_a_b", [](const Calibration& c) { return to_matrix(c.T_a_b); },
+          "T_a_b", [](const NotedCalibration& c) { return to_matrix(c.T_a_b); },
           "(4, 4): pose of sensor b in the frame of sensor a, p_a = T_a_b p_b")
       .def_property_readonly(
-          "T_b_a", [](const Calibration& c) { return to_matrix(c.T_b_a); }, "(4, 4): its inverse")
+          "T_b_a", [](const NotedCalibration& c) { return to_matrix(c.T_b_a); }, "(4, 4): its inverse")
       .def_property_readonly(
-          "translation", [](const Calibration& c) { return Eigen::Vector3d(c.T_a_b.translation); },
+          "translation", [](const NotedCalibration& c) { return Eigen::Vector3d(c.T_a_b.translation); },
           "(3,): of T_a_b [m]")
       .def_property_readonly(
           "rotation_wxyz",
-          [](const Calibration& c) {
+          [](const NotedCalibration& c) {
             const auto& q = c.T_a_b.rotation;
             return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
           },
           "(4,): unit quaternion of T_a_b, w x y z")
       .def_property_readonly(
-          "verdict", [](const Calibration& c) { return std::string(to_string(c.verdict)); },
+          "verdict", [](const NotedCalibration& c) { return std::string(to_string(c.verdict)); },
           "'good', 'incomplete', 'doubtful' or 'contradictory': whether the answer can be used")
       .def_property_readonly(
-          "reason", [](const Calibration& c) { return in_python_words(c.reason); },
+          "reason", [](const NotedCalibration& c) { return in_python_words(c.reason); },
           "of the verdict, one sentence")
       .def_property_readonly(
-          "statistics", [](const Calibration& c) { return sum_blocks(c.problem.blocks); },
+          "statistics", [](const NotedCalibration& c) { return sum_blocks(c.problem.blocks); },
           "Statistics of all motions: those of several drives of one rig add up")
       .def_property_readonly(
-          "certified", [](const Calibration& c) { return c.certificate.optimality == Optimality::certified; },
+          "certified",
+          [](const NotedCalibration& c) { return c.certificate.optimality == Optimality::certified; },
           "no extrinsic has a lower cost: optimal, which is not the same as right")
       .def_property_readonly(
-          "status", [](const Calibration& c) { return to_string(c.certificate.optimality); },
+          "status", [](const NotedCalibration& c) { return to_string(c.certificate.optimality); },
           "'certified', 'not optimal' or 'undecided'")
       .def_property_readonly(
-          "cost", [](const Calibration& c) { return c.certificate.cost; }, "J of (16)")
+          "cost", [](const NotedCalibration& c) { return c.certificate.cost; }, "J of (16)")
       .def_property_readonly(
-          "lower_bound", [](const Calibration& c) { return c.certificate.lower_bound; },
+          "lower_bound", [](const NotedCalibration& c) { return c.certificate.lower_bound; },
           "no extrinsic has a lower cost than this")
       .def_property_readonly(
-          "gap", [](const Calibration& c) { return c.certificate.gap; }, "cost - lower_bound");
+          "gap", [](const NotedCalibration& c) { return c.certificate.gap; }, "cost - lower_bound");
 }
 
-void bind_details(py::class_<Calibration>& type) {
+void bind_details(py::class_<NotedCalibration>& type) {
   type.def_property_readonly(
-          "observable", [](const Calibration& c) { return c.observability.observable; },
+          "observable", [](const NotedCalibration& c) { return c.observability.observable; },
           "six booleans: x y z roll pitch yaw in the frame of a")
       .def_property_readonly(
           "stddev",
-          [](const Calibration& c) { return Eigen::Matrix<double, 6, 1>(c.observability.stddev.data()); },
+          [](const NotedCalibration& c) {
+            return Eigen::Matrix<double, 6, 1>(c.observability.stddev.data());
+          },
           "(6,): standard deviations [m, rad]; infinite where not observable")
       .def_property_readonly(
-          "hint", [](const Calibration& c) { return c.observability.hint; },
+          "hint", [](const NotedCalibration& c) { return c.observability.hint; },
           "which motion would help most; empty where nothing is missing")
       .def_property_readonly(
-          "pairs", [](const Calibration& c) { return sum_blocks(c.problem.blocks).count; },
+          "pairs", [](const NotedCalibration& c) { return sum_blocks(c.problem.blocks).count; },
           "motion pairs used")
       .def_property_readonly(
-          "outliers", [](const Calibration& c) { return c.counts.outliers; },
+          "outliers", [](const NotedCalibration& c) { return c.counts.outliers; },
           "motion pairs that contradict the others")
       .def_property_readonly(
           "rejected",
-          [](const Calibration& c) {
+          [](const NotedCalibration& c) {
             py::dict reasons;
             for (std::size_t i = 0; i < c.counts.rejected.size(); ++i)
               reasons[py::str(std::string(to_string(static_cast<Rejection>(i))))] = c.counts.rejected[i];
@@ -166,34 +263,38 @@ void bind_details(py::class_<Calibration>& type) {
           },
           "number of poses and motions rejected, by reason")
       .def_property_readonly(
-          "stride", [](const Calibration& c) { return c.choice.stride; }, "steps in one motion")
+          "stride", [](const NotedCalibration& c) { return c.choice.stride; }, "steps in one motion")
       .def_property_readonly(
           "weights",
-          [](const Calibration& c) {
+          [](const NotedCalibration& c) {
             return std::pair(c.choice.balance.rotation, c.choice.balance.translation);
           },
           "of rotation and translation")
       .def_property_readonly(
-          "time_offset", [](const Calibration& c) { return c.time_offset_applied; },
+          "time_offset", [](const NotedCalibration& c) { return c.time_offset_applied; },
           "added to the times of b [s]")
-      .def("__repr__", [](const Calibration& c) {
-        const Eigen::Vector3d t = c.T_a_b.translation;
-        return "<egocal.Calibration translation [" + std::to_string(t.x()) + ", " + std::to_string(t.y()) +
-               ", " + std::to_string(t.z()) + "] m, " + std::string(to_string(c.certificate.optimality)) +
-               ">";
-      });
+      .def_property_readonly(
+          "notes", [](const NotedCalibration& c) { return c.notes; },
+          "what was assumed, repaired or lost while reading, one sentence each")
+      .def("__repr__", &in_brackets)
+      .def(py::pickle(&state_of, &from_state));
 }
 
 }  // namespace
 
 void bind_calibration(py::module_& module) {
-  py::class_<Calibration> type(module, "Calibration", "Everything known about one pair of sensors [m, rad].");
+  py::class_<NotedCalibration> type(module, "Calibration",
+                                    "Everything known about one pair of sensors [m, rad].");
   bind_answer(type);
   bind_details(type);
-  module.def("solve", &solve_trajectories, solve_doc, "a"_a, "b"_a, py::kw_only(), "method"_a = "global",
-             "plane_a"_a = py::none(), "plane_b"_a = py::none(), "stride"_a = py::none(),
-             "weights"_a = "auto", "time_offset"_a = 0.0, "max_gap"_a = PairingOptions{}.max_gap,
-             "nominal"_a = py::none());
+  const auto define = [&](const char* name, auto function, const char* doc) {
+    module.def(name, function, doc, "a"_a, "b"_a, py::kw_only(), "method"_a = "global",
+               "plane_a"_a = py::none(), "plane_b"_a = py::none(), "stride"_a = py::none(),
+               "weights"_a = "auto", "time_offset"_a = 0.0, "max_gap"_a = PairingOptions{}.max_gap,
+               "nominal"_a = py::none());
+  };
+  define("solve", &solve_trajectories, solve_doc);
+  define("solve_quietly", &solve_quietly, "solve() without warnings, for whoever looks at every verdict.");
 }
 
 }  // namespace egocal::python

@@ -9,9 +9,13 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
+#include "egocal/in_words.hpp"
+#include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/limits.hpp"
+#include "python_words.hpp"
 
 namespace egocal::python {
 
@@ -59,15 +63,20 @@ std::string fault_of(const Eigen::Vector3d& position, const Eigen::Vector4d& qua
 }
 
 /// Sorted by time, the first of equal times kept.
-Trajectory in_order(Trajectory trajectory) {
-  const auto earlier = [](const StampedPose& x, const StampedPose& y) { return x.time_us < y.time_us; };
-  std::stable_sort(trajectory.begin(), trajectory.end(), earlier);
-  const auto same = [](const StampedPose& x, const StampedPose& y) { return x.time_us == y.time_us; };
-  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), same), trajectory.end());
-  return trajectory;
+Trajectory in_order(Trajectory trajectory, const char* name, std::vector<std::string>& notes) {
+  TrajectoryReading reading;
+  reading.trajectory = std::move(trajectory);
+  put_in_order(reading);
+  const std::string start = std::string(name) + ": ";
+  if (reading.out_of_order > 0)
+    notes.push_back(start + counted(reading.out_of_order, "pose") + " out of order: sorted by time");
+  if (reading.duplicates > 0)
+    notes.push_back(start + counted(reading.duplicates, "pose") +
+                    " with the time of another one: the first of each is kept");
+  return std::move(reading.trajectory);
 }
 
-Trajectory from_rows(const Array& rows, const char* name) {
+Trajectory from_rows(const Array& rows, const char* name, std::vector<std::string>& notes) {
   if (rows.ndim() != 2 || rows.shape(1) != 8) refuse(name, "expected an (N, 8) array of t x y z qx qy qz qw");
   Trajectory trajectory;
   const auto at = rows.unchecked<2>();
@@ -79,10 +88,11 @@ Trajectory from_rows(const Array& rows, const char* name) {
     const Pose pose{rotation.normalized(), translation};
     trajectory.push_back({to_microseconds(at(i, 0), name, i), to_dual_quaternion(pose)});
   }
-  return in_order(std::move(trajectory));
+  return in_order(std::move(trajectory), name, notes);
 }
 
-Trajectory from_matrices(const Array& times, const Array& matrices, const char* name) {
+Trajectory from_matrices(const Array& times, const Array& matrices, const char* name,
+                         std::vector<std::string>& notes) {
   if (times.ndim() != 1 || matrices.ndim() != 3 || matrices.shape(1) != 4 || matrices.shape(2) != 4 ||
       times.shape(0) != matrices.shape(0))
     refuse(name, "expected a pair of times (N,) and matrices (N, 4, 4)");
@@ -95,7 +105,7 @@ Trajectory from_matrices(const Array& times, const Array& matrices, const char* 
     trajectory.push_back({to_microseconds(times.at(i), name, i),
                           to_dual_quaternion(to_pose(matrix, name, static_cast<std::size_t>(i)))});
   }
-  return in_order(std::move(trajectory));
+  return in_order(std::move(trajectory), name, notes);
 }
 
 constexpr const char* not_rigid =
@@ -159,23 +169,25 @@ Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number
   return pose_of_rigid(matrix);
 }
 
-Trajectory to_trajectory(const py::handle& object, const char* name) {
+Trajectory to_trajectory(const py::handle& object, const char* name, std::vector<std::string>& notes) {
   if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__")) {
     const std::string file = py::str(object).cast<std::string>();
     if (file.empty()) refuse(name, "the file name is empty");
     const py::gil_scoped_release release;
-    return read_trajectory(file);
+    TrajectoryReading reading = read_trajectory_file(file);
+    for (const std::string& note : reading.notes) notes.push_back(file + ": " + in_python_words(note));
+    return std::move(reading.trajectory);
   }
   if (py::isinstance<py::tuple>(object)) {
     const auto pair = object.cast<py::tuple>();
     if (pair.size() != 2) refuse(name, "expected a pair of times (N,) and matrices (N, 4, 4)");
     const Array times = to_array(pair[0], name, forms), matrices = to_array(pair[1], name, forms);
     require_fine_times(pair[0], largest_time(times, 1), name);
-    return from_matrices(times, matrices, name);
+    return from_matrices(times, matrices, name, notes);
   }
   const Array rows = to_array(object, name, forms);
   if (rows.ndim() == 2 && rows.shape(1) == 8) require_fine_times(object, largest_time(rows, 8), name);
-  return from_rows(rows, name);
+  return from_rows(rows, name, notes);
 }
 
 std::optional<GroundPlane> to_plane(const py::object& object, const char* name) {

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "egocal/geometry/dual_quaternion.hpp"
 #include "egocal/geometry/pose.hpp"
@@ -36,8 +38,9 @@ Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number
 
 /// A trajectory in any of the forms that solve() accepts: a file name (with :topic for a bag), an (N, 8)
 /// array of t x y z qx qy qz qw [s, m], or a pair (times (N,) [s], matrices (N, 4, 4)). Unsorted rows are
-/// sorted, repeated times dropped. Throws ValueError naming the argument and the row.
-Trajectory to_trajectory(const py::handle& object, const char* name);
+/// sorted, repeated times dropped. What was assumed, repaired or lost goes to the notes, with the file's name
+/// or the argument's. Throws ValueError naming the argument and the row.
+Trajectory to_trajectory(const py::handle& object, const char* name, std::vector<std::string>& notes);
 
 /// Four numbers NX NY NZ D, n . x = D with the unit normal n up; empty for None.
 std::optional<GroundPlane> to_plane(const py::object& object, const char* name);

@@ -8,6 +8,7 @@
 
 #include "convert.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "warn.hpp"
 
 namespace egocal::python {
 
@@ -93,6 +94,7 @@ py::object calibrate_hand_eye(const py::sequence& R_gripper2base, const py::sequ
     found = calibrate_samples(samples);
   }
   const Calibration& calibration = found.calibration;
+  warn_of(calibration, {});
   const Pose& X = calibration.T_a_b;
   const Eigen::Matrix3d R = X.rotation.toRotationMatrix();
   const Eigen::Vector3d t = X.translation;
@@ -124,7 +126,7 @@ translations. Returns (R_cam2gripper (3, 3), t_cam2gripper (3,)); with details=T
 reason, certified, observable (six booleans), all_observable, stddev [m, rad], hint, wrong (indices of poses that
 contradict the others and do not count), spread (median distance of the target over the poses [m]),
 R_target2base and t_target2base. For a camera beside the arm pass base2gripper instead. Where the motions do not show a direction
-the answer there is not a measurement: look at all_observable.)",
+the answer there is not a measurement: look at all_observable. An EgocalWarning is given where the verdict is not good.)",
              "R_gripper2base"_a, "t_gripper2base"_a, "R_target2cam"_a, "t_target2cam"_a, py::kw_only(),
              "details"_a = false);
 }

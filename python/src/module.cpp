@@ -6,6 +6,7 @@
 #include "egocal/error.hpp"
 #include "egocal/version.hpp"
 #include "python_words.hpp"
+#include "warn.hpp"
 
 PYBIND11_MODULE(_egocal, module) {
   module.doc() = "egocal: where sensors sit relative to each other, from their motions alone, with proof";
@@ -18,6 +19,7 @@ PYBIND11_MODULE(_egocal, module) {
       PyErr_SetString(type.ptr(), egocal::python::in_python_words(error.what()).c_str());
     }
   });
+  egocal::python::bind_warning(module);
   egocal::python::bind_calibration(module);
   egocal::python::bind_statistics(module);
   egocal::python::bind_hand_eye(module);

@@ -10,6 +10,7 @@
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
+#include "warn.hpp"
 
 namespace egocal::python {
 
@@ -28,6 +29,14 @@ void require_cost_matrix(const Matrix8d& Q) {
   if (!Q.allFinite()) throw py::value_error("Q: expected finite numbers");
   if (!((Q - Q.transpose()).cwiseAbs().maxCoeff() <= rounding * Q.cwiseAbs().maxCoeff()))
     throw py::value_error("Q: expected a symmetric matrix");
+}
+
+/// An identity that nothing was found for looks like an answer.
+void warn_of_status(SolverStatus status) {
+  if (status == SolverStatus::iteration_limit)
+    warn("solve_dual: not converged: the best point that was found; verify() tells what it is worth");
+  else if (status != SolverStatus::converged)
+    warn("solve_dual: degenerate: Q shows no motion, and what is returned is no answer");
 }
 
 py::dict verified(const Matrix8d& Q, const Eigen::Matrix4d& T_a_b) {
@@ -85,9 +94,14 @@ void bind_statistics(py::module_& module) {
       "solve_dual",
       [](const Eigen::Matrix<double, 8, 8>& Q) {
         require_cost_matrix(Q);
-        return to_matrix(egocal::to_pose(solve_dual(Q).q));
+        const Solution solution = solve_dual(Q);
+        warn_of_status(solution.status);
+        return to_matrix(egocal::to_pose(solution.q));
       },
-      "(4, 4): the global minimum of (18) for the cost matrix Q (8, 8). verify() proves it.", "Q"_a);
+      "(4, 4): the global minimum of (18) for the cost matrix Q (8, 8). verify() proves it. An EgocalWarning "
+      "is "
+      "given where Q shows no extrinsic; the identity is returned then.",
+      "Q"_a);
   module.def("verify", &verified,
              "Whether T_a_b (4, 4), wherever it comes from, is the global minimum for Q (8, 8): a dict of\n"
              "certified, cost, lower_bound, gap, rounding, reach_translation [m], reach_rotation [rad].",

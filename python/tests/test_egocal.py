@@ -1,9 +1,12 @@
 # SPDX-FileCopyrightText: 2026 the egocal developers
 # SPDX-License-Identifier: BSD-3-Clause
+import copy
 import json
 import os
 import pathlib
+import pickle
 import subprocess
+import warnings
 
 import numpy as np
 import pytest
@@ -257,3 +260,62 @@ def test_hand_eye_never_hides_what_it_cannot_know():
     with pytest.raises(ValueError, match="gripper2base 1"):
         egocal.calibrate_hand_eye([np.eye(3), np.full((3, 3), np.nan), np.eye(3)], [np.zeros(3)] * 3,
                                   [np.eye(3)] * 3, [np.zeros(3)] * 3)
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    """On flat ground nothing shows the height, which is y in the camera."""
+    folder = tmp_path_factory.mktemp("flat")
+    subprocess.run([PROGRAM, "simulate", "--out", folder, "--poses", "400", "--noise", "0.01", "--terrain", "flat"],
+                   check=True, stdout=subprocess.DEVNULL)
+    return sorted(folder.glob("*.tum"))
+
+
+def test_an_answer_that_is_not_good_warns(drive, flat):
+    with pytest.warns(egocal.EgocalWarning, match="^incomplete: Not known to .* y[.]") as caught:
+        calibration = egocal.solve(*flat)
+    assert caught[0].filename == __file__
+    assert not calibration.observable[1] and calibration.verdict == "incomplete"
+    assert repr(calibration).startswith("<egocal.Calibration incomplete: translation [")
+    assert ", unknown, " in repr(calibration)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", egocal.EgocalWarning)
+        assert repr(egocal.solve(*drive)).startswith("<egocal.Calibration good: ")
+        with pytest.raises(egocal.EgocalWarning):
+            egocal.solve(*flat)
+    for text in (calibration.to_json(), str(list(calibration.to_dict()))):
+        assert text.index("verdict") < text.index("reason") < text.index("certified")
+    assert calibration.to_dict()["reason"] == calibration.reason
+
+
+def test_hand_eye_warns_without_details():
+    same = [np.eye(3)] * 4, [np.zeros(3)] * 4
+    with pytest.warns(egocal.EgocalWarning, match="^incomplete: "):
+        egocal.calibrate_hand_eye(*same, *same)
+
+
+def test_an_identity_that_nothing_was_found_for_warns():
+    with pytest.warns(egocal.EgocalWarning, match="solve_dual: degenerate"):
+        egocal.solve_dual(np.zeros((8, 8)))
+
+
+def test_what_was_lost_while_reading_is_told(drive, tmp_path):
+    cut = tmp_path / "cut.tum"
+    cut.write_bytes(pathlib.Path(drive[1]).read_bytes()[:-20])
+    with pytest.warns(egocal.EgocalWarning, match="cut.tum: "):
+        calibration = egocal.solve(drive[0], cut)
+    assert len(calibration.notes) == 1 and calibration.notes[0].startswith(f"{cut}: ")
+    assert calibration.notes == command_line(drive[0], cut)["notes"] == calibration.to_dict()["notes"]
+    rows = np.loadtxt(drive[0])
+    with pytest.warns(egocal.EgocalWarning, match="b: 1 pose with the time of another one"):
+        assert len(egocal.solve(drive[1], np.vstack([rows, rows[-1:]])).notes) == 1
+    assert egocal.solve(*drive).notes == []
+
+
+def test_a_calibration_travels(flat):
+    with pytest.warns(egocal.EgocalWarning):
+        calibration = egocal.solve(*flat)
+    for other in (pickle.loads(pickle.dumps(calibration)), copy.deepcopy(calibration)):
+        assert other.to_json() == calibration.to_json() and repr(other) == repr(calibration)
+        assert (other.T_a_b == calibration.T_a_b).all() and (other.T_b_a == calibration.T_b_a).all()
+        assert (other.statistics.cost_matrix() == calibration.statistics.cost_matrix()).all()

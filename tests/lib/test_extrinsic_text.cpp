@@ -55,6 +55,62 @@ TEST(ExtrinsicText, WhatShouldNotBeUsedIsSaidInEveryFormat) {
         << to_string(format);
 }
 
+NamedExtrinsic of_a_flat_drive() {
+  NamedExtrinsic extrinsic = example();
+  extrinsic.verdict = "incomplete";
+  extrinsic.reason = "Not known to 1 deg and 60 cm yet: z. Drive over a \"kerb\" --often--.";
+  extrinsic.backing.emplace();
+  (*extrinsic.backing)[2] = Backing::none;
+  return extrinsic;
+}
+
+std::string plain_yaml_and_json(std::string text) {
+  for (std::size_t at; (at = text.find("\\\"")) != std::string::npos;) text.erase(at, 1);
+  for (std::size_t at; (at = text.find("- -")) != std::string::npos;) text.erase(at + 1, 1);
+  return text;
+}
+
+// Whoever opens the file saw "certified globally optimal" and a number for the height, and nothing else
+TEST(ExtrinsicText, EveryFormatStatesTheVerdictAndWhatIsNotObservableBeforeTheCertificate) {
+  for (const ExtrinsicFormat format : formats) {
+    const std::string text = plain_yaml_and_json(extrinsic_text(of_a_flat_drive(), format));
+    SCOPED_TRACE(text);
+    const std::size_t verdict = text.find("incomplete"), certified = text.find("certified");
+    ASSERT_NE(verdict, std::string::npos);
+    EXPECT_LT(verdict, certified);
+    EXPECT_THAT(text, HasSubstr("Not known to 1 deg and 60 cm yet: z. Drive over a \"kerb\" --often--"));
+    EXPECT_THAT(text, ::testing::AnyOf(HasSubstr("NOT OBSERVABLE, not a measurement: z"),
+                                       HasSubstr("\"not_observable\": [\"z\"]")));
+  }
+  for (const ExtrinsicFormat format : {ExtrinsicFormat::kalibr, ExtrinsicFormat::opencv})
+    EXPECT_THAT(extrinsic_text(of_a_flat_drive(), format),
+                HasSubstr("z, in the axes of lidar: several of these numbers hold a part of it"));
+}
+
+TEST(ExtrinsicText, WhatTheNumbersRestOnIsNamed) {
+  NamedExtrinsic extrinsic = example();
+  const auto words = [&] { return extrinsic_text(extrinsic, ExtrinsicFormat::ros); };
+  EXPECT_THAT(words(), HasSubstr("# not judged: no verdict; certified globally optimal"));
+  EXPECT_EQ(not_shown_in_words(extrinsic), "");
+  extrinsic.stddev = {1, 1, std::numeric_limits<double>::infinity(), 1, 1, 1};
+  EXPECT_EQ(not_shown_in_words(extrinsic), "NOT OBSERVABLE, not a measurement: z");
+  extrinsic.backing = {Backing::none,    Backing::motions, Backing::nominal,
+                       Backing::nominal, Backing::planes,  Backing::motions};
+  EXPECT_EQ(not_shown_in_words(extrinsic),
+            "NOT OBSERVABLE, not a measurement: x; NOT OBSERVABLE, from the nominal value: z roll; from the "
+            "ground planes: pitch");
+  EXPECT_THAT(words(), HasSubstr("; " + not_shown_in_words(extrinsic) + "; certified globally optimal"));
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::yaml),
+              HasSubstr("\nnot_observable: [\"x\", \"z\", \"roll\"]  #"));
+  extrinsic.scale = NamedScale{"camera", 2.5, std::numeric_limits<double>::infinity(), true};
+  EXPECT_THAT(words(), HasSubstr("; lengths of camera multiplied by 2.5, which is NOT OBSERVABLE\n"));
+  extrinsic.verdict = "doubtful";
+  extrinsic.reason = "One line.\nAnd \"another\".";
+  EXPECT_THAT(words(), HasSubstr("# verdict doubtful: One line. And \"another\"; NOT OBSERVABLE"));
+  EXPECT_THAT(extrinsic_text(extrinsic, ExtrinsicFormat::json),
+              HasSubstr("\"reason\": \"One line.\\u000aAnd \\\"another\\\".\""));
+}
+
 /// Points of the parent taken to the child: as kalibr's and OpenCV's transforms do, and the others do
 /// inverted.
 TEST(ExtrinsicText, DirectionsAreThoseOfEachProgram) {

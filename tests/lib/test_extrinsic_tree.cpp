@@ -59,6 +59,19 @@ TEST(ExtrinsicTree, EverySensorHasOneParentAndItsPlace) {
   EXPECT_FALSE(tree.edges[1].stddev);
 }
 
+// With the standard deviations went what is not known at all
+TEST(ExtrinsicTree, APairThatIsTurnedRoundKeepsWhatIsNotObservable) {
+  NamedExtrinsic blind = pair("rear", "lidar", 0.01);
+  (*blind.stddev)[2] = std::numeric_limits<double>::infinity();
+  const ExtrinsicTree tree = extrinsic_tree({blind}, "lidar");
+  ASSERT_EQ(tree.edges.size(), 1u);
+  ASSERT_EQ(tree.edges[0].parent, "lidar");
+  EXPECT_THAT(extrinsic_tree_text(tree, ExtrinsicFormat::urdf),
+              HasSubstr("NOT OBSERVABLE, not a measurement: z, in the axes of rear: several of these"));
+  EXPECT_THAT(extrinsic_tree_text(tree, ExtrinsicFormat::json),
+              HasSubstr("\"not_observable\": [\"z\"],\n  \"not_observable_frame\": \"rear\""));
+}
+
 TEST(ExtrinsicTree, OfALoopTheLeastCertainPairIsNotUsed) {
   const NamedExtrinsic poor = pair("front", "rear", 0.5), unproven = pair("lidar", "rear", 0.001, false);
   const ExtrinsicTree by_stddev =

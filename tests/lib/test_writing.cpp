@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Writing files: whole or not at all, and the same text in every locale.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -72,6 +73,39 @@ TEST_F(Writing, AFileIsReplacedOnlyWhenItIsComplete) {
   remove_temporaries(path("whole"));
   EXPECT_EQ(temporaries(), 0);
   EXPECT_EQ(content(path("whole")), "second");
+}
+
+// The file behind it was replaced, with all that was in it
+TEST_F(Writing, AFileThatIsOpenAlreadyIsWrittenAtItsEnd) {
+  const int file = open(path("log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  ASSERT_GE(file, 0);
+  ASSERT_EQ(write(file, "keep ", 5), 5);
+  const std::string number = std::to_string(file);
+  fs::create_symlink("/dev/fd/" + number, path("link"));
+  for (const std::string& name : {"/dev/fd/" + number, "/proc/self/fd/" + number,
+                                  "/proc/" + std::to_string(::getpid()) + "/fd/" + number, path("link")}) {
+    EXPECT_FALSE(can_be_replaced(name)) << name;
+    EXPECT_THROW(WholeFile{name}, Error) << name;
+    write_whole_file(name, "x ");
+  }
+  ASSERT_EQ(write(file, "end", 3), 3);
+  close(file);
+  EXPECT_EQ(content(path("log")), "keep x x x x end");
+  EXPECT_TRUE(can_be_replaced(path("log")));
+  EXPECT_TRUE(can_be_replaced(path("new")));
+  EXPECT_FALSE(can_be_replaced("/dev/null"));
+  EXPECT_THROW(write_whole_file("/dev/fd/987", "x"), Error);
+}
+
+// Not by its name: what is printed after it would be written over it
+TEST_F(Writing, WhatIsPrintedBesideItIsKept) {
+  const int file = open(path("log").c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  ASSERT_GE(file, 0);
+  ASSERT_EQ(write(file, "before ", 7), 7);
+  write_whole_file("/dev/fd/" + std::to_string(file), "whole ");
+  ASSERT_EQ(write(file, "after", 5), 5);
+  close(file);
+  EXPECT_EQ(content(path("log")), "before whole after");
 }
 
 TEST_F(Writing, AProgramsLocaleChangesNothing) {

@@ -10,10 +10,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "answers/answers.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/io/trajectory_file.hpp"
 #include "pair_messages.hpp"
 #include "support/paths.hpp"
 #include "support/scale_problem.hpp"
@@ -272,6 +274,56 @@ TEST_F(AnswersTest, TheVerdictOfTheSessionGoesWithTheAnswer) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_THAT(text, HasSubstr("usable: false"));
   EXPECT_THAT(text, HasSubstr("verdict: contradictory"));
+}
+
+// They had the time of the day on which the drive was played
+TEST_F(AnswersTest, ALogForRosHasAnswersAtTheTimeOfTheDrive) {
+  const std::string log = folder / "session.log", mcap = folder / "session.mcap";
+  const problem_t first = problem(1), second = problem(2);
+  {
+    bus::LogWriter writer(log);
+    std::int64_t played_us = begin_us + 1'000'000'000'000;
+    const auto write = [&](const calibration_t& message) {
+      writer.write(played_us += 1'000'000, bus::calibration_channel("left", "right"), bus::encode(message));
+    };
+    for (int i = 0; i < 3; ++i) write(answer(first));  // sent again once a second
+    for (int i = 0; i < 2; ++i) write(answer(second));
+    writer.close();
+  }
+  const std::string command = paths::bin_dir() + "/egocal log export " + log + " --mcap " + mcap;
+  ASSERT_EQ(std::system((command + " >" + (folder / "said").string()).c_str()), 0);
+  std::ifstream said(folder / "said");
+  EXPECT_THAT((std::string{std::istreambuf_iterator<char>(said), {}}), HasSubstr("0 poses, 2 calibrations"));
+  const Trajectory answers = read_trajectory(mcap + ":/tf:left/right");
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].time_us, first.utime);
+  EXPECT_EQ(answers[1].time_us, second.utime);
+}
+
+// A pair that nothing shows the height of was a frame like any other
+TEST_F(AnswersTest, AnExportStatesTheReasonAndWhatIsNotObservable) {
+  const std::string log = folder / "session.log", out = folder / "out.urdf", said = folder / "said";
+  const problem_t last = problem(5);
+  {
+    bus::LogWriter writer(log);
+    calibration_t flat = answer(last);
+    flat.observable[2] = 0;
+    flat.stddev[2] = std::numeric_limits<double>::infinity();
+    writer.write(last.utime, bus::calibration_channel("left", "right"), bus::encode(flat));
+    writer.write(last.utime, bus::verdict_channel("left", "right"),
+                 bus::encode(verdict(Verdict::incomplete, last.session, 5)));
+    writer.close();
+  }
+  const std::string command =
+      paths::bin_dir() + "/egocal export --log " + log + " --format urdf --out " + out + " 2>" + said;
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const auto content = [](const std::string& file) {
+    std::ifstream stream(file);
+    return std::string{std::istreambuf_iterator<char>(stream), {}};
+  };
+  EXPECT_THAT(content(out), HasSubstr("<!-- verdict incomplete: the lengths differ; NOT OBSERVABLE, not a "
+                                      "measurement: z; "));
+  EXPECT_THAT(content(said), HasSubstr("egocal: left,right: NOT OBSERVABLE, not a measurement: z\n"));
 }
 
 TEST_F(AnswersTest, AllOfThemAreOneTree) {

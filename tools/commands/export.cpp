@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "answers/answers.hpp"
@@ -55,6 +57,7 @@ PairName chosen(const std::string& wanted, const std::vector<PairName>& pairs) {
 struct Found {
   std::vector<PairName> pairs;  ///< the one that was asked for, or all of them
   Answers answers;
+  std::set<PairName> with_nominal{};  ///< as the rig file says
 };
 
 Found recorded(const Options& options) {
@@ -73,6 +76,8 @@ Found heard(const Options& options) {
   for (const bus::PairConfig& pair : rig.pairs) pairs.emplace_back(pair.a, pair.b);
   Found found{options.all ? pairs : std::vector<PairName>{chosen(options.pair, pairs)}, {}};
   found.answers.expect_scales(rig);
+  for (const bus::PairConfig& pair : rig.pairs)
+    if (pair.nominal) found.with_nominal.emplace(pair.a, pair.b);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
   for (const auto& [a, b] : found.pairs)
     bus::subscribe_pair(loop, a, b,
@@ -107,8 +112,22 @@ bool is_current(const PairName& pair, const Answers& answers, bool live) {
                    answers.seconds_not_answered(pair) <= longest_not_judged);
 }
 
+/// What the numbers rest on. has_nominal: the rig gives one; of a log that is not known. In the plane a hint
+/// says that x, y or yaw are not shown either; which is not sent.
+std::array<Backing, 6> backing_of(const Answers::Best& best, bool has_nominal) {
+  const Observability& observability = best.checked.answer.observability;
+  const bool planar = best.message.method == "planar";
+  const Backing instead = planar ? (observability.hint.empty() ? Backing::planes : Backing::none)
+                                 : (has_nominal ? Backing::nominal : Backing::none);
+  std::array<Backing, 6> backing{};
+  for (std::size_t i = 0; i < backing.size(); ++i)
+    if (!observability.observable[i]) backing[i] = instead;
+  return backing;
+}
+
 /// Of a pair that has an answer; warns of what is missing for it to be certified.
-NamedExtrinsic named(const PairName& pair, const Answers& answers, bool live) {
+NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
+  const Answers& answers = found.answers;
   const Answers::Best& best = *answers.best(pair);
   const Diagnosis* const diagnosis = answers.diagnosis(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
@@ -138,7 +157,13 @@ NamedExtrinsic named(const PairName& pair, const Answers& answers, bool live) {
                            answer.observability.stddev};
   extrinsic.usable =
       is_current(pair, answers, live) && (!diagnosis || diagnosis->verdict != Verdict::contradictory);
-  if (diagnosis) extrinsic.verdict = to_string(diagnosis->verdict);
+  if (diagnosis) {
+    extrinsic.verdict = to_string(diagnosis->verdict);
+    extrinsic.reason = diagnosis->reason;
+  }
+  extrinsic.backing = backing_of(best, found.with_nominal.contains(pair));
+  if (const std::string not_shown = not_shown_in_words(extrinsic); !not_shown.empty())
+    say(fmt::format("egocal: {}: {}", text(pair), not_shown));
   if (scale)
     extrinsic.scale = NamedScale{scale->sensor, scale->solution.scale, scale->solution.stddev,
                                  scale->verified && scale->solution.certified};
@@ -170,7 +195,7 @@ void run(const Options& options) {
     if (found.answers.best(pair)) {
       const Diagnosis* diagnosis = found.answers.diagnosis(pair);
       refused = refused || (diagnosis && unusable(*diagnosis)) || !is_current(pair, found.answers, live);
-      extrinsics.push_back(named(pair, found.answers, live));
+      extrinsics.push_back(named(pair, found, live));
     } else if (options.all)
       say(fmt::format("egocal: warning: there is no answer for the pair {}", text(pair)));
     else

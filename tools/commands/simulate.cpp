@@ -171,10 +171,8 @@ class RigOutput {
  public:
   RigOutput(const std::string& file, const std::string& text) : file_(file), text_(text) {
     std::error_code none;
-    const std::filesystem::file_status there = std::filesystem::status(file, none);
-    const bool device = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
-                        !std::filesystem::is_directory(there);
-    if (file.empty() || device) return;
+    const bool written_as_it_is = !can_be_replaced(file) && !std::filesystem::is_directory(file, none);
+    if (file.empty() || written_as_it_is) return;
     whole_.emplace(file);
     whole_->write(text);
   }

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
@@ -11,6 +12,7 @@
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/calibration.hpp"
+#include "offline/named_extrinsic.hpp"
 #include "offline/provenance.hpp"
 #include "offline/report.hpp"
 #include "warnings.hpp"
@@ -27,20 +29,17 @@ struct Options {
   std::string format, out, frame_a = "a", frame_b = "b";
 };
 
-/// The answer as a file for another program.
-void write_extrinsic(const Options& options, const SolveResult& result) {
+/// The answer as a file for another program; what its reader must know goes to standard error as well.
+void write_extrinsic(const Options& options, const SolveResult& result, bool scale_of_a) {
   const Calibration& calibration = result.calibration;
-  NamedExtrinsic extrinsic;
-  extrinsic.parent = options.frame_a;
-  extrinsic.child = options.frame_b;
-  extrinsic.T_parent_child = calibration.T_a_b;
-  extrinsic.certified = calibration.certificate.optimality == Optimality::certified;
-  extrinsic.pairs = static_cast<long long>(sum_blocks(calibration.problem.blocks).count);
-  extrinsic.stddev = calibration.observability.stddev;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (!calibration.observability.observable[i])
-      (*extrinsic.stddev)[i] = std::numeric_limits<double>::infinity();
-  extrinsic.usable = calibration.verdict != Verdict::contradictory;
+  NamedExtrinsic extrinsic = named_extrinsic(options.frame_a, options.frame_b, calibration);
+  if (const std::optional<ScaleSolution>& scale = calibration.scale)
+    extrinsic.scale = NamedScale{scale_of_a ? options.frame_a : options.frame_b, scale->scale,
+                                 scale->observable ? scale->stddev : std::numeric_limits<double>::infinity(),
+                                 scale->certified};
+  for (const std::string& line : remarks(extrinsic, calibration)) say("egocal: " + line);
+  if (result.course) say("egocal: the scale changes along the drive: its mean is stated");
+  if (!result.note.empty()) say("egocal: " + result.note);
   const std::string text = extrinsic_text(
       extrinsic, *extrinsic_format_from_name(options.format.empty() ? "yaml" : options.format));
   if (options.out.empty())
@@ -86,9 +85,7 @@ void run(const Options& options, const std::string& command_line) {
   print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
   const bool written = !options.format.empty() || !options.out.empty();
-  if (written) write_extrinsic(options, result);
-  if (written && calibration.verdict == Verdict::contradictory)
-    say("egocal: the motions contradict each other: do not use this extrinsic");
+  if (written) write_extrinsic(options, result, request.calibration.scale_side == Side::a);
   if (!written || !options.out.empty())
     fmt::print("{}\n", options.json ? json_text(options, request, result, command_line)
                                     : report_text(result, request.truth));

@@ -3,10 +3,14 @@
 #include "offline/append.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "egocal/calibrate.hpp"
@@ -15,6 +19,37 @@
 #include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal::tools {
+
+namespace {
+
+/// A pose, and when the sensor was there first [us].
+struct Seen {
+  std::array<double, 8> numbers{};
+  std::int64_t time_us = 0;
+};
+
+bool precedes(const Seen& x, const Seen& y) {
+  return x.numbers < y.numbers;
+}
+
+/// The different poses of a drive, sorted. What stands still repeats them.
+std::vector<Seen> different_poses(const Trajectory& trajectory) {
+  std::vector<Seen> places;
+  places.reserve(trajectory.size());
+  for (const StampedPose& pose : trajectory) {
+    Seen place{{}, pose.time_us};
+    const auto vec = pose.pose.vec();
+    for (std::size_t i = 0; i < place.numbers.size(); ++i)
+      place.numbers[i] = vec[static_cast<Eigen::Index>(i)];
+    places.push_back(place);
+  }
+  std::stable_sort(places.begin(), places.end(), precedes);
+  const auto same = [](const Seen& x, const Seen& y) { return x.numbers == y.numbers; };
+  places.erase(std::unique(places.begin(), places.end(), same), places.end());
+  return places;
+}
+
+}  // namespace
 
 Drives::Drives(std::vector<Trajectory*> sensors, std::vector<std::string> names)
     : sensors_(std::move(sensors)) {
@@ -28,7 +63,53 @@ void Drives::note(std::vector<std::string> names, const std::vector<const Trajec
   drives_.push_back(std::move(noted));
 }
 
-void Drives::append(std::vector<Trajectory> drive, std::vector<std::string> names) {
+Drives::Repeated Drives::repeated(const Trajectory& trajectory, std::size_t drive, std::size_t sensor) const {
+  const std::vector<Seen> places = different_poses(trajectory),
+                          others = different_poses(part(*sensors_[sensor], drive, sensor));
+  std::vector<std::int64_t> shifts;
+  for (const Seen& place : places) {
+    const auto other = std::lower_bound(others.begin(), others.end(), place, precedes);
+    if (other != others.end() && other->numbers == place.numbers)
+      shifts.push_back(other->time_us - place.time_us);
+  }
+  if (shifts.empty()) return {};
+  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
+  std::nth_element(shifts.begin(), middle, shifts.end());
+  return {static_cast<double>(shifts.size()) / static_cast<double>(places.size()), *middle};
+}
+
+bool Drives::is_repeated(const std::vector<Trajectory>& drive, const std::vector<std::string>& names,
+                         std::vector<std::string>& notes) const {
+  constexpr double few = 0.1;  // an odometry begins at zero each time, and rounded poses may meet
+  constexpr std::int64_t same_clock_us = 1000;  // [us] far below the period of any odometry
+  std::vector<std::string> shared;
+  for (std::size_t k = 0; k < drives_.size(); ++k) {
+    bool all = true;
+    std::optional<std::int64_t> shift_us;
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      const Repeated found = repeated(drive[i], k, i);
+      // of two clocks that were moved against each other it is another measurement, if a wrong one
+      all = all && found.part == 1 &&
+            std::abs(found.shift_us - shift_us.value_or(found.shift_us)) <= same_clock_us;
+      shift_us = found.shift_us;
+      if (found.part > few)
+        shared.push_back(fmt::format(
+            "--append: {}: {:.0f} % of its poses are those of {}, and count twice: the standard deviations "
+            "are too small",
+            names[i], 100 * found.part, drives_[k].names[i]));
+    }
+    if (!all) continue;
+    notes.push_back(fmt::format("--append: {}: the same recording as {}: left out, it shows nothing new",
+                                fmt::join(names, ", "), fmt::join(drives_[k].names, ", ")));
+    return true;
+  }
+  notes.insert(notes.end(), shared.begin(), shared.end());
+  return false;
+}
+
+void Drives::append(std::vector<Trajectory> drive, std::vector<std::string> names,
+                    std::vector<std::string>& notes) {
+  if (is_repeated(drive, names, notes)) return;
   constexpr std::int64_t gap_us = 3'600'000'000;  // [us] an hour: no motion spans it
   std::int64_t end = std::numeric_limits<std::int64_t>::min(),
                begin = std::numeric_limits<std::int64_t>::max();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ class Drives {
   Drives(std::vector<Trajectory*> sensors, std::vector<std::string> names);
 
   /// Appends another drive, one trajectory a sensor, an hour after the end of what is there: no motion spans
-  /// such a gap, so each drive may have an odometry frame of its own.
-  void append(std::vector<Trajectory> drive, std::vector<std::string> names);
+  /// such a gap, so each drive may have an odometry frame of its own. A recording that is in already is no
+  /// further evidence and is left out; one that shares poses with it is not. Both are told in `notes`.
+  void append(std::vector<Trajectory> drive, std::vector<std::string> names, std::vector<std::string>& notes);
 
   /// Throws Error where a drive gives two sensors no motion pair: it would be ignored without a word. a, b:
   /// the sensors' streams as they are paired, with as many poses as were read.
@@ -33,6 +35,14 @@ class Drives {
   };
   void note(std::vector<std::string> names, const std::vector<const Trajectory*>& drive,
             std::vector<std::size_t> begin);
+  struct Repeated {
+    double part = 0;            ///< of the different poses of one drive: those that another one has as well
+    std::int64_t shift_us = 0;  ///< what has to be added to their times [us]
+  };
+  Repeated repeated(const Trajectory& trajectory, std::size_t drive, std::size_t sensor) const;
+  /// Whether all of the drive is in already.
+  bool is_repeated(const std::vector<Trajectory>& drive, const std::vector<std::string>& names,
+                   std::vector<std::string>& notes) const;
   Trajectory part(const Trajectory& stream, std::size_t drive, std::size_t sensor) const;
 
   std::vector<Trajectory*> sensors_;

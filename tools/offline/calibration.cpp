@@ -48,13 +48,26 @@ bool is_long_file(const std::string& name) {
   return std::filesystem::is_regular_file(file, none) && std::filesystem::file_size(file, none) >= least;
 }
 
+/// A file of times for both, where one of them has its own.
+std::string cure_of_times(const MotionSource& source, const std::string& error) {
+  const bool common =
+      !source.reading_a.times_file.empty() && source.reading_a.times_file == source.reading_b.times_file;
+  return common && error.find("a file of times belongs to") != std::string::npos
+             ? "; --times-a or --times-b gives the times of one file alone"
+             : "";
+}
+
 Motions read_both(const MotionSource& source) {
   Motions motions;
   std::vector<std::string> warnings_b;
   const auto read_a = [&] { motions.a = read_noting(source.a, source.reading_a, motions.warnings); };
   const auto read_b = [&] { motions.b = read_noting(source.b, source.reading_b, warnings_b); };
   const bool are_long = is_long_file(source.a) && is_long_file(source.b);
-  (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b);
+  try {
+    (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b);
+  } catch (const Error& error) {
+    throw Error(error.what() + cure_of_times(source, error.what()));
+  }
   motions.warnings.insert(motions.warnings.end(), warnings_b.begin(), warnings_b.end());
   return motions;
 }
@@ -85,7 +98,7 @@ Drives append_drives(const SolveRequest& request, Motions& motions) {
   for (std::size_t i = 0; i < request.append.size(); i += 2) {
     const std::string &name_a = request.append[i], &name_b = request.append[i + 1];
     drives.append({read_noting(name_a, a, motions.warnings), read_noting(name_b, b, motions.warnings)},
-                  {name_a, name_b});
+                  {name_a, name_b}, motions.warnings);
   }
   return drives;
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -86,6 +87,15 @@ void word_for_eye_to_hand(Calibration& calibration) {
     finding.remedy = "Leave out --eye-to-hand.";
     if (calibration.reason == message) calibration.reason = finding.message;
   }
+}
+
+std::string advice_of_solve(std::string advice) {
+  std::size_t first = std::string::npos;
+  for (const char* option : {"--time-offset", "--max-gap", "--scale", "--invert-", "--quaternion-order-",
+                             "--samples", "--eye-", "--plane-"})
+    first = std::min(first, advice.find(option));
+  if (first != std::string::npos) advice.insert(first, "egocal solve A B ");
+  return advice;
 }
 
 }  // namespace egocal::tools

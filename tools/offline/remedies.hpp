@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "egocal/calibrate.hpp"
 
 namespace egocal::tools {
@@ -11,5 +13,9 @@ namespace egocal::tools {
 void word_for_options(const CalibrationOptions& options, Calibration& calibration);
 /// The same for still poses with --eye-to-hand.
 void word_for_eye_to_hand(Calibration& calibration);
+
+/// Advice for a command that has no options of `egocal solve` but those for reading: "--time-offset auto" is
+/// "egocal solve A B --time-offset auto".
+std::string advice_of_solve(std::string advice);
 
 }  // namespace egocal::tools

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
+#include "offline/named_extrinsic.hpp"
 #include "offline/samples.hpp"
 #include "offline/trust_report.hpp"
 
@@ -129,8 +131,7 @@ nlohmann::ordered_json nominal_json(const Calibration& calibration) {
 }  // namespace
 
 bool from_nominal(const Calibration& calibration, std::size_t direction) {
-  return calibration.problem.prior && calibration.problem.mode == Mode::spatial &&
-         !calibration.observability.observable[direction];
+  return backing_of(calibration)[direction] == Backing::nominal;
 }
 
 bool any_from_nominal(const Calibration& calibration) {
@@ -262,13 +263,13 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   if (any_from_nominal(calibration)) text += fmt::format("              {}\n", cost_with_nominal);
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   text += "uncertainty   in the frame of a, one standard deviation\n";
+  const std::array<Backing, 6> backing = backing_of(calibration);
   for (std::size_t i = 0; i < 6; ++i) {
     const double stddev = calibration.observability.stddev[i];
     const bool rotation = i >= 3;
     std::string value = "NOT OBSERVABLE, the number above is not a measurement";
-    if (!calibration.observability.observable[i] && result.calibration.problem.mode == Mode::planar)
-      value = "from the ground planes";
-    if (from_nominal(calibration, i)) value = "NOT OBSERVABLE, from the nominal value";
+    if (backing[i] == Backing::planes) value = "from the ground planes";
+    if (backing[i] == Backing::nominal) value = "NOT OBSERVABLE, from the nominal value";
     if (calibration.observability.observable[i])
       value = std::isfinite(stddev)
                   ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")

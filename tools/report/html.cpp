@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
+#include "offline/named_extrinsic.hpp"
 #include "offline/report.hpp"
 #include "report/series.hpp"
 
@@ -84,12 +86,13 @@ std::string optimality(const Certificate& certificate) {
 std::string uncertainty(const Calibration& calibration) {
   std::string table =
       "<table>\n<tr><th>direction, in the frame of a</th><th>one standard deviation</th></tr>\n";
+  const std::array<Backing, 6> backing = backing_of(calibration);
   for (std::size_t i = 0; i < 6; ++i) {
     const double stddev = calibration.observability.stddev[i];
     std::string value = "<b>not observable</b>: the number above is not a measurement";
-    if (!calibration.observability.observable[i] && calibration.problem.mode == Mode::planar)
+    if (backing[i] == Backing::planes)
       value = "from the ground planes";
-    else if (from_nominal(calibration, i))
+    else if (backing[i] == Backing::nominal)
       value = "<b>not observable</b>: from the nominal value";
     else if (calibration.observability.observable[i])
       value = std::isfinite(stddev)

@@ -34,6 +34,8 @@ NamedExtrinsic reversed(const NamedExtrinsic& pair) {
   std::swap(result.parent, result.child);
   result.T_parent_child = inverse(pair.T_parent_child);
   result.stddev.reset();  // they are in the frame of the other sensor
+  result.backing = detail::backing_of(pair);
+  result.backing_frame = detail::backing_frame(pair);
   return result;
 }
 

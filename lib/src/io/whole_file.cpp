@@ -3,13 +3,17 @@
 #include "egocal/io/whole_file.hpp"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -45,7 +49,57 @@ void sync_folder(const std::string& file) {
   close(fd);
 }
 
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// The links of /proc look like links to files, and are what a process has open.
+bool in_proc(const fs::path& file) {
+  struct statfs system {};
+  return statfs(folder_of(file).c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;
+}
+
+/// Where the links of a path lead: the file, or a link of /proc such as that of /dev/stdout.
+fs::path end_of_links(const std::string& path) {
+  fs::path file(path);
+  std::error_code error;
+  for (int i = 0; i < most_links && fs::is_symlink(file, error) && !in_proc(file); ++i) {
+    const fs::path to = fs::read_symlink(file, error);
+    if (error) break;
+    file = to.is_absolute() ? to : file.parent_path() / to;
+  }
+  return file;
+}
+
+/// The descriptor of this process that the path is a name of. Opened by its name, a file that standard output
+/// is appended to would be written from its beginning.
+std::optional<int> own_descriptor(const std::string& path) {
+  const fs::path link = end_of_links(path);
+  std::error_code error;
+  if (!in_proc(link) || !fs::equivalent(folder_of(link), "/proc/self/fd", error)) return std::nullopt;
+  const std::string name = link.filename();
+  int number = -1;
+  const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (failed != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return number;
+}
+
+/// Opens what cannot be replaced, for writing at its end.
+int open_in_place(const std::string& path) {
+  const std::optional<int> own = own_descriptor(path);
+  if (!own) return open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  std::fflush(stdout);  // after what was printed before
+  return fcntl(*own, F_DUPFD_CLOEXEC, 0);
+}
+
 }  // namespace
+
+bool can_be_replaced(const std::string& path) {
+  if (in_proc(end_of_links(path))) return false;
+  std::error_code none;
+  const fs::file_status there = fs::status(path, none);
+  return !fs::exists(there) || fs::is_regular_file(there);
+}
 
 std::string without_links(const std::string& path) {
   fs::path file(path);
@@ -55,7 +109,7 @@ std::string without_links(const std::string& path) {
     if (error) break;
     file = to.is_absolute() ? to : file.parent_path() / to;
   }
-  const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
+  const fs::path folder = fs::canonical(folder_of(file), error);
   return error ? file.string() : (folder / file.filename()).string();
 }
 
@@ -73,7 +127,7 @@ void remove_temporaries(const std::string& file) {
 WholeFile::WholeFile(const std::string& file) : file_(file), target_(without_links(file)) {
   struct stat there {};
   const bool exists = stat(target_.c_str(), &there) == 0;
-  if (exists && !S_ISREG(there.st_mode)) fail("is there and is not a file that could be replaced");
+  if (!can_be_replaced(file)) fail("is there and is not a file that could be replaced");
   for (int n = 0; fd_ < 0; ++n) {
     temporary_ =
         target_ + "." + std::to_string(getpid()) + "-" + std::to_string(n) + std::string(temporary_suffix);
@@ -129,14 +183,13 @@ int WholeFile::release_descriptor() {
 
 void write_whole_file(const std::string& file, std::string_view content) {
   std::error_code none;
-  const fs::file_status there = fs::status(file, none);
-  if (!fs::exists(there) || fs::is_regular_file(there) || fs::is_directory(there)) {
+  if (can_be_replaced(file) || fs::is_directory(file, none)) {
     WholeFile whole(file);
     whole.write(content);
     whole.commit();
     return;
   }
-  const int fd = open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  const int fd = open_in_place(file);
   const bool written = fd >= 0 && write_all(fd, std::as_bytes(std::span(content)));
   const int reason = errno;
   if (fd >= 0) close(fd);

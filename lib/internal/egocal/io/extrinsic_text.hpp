@@ -20,6 +20,14 @@ struct NamedScale {
   bool certified = false;  ///< no other scale fits better, proven
 };
 
+/// What the number of a direction rests on.
+enum class Backing {
+  motions,  ///< the motions show it
+  nominal,  ///< they do not: it is the nominal value's
+  planes,   ///< the ground planes give it (planar mode)
+  none,     ///< they do not, and nothing else gives it: the number means nothing
+};
+
 /// An extrinsic with what a reader must know to use it the right way round.
 struct NamedExtrinsic {
   std::string parent, child;                    ///< frames: the sensors a and b
@@ -30,7 +38,16 @@ struct NamedExtrinsic {
   bool usable = true;     ///< false: optimal, but the motions contradict each other; every format states it
   std::string verdict{};  ///< good, incomplete, doubtful, contradictory; empty: it was not judged
   std::optional<NamedScale> scale{};  ///< that was found together with it; every format states it
+  std::string reason{};               ///< of the verdict, one sentence; every format states both
+  /// Of x y z roll pitch yaw; every format states what is not of the motions. Nothing: it is not known, and
+  /// directions without a finite standard deviation count as Backing::none.
+  std::optional<std::array<Backing, 6>> backing{};
+  std::string backing_frame{};  ///< the frame that these directions are of; empty: the parent's
 };
+
+/// The directions that the motions do not show, and what their numbers are: "NOT OBSERVABLE, not a
+/// measurement: z". Also those of the ground planes. Empty: there is none of either.
+std::string not_shown_in_words(const NamedExtrinsic& extrinsic);
 
 enum class ExtrinsicFormat {
   yaml,        ///< plain: translation, quaternion, matrix, standard deviations

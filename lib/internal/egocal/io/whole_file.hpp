@@ -16,8 +16,7 @@ namespace egocal {
 /// link, the file that it points to is replaced, and a file that is replaced hands on its permissions.
 class WholeFile {
  public:
-  /// Throws Error where it cannot be written, or where something else than a file has that name: a device, a
-  /// pipe, a folder.
+  /// Throws Error where it cannot be written, or where the name cannot be replaced.
   explicit WholeFile(const std::string& file);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
@@ -43,8 +42,12 @@ class WholeFile {
   int fd_ = -1;
 };
 
-/// Writes the whole file or nothing, by a WholeFile. Devices and pipes (/dev/stdout) are written to as they
-/// are. Throws Error.
+/// Whether a WholeFile can have this name: no, where it is a device, a pipe or a folder, or a name of what a
+/// process has open (/dev/stdout, /dev/fd/3), also where that is a file.
+bool can_be_replaced(const std::string& file);
+
+/// Writes the whole file or nothing, by a WholeFile. What cannot be replaced is written to as it is, at its
+/// end; /dev/stdout after what was printed before. Throws Error.
 void write_whole_file(const std::string& file, std::string_view content);
 
 /// The file that a path names once all symbolic links are followed, whether it exists or not.

@@ -44,9 +44,15 @@ std::string json_text(const ExtrinsicWords& words) {
     text += "  \"stddev\": " +
             named({"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"}, words.extrinsic.stddev->data()) +
             ",\n";
-  text += std::string("  \"certified\": ") + (words.extrinsic.certified ? "true" : "false") + ",\n";
+  text += "  \"verdict\": " +
+          (words.extrinsic.verdict.empty() ? std::string("null") : in_quotes(words.extrinsic.verdict)) +
+          ",\n";
+  text += "  \"reason\": " + in_quotes(words.extrinsic.reason) + ",\n";
+  text += "  \"not_observable\": " + list_in_quotes(not_observable(words.extrinsic)) + ",\n";
+  text += "  \"not_observable_frame\": \"" + frame_name(backing_frame(words.extrinsic)) + "\",\n";
+  text += "  \"from_nominal\": " + list_in_quotes(directions_with(words.extrinsic, Backing::nominal)) + ",\n";
   text += std::string("  \"usable\": ") + (words.extrinsic.usable ? "true" : "false") + ",\n";
-  if (!words.extrinsic.verdict.empty()) text += "  \"verdict\": \"" + words.extrinsic.verdict + "\",\n";
+  text += std::string("  \"certified\": ") + (words.extrinsic.certified ? "true" : "false") + ",\n";
   if (words.extrinsic.scale) {
     const NamedScale& scale = *words.extrinsic.scale;
     text += "  \"scale\": {\"sensor\": \"" + frame_name(scale.sensor) +

@@ -10,7 +10,7 @@ std::string kalibr_text(const ExtrinsicWords& words) {
          " = T_cam_imu * p_" + words.a + ",\n# so it is the inverse of the pose of " + words.b + " in " +
          words.a + ". imu (parent): " + words.a + ", cam0 (child): " + words.b +
          ".\n# metres; the rotation as quaternion w x y z: [" + joined(wxyz(inverted.rotation), ", ") +
-         "]; " + words.verdict + "\ncam0:\n  T_cam_imu:\n" + matrix_rows(inverted, "  ");
+         "]\n# " + words.verdict_of_inverse + "\ncam0:\n  T_cam_imu:\n" + matrix_rows(inverted, "  ");
 }
 
 }  // namespace egocal::detail

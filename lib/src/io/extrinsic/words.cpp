@@ -3,11 +3,78 @@
 #include "io/extrinsic/words.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "egocal/error.hpp"
 #include "io/number_text.hpp"
+
+namespace egocal {
+
+namespace {
+
+/// Comments of every format end with their line, and a reason from a bus may hold anything.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
+/// Without its full stop: more follows.
+std::string unfinished(std::string sentence) {
+  if (sentence.ends_with('.')) sentence.pop_back();
+  return sentence;
+}
+
+void add_part(std::string& text, const std::string& part) {
+  text += (text.empty() || part.empty() ? "" : "; ") + part;
+}
+
+std::string not_shown(const NamedExtrinsic& extrinsic, bool mixed) {
+  std::string text;
+  for (const auto& [backing, words] : {std::pair{Backing::none, "NOT OBSERVABLE, not a measurement:"},
+                                       std::pair{Backing::nominal, "NOT OBSERVABLE, from the nominal value:"},
+                                       std::pair{Backing::planes, "from the ground planes:"}}) {
+    std::string names;
+    for (const std::string& name : detail::directions_with(extrinsic, backing)) names += " " + name;
+    if (!names.empty()) add_part(text, words + names);
+  }
+  if (text.empty()) return text;
+  if (mixed)
+    text += ", in the axes of " + detail::frame_name(detail::backing_frame(extrinsic)) +
+            ": several of these numbers hold a part of it";
+  return text;
+}
+
+std::string verdict_in_words(const NamedExtrinsic& named, bool mixed) {
+  std::string text;
+  if (!named.usable)
+    text = named.verdict == "contradictory" ? "DO NOT USE, the motions contradict each other" : "DO NOT USE";
+  add_part(text, named.verdict.empty()
+                     ? "not judged: no verdict"
+                     : "verdict " + one_line(named.verdict) + (named.reason.empty() ? "" : ": ") +
+                           unfinished(one_line(named.reason)));
+  add_part(text, not_shown(named, mixed));
+  add_part(text, std::string(named.certified ? "certified globally optimal" : "not certified") + ", from " +
+                     std::to_string(named.pairs) + " motion pairs");
+  if (named.scale)
+    add_part(text, "lengths of " + detail::frame_name(named.scale->sensor) + " multiplied by " +
+                       detail::exact(named.scale->value) +
+                       (named.scale->certified ? "" : ", which is not certified") +
+                       (std::isfinite(named.scale->stddev) ? "" : ", which is NOT OBSERVABLE"));
+  return text;
+}
+
+}  // namespace
+
+std::string not_shown_in_words(const NamedExtrinsic& extrinsic) {
+  return not_shown(extrinsic, false);
+}
+
+}  // namespace egocal
 
 namespace egocal::detail {
 
@@ -20,12 +87,58 @@ ExtrinsicWords::ExtrinsicWords(const NamedExtrinsic& named)
                 (named.parent == named.child ? std::string()
                                              : ", of '" + named.parent + "' and '" + named.child + "'"));
   direction = "pose of " + b + " in " + a + ": p_" + a + " = R * p_" + b + " + t";
-  verdict = std::string(named.usable ? "" : "DO NOT USE, the motions contradict each other; ") +
-            (named.certified ? "certified globally optimal" : "not certified") + ", from " +
-            std::to_string(named.pairs) + " motion pairs";
-  if (named.scale)
-    verdict += "; lengths of " + frame_name(named.scale->sensor) + " multiplied by " +
-               exact(named.scale->value) + (named.scale->certified ? "" : ", which is not certified");
+  const bool turned = !named.backing_frame.empty() && named.backing_frame != named.parent;
+  verdict = verdict_in_words(named, turned);
+  verdict_of_inverse = verdict_in_words(named, true);
+}
+
+std::array<Backing, 6> backing_of(const NamedExtrinsic& extrinsic) {
+  if (extrinsic.backing) return *extrinsic.backing;
+  std::array<Backing, 6> backing{};
+  if (!extrinsic.stddev) return backing;
+  for (std::size_t i = 0; i < backing.size(); ++i)
+    backing[i] = std::isfinite((*extrinsic.stddev)[i]) ? Backing::motions : Backing::none;
+  return backing;
+}
+
+const std::string& backing_frame(const NamedExtrinsic& extrinsic) {
+  return extrinsic.backing_frame.empty() ? extrinsic.parent : extrinsic.backing_frame;
+}
+
+std::vector<std::string> directions_with(const NamedExtrinsic& extrinsic, Backing backing) {
+  constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+  const std::array<Backing, 6> all = backing_of(extrinsic);
+  std::vector<std::string> directions;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i] == backing) directions.emplace_back(names[i]);
+  return directions;
+}
+
+std::vector<std::string> not_observable(const NamedExtrinsic& extrinsic) {
+  std::vector<std::string> directions = directions_with(extrinsic, Backing::none);
+  for (std::string& name : directions_with(extrinsic, Backing::nominal))
+    directions.push_back(std::move(name));
+  return directions;
+}
+
+std::string in_quotes(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    char escape[8] = "";
+    if (c == '"' || c == '\\')
+      result += '\\';
+    else if (byte < 0x20 || byte == 0x7f)
+      std::snprintf(escape, sizeof escape, "\\u%04x", byte);
+    result += *escape ? std::string(escape) : std::string(1, byte < 0x80 ? c : '?');
+  }
+  return result + "\"";
+}
+
+std::string list_in_quotes(const std::vector<std::string>& words) {
+  std::string text = "[";
+  for (const std::string& word : words) text += (text.size() > 1 ? ", " : "") + in_quotes(word);
+  return text + "]";
 }
 
 std::string exact(double value) {

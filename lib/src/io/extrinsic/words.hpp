@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "egocal/io/extrinsic_text.hpp"
 
@@ -18,8 +20,27 @@ struct ExtrinsicWords {
   const Pose& T;          ///< T_parent_child
   std::string a, b;       ///< parent, child
   std::string direction;  ///< "pose of b in a: p_a = R * p_b + t"
-  std::string verdict;    ///< "certified globally optimal, from 1234 motion pairs"
+  /// The verdict with its reason, then what is not shown, then the rest: "verdict good: ...; certified
+  /// globally optimal, from 1234 motion pairs". Optimal is not the same as right, so that is never said
+  /// alone.
+  std::string verdict;
+  /// The same for a format with the inverse, whose numbers mix the directions.
+  std::string verdict_of_inverse;
 };
+
+/// The directions of one kind by name: {"z", "yaw"}.
+std::vector<std::string> directions_with(const NamedExtrinsic& extrinsic, Backing backing);
+/// Those that the motions do not show, of the nominal value or of nothing.
+std::vector<std::string> not_observable(const NamedExtrinsic& extrinsic);
+/// What is known of each, by standard deviations where nothing else is.
+std::array<Backing, 6> backing_of(const NamedExtrinsic& extrinsic);
+/// The frame that its directions are of.
+const std::string& backing_frame(const NamedExtrinsic& extrinsic);
+
+/// Text in quotes for JSON and YAML.
+std::string in_quotes(const std::string& text);
+/// ["z", "yaw"].
+std::string list_in_quotes(const std::vector<std::string>& words);
 
 /// The shortest text that reads back as exactly this double, in YAML 1.1 too.
 std::string exact(double value);

@@ -6,16 +6,18 @@ namespace egocal::detail {
 
 namespace {
 
-/// Two hyphens would end an XML comment.
+/// Two hyphens would end an XML comment: "--invert-b" becomes "- -invert-b".
 std::string comment(std::string text) {
-  for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.replace(at, 2, "__");
+  for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.insert(at + 1, " ");
   return "<!-- " + text + " -->\n";
 }
 
-std::string described(const ExtrinsicWords& words) {
-  return comment("parent " + words.a + ", child " + words.b +
+std::string described(const ExtrinsicWords& words, const std::string& indent = "") {
+  return indent +
+         comment("parent " + words.a + ", child " + words.b +
                  ": pose of the child in the parent, metres, radians; quaternion w x y z: " +
-                 joined(wxyz(words.T.rotation), " ") + "; " + words.verdict);
+                 joined(wxyz(words.T.rotation), " ")) +
+         indent + comment(words.verdict);
 }
 
 }  // namespace
@@ -36,7 +38,7 @@ std::string ros_launch_node(const ExtrinsicWords& words) {
   const Eigen::Vector3d& t = words.T.translation;
   std::string node;  // names of nodes take letters, digits and _
   for (const char c : words.a + "_to_" + words.b) node += c == '-' || c == '.' || c == '/' ? '_' : c;
-  return "  " + described(words) + "  <node pkg=\"tf2_ros\" exec=\"static_transform_publisher\" name=\"" +
+  return described(words, "  ") + "  <node pkg=\"tf2_ros\" exec=\"static_transform_publisher\" name=\"" +
          node + "\"\n        args=\"--x " + exact(t.x()) + " --y " + exact(t.y()) + " --z " + exact(t.z()) +
          " --qx " + exact(q.x()) + " --qy " + exact(q.y()) + " --qz " + exact(q.z()) + " --qw " +
          exact(q.w()) + " --frame-id " + words.a + " --child-frame-id " + words.b + "\"/>\n";

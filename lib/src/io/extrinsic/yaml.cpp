@@ -8,20 +8,30 @@ namespace egocal::detail {
 
 std::string yaml_text(const ExtrinsicWords& words) {
   const Pose& T = words.T;
-  std::string text = "# " + words.direction + "\n# metres, radians, quaternion order w x y z\n";
+  std::string text =
+      "# " + words.direction + "\n# " + words.verdict + "\n# metres, radians, quaternion order w x y z\n";
   text += "parent: " + yaml_word(words.a) + "\nchild: " + yaml_word(words.b) + "\n";
   text += "translation: [" + joined(T.translation, ", ") + "]\n";
   text += "rotation_wxyz: [" + joined(wxyz(T.rotation), ", ") + "]\n";
   text += "roll_pitch_yaw: [" + joined(roll_pitch_yaw(T.rotation), ", ") + "]\n";
   text += "matrix:\n" + matrix_rows(T, "  ");
   if (words.extrinsic.stddev) {
-    text += "stddev:  # x y z roll pitch yaw in " + words.a + "; .inf: not observable from the motions\n";
+    text += "stddev:  # x y z roll pitch yaw in " + words.a + "; .inf: not known from the motions\n";
     for (const double s : *words.extrinsic.stddev)
       text += "  - " + (std::isfinite(s) ? exact(s) : std::string(std::isnan(s) ? ".nan" : ".inf")) + "\n";
   }
-  text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
+  text += "verdict: " + (words.extrinsic.verdict.empty() ? "null" : words.extrinsic.verdict) + "\n";
+  if (!words.extrinsic.reason.empty()) text += "reason: " + in_quotes(words.extrinsic.reason) + "\n";
+  const std::vector<std::string> not_shown = not_observable(words.extrinsic);
+  text += "not_observable: " + list_in_quotes(not_shown) +
+          (not_shown.empty() ? ""
+                             : "  # of " + frame_name(backing_frame(words.extrinsic)) +
+                                   ": these numbers are no measurement") +
+          "\n";
+  if (const auto nominal = directions_with(words.extrinsic, Backing::nominal); !nominal.empty())
+    text += "from_nominal: " + list_in_quotes(nominal) + "\n";
   text += std::string("usable: ") + (words.extrinsic.usable ? "true" : "false") + "\n";
-  if (!words.extrinsic.verdict.empty()) text += "verdict: " + words.extrinsic.verdict + "\n";
+  text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
   if (words.extrinsic.scale) {
     const NamedScale& scale = *words.extrinsic.scale;
     text += "scale:  # lengths of this sensor, multiplied by the value, are metres\n";
