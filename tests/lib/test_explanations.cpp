@@ -285,15 +285,6 @@ TEST(Explanations, APositionWithoutHeightIsNamedAndNotGood) {
   EXPECT_NE(find(calibration, "flat_b"), nullptr);
 }
 
-/// A minute with noise of this part of every motion.
-testing::Streams drive_with_noise(Terrain terrain, double noise) {
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = 601;
-  options.relative_noise = noise;
-  return testing::simulated_drive(options);
-}
-
 /// Wheels know no slopes: x, y and the heading. Its own rotations do not tilt then, those of the other
 /// sensor do.
 TEST(Explanations, AnOdometryInTwoDimensionsBesideOneThatTiltsIsNamedAndNotGood) {
@@ -313,7 +304,7 @@ TEST(Explanations, AnOdometryInTwoDimensionsBesideOneThatTiltsIsNamedAndNotGood)
   EXPECT_NE(finding->message.find("a tilts"), std::string::npos) << finding->message;
   // on level ground it is right, whatever the rotations of the other one are wrong by
   for (const double noise : {1e-3, 0.1}) {
-    const testing::Streams ground = drive_with_noise(Terrain::flat, noise);
+    const testing::Streams ground = testing::noisy_drive(Terrain::flat, noise);
     EXPECT_EQ(find(calibrate(ground.a, level(ground.a)), "flat_b"), nullptr) << noise;
   }
 }

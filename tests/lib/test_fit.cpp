@@ -20,11 +20,7 @@ Motions motions_of(const testing::Streams& streams, int stride) {
 }
 
 testing::Streams drive(Terrain terrain, double noise = 0) {
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = 301;
-  options.relative_noise = noise;
-  return testing::simulated_drive(options);
+  return testing::noisy_drive(terrain, noise, 301);
 }
 
 TEST(Fit, IsZeroAtTheTruthOfPerfectMotions) {

@@ -65,11 +65,7 @@ TEST(FollowingMount, IsDoubtful) {
 }
 
 TEST(ContradictingParts, AreTheTenthsThatFitTensOfTimesWorse) {
-  SimulationOptions options;
-  options.terrain = Terrain::free;
-  options.poses = 601;
-  options.relative_noise = 0.001;
-  testing::Streams streams = testing::simulated_drive(options);
+  testing::Streams streams = testing::noisy_drive(Terrain::free, 0.001);
   const auto found = [&] {
     return detail::contradicting_parts(detail::synchronised(streams.a, streams.b, {}, 0.5), 8,
                                        to_pose(streams.T), {});
@@ -87,11 +83,7 @@ TEST(ContradictingParts, AreTheTenthsThatFitTensOfTimesWorse) {
 }
 
 TEST(ContradictingParts, AreNotASingleJump) {
-  SimulationOptions options;
-  options.terrain = Terrain::free;
-  options.poses = 601;
-  options.relative_noise = 0.001;
-  testing::Streams streams = testing::simulated_drive(options);
+  testing::Streams streams = testing::noisy_drive(Terrain::free, 0.001);
   const DualQuaternion jump = to_dual_quaternion(Pose{rotation_exp({0.1, 0.1, 0.1}), {0.5, 0, 0}});
   for (std::size_t i = 90; i < streams.b.size(); ++i)
     streams.b[i].pose = normalized(jump * streams.b[i].pose);

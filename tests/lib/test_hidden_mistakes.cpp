@@ -113,20 +113,11 @@ TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherAndRoundedIsNamed) {
   }
 }
 
-/// A minute with noise of this part of every motion.
-testing::Streams drive_with_noise(Terrain terrain, double noise) {
-  SimulationOptions options;
-  options.terrain = terrain;
-  options.poses = 601;
-  options.relative_noise = noise;
-  return testing::simulated_drive(options);
-}
-
 /// A gyroscope that sits askew turns in other axes than its positions, which an odometry beside it measures.
 /// Where the sensors turn, lengths of both streams are unlike, and no scale of b.
 TEST(HiddenMistakes, RotationsInAxesThatAreTiltedAgainstThePositionsAreNamed) {
   for (const double degrees : {1.5, 3.0}) {
-    testing::Streams streams = drive_with_noise(Terrain::free, 1e-3);
+    testing::Streams streams = testing::noisy_drive(Terrain::free, 1e-3);
     const DualQuaternion far_off = to_dual_quaternion(Pose{Rotation::Identity(), {3, -4, 2}});
     for (StampedPose& pose : streams.b) pose.pose = canonical_sign(normalized(pose.pose * far_off));
     streams.T = streams.T * far_off;

@@ -28,4 +28,13 @@ inline Streams simulated_drive(SimulationOptions options) {
           {}};
 }
 
+/// With noise of this part of every motion; a minute.
+inline Streams noisy_drive(Terrain terrain, double noise, int poses = 601) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = poses;
+  options.relative_noise = noise;
+  return simulated_drive(options);
+}
+
 }  // namespace egocal::testing

@@ -23,4 +23,11 @@ void set_motion(Motion& motion, Side side, const Rotation& rotation, const Eigen
   (side == Side::a ? motion.a : motion.b) = canonical_sign(to_dual_quaternion(Pose{rotation, translation}));
 }
 
+void set_turned_motion(Motion& motion, Side side, const Rotation& rotation,
+                       const Eigen::Vector3d& translation) {
+  set_motion(motion, side, rotation, translation);
+  (side == Side::a ? motion.angle_a : motion.angle_b) = rotation_angle(side == Side::a ? motion.a : motion.b);
+  if (side == Side::a) motion.R_a = rotation.toRotationMatrix();
+}
+
 }  // namespace egocal::detail

@@ -25,16 +25,6 @@ struct TimeSpan {
   double begin = 0, end = 0;  ///< [s]
 };
 
-/// Half of the turning is in larger ones.
-double usual_angle(const Motions& motions) {
-  std::vector<std::pair<double, double>> angles;
-  for (const Motion& motion : motions.all) {
-    const double angle = std::min(motion.angle_a, motion.angle_b);
-    angles.emplace_back(angle, angle);
-  }
-  return weighted_median(std::move(angles));
-}
-
 std::vector<PartResidual> residuals_of_parts(const Motions& motions, const Pose& T_a_b, const TimeSpan& drive,
                                              std::size_t parts, double least_turning) {
   std::vector<std::vector<double>> rotations(parts), angles(parts);
@@ -109,9 +99,8 @@ std::optional<Finding> contradicting_parts_finding(const ContradictingParts& fou
   finding.code = "mount_moved";
   finding.time = found.parts.front().begin;
   finding.message = format(
-      "These motions contradict each other: the answer leaves %s, and %.2g deg in most of the drive. A "
-      "sensor "
-      "was moved, or its odometry was lost.",
+      "These motions contradict each other: the answer leaves %s, and %.2g deg in most of the drive. "
+      "A sensor was moved, or its odometry was lost.",
       list.c_str(), found.others * degrees);
   finding.remedy = "Calibrate the parts of the drive separately, and compare their answers.";
   return finding;

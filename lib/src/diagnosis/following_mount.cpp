@@ -56,11 +56,10 @@ std::vector<FollowedChange> followed_changes(const Instants& instants, const Dua
   const std::size_t n = instants.size(), span = steps + 2 * window;
   if (n <= span) return changes;
   const std::size_t each = std::max<std::size_t>(1, (n - span) / options.motions);
-  constexpr double across_a_gap = 2;  // times the usual duration
   for (std::size_t i = window; i + steps + window < n; i += each) {
     const std::size_t k = i + steps;
     if (instants.time(k + window) - instants.time(i - window) >
-        across_a_gap * static_cast<double>(span) * instants.period)
+        options.across_a_gap * static_cast<double>(span) * instants.period)
       continue;
     const PosePair from = instants.at(i), to = instants.at(k);
     const Pose change =
@@ -186,11 +185,9 @@ std::optional<Finding> following_mount(const Instants& instants, int stride, con
   Finding finding;
   finding.code = "mount_moved";
   finding.message = format(
-      "The motions contradict each other: the rotation between the sensors changes by up to %.2g deg with "
-      "how "
-      "they turn and accelerate, which is %.0f %% of what no mounting explains: a sensor is on a part that "
-      "is "
-      "steered or sprung, or its mounting has play.",
+      "The motions contradict each other: the rotation between the sensors changes by up to %.2g deg "
+      "with how they turn and accelerate, which is %.0f %% of what no mounting explains: a sensor is "
+      "on a part that is steered or sprung, or its mounting has play.",
       found->change * 180 / std::numbers::pi, 100 * found->explained);
   finding.remedy = "Fasten both sensors to one rigid part, and record again.";
   return finding;

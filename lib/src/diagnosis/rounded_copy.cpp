@@ -182,9 +182,7 @@ std::optional<Finding> rounded_copy(const Trajectory& a, const Trajectory& b, co
   if (longer.all.size() < options.fewest) return std::nullopt;
   const RobustFit fit = robust_fit(longer);
   const Pose T = to_pose(fit.T);
-  // a look that costs less than counting digits does
-  constexpr double certainly_noise = 0.01;
-  if (!(fit.typical < certainly_noise * certainly_noise)) return std::nullopt;
+  if (!(fit.typical < options.certainly_noise * options.certainly_noise)) return std::nullopt;
   const Written of_a = written(a, options), of_b = written(b, options);
   if (!of_a.position.known() && !of_b.position.known()) return std::nullopt;
   const Left of_longer = left_of(instants, longer, T, of_a, of_b, options);

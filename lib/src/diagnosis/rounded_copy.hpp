@@ -21,6 +21,9 @@ struct RoundedCopyOptions {
   /// machines with 3 to 5 decimals and with 6 digits. Noise of the sensors that is as large as two thirds of
   /// the rounding makes 1.2 of 1.
   double most = 1.2;
+  /// Where the typical residual is this part of the typical motion or more it is noise: a look that costs
+  /// less than counting digits does.
+  double certainly_noise = 0.01;
   /// Rounding of more than this part of the usual motion says nothing: sensors may be as good.
   double most_of_motion = 3e-3;
   /// Less than this [rad, and of the way] counts as rounding, too; if no more was rounded it is for

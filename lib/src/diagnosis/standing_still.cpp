@@ -48,13 +48,23 @@ double usual_size(const Motions& motions, double (*size)(const Motion&)) {
   return weighted_median(std::move(sizes));
 }
 
+double smaller_length(const Motion& motion) {
+  return std::min(motion.t_a.norm(), motion.t_b.norm());
+}
+
+double smaller_angle(const Motion& motion) {
+  return std::min(motion.angle_a, motion.angle_b);
+}
+
 }  // namespace
 
+double usual_angle(const Motions& motions) {
+  return usual_size(motions, smaller_angle);
+}
+
 std::vector<bool> at_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options) {
-  const auto shorter = [](const Motion& one) { return std::min(one.t_a.norm(), one.t_b.norm()); };
-  const auto smaller = [](const Motion& one) { return std::min(one.angle_a, one.angle_b); };
-  const double longest = options.length * usual_size(motions, shorter),
-               largest = options.angle * usual_size(motions, smaller);
+  const double longest = options.length * usual_size(motions, smaller_length),
+               largest = options.angle * usual_angle(motions);
   std::vector<bool> rest;
   std::vector<double> rotations, translations;
   for (const Motion& motion : motions.all) {

@@ -32,6 +32,10 @@ struct RestOptions {
   double least_part = 0.2;
 };
 
+/// Half of the turning is in motions that turn by more [rad]; of both sensors the smaller angle, as wrong
+/// poses are large.
+double usual_angle(const Motions& motions);
+
 /// Which motions are those of sensors that stand, by their residuals at an extrinsic: noise, compared with
 /// noise.
 std::vector<bool> at_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options = {});

@@ -73,10 +73,7 @@ Motions without(const Motions& given, const AboutAxis& turning, Side side, doubl
     Vector3d t = side == Side::a ? motion.t_a : motion.t_b;
     if (right_positions) t = begin.transpose() * (turning.begins[i].R * t);
     const Rotation rotation(begin.transpose() * end);
-    set_motion(motion, side, rotation, t);
-    (side == Side::a ? motion.angle_a : motion.angle_b) =
-        rotation_angle(side == Side::a ? motion.a : motion.b);
-    if (side == Side::a) motion.R_a = rotation.toRotationMatrix();
+    set_turned_motion(motion, side, rotation, t);
   }
   return motions;
 }
@@ -172,10 +169,7 @@ Explained explained_by_vectors(const Instants& instants, const Explained& given,
     const Vector3d t = begin.transpose() * (rotation_of(side == Side::a ? poses.a : poses.b) *
                                             (side == Side::a ? motion.t_a : motion.t_b));
     const Rotation rotation(Matrix3d(begin.transpose() * end));
-    set_motion(motion, side, rotation, t);
-    (side == Side::a ? motion.angle_a : motion.angle_b) =
-        rotation_angle(side == Side::a ? motion.a : motion.b);
-    if (side == Side::a) motion.R_a = rotation.toRotationMatrix();
+    set_turned_motion(motion, side, rotation, t);
   }
   result.fit = robust_fit(result.motions, options.fit);
   return result;

@@ -11,29 +11,46 @@ namespace egocal::detail {
 
 namespace {
 
+/// Squares of the logarithms that a growth leaves, about their mean.
+double squares_left(const StrideVariances& seen, double growth) {
+  double total = 0, mean = 0, squares = 0;
+  for (std::size_t i = 0; i < seen.strides.size(); ++i) {
+    const double count = seen.independent[i];
+    if (!(count > 0)) continue;
+    total += count;
+    const double log_ratio = std::log(seen.variances[i] / (2 + growth * seen.strides[i]));
+    const double step = log_ratio - mean;
+    mean += count / total * step;
+    squares += count * step * (log_ratio - mean);
+  }
+  return squares;
+}
+
 /// Chi-square of each growth.
 std::vector<double> squares_of(const StrideVariances& seen, const std::vector<double>& growths) {
   // The logarithm of a variance of n motions with three axes each has the variance 2 / (3 n).
   constexpr double variance_of_one = 2.0 / 3;
   std::vector<double> result;
   result.reserve(growths.size());
-  for (const double growth : growths) {
-    double total = 0, mean = 0, squares = 0;
-    for (std::size_t i = 0; i < seen.strides.size(); ++i) {
-      const double count = seen.independent[i];
-      if (!(count > 0)) continue;
-      total += count;
-      const double log_ratio = std::log(seen.variances[i] / (2 + growth * seen.strides[i]));
-      const double step = log_ratio - mean;
-      mean += count / total * step;
-      squares += count * step * (log_ratio - mean);
-    }
-    result.push_back(squares / variance_of_one);
-  }
+  for (const double growth : growths) result.push_back(squares_left(seen, growth) / variance_of_one);
   return result;
 }
 
 }  // namespace
+
+std::optional<double> best_growth(const StrideVariances& seen, const std::vector<double>& growths) {
+  if (std::none_of(seen.independent.begin(), seen.independent.end(), [](double count) { return count > 0; }))
+    return std::nullopt;
+  std::optional<double> result;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double growth : growths) {
+    const double squares = squares_left(seen, growth);
+    if (!(squares < least)) continue;
+    least = squares;
+    result = growth;
+  }
+  return result;
+}
 
 double least_growth(const StrideVariances& seen, const std::vector<double>& growths, double errors) {
   const std::vector<double> squares = squares_of(seen, growths);

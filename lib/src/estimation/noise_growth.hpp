@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 namespace egocal::detail {
@@ -13,6 +14,9 @@ struct StrideVariances {
   std::vector<double> variances;    ///< mean squared residuals of one motion
   std::vector<double> independent;  ///< motions that share no step; 0: not used
 };
+
+/// The first of these growths that fits best. Empty where no stride is used, or none fits.
+std::optional<double> best_growth(const StrideVariances& seen, const std::vector<double>& growths);
 
 /// The smallest of these growths (ascending) that fits within `errors` standard errors of the best one.
 double least_growth(const StrideVariances& seen, const std::vector<double>& growths, double errors);

@@ -103,29 +103,22 @@ std::vector<double> growths(const ResidualWeightOptions& o) {
   return result;
 }
 
+/// Motions that share no step, of each stride.
+std::vector<double> independent(const Ladder& ladder, const std::vector<double>& counts) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < ladder.size(); ++i) result.push_back(counts[i] / ladder.strides[i]);
+  return result;
+}
+
 /// lambda of variances 2 a + b s of motions of s steps: lambda + 1 / lambda = 2 + b / a, from the precision
 /// matrix of a random walk seen through white noise.
 double fitted_lambda(const Ladder& ladder, const std::vector<double>& variances,
                      const std::vector<double>& counts) {
-  double best = std::numeric_limits<double>::infinity(), lambda = 0;
-  const ResidualWeightOptions& o = ladder.options;
-  for (const double growth : growths(o)) {
-    double total = 0, mean = 0, squares = 0;
-    for (std::size_t i = 0; i < ladder.size(); ++i) {
-      const double count = counts[i] / ladder.strides[i];  // independent ones
-      if (!(count > 0)) continue;
-      const double log_ratio = std::log(variances[i] / (2 + growth * ladder.strides[i]));
-      total += count;
-      const double step = log_ratio - mean;
-      mean += count / total * step;
-      squares += count * step * (log_ratio - mean);
-    }
-    if (!(total > 0) || !(squares < best)) continue;
-    best = squares;
-    const double half = 1 + 0.5 * growth;
-    lambda = half - std::sqrt(half * half - 1);
-  }
-  return lambda;
+  const std::optional<double> growth =
+      detail::best_growth({ladder.strides, variances, independent(ladder, counts)}, growths(ladder.options));
+  if (!growth) return 0;
+  const double half = 1 + 0.5 * *growth;
+  return half - std::sqrt(half * half - 1);
 }
 
 /// Per motion, before rotation and translation are balanced. Strides whose motions are lost in the rounding
@@ -223,12 +216,6 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
       choice.mean_stride, choice.memory > 0 ? " and the jack-knife" : "",
       spread.rotation * 180 / std::numbers::pi, 100 * spread.translation);
   return text;
-}
-
-std::vector<double> independent(const Ladder& ladder, const std::vector<double>& counts) {
-  std::vector<double> result;
-  for (std::size_t i = 0; i < ladder.size(); ++i) result.push_back(counts[i] / ladder.strides[i]);
-  return result;
 }
 
 /// By how much the noise of motions grows with their steps, relative to that of poses: what the residuals of
