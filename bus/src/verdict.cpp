@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "egocal/bus/plausible.hpp"
+#include "egocal/directions.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
 #include "wire_checks.hpp"
@@ -16,7 +17,6 @@ namespace egocal::bus {
 
 namespace {
 
-constexpr std::string_view directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 /// Characters of a reason or a remedy: two long sentences.
 constexpr std::size_t max_sentence = 400;
 
@@ -97,7 +97,8 @@ std::optional<std::vector<std::string>> directions_in(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     std::string word = text.substr(begin, end - begin);
-    if (std::find(std::begin(directions), std::end(directions), word) == std::end(directions) ||
+    if (std::find(std::begin(direction_names), std::end(direction_names), word) ==
+            std::end(direction_names) ||
         std::find(words.begin(), words.end(), word) != words.end())
       return std::nullopt;
     words.push_back(std::move(word));

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "egocal/directions.hpp"
 #include "egocal/monitor/canvas.hpp"
 #include "egocal/monitor/model.hpp"
 #include "egocal/monitor/text.hpp"
@@ -17,7 +18,6 @@ namespace egocal::monitor {
 
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double centimetres_per_metre = 100.0;  // unit
-inline constexpr const char* direction_names[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 /// What is kept of a text from a sender: its first Model::max_text bytes.
 std::string bounded(const std::string& text);

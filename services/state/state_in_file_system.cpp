@@ -21,15 +21,6 @@ namespace egocal::services {
 
 namespace {
 
-void write_all(int fd, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw Error(std::strerror(errno));
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
-
 /// The file, checked before its content is read: a user's own file must not be moved away because of a
 /// slip on the command line, nor a pipe be waited for. Empty: there is none.
 std::optional<StateMedium::Found> whole(const std::string& file, const StateMedium::Expected& expected,
@@ -107,7 +98,7 @@ class StateInFileSystem final : public StateMedium {
   void add(std::span<const std::byte> bytes) override {
     if (out_ < 0) throw error_at(file_, 0, "", "has no snapshot to add to");
     try {
-      write_all(out_, bytes);
+      if (!write_all(out_, bytes)) throw Error(std::strerror(errno));
       size_ += static_cast<std::int64_t>(bytes.size());
     } catch (const Error& error) {
       // behind an unfinished part nothing may follow

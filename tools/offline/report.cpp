@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "degrees.hpp"
+#include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
@@ -20,8 +21,6 @@
 namespace egocal::tools {
 
 namespace {
-
-constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 nlohmann::ordered_json stream_json(const StreamSpan& stream) {
   return {{"poses", stream.poses}, {"first_s", stream.first}, {"last_s", stream.last}};
@@ -124,7 +123,7 @@ std::string scale_text(const Calibration& calibration) {
 nlohmann::ordered_json nominal_json(const Calibration& calibration) {
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < 6; ++i)
-    if (from_nominal(calibration, i)) names.push_back(directions[i]);
+    if (from_nominal(calibration, i)) names.push_back(direction_names[i]);
   return names;
 }
 
@@ -274,7 +273,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
       value = std::isfinite(stddev)
                   ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")
                   : "observable, too few motions for a standard deviation";
-    text += fmt::format("  {:<12}{}\n", directions[i], value);
+    text += fmt::format("  {:<12}{}\n", direction_names[i], value);
   }
   if (!calibration.observability.hint.empty()) text += fmt::format("  {}\n", calibration.observability.hint);
   if (truth) {

@@ -146,12 +146,12 @@ std::string why_not(const RigReport& report, std::size_t pair) {
 
 /// Like the pair, which agrees with it, and not good where it may be off by more than is tolerated.
 void judge_joint(const Calibration& pair, NamedExtrinsic& edge) {
+  if (pair.verdict != Verdict::good) return;
   constexpr double confidence = 1.96;  // mathematics: 95 % of a normal distribution
   const DiagnosisOptions options;
   const Eigen::Map<const Eigen::Vector3d> translation(edge.stddev->data()), rotation(edge.stddev->data() + 3);
   const bool known = confidence * translation.norm() <= options.tolerance_translation &&
                      confidence * rotation.norm() <= options.tolerance_rotation;
-  if (pair.verdict != Verdict::good) return;
   edge.verdict = to_string(known ? Verdict::good : Verdict::incomplete);
   edge.reason = known ? "All pairs agree with one set of extrinsics, and all directions are known."
                       : "All pairs agree with one set of extrinsics, which is not known well enough yet.";
@@ -229,12 +229,8 @@ ExtrinsicTree tree_of(const RigReport& report) {
     }
     edges.push_back(std::move(edge));
   }
-  ExtrinsicTree tree;
-  if (report.joint)
-    tree = {report.names[0], std::move(edges), {}};
-  else
-    tree = extrinsic_tree(edges, report.names[0]);
-  return tree;
+  if (report.joint) return {report.names[0], std::move(edges), {}};
+  return extrinsic_tree(edges, report.names[0]);
 }
 
 }  // namespace egocal::tools

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "degrees.hpp"
+#include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
@@ -19,8 +20,6 @@
 namespace egocal::tools {
 
 namespace {
-
-constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 constexpr const char* style = R"(<style>
 body { font: 15px/1.45 Helvetica, Arial, sans-serif; color: #1a1a1a; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
@@ -98,7 +97,7 @@ std::string uncertainty(const Calibration& calibration) {
       value = std::isfinite(stddev)
                   ? fmt::format("&plusmn; {:.3f} {}", stddev * (i < 3 ? 100 : degrees), i < 3 ? "cm" : "deg")
                   : "observable, too few motions for a standard deviation";
-    table += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", directions[i], value);
+    table += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", direction_names[i], value);
   }
   table += "</table>\n";
   if (!calibration.observability.hint.empty())
@@ -167,7 +166,7 @@ Plot progress_plot(const Progress& progress, bool rotation) {
   constexpr Series::Style styles[] = {Series::Style::line, Series::Style::dashes, Series::Style::line};
   for (std::size_t i = 0; i < 3; ++i) {
     Series series;
-    series.name = directions[i + (rotation ? 3 : 0)];
+    series.name = direction_names[i + (rotation ? 3 : 0)];
     series.x = progress.time;
     for (const double stddev : progress.stddev[i + (rotation ? 3 : 0)])
       series.y.push_back(stddev * (rotation ? degrees : 100));
@@ -186,7 +185,7 @@ Plot excitation_plot(const Excitation& excitation) {
   constexpr Colour colours[] = {Colour::blue, Colour::vermilion, Colour::green};
   for (std::size_t i = 0; i < 3; ++i) {
     Series series;
-    series.name = fmt::format("{} (rms {:.2g})", directions[i], excitation.root_mean_square[i]);
+    series.name = fmt::format("{} (rms {:.2g})", direction_names[i], excitation.root_mean_square[i]);
     series.x = excitation.time;
     series.y = excitation.turning[i];
     series.colour = colours[i];

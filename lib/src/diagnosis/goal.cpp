@@ -11,6 +11,7 @@
 
 #include "diagnosis/goal_spread.hpp"
 #include "diagnosis/manoeuvres.hpp"
+#include "egocal/directions.hpp"
 
 namespace egocal {
 
@@ -54,7 +55,6 @@ double with_further_parts(double stddev, const Answered& answered, std::size_t d
 }
 
 Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpreadOptions& tuning) {
-  constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   const std::array<double, 6> spread = goal_spread(answered, tuning);
   std::vector<std::pair<double, std::size_t>> missing;
   std::vector<double> ratios;
@@ -78,7 +78,7 @@ Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpr
   std::sort(missing.begin(), missing.end(), [](const auto& x, const auto& y) {
     return x.first > y.first || (x.first == y.first && x.second < y.second);
   });
-  for (const auto& [ratio, i] : missing) goal.missing.emplace_back(directions[i]);
+  for (const auto& [ratio, i] : missing) goal.missing.emplace_back(direction_names[i]);
   if (const double worst = missing.front().first; std::isfinite(worst)) {
     const double excess = excess_of(ratios, tuning);
     for (auto& [ratio, i] : missing) ratio *= excess / worst;  // the worst one is known well enough at 1

@@ -10,6 +10,7 @@
 #include "diagnosis/goal.hpp"
 #include "diagnosis/stability.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/directions.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -19,7 +20,6 @@ namespace detail {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 /// 95 % of a normal distribution, on one side (mathematics).
 constexpr double confidence_one_sided = 1.645;
 /// 95 % of the length of three equal, independent components (mathematics).
@@ -94,7 +94,7 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
   }
   std::string text;
   for (std::size_t i = 0; i < 6; ++i)
-    if (unknown[i]) text += (text.empty() ? "" : ", ") + std::string(directions[i]);
+    if (unknown[i]) text += (text.empty() ? "" : ", ") + std::string(direction_names[i]);
   return text;
 }
 

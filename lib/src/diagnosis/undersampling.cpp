@@ -9,6 +9,7 @@
 
 #include "diagnosis/answer_change.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/directions.hpp"
 
 namespace egocal::detail {
 
@@ -43,7 +44,6 @@ std::array<double, 6> interpolation_stddev(const Instants& instants, const DualQ
 std::optional<Finding> undersampled(const Instants& instants, const Answered& answered,
                                     const std::array<double, 6>& interpolation_stddev,
                                     const UndersamplingOptions& options) {
-  constexpr const char* directions[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   std::size_t worst = 6;
   double most = options.matters;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -63,7 +63,7 @@ std::optional<Finding> undersampled(const Instants& instants, const Answered& an
   finding.message = format(
       "The motion is too fast for the rate of %c: what is lost between its poses, at the times of %c, makes "
       "%s uncertain by %.2g %s (one standard deviation) rather than by %.2g.",
-      interpolated, other, directions[worst], unit * interpolation_stddev[worst], length ? "cm" : "deg",
+      interpolated, other, direction_names[worst], unit * interpolation_stddev[worst], length ? "cm" : "deg",
       unit * answered.observability.stddev[worst]);
   finding.remedy =
       format("Measure with %c at a higher rate, or with both sensors at the same times.", interpolated);

@@ -125,7 +125,7 @@ bool is_missing_number(std::string_view text) {
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
   if (text.empty() || (text.front() != 'n' && text.front() != 'N')) return false;
   std::string word(text.substr(0, 16));
-  for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (char& c : word) c = lower_case(c);
   return word == "nan" || word == "none" || word == "null" || word == "na" || word == "n/a" ||
          word.starts_with("nan(");
 }

@@ -11,6 +11,11 @@
 
 namespace egocal::detail {
 
+/// Of ASCII, whatever the locale.
+constexpr char lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
 /// Of poses that have no times [Hz]: limits, within which the times of a billion rows can be told apart and
 /// do not overflow.
 inline constexpr Range rates_of_poses{1e-3, 1e6};

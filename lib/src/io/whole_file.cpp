@@ -30,16 +30,6 @@ constexpr int most_links = 40;                // as the kernel follows
 constexpr int most_temporaries = 1000;        // a limit: names that are tried
 constexpr std::string_view temporary_suffix = ".part";
 
-bool write_all(int fd, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
 /// The name itself must reach the disk, too. Not every file system can.
 void sync_folder(const std::string& file) {
   const std::string folder = fs::path(file).parent_path();
@@ -93,6 +83,16 @@ int open_in_place(const std::string& path) {
 }
 
 }  // namespace
+
+bool write_all(int fd, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
 
 bool can_be_replaced(const std::string& path) {
   if (in_proc(end_of_links(path))) return false;

@@ -50,6 +50,9 @@ bool can_be_replaced(const std::string& file);
 /// end; /dev/stdout after what was printed before. Throws Error.
 void write_whole_file(const std::string& file, std::string_view content);
 
+/// All of the bytes to what a descriptor has open. False: not all, and errno tells why.
+bool write_all(int fd, std::span<const std::byte> bytes);
+
 /// The file that a path names once all symbolic links are followed, whether it exists or not.
 std::string without_links(const std::string& path);
 

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 
 namespace egocal::detail {
 
@@ -47,17 +48,12 @@ void ScratchFile::copy(ByteSource& source, int descriptor) {
   };
   std::uintmax_t written = 0;
   while (true) {
-    ByteSpan bytes = source.peek(step);
+    const ByteSpan bytes = source.peek(step);
     if (bytes.empty()) break;
     const std::size_t size = bytes.size();
     written += size;
     if (written > most) throw fail("more than " + std::to_string(most) + " bytes");
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) throw fail(std::strerror(errno));
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
+    if (!write_all(descriptor, std::as_bytes(bytes))) throw fail(std::strerror(errno));
     source.skip(size);
   }
   source.count_unpacking(losses_);

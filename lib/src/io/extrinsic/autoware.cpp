@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/directions.hpp"
 #include "io/extrinsic/words.hpp"
 
 namespace egocal::detail {
@@ -11,9 +12,8 @@ std::string autoware_text(const ExtrinsicWords& words) {
                      "; metres, radians, R = Rz(yaw) Ry(pitch) Rx(roll)\n# " + "quaternion w x y z: [" +
                      joined(wxyz(words.T.rotation), ", ") + "]\n# " + words.verdict + "\n";
   text += yaml_word(words.a) + ":\n  " + yaml_word(words.b) + ":\n";
-  constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   for (int i = 0; i < 6; ++i)
-    text += std::string("    ") + names[i] + ": " + exact(i < 3 ? t[i] : angles[i - 3]) + "\n";
+    text += std::string("    ") + direction_names[i] + ": " + exact(i < 3 ? t[i] : angles[i - 3]) + "\n";
   return text;
 }
 

@@ -9,8 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "egocal/directions.hpp"
 #include "egocal/error.hpp"
 #include "io/number_text.hpp"
+#include "io/text.hpp"
 
 namespace egocal {
 
@@ -106,11 +108,10 @@ const std::string& backing_frame(const NamedExtrinsic& extrinsic) {
 }
 
 std::vector<std::string> directions_with(const NamedExtrinsic& extrinsic, Backing backing) {
-  constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   const std::array<Backing, 6> all = backing_of(extrinsic);
   std::vector<std::string> directions;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i] == backing) directions.emplace_back(names[i]);
+    if (all[i] == backing) directions.emplace_back(direction_names[i]);
   return directions;
 }
 
@@ -190,7 +191,7 @@ std::string frame_name(const std::string& name) {
 std::string yaml_word(const std::string& name) {
   constexpr std::string_view special[] = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"};
   std::string lower = name;
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (char& c : lower) c = detail::lower_case(c);
   const bool letter =
       !lower.empty() && ((lower[0] >= 'a' && lower[0] <= 'z') || lower[0] == '_' || lower[0] == '/');
   const bool plain = letter && std::find(std::begin(special), std::end(special), lower) == std::end(special);

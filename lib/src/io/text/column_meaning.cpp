@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/text/column_meaning.hpp"
+#include "io/text.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -41,7 +42,7 @@ void read_brackets(std::string_view text, ColumnName& name) {
     const std::size_t end = std::min(text.find_first_of("])", begin), text.size());
     std::string unit;
     for (const char c : text.substr(begin + 1, end - begin - 1))
-      if (c != ' ') unit += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      if (c != ' ') unit += lower_case(c);
     if (unit.size() == 1 && unit[0] >= '0' && unit[0] <= '9')
       name.index = unit[0] - '0';
     else if (!unit.empty() && !is_known_unit(name.unit))
@@ -50,12 +51,8 @@ void read_brackets(std::string_view text, ColumnName& name) {
   }
 }
 
-bool ends_with(std::string_view word, std::string_view end) {
-  return word.size() >= end.size() && word.substr(word.size() - end.size()) == end;
-}
-
 bool ends_with_any(std::string_view word, Words ends) {
-  return std::any_of(ends.begin(), ends.end(), [&](std::string_view end) { return ends_with(word, end); });
+  return std::any_of(ends.begin(), ends.end(), [&](std::string_view end) { return word.ends_with(end); });
 }
 
 /// Velocities, rates, biases and uncertainties are named like poses; words may be written together
@@ -90,11 +87,11 @@ Meaning meaning_of_time(const ColumnName& name) {
     return false;
   });
   // "header.stamp", "ImageTimestamp", "GPSTime": words may be written together
-  if (ends_with(last, "stamp") || ends_with(last, "stamps"))
+  if (last.ends_with("stamp") || last.ends_with("stamps"))
     return {Quantity::time, header ? time_of_header : of_recording ? 1 : 4};
   if (is_one_of(name.joined, {"t", "times", "ts", "epoch", "timestampns", "timens", "time"}))
     return {Quantity::time, 3};
-  if (ends_with(last, "time")) return {Quantity::time, of_recording ? 1 : 2};
+  if (last.ends_with("time")) return {Quantity::time, of_recording ? 1 : 2};
   return {};
 }
 
@@ -152,7 +149,7 @@ ColumnName parse_column_name(std::string_view text) {
     word.clear();
   };
   for (const char c : text) {
-    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const char lower = lower_case(c);
     if ((lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9'))
       word += lower;
     else
