@@ -25,8 +25,8 @@ Trajectory steered(const Trajectory& poses, double most, double gain) {
     const double seconds = 1e-6 * static_cast<double>(poses[i + 1].time_us - poses[i - 1].time_us);
     const double rate =
         rotation_log(to_pose(conjugate(poses[i - 1].pose) * poses[i + 1].pose).rotation).x() / seconds;
-    const Pose turned{rotation_exp({most * std::tanh(gain * rate), 0, 0}), {}};
-    result[i].pose = normalized(poses[i].pose * to_dual_quaternion(turned));
+    result[i].pose =
+        normalized(poses[i].pose * testing::displacement({most * std::tanh(gain * rate), 0, 0}, {0, 0, 0}));
   }
   return result;
 }
@@ -40,7 +40,7 @@ TEST(FollowingMount, IsToldFromNoise) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     testing::Streams streams = testing::drive(Terrain::free, seed);
     EXPECT_LT(follows(streams).explained, 0.1);
-    streams.b = steered(streams.b, 0.09, 4);
+    streams.b = steered(streams.b, 0.09, 2);
     EXPECT_GT(follows(streams).explained, 0.5);
     EXPECT_GT(follows(streams).change, 0.02);
   }
@@ -72,8 +72,7 @@ TEST(ContradictingParts, AreTheTenthsThatFitTensOfTimesWorse) {
   };
   EXPECT_TRUE(found().parts.empty());
   for (std::size_t i = 0; i < 120; ++i)
-    streams.b[i].pose =
-        normalized(streams.b[i].pose * to_dual_quaternion(Pose{rotation_exp({0, 0.2, 0}), {}}));
+    streams.b[i].pose = normalized(streams.b[i].pose * testing::displacement({0, 0.2, 0}, {0, 0, 0}));
   ASSERT_EQ(found().parts.size(), 2u);
   EXPECT_NEAR(found().parts[1].end, 12, 0.5);
   const std::optional<Finding> finding = detail::contradicting_parts_finding(found());
