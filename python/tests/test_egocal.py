@@ -299,7 +299,7 @@ def test_an_identity_that_nothing_was_found_for_warns():
         egocal.solve_dual(np.zeros((8, 8)))
 
 
-def test_what_was_lost_while_reading_is_told(drive, tmp_path):
+def test_what_was_lost_while_reading_is_reported(drive, tmp_path):
     cut = tmp_path / "cut.tum"
     cut.write_bytes(pathlib.Path(drive[1]).read_bytes()[:-20])
     with pytest.warns(egocal.EgocalWarning, match="cut.tum: "):

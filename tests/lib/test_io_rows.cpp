@@ -121,7 +121,7 @@ TEST_F(TextRows, OtherBlanksMerge) {
                "wide");
   expect_poses(read("t\tx\ty\tz\tqx\tqy\tqz\tqw\n" + rows(' ', "txyz0001", {""})), 4, "header alone");
   expect_poses(read("t,\tx,\ty,\tz,\tqx,\tqy,\tqz,\tqw\n0,\t1,\t10,\t100,\t0,\t0,\t0,\t1\n"), 1, "commas");
-  // a field that is missing between blanks cannot be told from those behind it
+  // between blanks a missing field cannot be distinguished from those behind it
   EXPECT_THAT(refusal("t key x y z roll pitch yaw id\n0 1 1 10 100 0 0 0 3\n1 2 20 200 0 0 0 3\n"),
               HasSubstr(":3: expected 9 fields, as the header has names, got 8"));
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What somebody is told who writes an extrinsic for another program and reads nothing else.
+// What is reported to somebody who writes an extrinsic for another program and reads nothing else.
 #include "commands.hpp"
 
 namespace {

@@ -32,7 +32,7 @@ bool precedes(const Seen& x, const Seen& y) {
   return x.numbers < y.numbers;
 }
 
-/// The different poses of a drive, sorted. What stands still repeats them.
+/// The different poses of a drive, sorted. A sensor that stands repeats them.
 std::vector<Seen> different_poses(const Trajectory& trajectory) {
   std::vector<Seen> places;
   places.reserve(trajectory.size());
@@ -99,7 +99,7 @@ bool Drives::is_repeated(const std::vector<Trajectory>& drive, const std::vector
             names[i], 100 * found.part, drives_[k].names[i]));
     }
     if (!all) continue;
-    notes.push_back(fmt::format("--append: {}: the same recording as {}: left out, it shows nothing new",
+    notes.push_back(fmt::format("--append: {}: the same recording as {}: omitted, it shows nothing new",
                                 fmt::join(names, ", "), fmt::join(drives_[k].names, ", ")));
     return true;
   }

@@ -20,7 +20,7 @@ class Drives {
 
   /// Appends another drive, one trajectory a sensor, an hour after the end of what is there: no motion spans
   /// such a gap, so each drive may have an odometry frame of its own. A recording that is in already is no
-  /// further evidence and is left out; one that shares poses with it is not. Both are told in `notes`.
+  /// further evidence and is omitted; one that shares poses with it is not. `notes` report both.
   void append(std::vector<Trajectory> drive, std::vector<std::string> names, std::vector<std::string>& notes);
 
   /// Throws Error where a drive gives two sensors no motion pair: it would be ignored without a word. a, b:

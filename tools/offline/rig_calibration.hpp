@@ -23,7 +23,7 @@ struct RigRequest {
   ReadOptions reading;                      ///< of all files
   std::vector<std::string> append;          ///< further drives, one file per sensor, in turn
   CalibrationOptions calibration;           ///< common to all pairs
-  std::function<void(double)> progress;     ///< is told the part that is done, 0 to 1; one call at a time
+  std::function<void(double)> progress;     ///< called with the part that is done, 0 to 1; one call at a time
 };
 
 /// Something that is wrong with one sensor, or with one of a pair.

@@ -408,7 +408,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     for (Finding& finding :
          check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
       result.findings.push_back(std::move(finding));
-  // of what stands, noise would be compared with noise
+  // while the sensors stand, noise would be compared with noise
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
   Misfit misfit{detail::misfit(moving, at_answer),

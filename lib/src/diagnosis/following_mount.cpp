@@ -25,7 +25,7 @@ using FollowingRelation =
 using FollowedRows = Eigen::Matrix<double, 3, 36>;
 
 /// Of the rotation between the sensors over a motion, in the frame of b at its begin [rad], and what b does.
-/// Where b stands turned by d before it and by e after it, the change is d - turned * e.
+/// Where b is turned by d before it and by e after it, the change is d - turned * e.
 struct FollowedChange {
   Eigen::Vector3d rotation;
   Eigen::Matrix3d turned;  ///< by b over the motion

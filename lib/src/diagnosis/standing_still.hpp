@@ -28,7 +28,7 @@ struct RestOptions {
   /// And at most this many times the median residual of motions that are so short: what is slow and exact is
   /// no rest.
   double of_noise = 3;
-  /// The motions at rest are left out where they are at least this part: of less no median is one of noise.
+  /// The motions at rest are omitted where they are at least this part: of less no median is one of noise.
   double least_part = 0.2;
 };
 

@@ -30,17 +30,16 @@ constexpr int most_links = 40;                // as the kernel follows
 constexpr int most_temporaries = 1000;        // a limit: names that are tried
 constexpr std::string_view temporary_suffix = ".part";
 
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
 /// The name itself must reach the disk, too. Not every file system can.
 void sync_folder(const std::string& file) {
-  const std::string folder = fs::path(file).parent_path();
-  const int fd = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int fd = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;
   fsync(fd);
   close(fd);
-}
-
-fs::path folder_of(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 /// The links of /proc look like links to files, and are what a process has open.

@@ -15,23 +15,16 @@ namespace egocal {
 namespace {
 
 using detail::JointPair;
-
-/// Motions without noise have no minimum to divide by: this part of the trace is taken instead.
-constexpr double least_minimum = 1e-14;
+using detail::minimum_of;
 
 std::vector<JointPair> joint_pairs(std::span<const RigEdge> edges, double length) {
   std::vector<JointPair> pairs;
   for (const RigEdge& edge : edges) {
-    const Matrix8d symmetric = 0.5 * (edge.Q + edge.Q.transpose());
-    JointPair pair{edge.a, edge.b, detail::in_units_of(length, symmetric), {}};
+    JointPair pair = detail::joint_pair(edge, length);
     pair.optimum = solve_dual(pair.Q).q;
     pairs.push_back(std::move(pair));
   }
   return pairs;
-}
-
-double minimum_of(const JointPair& pair) {
-  return std::max(cost(pair.Q, pair.optimum), least_minimum * pair.Q.trace());
 }
 
 /// The sensor with the least noise among those that have a pair with every other one: the proof holds

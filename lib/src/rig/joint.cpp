@@ -3,6 +3,7 @@
 #include "rig/joint.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "egocal/problem/cost.hpp"
@@ -62,6 +63,16 @@ Eigen::VectorXd downhill_step(const JointDerivatives& here, const JointOptions& 
 }
 
 }  // namespace
+
+JointPair joint_pair(const RigEdge& edge, double length) {
+  const Matrix8d symmetric = 0.5 * (edge.Q + edge.Q.transpose());
+  return {edge.a, edge.b, in_units_of(length, symmetric), {}};
+}
+
+double minimum_of(const JointPair& pair) {
+  constexpr double least_minimum = 1e-14;  // of the trace: what rounding leaves of perfect motions
+  return std::max(cost(pair.Q, pair.optimum), least_minimum * pair.Q.trace());
+}
 
 double joint_cost(std::span<const JointPair> pairs, const std::vector<DualQuaternion>& poses) {
   double sum = 0;

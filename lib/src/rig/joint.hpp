@@ -20,6 +20,12 @@ struct JointPair {
   DualQuaternion optimum;    ///< of this pair alone
 };
 
+/// An edge with lengths in another unit, without its optimum.
+JointPair joint_pair(const RigEdge& edge, double length);
+
+/// The cost of a pair at its optimum. Motions without noise have none to divide by: a part of the trace.
+double minimum_of(const JointPair& pair);
+
 /// T_a_b of two poses in sensor 0.
 inline DualQuaternion relative(const DualQuaternion& a, const DualQuaternion& b) {
   return canonical_sign(normalized(conjugate(a) * b));

@@ -11,17 +11,14 @@ namespace egocal::detail {
 
 namespace {
 
-/// Of motions without noise, as in solve_consistent_set().
-constexpr double least_of_trace = 1e-14;
-
 /// Lengths in another unit, each pair divided by the minimum that the whole drive has for it: it is the
 /// weight of the pair, which a part of the drive does not change.
 std::vector<JointPair> weighted(std::span<const RigEdge> edges, const std::vector<double>& minima,
                                 double length) {
   std::vector<JointPair> pairs;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Matrix8d symmetric = 0.5 * (edges[i].Q + edges[i].Q.transpose());
-    pairs.push_back({edges[i].a, edges[i].b, in_units_of(length, symmetric) / minima[i], {}});
+    pairs.push_back(joint_pair(edges[i], length));
+    pairs.back().Q /= minima[i];
   }
   return pairs;
 }
@@ -59,8 +56,9 @@ std::vector<std::array<double, 6>> joint_spread(std::span<const RigEdge> edges,
   const double length = length_scale(edges.front().Q);
   std::vector<double> minima;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Matrix8d Q = in_units_of(length, Matrix8d(0.5 * (edges[i].Q + edges[i].Q.transpose())));
-    minima.push_back(std::max(cost(Q, in_units_of(length, optima[i])), least_of_trace * Q.trace()));
+    JointPair pair = joint_pair(edges[i], length);
+    pair.optimum = in_units_of(length, optima[i]);
+    minima.push_back(minimum_of(pair));
   }
   std::vector<DualQuaternion> start;
   for (const DualQuaternion& pose : poses) start.push_back(in_units_of(length, pose));

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "problem/without_part.hpp"
 #include "solvers/minimiser.hpp"
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -16,6 +17,13 @@
 namespace egocal::detail {
 
 namespace {
+
+bool is_of_loop(const RigPair& pair, const Loop& loop) {
+  const auto is_in = [&](std::size_t sensor) {
+    return std::find(loop.sensors.begin(), loop.sensors.end(), sensor) != loop.sensors.end();
+  };
+  return is_in(pair.a) && is_in(pair.b);
+}
 
 /// T_a_b of every pair, in both directions.
 class Extrinsics {
@@ -53,12 +61,10 @@ namespace {
 Matrix6d attenuations(const Loop& loop, const Extrinsics& whole, std::span<const RigPair> pairs,
                       std::span<const TimedPair> timed) {
   Matrix6d sum = Matrix6d::Zero();
-  const std::array<std::size_t, 3>& s = loop.sensors;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto in_loop = [&](std::size_t k) { return std::find(s.begin(), s.end(), k) != s.end(); };
-    if (!in_loop(pairs[i].a) || !in_loop(pairs[i].b) || pairs[i].problem.mode == Mode::planar) continue;
+    if (!is_of_loop(pairs[i], loop) || pairs[i].problem.mode == Mode::planar) continue;
     Eigen::Vector3d pull = attenuation(timed[i].all, whole.at(pairs[i].a, pairs[i].b));
-    if (pairs[i].a != s[0]) pull = to_pose(whole.at(s[0], pairs[i].a)).rotation * pull;
+    if (pairs[i].a != loop.sensors[0]) pull = to_pose(whole.at(loop.sensors[0], pairs[i].a)).rotation * pull;
     sum.topLeftCorner<3, 3>() += pull * pull.transpose();
   }
   return sum;
@@ -127,10 +133,8 @@ void judge(Loop& loop, const Vector6d& misfit, const std::vector<Vector6d>& with
 /// deviation of the loop however their errors depend on each other [m, rad].
 std::array<double, 2> stated_of(const Loop& loop, std::span<const RigPair> pairs) {
   std::array<double, 2> sum{};
-  const std::array<std::size_t, 3>& s = loop.sensors;
   for (const RigPair& pair : pairs) {
-    const auto in_loop = [&](std::size_t k) { return std::find(s.begin(), s.end(), k) != s.end(); };
-    if (!pair.stated || !in_loop(pair.a) || !in_loop(pair.b)) continue;
+    if (!pair.stated || !is_of_loop(pair, loop)) continue;
     const Eigen::Map<const Vector6d> stddev(pair.stated->data());
     sum[0] += stddev.head<3>().norm();
     sum[1] += stddev.tail<3>().norm();
@@ -140,10 +144,8 @@ std::array<double, 2> stated_of(const Loop& loop, std::span<const RigPair> pairs
 
 bool enough_motions(const Loop& loop, std::span<const RigPair> pairs, std::span<const TimedPair> timed,
                     const RigOptions& options) {
-  const std::array<std::size_t, 3>& s = loop.sensors;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto in_loop = [&](std::size_t k) { return std::find(s.begin(), s.end(), k) != s.end(); };
-    if (in_loop(pairs[i].a) && in_loop(pairs[i].b) &&
+    if (is_of_loop(pairs[i], loop) &&
         static_cast<std::size_t>(timed[i].all.count) < options.least_motions * options.blocks)
       return false;
   }
@@ -152,14 +154,6 @@ bool enough_motions(const Loop& loop, std::span<const RigPair> pairs, std::span<
 
 }  // namespace
 
-Statistics without_block(const TimedPair& pair, std::size_t k) {
-  Statistics rest = pair.all;
-  rest.dual_rows -= pair.blocks[k].dual_rows;
-  rest.weight -= pair.blocks[k].weight;
-  rest.count -= pair.blocks[k].count;
-  return rest;
-}
-
 std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
                            std::span<const TimedPair> timed, const RigOptions& options) {
   Extrinsics whole;
@@ -167,7 +161,7 @@ std::vector<Loop> loops_of(std::size_t sensors, std::span<const RigPair> pairs,
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     whole.set(pairs[i].a, pairs[i].b, extrinsic_of(pairs[i].problem, timed[i].all));
     for (std::size_t k = 0; k < options.blocks; ++k) {
-      const Statistics rest = without_block(timed[i], k);
+      const Statistics rest = without_part(timed[i].all, timed[i].blocks[k]);
       without[k].set(
           pairs[i].a, pairs[i].b,
           rest.count > 0 ? extrinsic_of(pairs[i].problem, rest) : whole.at(pairs[i].a, pairs[i].b));

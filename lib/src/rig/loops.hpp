@@ -15,9 +15,6 @@ struct TimedPair {
   Statistics all;
 };
 
-/// All of a pair but one part of the drive.
-Statistics without_block(const TimedPair& pair, std::size_t k);
-
 /// How far noisy rotations pull a translation towards zero, r'Dr inv(D) t (docs/method.md): pairs whose
 /// sensors have unlike noise are pulled unlike far, and a loop does not close by that. Sensor a's frame [m].
 Eigen::Vector3d attenuation(const Statistics& statistics, const DualQuaternion& T_a_b);

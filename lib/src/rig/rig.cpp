@@ -11,6 +11,7 @@
 
 #include "egocal/error.hpp"
 #include "moves/linear_blocks.hpp"
+#include "problem/without_part.hpp"
 #include "rig/joint.hpp"
 #include "rig/loops.hpp"
 #include "solvers/minimiser.hpp"
@@ -167,8 +168,8 @@ std::vector<std::array<double, 6>> spread_of(std::span<const RigPair> pairs,
   for (std::size_t k = 0; k < timed.front().blocks.size(); ++k) {
     std::vector<RigEdge>& part = without.emplace_back();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      // sums, not means: a part that is left out changes the weight of what is left
-      const Statistics rest = detail::without_block(timed[i], k);
+      // sums, not means: a part that is omitted changes the weight of the others
+      const Statistics rest = detail::without_part(timed[i].all, timed[i].blocks[k]);
       part.push_back({pairs[i].a, pairs[i].b,
                       cost_matrix(rest, pairs[i].problem.balance) * (rest.weight / timed[i].all.weight)});
     }

@@ -3,6 +3,7 @@
 #include "egocal/uncertainty/leave_out.hpp"
 
 #include "egocal/solvers/global.hpp"
+#include "problem/without_part.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/takes_off.hpp"
 #include "uncertainty/tangent_form.hpp"
@@ -20,10 +21,7 @@ std::vector<Vector6d> planar_differences(const Problem& problem, const DualQuate
   const Pose with_all = to_pose(T_a_b);
   for (const Statistics& block : problem.blocks) {
     if (detail::takes_off(block)) continue;
-    Statistics rest = all;
-    rest.dual_rows -= block.dual_rows;
-    rest.weight -= block.weight;
-    const Solution without = solve_planar(cost_matrix(rest, problem.balance));
+    const Solution without = solve_planar(cost_matrix(detail::without_part(all, block), problem.balance));
     differences.push_back(detail::frame_a_difference(with_all, extrinsic_from_planar(without.q, G_a, G_b)));
   }
   return differences;

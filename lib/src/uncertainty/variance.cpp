@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "egocal/solvers/global.hpp"
+#include "problem/without_part.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/jackknife.hpp"
 #include "uncertainty/takes_off.hpp"
@@ -219,10 +220,7 @@ Vector6d detail::planar_variance(const Problem& problem, const Statistics& all, 
   const auto jackknife_of = [&](const std::vector<Statistics>& blocks) {
     Jackknife jackknife(std::max(1.0, static_cast<double>(all.count)));
     for (const Statistics& block : blocks) {
-      Statistics rest = all;
-      rest.dual_rows -= block.dual_rows;
-      rest.weight -= block.weight;
-      const Solution without = solve_planar(cost_matrix(rest, problem.balance));
+      const Solution without = solve_planar(cost_matrix(without_part(all, block), problem.balance));
       jackknife.leave_out(static_cast<double>(block.count),
                           frame_a_difference(with_all, extrinsic_from_planar(without.q, G_a, G_b)),
                           Vector6d::Zero());
