@@ -85,15 +85,15 @@ std::vector<Point> thinned_line(const std::vector<Point>& line, const Thinning& 
 std::vector<Point> thinned_dots(const std::vector<Point>& dots, double radius, const Thinning& thinning) {
   if (dots.size() < thinning.least_points) return dots;
   const auto cell_of = [&](double at) { return static_cast<std::ptrdiff_t>(std::floor(at / thinning.cell)); };
-  std::ptrdiff_t left = 0, right = 0, top = 0, bottom = 0;
+  std::ptrdiff_t first_column = 0, last_column = 0, first_row = 0, last_row = 0;
   for (const Point& dot : dots) {
-    left = std::min(left, cell_of(dot.x - radius));
-    right = std::max(right, cell_of(dot.x + radius));
-    top = std::min(top, cell_of(dot.y - radius));
-    bottom = std::max(bottom, cell_of(dot.y + radius));
+    first_column = std::min(first_column, cell_of(dot.x - radius));
+    last_column = std::max(last_column, cell_of(dot.x + radius));
+    first_row = std::min(first_row, cell_of(dot.y - radius));
+    last_row = std::max(last_row, cell_of(dot.y + radius));
   }
-  const std::ptrdiff_t columns = right - left + 1;
-  std::vector<bool> covered(static_cast<std::size_t>(columns * (bottom - top + 1)));
+  const std::ptrdiff_t columns = last_column - first_column + 1;
+  std::vector<bool> covered(static_cast<std::size_t>(columns * (last_row - first_row + 1)));
   // a cell counts where all of it is inside of a dot: no gaps are left between dots
   const double inside = std::max(0.0, radius - thinning.cell * std::numbers::sqrt2 / 2);
   // from left to right each dot would add its right edge to what is covered, ten times as many
@@ -106,7 +106,7 @@ std::vector<Point> thinned_dots(const std::vector<Point>& dots, double radius, c
         const double x = (static_cast<double>(column) + 0.5) * thinning.cell - dot.x,
                      y = (static_cast<double>(row) + 0.5) * thinning.cell - dot.y;
         if (x * x + y * y > inside * inside) continue;
-        const auto cell = static_cast<std::size_t>((row - top) * columns + column - left);
+        const auto cell = static_cast<std::size_t>((row - first_row) * columns + column - first_column);
         seen[i] = seen[i] || !covered[cell];
         covered[cell] = true;
       }

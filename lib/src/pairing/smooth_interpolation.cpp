@@ -11,11 +11,11 @@ namespace egocal::detail {
 
 namespace {
 
-constexpr std::size_t most = SynchroniserOptions::most_smooth_poses;
+constexpr std::size_t most_poses = SynchroniserOptions::most_smooth_poses;
 constexpr std::size_t polynomials = 4;  ///< a constant, a line, a parabola, a cubic
 constexpr double nugget = 1e-6;         ///< poses of nearly one time would have no solution
 
-using Values = std::array<double, most>;
+using Values = std::array<double, most_poses>;
 
 /// The value at count / 2 if they were sorted. Of so few it is the one that as many are smaller than.
 double median_of(const Values& values, std::size_t count) {
@@ -55,7 +55,7 @@ std::optional<Values> places_of(std::span<const StampedPose> poses, double part,
 /// other. n comes as a constant where it can, which makes the loops short.
 [[gnu::always_inline]] inline Values kriging_weights_of(const Values& places, std::size_t n,
                                                         double correlation_length) {
-  constexpr std::size_t largest = most + polynomials;
+  constexpr std::size_t largest = most_poses + polynomials;
   const std::size_t size = n + polynomials;
   const double half = 0.5 * static_cast<double>(n);
   const double falls = -0.5 / (correlation_length * correlation_length);
@@ -105,7 +105,7 @@ Values kriging_weights(const Values& places, std::size_t n, double correlation_l
 struct Seen {
   Eigen::Vector3d turned, moved;
 };
-using SeenPoses = std::array<Seen, most>;
+using SeenPoses = std::array<Seen, most_poses>;
 
 Eigen::Vector3d position(const DualQuaternion& pose) {
   return 2 * quaternion_product(pose.dual, quaternion_conjugate(pose.real)).tail<3>();
