@@ -7,13 +7,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
+#include "egocal/uncertainty/observability.hpp"
+#include "solvers/minimiser.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal {
 
 namespace {
+
+using detail::Vector6d;
 
 /// Of the noise, along the rotation: far above rounding.
 constexpr double least_left = 1e-6;
@@ -36,7 +42,6 @@ struct NoiseCurvatures {
 };
 
 std::optional<NoiseCurvatures> curvatures(const Problem& problem) {
-  if (problem.mode == Mode::planar) return std::nullopt;
   const Matrix8d Q = cost_matrix(problem);
   const Solution solution = solve_dual(Q);
   if (solution.status != SolverStatus::converged) return std::nullopt;
@@ -96,23 +101,66 @@ std::optional<Attenuation> taking_off(const Problem& problem, const NoiseCurvatu
   }
 }
 
-Eigen::Vector3d standard_deviations(const Problem& problem, const NoiseCurvatures& all) {
-  const auto differences = leave_out_differences(problem, cost_matrix(problem), all.q);
+/// By leaving out blocks, in sensor a's frame with the translation along the columns of `ways`.
+Vector6d standard_deviations(const Problem& problem, const DualQuaternion& T_a_b,
+                             const Eigen::Matrix3d& ways) {
+  std::vector<Vector6d> differences = leave_out_differences(problem, cost_matrix(problem), T_a_b);
   const auto blocks = static_cast<double>(differences.size());
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
-  for (const auto& difference : differences) mean += all.ways.transpose() * difference.head<3>() / blocks;
-  for (const auto& difference : differences)
-    squares += (all.ways.transpose() * difference.head<3>() - mean).cwiseAbs2();
+  Vector6d mean = Vector6d::Zero(), squares = Vector6d::Zero();
+  for (Vector6d& difference : differences) {
+    difference.head<3>() = (ways.transpose() * difference.head<3>()).eval();
+    mean += difference / blocks;
+  }
+  for (const Vector6d& difference : differences) squares += (difference - mean).cwiseAbs2();
   return (squares * (blocks - 1) / blocks).cwiseSqrt();
+}
+
+/// x and y lose the noise, and so does what is seen of it: as much as leaves Q positive definite.
+std::optional<Problem> taking_off_in_plane(const Problem& problem, const AttenuationOptions& options,
+                                           Attenuation& attenuation) {
+  const Eigen::Vector4d translations(0, 1, 1, 0), rotations(1, 0, 0, 1);
+  double left = least_left;
+  while (true) {
+    attenuation.taken_off = (translations + (1 - left) * rotations).asDiagonal();
+    std::optional<Problem> result = without_attenuation(problem, attenuation);
+    if (result || !(left < 1)) return result;
+    left = std::min(1.0, options.reserve * left);
+  }
+}
+
+std::optional<Attenuation> find_attenuation_in_plane(const Problem& problem,
+                                                     const AttenuationOptions& options) {
+  const Matrix8d Q = cost_matrix(problem);
+  const DualQuaternion T_p = solve_planar(Q).q;
+  const DualQuaternion before = detail::extrinsic_of(problem, T_p);
+  // what is mostly noise stays what it is, and hidden
+  if (hidden_directions(problem, Q, before).basis.cols() > 0) return std::nullopt;
+  Attenuation result;
+  result.r = T_p.real;
+  const std::optional<Problem> corrected = taking_off_in_plane(problem, options, result);
+  if (!corrected) return std::nullopt;
+  const DualQuaternion after = detail::extrinsic_of(*corrected, solve_planar(cost_matrix(*corrected)).q);
+  const Vector6d pull = detail::frame_a_difference(before, after);
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  const Vector6d stddev = standard_deviations(problem, before, axes);
+  const double translation = stddev.head<3>().norm(), rotation = stddev.tail<3>().norm();
+  result.pull = std::max(pull.head<3>().norm() / translation, pull.tail<3>().norm() / rotation);
+  if (!(result.pull > options.least_pull) || !std::isfinite(result.pull)) return std::nullopt;
+  const Vector6d wider = standard_deviations(*corrected, after, axes);
+  if (!(wider.head<3>().norm() < options.most_loss * translation) ||
+      !(wider.tail<3>().norm() < options.most_loss * rotation))
+    return std::nullopt;
+  return result;
 }
 
 }  // namespace
 
 std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options) {
   if (problem.blocks.size() < options.least_blocks) return std::nullopt;
+  if (problem.mode == Mode::planar) return find_attenuation_in_plane(problem, options);
   const std::optional<NoiseCurvatures> all = curvatures(problem);
   if (!all) return std::nullopt;
-  const Eigen::Vector3d stddev = standard_deviations(problem, *all);
+  const Eigen::Vector3d stddev = standard_deviations(problem, all->q, all->ways).head<3>();
   if (!stddev.allFinite()) return std::nullopt;
   std::array<bool, 3> may_be{}, shown{};
   bool needed = false;
@@ -138,6 +186,7 @@ std::optional<Attenuation> find_attenuation(const Problem& problem, const Attenu
 }
 
 std::optional<Attenuation> whole_attenuation(const Problem& problem, const AttenuationOptions& options) {
+  if (problem.mode == Mode::planar) return std::nullopt;
   const std::optional<NoiseCurvatures> all = curvatures(problem);
   if (!all) return std::nullopt;
   std::array<bool, 3> corrected{};

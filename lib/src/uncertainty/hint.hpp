@@ -12,4 +12,8 @@ namespace egocal::detail {
 std::string spatial_hint(int hidden_translations, bool rotation_hidden,
                          const Eigen::Vector3d& hidden_direction);
 
+/// The same in the plane: whether a translation is not seen, and whether the yaw is not, in `hidden`
+/// directions.
+std::string planar_hint(bool translation_hidden, bool yaw_hidden, int hidden);
+
 }  // namespace egocal::detail

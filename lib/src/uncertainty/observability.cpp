@@ -162,6 +162,22 @@ std::string hint(const Surroundings& around, const ObservabilityOptions& options
   return detail::spatial_hint(hidden_translations, rotation_hidden, direction);
 }
 
+/// Rotation noise pulls the translation towards where it costs least, by the part of D that is noise, and the
+/// rotation with it where both are seen together. basis: its first columns are the directions that are seen.
+Vector6d pull_of_noise(const Surroundings& around, const Matrix6d& basis) {
+  const DualQuaternion& q = around.q;
+  Vector6d slope = Vector6d::Zero();
+  slope.head<3>() = 0.5 * around.noise * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
+  Matrix6d clean = around.H;
+  clean.diagonal().head<3>().array() -= 0.25 * around.noise;
+  const auto seen = basis.leftCols(6 - around.hidden);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> curvature =
+      seen.transpose() * clean * seen;
+  const auto factor = curvature.ldlt();
+  if (factor.info() != Eigen::Success || !factor.isPositive()) return Vector6d::Zero();
+  return seen * factor.solve(seen.transpose() * slope);
+}
+
 Observability spatial_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
                                     ErrorCorrelation errors, const ObservabilityOptions& options) {
   const Surroundings around = look_around(problem, Q, T_a_b, errors, options);
@@ -180,14 +196,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
   // settings of one drive have the same unknown part
   if (errors == ErrorCorrelation::correlated)
     variance += variance_of_hidden(around, problem.prior.has_value(), options);
-  // Rotation noise also pulls the translation towards where it costs least, by the part of D that is noise.
-  Vector6d pull = Vector6d::Zero();
-  const DualQuaternion& q = around.q;
-  const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
-  const Eigen::Matrix3d D_t = 4 * around.H.topLeftCorner<3, 3>();
-  const Eigen::LDLT<Eigen::Matrix3d> D_factor(D_t);
-  if (D_factor.info() == Eigen::Success && D_factor.isPositive())
-    pull.head<3>() = around.noise * D_factor.solve(t);
+  const Vector6d pull = pull_of_noise(around, basis);
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!result.observable[k]) continue;
@@ -197,49 +206,73 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
   return result;
 }
 
-struct PlanarDirections {
-  std::array<bool, 6> observable{};
-  bool translation_seen = false, yaw_seen = false;
-  double pull = infinity;  ///< of rotation noise on the translation [m]
-};
-
-/// pairs: in all blocks.
-PlanarDirections planar_directions(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                                   std::uint64_t pairs, const ObservabilityOptions& options) {
-  PlanarDirections result;
+/// The same in the plane; the hidden directions come first, seen in sensor a's frame. pairs: in all blocks.
+Surroundings look_around_in_plane(const Problem& problem, const Matrix8d& Q_metres,
+                                  const DualQuaternion& T_a_b, std::uint64_t pairs,
+                                  const ObservabilityOptions& options) {
+  Surroundings around;
+  around.pairs = static_cast<double>(pairs);
+  around.length = detail::length_scale(Q_metres);
+  around.q = detail::in_units_of(around.length, T_a_b);
+  const Matrix8d Q = detail::in_units_of(around.length, Q_metres);
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
-  const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, G_b);
+  const DualQuaternion T_p = detail::in_units_of(around.length, planar_from_extrinsic(T_a_b, G_a, G_b));
+  // x, y and yaw of T_p, whose frame has its origin below sensor a: turning it moves no translation there
+  const Matrix86d all = detail::frame_a_basis(T_p);
+  Eigen::Matrix<double, 8, 3> basis;
+  basis << all.col(0), all.col(1), all.col(5);
+  const double least = cost(Q, T_p);
+  Eigen::Matrix3d clean = basis.transpose() * lagrangian_matrix(Q, {least, 0}) * basis;
+  around.noise = rotation_noise(Q, T_p);
+  const double fluctuation = 4 / std::sqrt(std::max(1.0, around.pairs));
+  clean.diagonal().head<2>().array() -= 0.25 * around.noise * (options.independent_noise + fluctuation);
+  clean(2, 2) -= 0.25 * fluctuation * std::max(0.0, least);
+  const detail::SymmetricEigen<3> seen = detail::symmetric_eigen<3>(clean);
+  const double floor = 0.25e-12 * Q.diagonal().sum();
+  while (around.hidden < 3 && !(seen.values[around.hidden] > floor)) ++around.hidden;
+  const Eigen::Matrix3d axes = to_pose(G_a).rotation.toRotationMatrix();
+  around.vectors.setZero();
+  around.vectors.topLeftCorner<3, 3>() = axes.leftCols<2>() * seen.vectors.topRows<2>();
+  around.vectors.bottomLeftCorner<3, 3>() = axes.col(2) * seen.vectors.row(2);
+  return around;
+}
 
-  // yaw: curvature of the cost minimised over the translation; x, y: the block of D, less what rotation noise
-  // makes
-  const double fluctuation = 4 / std::sqrt(std::max(1.0, static_cast<double>(pairs)));
-  const double noise = rotation_noise(Q, T_p);
-  const double D_least = detail::symmetric_eigen<2>(Q.block<2, 2>(5, 5)).values[0];
-  const Solution best = solve_planar(Q);
-  DualQuaternion turned = best.q;  // the other eigenvector of the 2 x 2 Schur complement is the worst yaw
-  turned.real = {-best.q.real[3], 0, 0, best.q.real[0]};
-  double worst = turned.real.dot(Q.topLeftCorner<4, 4>() * turned.real);
-  if (Q.block<2, 2>(5, 5).determinant() > 0) {
-    Eigen::Vector2d slope = Q.block<4, 2>(0, 5).transpose() * turned.real;
-    worst -= slope.dot(Q.block<2, 2>(5, 5).inverse() * slope);
-  }
-  const double rounding = 1e-12 * (Q.diagonal().sum());
-  result.yaw_seen = worst - best.cost > fluctuation * std::max(0.0, best.cost) + rounding;
-  const double unit = detail::length_scale(Q);
-  result.translation_seen =
-      D_least > noise * (options.independent_noise + fluctuation) + rounding / (unit * unit) &&
-      D_least > 1e-28 * Q(0, 0);
-
-  // The plane's own directions in sensor a's frame; yaw turns about the normal.
-  const Eigen::Vector3d normal = problem.plane_a.normal;
+/// A coordinate of sensor a's frame must also be one of the plane: x and y lie in it, yaw turns about its
+/// normal.
+std::array<bool, 6> observable_in_plane(const Problem& problem, const Surroundings& around,
+                                        const ObservabilityOptions& options) {
+  std::array<bool, 6> result = observable(around, options);
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    result.observable[k] = result.translation_seen && std::abs(normal[i]) <= options.leak;
-    // a rotation axis is shown by yaw alone where it is the normal
-    result.observable[k + 3] = result.yaw_seen && 1 - std::abs(normal[i]) <= options.leak;
+    const double along = std::abs(problem.plane_a.normal[i]);
+    result[k] = result[k] && along <= options.leak;
+    result[k + 3] = result[k + 3] && 1 - along <= options.leak;
   }
-  if (D_least > 0) result.pull = 2 * T_p.dual.norm() * noise / D_least;
   return result;
+}
+
+std::string planar_hint(const Surroundings& around, const ObservabilityOptions& options) {
+  bool translation = false, yaw = false;
+  for (int k = 0; k < around.hidden; ++k) {
+    translation = translation || around.vectors.col(k).head<3>().norm() > options.hinted_part;
+    yaw = yaw || around.vectors.col(k).tail<3>().norm() > options.hinted_part;
+  }
+  return detail::planar_hint(translation, yaw, around.hidden);
+}
+
+/// What rotation noise does to the minimiser, in the directions that are seen [m, rad]: D without it has
+/// another one.
+Vector6d pull_in_plane(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
+                       const Surroundings& around) {
+  Matrix8d clean = Q;
+  clean.diagonal().segment<2>(5).array() -= around.noise / (around.length * around.length);
+  const DualQuaternion without = extrinsic_from_planar(solve_planar(clean).q, plane_frame(problem.plane_a),
+                                                       plane_frame(problem.plane_b));
+  Vector6d pull = detail::frame_a_difference(T_a_b, without);
+  pull.head<3>() /= around.length;
+  pull -= around.hidden_vectors() * (around.hidden_vectors().transpose() * pull);
+  pull.head<3>() *= around.length;
+  return pull;
 }
 
 Observability planar_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
@@ -247,16 +280,21 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   Observability result;
   result.stddev.fill(infinity);
   const Statistics all = sum_blocks(problem.blocks);
-  const PlanarDirections seen = planar_directions(problem, Q, T_a_b, all.count, options);
-  result.observable = seen.observable;
-  if (!seen.translation_seen || !seen.yaw_seen)
-    result.hint = seen.translation_seen ? "still needed: motion" : "still needed: turns";
+  const Surroundings around = look_around_in_plane(problem, Q, T_a_b, all.count, options);
+  result.observable = observable_in_plane(problem, around, options);
+  result.hint = planar_hint(around, options);
   if (problem.blocks.size() < options.least_blocks) return result;
-  const Vector6d variance = detail::planar_variance(problem, all, T_a_b, errors, options);
+  Vector6d variance = detail::planar_variance(problem, all, T_a_b, errors, options);
+  if (errors == ErrorCorrelation::correlated) {
+    Vector6d of_hidden = variance_of_hidden(around, false, options);
+    of_hidden.head<3>() *= around.length * around.length;
+    variance += of_hidden;
+  }
+  const Vector6d pull = pull_in_plane(problem, Q, T_a_b, around);
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!result.observable[k]) continue;
-    const double stddev = std::sqrt(variance[i] + (i < 3 ? seen.pull * seen.pull : 0));
+    const double stddev = std::sqrt(variance[i] + pull[i] * pull[i]);
     if (std::isfinite(stddev)) result.stddev[k] = stddev;
   }
   return result;
@@ -285,14 +323,18 @@ std::array<bool, 6> observable_directions(const Problem& problem, const Matrix8d
                                           const DualQuaternion& T_a_b, ErrorCorrelation errors,
                                           const ObservabilityOptions& options) {
   if (!shows_anything(Q)) return {};
-  return problem.mode == Mode::planar
-             ? planar_directions(problem, Q, T_a_b, sum_blocks(problem.blocks).count, options).observable
-             : observable(look_around(problem, Q, T_a_b, errors, options), options);
+  if (problem.mode == Mode::spatial)
+    return observable(look_around(problem, Q, T_a_b, errors, options), options);
+  const std::uint64_t pairs = sum_blocks(problem.blocks).count;
+  return observable_in_plane(problem, look_around_in_plane(problem, Q, T_a_b, pairs, options), options);
 }
 
 DirectionBasis hidden_directions(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
                                  ErrorCorrelation errors, const ObservabilityOptions& options) {
-  const Surroundings around = look_around(problem, Q, T_a_b, errors, options);
+  const Surroundings around =
+      problem.mode == Mode::planar
+          ? look_around_in_plane(problem, Q, T_a_b, sum_blocks(problem.blocks).count, options)
+          : look_around(problem, Q, T_a_b, errors, options);
   return {around.hidden_vectors(), around.length};
 }
 

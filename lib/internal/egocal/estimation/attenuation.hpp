@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 #include "egocal/problem/problem.hpp"
@@ -24,6 +25,9 @@ struct AttenuationOptions {
   double shown_curvature = 30, shown_sigmas = 4;
   /// A spread needs at least this many blocks (ObservabilityOptions::least_blocks).
   std::size_t least_blocks = 6;
+  /// In the plane it is corrected where no standard deviation becomes more than this many times as large:
+  /// twice the variance. Study: docs/method.md, "Errors in variables".
+  double most_loss = std::numbers::sqrt2;
   /// The noise that is left along the rotation itself, in multiples of the least that keeps D positive
   /// semidefinite; and the factor by which more is left until Q is positive definite.
   double reserve = 4;
@@ -43,11 +47,15 @@ struct Attenuation {
 /// is then (1 - N / mu) times as long along an eigenvector of D with the eigenvalue mu. N = r'Dr is known
 /// from the residuals. This decides along which eigenvectors across r the noise is to be taken off D: where
 /// the pull is larger than AttenuationOptions::least_pull standard deviations, and a loss of certainty by the
-/// correction, 1 / (1 - N / mu), costs less than the pull. Empty where there are none, in planar mode, and
-/// where the blocks are too few for a spread.
+/// correction, 1 / (1 - N / mu), costs less than the pull. Empty where there are none, and where the blocks
+/// are too few for a spread.
+///
+/// In the plane the noise is taken off both directions or none: where the answer without it differs by more
+/// than least_pull standard deviations, in translation or yaw. On circles of nearly one radius the yaw is
+/// pulled as well, as it shows only by what D leaves of the translations.
 std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options = {});
 
-/// The same along all eigenvectors that `most_noise` allows, however small the pull.
+/// The same along all eigenvectors that `most_noise` allows, however small the pull. Empty in planar mode.
 std::optional<Attenuation> whole_attenuation(const Problem& problem, const AttenuationOptions& options = {});
 
 /// The problem with its noise taken off, at the balance {0, 1}: the blocks hold the rotation part in their
