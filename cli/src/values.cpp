@@ -39,11 +39,13 @@ std::string alternatives(const std::vector<std::string>& words) {
   return text;
 }
 
-CLI::Validator not_empty() {
+CLI::Validator a_value() {
   return CLI::Validator(
-      [](std::string& text) {
-        return text.empty() ? std::string("expected a value, got ''; is a variable of the shell not set?")
-                            : std::string();
+      [](std::string& text) -> std::string {
+        if (text.empty()) return "expected a value, got ''; is a variable of the shell not set?";
+        if (text.size() > 2 && text.starts_with("--"))
+          return "expected a value, got the option '" + text + "'";
+        return "";
       },
       "");
 }

@@ -22,8 +22,9 @@ std::string shortest(double value);
 /// "flat, rough or free".
 std::string alternatives(const std::vector<std::string>& words);
 
-/// Refuses an empty value: `--goal "$GOAL"` of a shell in which GOAL is not set is no goal at all.
-CLI::Validator not_empty();
+/// Refuses an empty value: `--goal "$GOAL"` of a shell in which GOAL is not set is no goal at all. Also the name
+/// of an option: the value of `--out --json` was forgotten.
+CLI::Validator a_value();
 
 CLI::Validator any_number();
 
@@ -63,7 +64,7 @@ struct OfOptional<std::vector<Value>> {
 template <class Variable>
 void check_type(CLI::Option& option) {
   using Value = typename OfOptional<Variable>::type;
-  option.check(not_empty());
+  option.check(a_value());
   if constexpr (std::is_floating_point_v<Value>)
     option.check(any_number());
   else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>)

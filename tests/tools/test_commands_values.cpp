@@ -85,6 +85,15 @@ TEST_F(Commands, AnEmptyValueIsNoValue) {
   expect_refusal(program("egocal-pairing", "--rig ''"), 2, "--rig: expected a value");
 }
 
+// `simulate --out --poses 30` made a folder named --poses
+TEST_F(Commands, TheNameOfAnOptionIsNoValue) {
+  for (const char* option : {"--help", "--poses"})
+    expect_refusal(egocal("simulate --out " + std::string(option)), 2,
+                   "--out: expected a value, got the option '" + std::string(option) + "'");
+  expect_refusal(egocal("solve a b --truth --json"), 2, "--truth: expected a value, got the option '--json'");
+  expect_refusal(egocal("solve a -- --json"), 2, "expected a value, got the option '--json'");
+}
+
 TEST_F(Commands, WhatIsMistypedIsNamedWithItsCommand) {
   expect_refusal(egocal("log foo"), 2,
                  "'foo' is no command of egocal log; expected create, info, check, repair");
@@ -127,7 +136,7 @@ TEST_F(Commands, RangesNameTheirOption) {
         {"--goal 200deg,1cm", "--goal: expected at most 180deg"},
         {"--out -", "--out: '-' is not taken for standard output: expected the name of a file"},
         {"--frame-a x --frame-b x --json", "--frame-a, --frame-b: expected two names, got 'x' for both"},
-        {"--frame-a --x --frame-b y --json",
+        {"--frame-a=-x --frame-b y --json",
          "--frame-a: expected up to 100 letters, digits and _ - . /, no - first"},
         {"--goal 1deg,2km",
          "--goal: expected two accuracies above 0 as 0.1deg,2cm (deg or rad; mm, cm or m)"},
