@@ -153,6 +153,34 @@ std::optional<Attenuation> find_attenuation_in_plane(const Problem& problem,
   return result;
 }
 
+/// Where translations are seen together with the rotation alone (circles of nearly one radius), both are
+/// pulled by far more than along one eigenvector of D. Empty where the answer changes by less than least_pull
+/// standard deviations, or what is known becomes too uncertain.
+std::optional<Attenuation> pays_together(const Problem& problem, const DualQuaternion& q,
+                                         Attenuation attenuation, const AttenuationOptions& options) {
+  const std::optional<Problem> corrected = without_attenuation(problem, attenuation);
+  if (!corrected) return std::nullopt;
+  const Matrix8d Q = cost_matrix(*corrected);
+  const Solution without = solve_dual(Q);
+  if (without.status != SolverStatus::converged) return std::nullopt;
+  const Vector6d pull = detail::frame_a_difference(q, without.q).cwiseAbs();
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  const Vector6d stddev = standard_deviations(problem, q, axes);
+  const auto seen = observable_directions(problem, cost_matrix(problem), q, ErrorCorrelation::correlated);
+  attenuation.pull = 0;
+  for (int i = 0; i < 6; ++i)
+    if (seen[static_cast<std::size_t>(i)] && stddev[i] > 0)
+      attenuation.pull = std::max(attenuation.pull, pull[i] / stddev[i]);
+  if (!(attenuation.pull > options.least_pull) || !std::isfinite(attenuation.pull)) return std::nullopt;
+  const auto still_seen = observable_directions(*corrected, Q, without.q, ErrorCorrelation::correlated);
+  const Vector6d wider = standard_deviations(*corrected, without.q, axes);
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (seen[k] && !(still_seen[k] && wider[i] < options.most_loss * stddev[i])) return std::nullopt;
+  }
+  return attenuation;
+}
+
 }  // namespace
 
 std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options) {
@@ -179,8 +207,9 @@ std::optional<Attenuation> find_attenuation(const Problem& problem, const Attenu
     may_be[k] = pays || loss < options.least_pull;
     if (pays) largest = std::max(largest, pull);
   }
-  if (!needed) return std::nullopt;
+  if (std::none_of(may_be.begin(), may_be.end(), [](bool one) { return one; })) return std::nullopt;
   std::optional<Attenuation> result = taking_off(problem, *all, may_be, options);
+  if (result && !needed) return pays_together(problem, all->q, *result, options);
   if (result) result->pull = largest;
   return result;
 }

@@ -25,8 +25,9 @@ struct AttenuationOptions {
   double shown_curvature = 30, shown_sigmas = 4;
   /// A spread needs at least this many blocks (ObservabilityOptions::least_blocks).
   std::size_t least_blocks = 6;
-  /// In the plane it is corrected where no standard deviation becomes more than this many times as large:
-  /// twice the variance. Study: docs/method.md, "Errors in variables".
+  /// Where no translation needs it by itself, or in the plane, it is corrected where no standard deviation
+  /// becomes more than this many times as large: twice the variance. Study: docs/method.md, "Errors in
+  /// variables".
   double most_loss = std::numbers::sqrt2;
   /// The noise that is left along the rotation itself, in multiples of the least that keeps D positive
   /// semidefinite; and the factor by which more is left until Q is positive definite.
@@ -50,9 +51,10 @@ struct Attenuation {
 /// correction, 1 / (1 - N / mu), costs less than the pull. Empty where there are none, and where the blocks
 /// are too few for a spread.
 ///
-/// In the plane the noise is taken off both directions or none: where the answer without it differs by more
-/// than least_pull standard deviations, in translation or yaw. On circles of nearly one radius the yaw is
-/// pulled as well, as it shows only by what D leaves of the translations.
+/// On circles of nearly one radius x, y and yaw are seen together only, and pulled by far more. So where no
+/// eigenvector needs it by itself, the noise is taken off all that lose little certainty, if the answer then
+/// differs by more than least_pull standard deviations in any direction that is seen. In the plane it is
+/// taken off x and y, or off neither, by the same rule.
 std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options = {});
 
 /// The same along all eigenvectors that `most_noise` allows, however small the pull. Empty in planar mode.
