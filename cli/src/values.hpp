@@ -22,8 +22,8 @@ std::string shortest(double value);
 /// "flat, rough or free".
 std::string alternatives(const std::vector<std::string>& words);
 
-/// Refuses an empty value: `--goal "$GOAL"` of a shell in which GOAL is not set is no goal at all. Also the name
-/// of an option: the value of `--out --json` was forgotten.
+/// Refuses an empty value: `--goal "$GOAL"` of a shell in which GOAL is not set is no goal at all. Also the
+/// name of an option: the value of `--out --json` was forgotten.
 CLI::Validator a_value();
 
 CLI::Validator any_number();
