@@ -468,6 +468,23 @@ TEST(Explanations, BothInvertedIsNotMentionedWhereMetresSayOtherwise) {
   EXPECT_EQ(find(calibrate(streams.a, streams.b), "inverted_both"), nullptr);
 }
 
+/// An odometry that jumps has one mounting under the right reading only, whichever way the body goes.
+TEST(Explanations, BothInvertedIsCertainWhereAnOdometryJumps) {
+  testing::Streams streams = testing::noisy_drive(Terrain::free, 0);
+  for (const double part : {0.2, 0.4, 0.5, 0.7, 0.9}) {
+    const auto from = static_cast<std::size_t>(part * static_cast<double>(streams.b.size()));
+    const DualQuaternion jump =
+        to_dual_quaternion({rotation_exp({0.2, -0.1 - part, 0.3}), {3, -1, 2 * part}});
+    for (std::size_t i = from; i < streams.b.size(); ++i) streams.b[i].pose = jump * streams.b[i].pose;
+  }
+  EXPECT_EQ(find(calibrate(streams.a, streams.b), "inverted_both"), nullptr);
+  const Calibration wrong = calibrate(testing::inverted(streams.a), testing::inverted(streams.b));
+  const Finding* finding = find(wrong, "inverted_both");
+  ASSERT_NE(finding, nullptr) << wrong.reason;
+  EXPECT_TRUE(finding->certain);
+  EXPECT_EQ(wrong.verdict, Verdict::contradictory);
+}
+
 TEST(Explanations, TheRemedyOfAUnitNamesTheStreamThatItIsOf) {
   testing::Streams streams = drive(Terrain::free);
   const Finding* finding = nullptr;

@@ -110,6 +110,11 @@ TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherAndRoundedIsNamed) {
     EXPECT_FALSE(finding->certain);
     EXPECT_NE(finding->message.find("agree to the rounding"), std::string::npos) << finding->message;
     EXPECT_EQ(find(calibrate(right.a, written(right.b, position, rotation)), "same_stream"), nullptr);
+    // its answer is the identity, which is a reason of its own
+    const Calibration copied = calibrate(right.a, written(right.a, position, rotation));
+    EXPECT_EQ(std::count_if(copied.findings.begin(), copied.findings.end(),
+                            [](const Finding& one) { return one.code == "same_stream"; }),
+              1);
   }
 }
 

@@ -162,6 +162,23 @@ TEST_F(RealData, BothStreamsInvertedAreNamedOnArms) {
       << calibration.reason;
 }
 
+// Single motions of one stream are wrong, and its frame is another one from then on. The inverted arm goes
+// along one line of its body, which alone ruled the inversion out: the verdict was good, the answer 160
+// degrees off.
+TEST_F(RealData, BothStreamsInvertedAreCertainWhereAnOdometryJumps) {
+  const std::string folder = "tampere/outliers/outliers_10/run_23/";
+  const Trajectory a = testing::real_trajectory(folder + "a.tum"),
+                   b = testing::real_trajectory(folder + "b.tum");
+  const Calibration wrong = calibrate(testing::inverted(a), testing::inverted(b));
+  ASSERT_FALSE(wrong.findings.empty()) << wrong.reason;
+  EXPECT_EQ(wrong.findings.front().code, "inverted_both") << wrong.reason;
+  EXPECT_TRUE(wrong.findings.front().certain);
+  EXPECT_EQ(wrong.verdict, Verdict::contradictory);
+  const Calibration right = calibrate(a, b);
+  EXPECT_EQ(right.verdict, Verdict::good);
+  for (const Finding& finding : right.findings) EXPECT_NE(finding.code, "inverted_both");
+}
+
 std::vector<std::string> benchmark_runs() {
   std::vector<std::string> runs;
   const std::string root = paths::data_dir() + "/tampere";

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/both_streams.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -27,6 +29,36 @@ bool too_fast_unless_inverted(const Evidence& evidence, const Explanation& both,
   return impossible(evidence.given.explained.motions) && !impossible(both.explained.motions);
 }
 
+/// Of either the odometry under this reading or the mounting under the given one: single steps that fit far
+/// worse than the others, in runs.
+std::size_t jumps(const Evidence& evidence, const Explanation& both, const DiagnosisOptions& options) {
+  constexpr double least_of_typical = 25;    // squared: five times what is usual
+  constexpr double least_of_largest = 0.01;  // squared: noise with heavy tails beside one large jump is none
+  const Motions steps =
+      motions_of(evidence.instants, both.read_a, both.read_b, 1, options.motions.most, options.motions);
+  const RobustFit fit = evaluated(steps, both.explained.fit.T);
+  if (fit.squares.empty()) return 0;
+  const double least = std::max(least_of_typical * fit.typical,
+                                least_of_largest * *std::max_element(fit.squares.begin(), fit.squares.end()));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < fit.squares.size(); ++i)
+    if (fit.squares[i] > least && (i == 0 || !(fit.squares[i - 1] > least))) ++count;
+  return count;
+}
+
+/// An odometry that jumps turns its frame against that of the other one. Motions of the bodies have one
+/// extrinsic all the same; under the wrong reading it is that of the two frames, which is another one after
+/// each jump. A mounting that moves does the same the other way round, but not as often. Both in parts of the
+/// motions and in metres, for either alone may say so of right streams: parts where noise does not grow with
+/// the distance, metres where a camera watches a target.
+bool one_mounting_only_if_inverted(const Evidence& evidence, const Explanation& both,
+                                   const Comparison& comparison, const DiagnosisOptions& options) {
+  constexpr std::size_t more_than_moves = 3;
+  return explains(both.explained, options) && better(comparison, decisive_loss, options) &&
+         loss_in_metres(evidence.given.explained, both.explained) < -decisive_loss &&
+         jumps(evidence, both, options) >= more_than_moves;
+}
+
 }  // namespace
 
 std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options) {
@@ -49,9 +81,11 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
                                 loss_in_metres(evidence.given.explained, both.explained) > decisive_loss;
   const bool line_says_given =
       along_one_line(as_given, options.heading) && !along_one_line(as_inverted, options.heading);
-  if (!trace && (noise_says_given || metres_say_given || line_says_given)) return std::nullopt;
-  Finding finding = finding_of(both, comparison, trace);
-  finding.improvement = comparison.ratio;
+  const bool noise_says_inverted = one_mounting_only_if_inverted(evidence, both, comparison, options);
+  if (!trace && !noise_says_inverted && (noise_says_given || metres_say_given || line_says_given))
+    return std::nullopt;
+  Finding finding = finding_of(both, comparison, trace || noise_says_inverted);
+  if (!noise_says_inverted) finding.improvement = comparison.ratio;
   return finding;
 }
 

@@ -179,8 +179,9 @@ class Finder {
   }
 
   /// Noise that wanders for longer than a block makes neighbouring blocks alike, and the test believes it.
+  /// Where it still wanders in the longest blocks, its memory is a guess from few of them.
   bool shows_in_longer_blocks(const Found& found) const {
-    double correlation = found.test.correlation;
+    double correlation = found.test.correlation, chance = found.test.false_alarm;
     for (std::size_t count = blocks_in(found.from, found.to) / 2;
          correlation > options_.most_correlation && count >= options_.least_blocks; count /= 2) {
       const Linearised stretch = detail::linearise(pairs_.subspan(found.from, found.to - found.from),
@@ -192,8 +193,10 @@ class Finder {
                                                              least_side(count, options_), options_.test);
       if (!(longer.chance <= options_.false_alarms)) return false;
       correlation = longer.correlation;
+      chance = longer.chance;
     }
-    return true;
+    return correlation <= options_.most_correlation ||
+           chance <= options_.false_alarms * options_.of_short_blocks;
   }
 
   bool large_enough(const Found& found) const {
