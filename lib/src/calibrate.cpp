@@ -2,19 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/calibrate.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "calibration/no_motions.hpp"
+#include "calibration/scale_verdict.hpp"
+#include "calibration/steps.hpp"
 #include "diagnosis/clock_check.hpp"
 #include "egocal/calibrate_beside.hpp"
-#include "egocal/diagnosis/diagnose.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/diagnosis/foresee.hpp"
 #include "egocal/error.hpp"
 #include "egocal/estimation/attenuation.hpp"
-#include "egocal/in_words.hpp"
-#include "egocal/microseconds.hpp"
 #include "egocal/pairing/congruence.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/outlier_choice.hpp"
@@ -22,138 +21,19 @@
 #include "egocal/robust/prove_outliers.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 #include "egocal/scale/estimate_scale.hpp"
-#include "pairing/offset/turning.hpp"
 
 namespace egocal {
 
+using detail::answered;
+using detail::as_read;
+using detail::diagnose_without_poses;
+using detail::judged;
+using detail::no_motions_in_words;
+using detail::put_scale;
+using detail::scale_options;
+using detail::solved;
+
 namespace {
-
-Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, Method method) {
-  Calibration result;
-  result.choice = std::move(choice);
-  result.counts = counts;
-  const Answer answer = solve(problem, method);
-  result.T_a_b = to_pose(answer.T_a_b);
-  result.minimum = to_pose(answer.minimum);
-  result.T_b_a = inverse(result.T_a_b);
-  result.certificate = answer.certificate;
-  result.observability = answer.observability;
-  result.status = answer.status;
-  result.problem = std::move(problem);
-  return result;
-}
-
-/// single: motions of one stride, which the diagnosis takes apart.
-Answered answered(const Calibration& calibration, Problem single,
-                  const std::optional<ScaleSolution>& scale = std::nullopt) {
-  Answered result;
-  result.T_a_b = to_dual_quaternion(calibration.minimum);
-  result.observability = calibration.observability;
-  result.counts = calibration.counts;
-  result.problem = std::move(single);
-  result.stride = calibration.choice.stride;
-  result.minimised = calibration.problem;
-  if (scale) result.scale_stddev = with_spread_of_scale({}, calibration.problem, *scale);
-  return result;
-}
-
-Calibration judged(Calibration calibration, Diagnosis diagnosis) {
-  calibration.verdict = diagnosis.verdict;
-  for (std::size_t i = 0; i < diagnosis.timing_stddev.size(); ++i)
-    if (diagnosis.timing_stddev[i] > 0)  // else not a bit is changed
-      calibration.observability.stddev[i] =
-          std::hypot(calibration.observability.stddev[i], diagnosis.timing_stddev[i]);
-  calibration.reason = std::move(diagnosis.reason);
-  calibration.fit = std::move(diagnosis.fit);
-  calibration.findings = std::move(diagnosis.findings);
-  calibration.goal = std::move(diagnosis.goal);
-  return calibration;
-}
-
-/// What was answered says how well each direction is known, but not whether the motions agree.
-Diagnosis diagnose_without_poses(const Answered& answered, const DiagnosisOptions& options) {
-  Diagnosis diagnosis = diagnose(answered, options);
-  if (diagnosis.verdict != Verdict::good) return diagnosis;
-  diagnosis.verdict = Verdict::incomplete;
-  diagnosis.reason = "All directions are known; whether the motions agree was not looked at.";
-  return diagnosis;
-}
-
-bool as_read(const Reading& reading) {
-  return reading.quaternion_order == QuaternionOrder::as_read && !reading.invert && reading.scale == 1;
-}
-
-/// Streams of one drive hardly differ more in length; other units of time differ by a thousand.
-constexpr double other_unit = 100;  // limit of a hint
-
-/// Other units, or other clocks, such as the time since the start of a log beside that since 1970.
-std::string times_in_words(const Trajectory& a, const Trajectory& b) {
-  if (a.empty() || b.empty()) return "";
-  const auto lasts = [](const Trajectory& x) {
-    return static_cast<double>(x.back().time_us) - static_cast<double>(x.front().time_us);
-  };
-  const double ratio = lasts(b) / lasts(a);
-  if (lasts(a) > 0 && lasts(b) > 0 && !(ratio < other_unit && ratio > 1 / other_unit)) {
-    char text[128];
-    std::snprintf(text, sizeof text,
-                  "; %s lasts %.3g times as long: multiply its times if they are in another unit",
-                  ratio > 1 ? "b" : "a", std::max(ratio, 1 / ratio));
-    return text;
-  }
-  if (a.front().time_us <= b.back().time_us && b.front().time_us <= a.back().time_us) return "";
-  return "; their times do not overlap: --time-offset auto if they are of one drive";
-}
-
-/// Streams that are too slow for the longest gap that is interpolated over, where that left no motions.
-std::string gaps_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts,
-                          double max_gap) {
-  if (counts.rejected[static_cast<std::size_t>(Rejection::gap)] == 0 || a.size() < 2 || b.size() < 2)
-    return "";
-  const double step_a = to_seconds(detail::median_period_us(a)),
-               step_b = to_seconds(detail::median_period_us(b));
-  if (!(std::min(step_a, step_b) > max_gap)) return "";
-  char text[192];
-  std::snprintf(text, sizeof text,
-                "; the median time between poses is %.3g s in a and %.3g s in b, but nothing is interpolated "
-                "over more than %.3g s: --max-gap SECONDS allows more",
-                step_a, step_b, max_gap);
-  return text;
-}
-
-/// A pose that is computed once a second and sent ten times, where that left no motions: the repeats are
-/// rejected, and the new ones have no neighbour.
-std::string repeats_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts) {
-  if (counts.rejected[static_cast<std::size_t>(Rejection::frozen)] == 0) return "";
-  const auto repeats = [](const StampedPose& x, const StampedPose& y) {
-    return x.pose.real == y.pose.real && x.pose.dual == y.pose.dual;
-  };
-  std::string text;
-  for (const auto& [name, stream] : {std::pair("a", &a), std::pair("b", &b)}) {
-    std::size_t differ = 1, newest = 0;
-    for (std::size_t i = 1; i < stream->size(); ++i) {
-      if (repeats((*stream)[i - 1], (*stream)[i])) continue;
-      ++differ;
-      newest = i;
-    }
-    if (2 * differ > stream->size()) continue;  // as many are whole motions, and reject none of the others
-    const double lasts = seconds_between(stream->front().time_us, (*stream)[newest].time_us);
-    char line[256];
-    if (differ == 1)
-      std::snprintf(line, sizeof line,
-                    "; the poses of %s are all the same while the other sensor moves: it does not work, or "
-                    "other columns are its poses",
-                    name);
-    else
-      std::snprintf(
-          line, sizeof line,
-          "; %s repeats its poses: of its %zu only %zu differ from the one before, one every %.3g s. "
-          "Keep the first of each and leave out its repeats, or record the odometry before it is "
-          "sent again at a fixed rate",
-          name, stream->size(), differ, lasts / static_cast<double>(differ - 1));
-    text += line;
-  }
-  return text;
-}
 
 /// Mode, planes, balance and prior; no motions yet.
 Problem formulation(const PairingOptions& options) {
@@ -199,25 +79,6 @@ CalibrationOptions without_scale(CalibrationOptions options) {
   options.estimate_scale = false;
   options.scale = 1;
   return options;
-}
-
-DriveScaleOptions scale_options(const CalibrationOptions& options) {
-  DriveScaleOptions result;
-  result.scale.side = options.scale_side;
-  return result;
-}
-
-/// What the scale adds to an answer.
-void put_scale(const std::optional<ScaleSolution>& estimate, double scale, Calibration& result) {
-  result.scale = estimate;
-  result.scale_applied = scale;
-  if (estimate)
-    result.observability.stddev =
-        with_spread_of_scale(result.observability.stddev, result.problem, *estimate);
-  if (!estimate || (estimate->observable && estimate->certified) || result.verdict != Verdict::good) return;
-  result.verdict = Verdict::incomplete;
-  result.reason = estimate->observable ? "The scale is not proven to be the best one."
-                                       : "The motions do not show the scale.";
 }
 
 /// What it means that another time offset fits as well.
@@ -270,10 +131,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   const MotionPairing& pairing = *pairing_of_all;
   Problem problem = pairing.problem();
   if (problem.blocks.empty())
-    throw Error("no motion pairs; a: " + span_in_words(a) + ", b: " + span_in_words(b) + "; " +
-                rejections_in_words(pairing.counts()) + times_in_words(a, b) +
-                gaps_in_words(a, b, pairing.counts(), pairing_options.max_gap) +
-                repeats_in_words(a, b, pairing.counts()));
+    throw AdvisedError(no_motions_in_words(a, b, pairing.counts(), pairing_options.max_gap));
   Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), options.method);
   if (options.diagnosis.enabled) result.outliers = prove_outliers(pairing);
   result.time_offset = time_offset;
@@ -346,7 +204,7 @@ Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const Cal
   const bool on_a = options.scale_side == Side::a;
   Calibration result = calibrate_streams(on_a ? scaled(a, scale) : a, on_a ? b : scaled(b, scale),
                                          without_scale(options), beside, estimate);
-  put_scale(estimate, scale, result);
+  put_scale(estimate, scale, options, result);
   return result;
 }
 
@@ -362,7 +220,7 @@ Calibration calibrate_scaled(std::span<const MotionPair> pairs, const Calibratio
     motion = scaled(motion, scale);
   }
   Calibration result = calibrate_pairs(scaled_pairs, without_scale(options), estimate);
-  put_scale(estimate, scale, result);
+  put_scale(estimate, scale, options, result);
   return result;
 }
 
@@ -408,60 +266,6 @@ Calibration calibrate(std::span<const MotionPair> given, const CalibrationOption
   if (given.empty()) throw Error("no motion pairs");
   if (with_scale(options)) return calibrate_scaled(given, options);
   return calibrate_pairs(given, options, std::nullopt);
-}
-
-struct Calibrator::Impl {
-  CalibrationOptions options;
-  MotionPairing pairing;
-};
-
-namespace {
-
-PairingOptions pairing_options(const CalibrationOptions& options) {
-  PairingOptions pairing = options.pairing;
-  if (options.estimate_time_offset) pairing.track_time_offset = true;
-  return pairing;
-}
-
-}  // namespace
-
-Calibrator::Calibrator(CalibrationOptions options) {
-  if (options.estimate_scale)
-    throw Error("estimate_scale: the whole drive shows it; give `scale`, or use calibrate()");
-  MotionPairing pairing(pairing_options(options));
-  impl_.reset(new Impl{std::move(options), std::move(pairing)});
-}
-Calibrator::~Calibrator() = default;
-Calibrator::Calibrator(Calibrator&&) noexcept = default;
-Calibrator& Calibrator::operator=(Calibrator&&) noexcept = default;
-
-void Calibrator::add(Side side, const StampedPose& pose) {
-  const CalibrationOptions& options = impl_->options;
-  const Reading& reading = side == Side::a ? options.read_a : options.read_b;
-  StampedPose understood = pose;
-  if (!as_read(reading)) understood = reread({understood}, reading).front();
-  if (options.scale_side == side && options.scale != 1)
-    understood.pose = scaled(understood.pose, options.scale);
-  impl_->pairing.push(side, understood);
-}
-
-void Calibrator::finish() {
-  impl_->pairing.finish();
-}
-
-PairingCounts Calibrator::counts() const {
-  return impl_->pairing.counts();
-}
-
-std::optional<Calibration> Calibrator::answer() const {
-  const MotionPairing& pairing = impl_->pairing;
-  Problem problem = pairing.problem();
-  if (problem.blocks.empty()) return std::nullopt;
-  Calibration result = solved(std::move(problem), pairing.choice(), pairing.counts(), impl_->options.method);
-  result.time_offset_applied = pairing.time_offset().value_or(0);
-  result.scale_applied = impl_->options.scale;
-  return judged(result, diagnose_without_poses(answered(result, pairing.single_stride_problem()),
-                                               impl_->options.diagnosis));
 }
 
 }  // namespace egocal

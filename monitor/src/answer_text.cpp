@@ -211,6 +211,10 @@ Label scale_text(const bus::CheckedScale& scale, Charset charset) {
   const std::string sensor = clean(scale.sensor, 40);
   if (!scale.verified)
     return {"of " + sensor + " not verified: its problem was not received", Style::warning};
+  if (solution.at_limit)
+    return {"of " + sensor + " not found: " + compact(solution.scale, charset) +
+                " is the end of the range that is searched",
+            Style::warning};
   if (!solution.observable || !std::isfinite(solution.stddev))
     return {"of " + sensor + " not shown by the motions yet: drive on, with curves", Style::warning};
   const double percent = 100 * solution.stddev / solution.scale;

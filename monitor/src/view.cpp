@@ -7,6 +7,7 @@
 
 #include "answer_text.hpp"
 #include "dialog.hpp"
+#include "egocal/bus/backing.hpp"
 #include "egocal/monitor/layout.hpp"
 #include "panels.hpp"
 #include "selection.hpp"
@@ -246,11 +247,20 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
   extrinsic.pairs = answer->pairs;
   if (pair.verdict) {
     extrinsic.verdict = to_string(pair.verdict->diagnosis.verdict);
+    extrinsic.reason = pair.verdict->diagnosis.reason;
     extrinsic.usable = pair.verdict->diagnosis.verdict != Verdict::contradictory;
   }
   if (pair.old > 0) extrinsic.usable = false;
   extrinsic.stddev.emplace();
   std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());
+  Observability shown;
+  for (std::size_t i = 0; i < 6; ++i) shown.observable[i] = answer->observable[i] != 0;
+  shown.hint = answer->hint;
+  extrinsic.backing = bus::backing_of(shown, pair.has_problem && pair.problem.mode == 1,
+                                      pair.has_problem && pair.problem.has_prior != 0);
+  if (pair.scale)
+    extrinsic.scale = NamedScale{pair.scale->sensor, pair.scale->solution.scale, pair.scale->solution.stddev,
+                                 pair.scale->verified && pair.scale->solution.certified};
   return extrinsic;
 }
 

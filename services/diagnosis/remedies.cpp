@@ -9,9 +9,6 @@ namespace egocal::services {
 
 namespace {
 
-/// How the library words it: the wire's finding has no field for the kind of a move.
-constexpr const char* creeping = "The mounting creeps";
-
 std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.5g", value);
@@ -54,7 +51,7 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
            "recording egocal solve --scale-b auto finds the factors, --scale auto where " +
            pair.b + " is in metres.";
   // what creeps goes on after a reset: the cure is that of a recording
-  if (code == "mount_moved" && finding.message.starts_with(creeping))
+  if (code == "mount_moved" && finding.change == MountingChange::slowly)
     return finding.remedy + or_its_scale(rig, pair);
   if (code == "mount_moved")
     return (pair.on_move == bus::OnMove::restart

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "../support/bag_writer.hpp"
+#include "../support/file_content.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/scratch_folder.hpp"
 #include "egocal/error.hpp"
@@ -78,10 +79,6 @@ class BagFolders : public ::testing::Test {
     folder_.file("metadata.yaml", text + "  files: []\n");
   }
   std::string name() const { return folder_.path("") + ":/odom"; }
-  static std::string content(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   void expect_all(const std::string& from) const {
     const TrajectoryReading reading = read_trajectory_file(from);
     ASSERT_EQ(reading.trajectory.size(), poses) << from;
@@ -106,7 +103,7 @@ TEST_F(BagFolders, APartThatCannotBeReadIsCountedAndRefusedUnderStrict) {
     }
     metadata(names);
     expect_all(name());
-    const std::string whole = content(folder_.path(names[1]));
+    const std::string whole = testing::content_of(folder_.path(names[1]));
     const std::string destroyed = std::string(16, '\0') + whole.substr(16);
     for (const std::string& damaged : {destroyed, std::string()}) {
       folder_.file(names[1], damaged);
@@ -161,7 +158,7 @@ TEST_F(BagFolders, MessagesThatArePackedOneByOneAreUnpacked) {
 TEST_F(BagFolders, APackedDatabaseIsUnpackedAndLeavesNothingBehind) {
   const TemporaryFolder temporary;
   testing::write_db3(folder_.path("d_0.db3"), messages_);
-  const std::string plain = content(folder_.path("d_0.db3"));
+  const std::string plain = testing::content_of(folder_.path("d_0.db3"));
   const std::string packed = testing::packed("zstd", plain);
   folder_.file("d_0.db3.zstd", packed);
   metadata({"d_0.db3.zstd"}, "FILE");
@@ -179,7 +176,7 @@ TEST_F(BagFolders, APackedDatabaseIsUnpackedAndLeavesNothingBehind) {
 
 TEST_F(BagFolders, OfADatabaseThatIsCutOffTheRestIsRead) {
   testing::write_db3(folder_.path("d.db3"), messages_);
-  const std::string whole = content(folder_.path("d.db3"));
+  const std::string whole = testing::content_of(folder_.path("d.db3"));
   for (const double kept : {0.3, 0.5, 0.9}) {
     const auto size = static_cast<std::size_t>(kept * static_cast<double>(whole.size()));
     const std::string file = folder_.file("cut.db3", whole.substr(0, size));
@@ -196,7 +193,7 @@ TEST_F(BagFolders, OfADatabaseThatIsCutOffTheRestIsRead) {
 
 TEST_F(BagFolders, ADamagedPageCostsItsOwnRows) {
   testing::write_db3(folder_.path("d.db3"), messages_, 4096);
-  std::string damaged = content(folder_.path("d.db3"));
+  std::string damaged = testing::content_of(folder_.path("d.db3"));
   damaged.replace(damaged.size() / 2 / 4096 * 4096, 4096, std::string(4096, '\0'));
   const TrajectoryReading reading = read_trajectory_file(folder_.file("d.db3", damaged));
   EXPECT_EQ(reading.losses.regions, 1u);

@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <tuple>
 
+#include "../support/file_content.hpp"
 #include "../support/random_motion.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
@@ -35,10 +35,6 @@ class Writing : public ::testing::Test {
   }
   ~Writing() override { fs::remove_all(folder); }
   std::string path(const std::string& name) const { return (folder / name).string(); }
-  static std::string content(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   /// Temporary files in the folder.
   std::ptrdiff_t temporaries() const {
     return std::count_if(
@@ -57,13 +53,13 @@ TEST_F(Writing, AFileIsReplacedOnlyWhenItIsComplete) {
     WholeFile one(path("whole")), two(path("link"));
     one.write("of one, never completed");
     two.write("second");
-    EXPECT_EQ(content(path("whole")), "first");
+    EXPECT_EQ(testing::content_of(path("whole")), "first");
     EXPECT_EQ(temporaries(), 2);
     two.commit();
     two.commit();
     EXPECT_THROW(two.write("more"), Error);
   }
-  EXPECT_EQ(content(path("whole")), "second");
+  EXPECT_EQ(testing::content_of(path("whole")), "second");
   EXPECT_TRUE(fs::is_symlink(path("link")));
   EXPECT_EQ(fs::status(path("whole")).permissions(), fs::perms::owner_all);
   EXPECT_EQ(temporaries(), 0);
@@ -72,7 +68,7 @@ TEST_F(Writing, AFileIsReplacedOnlyWhenItIsComplete) {
   write_whole_file(path("whole.4711-0.part"), "of a process that was killed");
   remove_temporaries(path("whole"));
   EXPECT_EQ(temporaries(), 0);
-  EXPECT_EQ(content(path("whole")), "second");
+  EXPECT_EQ(testing::content_of(path("whole")), "second");
 }
 
 // The file behind it was replaced, with all that was in it
@@ -90,7 +86,7 @@ TEST_F(Writing, AFileThatIsOpenAlreadyIsWrittenAtItsEnd) {
   }
   ASSERT_EQ(write(file, "end", 3), 3);
   close(file);
-  EXPECT_EQ(content(path("log")), "keep x x x x end");
+  EXPECT_EQ(testing::content_of(path("log")), "keep x x x x end");
   EXPECT_TRUE(can_be_replaced(path("log")));
   EXPECT_TRUE(can_be_replaced(path("new")));
   EXPECT_FALSE(can_be_replaced("/dev/null"));
@@ -105,7 +101,7 @@ TEST_F(Writing, WhatIsPrintedBesideItIsKept) {
   write_whole_file("/dev/fd/" + std::to_string(file), "whole ");
   ASSERT_EQ(write(file, "after", 5), 5);
   close(file);
-  EXPECT_EQ(content(path("log")), "before whole after");
+  EXPECT_EQ(testing::content_of(path("log")), "before whole after");
 }
 
 TEST_F(Writing, AProgramsLocaleChangesNothing) {
@@ -132,7 +128,7 @@ TEST_F(Writing, AProgramsLocaleChangesNothing) {
   const Trajectory read = read_trajectory(path("tum"));
   EXPECT_EQ(read_pairs(path("pairs")).size(), 3u);
   std::setlocale(LC_NUMERIC, "C");
-  EXPECT_THAT(content(path("tum")), ::testing::Not(HasSubstr(",")));
+  EXPECT_THAT(testing::content_of(path("tum")), ::testing::Not(HasSubstr(",")));
   ASSERT_EQ(read.size(), trajectory.size());
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i].time_us, trajectory[i].time_us);
   EXPECT_THAT(extrinsic, HasSubstr("xyz=\"0.5 1.5 2.5\""));
@@ -149,7 +145,7 @@ TEST_F(Writing, AnMcapFileLeavesFilesOfOthersAlone) {
   writer.write_pose("/lidar", "lidar_start", {1, {}});
   writer.close();
   EXPECT_TRUE(fs::exists(path("x.mcap")));
-  EXPECT_EQ(content(path("x.mcap.part")), "of somebody else");
+  EXPECT_EQ(testing::content_of(path("x.mcap.part")), "of somebody else");
   EXPECT_EQ(temporaries(), 1);
 }
 

@@ -322,4 +322,29 @@ TEST_F(View, WhatIsExportedIsTheAnswerThatCounts) {
   EXPECT_FALSE(extrinsic_of(model.pairs()[0])) << "nothing rather than nonsense";
 }
 
+TEST_F(View, WhatIsExportedStatesItsVerdictAndWhatItRestsOn) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::incomplete;
+  diagnosis.reason = "z is not known.";
+  const verdict_t message = test::verdict_at(diagnosis, test::begin_utime, test::begin_utime, step);
+  const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
+  ASSERT_TRUE(received) << received.reason;
+  model.on_verdict(message, *received.value, some_time);
+  const auto hide_z = [](calibration_t& answer) {
+    answer.observable[2] = 0;
+    answer.stddev[2] = std::numeric_limits<double>::infinity();
+  };
+  send([](problem_t& problem) { problem.has_prior = 0; }, hide_z);
+  const auto extrinsic = extrinsic_of(model.pairs()[0]);
+  ASSERT_TRUE(extrinsic);
+  EXPECT_EQ(extrinsic->verdict, "incomplete");
+  EXPECT_EQ(extrinsic->reason, "z is not known.");
+  ASSERT_TRUE(extrinsic->backing);
+  EXPECT_EQ((*extrinsic->backing)[2], Backing::none);
+  EXPECT_EQ((*extrinsic->backing)[5], Backing::motions);
+
+  send([](problem_t& problem) { problem.has_prior = 1; }, hide_z);
+  EXPECT_EQ(extrinsic_of(model.pairs()[0])->backing->at(2), Backing::nominal);
+}
+
 }  // namespace egocal::monitor

@@ -5,14 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
 #include "pairing/pairing.hpp"
 #include "program/program.hpp"
+#include "support/file_content.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace egocal::services {
@@ -54,11 +53,6 @@ TEST(Check, a_program_reports_one_line_and_ends_with_1_so_that_it_is_started_aga
   EXPECT_EQ(printed.find("egocal-any: a defect in this program"), 0U) << printed;
 }
 
-std::string content(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(Check, pairing_that_contradicts_itself_keeps_the_state_that_was_saved_before) {
   const testing::ScratchFolder scratch;
   const std::string file = scratch.path("pairing.state");
@@ -68,13 +62,13 @@ TEST(Check, pairing_that_contradicts_itself_keeps_the_state_that_was_saved_befor
     bus::Loop loop("memq://");
     bus::Heartbeat heartbeat(loop, {"egocal-pairing", bus::Role::pairing, "1.0"}, std::chrono::seconds(1));
     const Pairing pairing(loop, heartbeat, rig, std::make_unique<SavedState>(file, rig));
-    before = content(file);
+    before = testing::content_of(file);
     if (contradicts) bus::contradiction("all is well", "any.cpp", 7);
   };
   EXPECT_THROW(live(true), std::logic_error);
-  EXPECT_EQ(content(file), before);
+  EXPECT_EQ(testing::content_of(file), before);
   live(false);  // a last snapshot, of another time
-  EXPECT_NE(content(file), before);
+  EXPECT_NE(testing::content_of(file), before);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <sstream>
 
+#include "../support/file_content.hpp"
 #include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/scratch_folder.hpp"
@@ -31,6 +31,7 @@
 namespace egocal::tools {
 namespace {
 
+using testing::content_of;
 using ::testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180;
@@ -128,13 +129,6 @@ TEST(Online, FallsBackOnTheGlobalSolverUntilTheFastOneIsVerified) {
   for (const OnlinePoint& point : points) EXPECT_TRUE(point.certified) << point.frame;
   EXPECT_LT(points.back().error->rotation, points[2].error->rotation);
   EXPECT_NEAR(points.back().time, 12, 1e-9);
-}
-
-std::string content_of(const std::string& file) {
-  std::ifstream in(file);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 TEST(Figure, LeavesNumbersAndPictures) {

@@ -11,8 +11,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
+#include "support/file_content.hpp"
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -20,14 +20,8 @@ namespace egocal {
 namespace {
 
 using nlohmann::json;
+using testing::content_of;
 using Keys = std::set<std::string>;
-
-std::string content_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 /// The texts between backquotes.
 std::vector<std::string> quoted_in(const std::string& line) {

@@ -13,11 +13,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
+#include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/bag_writer.hpp"
+#include "support/file_content.hpp"
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -68,12 +71,7 @@ class Recordings : public ::testing::Test {
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
   }
-  std::string read(const std::string& name) const {
-    std::ifstream stream(folder.path(name), std::ios::binary);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
+  std::string read(const std::string& name) const { return testing::content_of(folder.path(name)); }
   json parsed(const std::string& arguments) const {
     const Outcome run = egocal(arguments);
     EXPECT_EQ(run.code, 0) << run.err;
@@ -100,6 +98,22 @@ TEST_F(Recordings, EveryBagGivesTheAnswerOfTheTextFiles) {
   EXPECT_EQ(unclear.out, "");
   EXPECT_THAT(unclear.err,
               HasSubstr("/lidar (nav_msgs/Odometry, 400), /camera (geometry_msgs/PoseStamped, 400)"));
+}
+
+/// It was said of FILE:CHANNEL alone.
+TEST_F(Recordings, TimesThatAreThoseOfRecordingAreSaidOfALogToo) {
+  bus::LogWriter writer(folder.path("drive.log"));
+  for (std::size_t i = 0; i < drive[0].size(); ++i)
+    for (const auto& [channel, poses] : {std::pair("LIDAR", &drive[0]), std::pair("CAMERA", &drive[1])}) {
+      StampedPose pose = (*poses)[i];
+      const std::int64_t recorded_us = std::exchange(pose.time_us, 0);
+      writer.write(recorded_us, channel, bus::encode(bus::to_pose_message(pose)));
+    }
+  writer.close();
+  const std::string note = ": 400 messages have no time stamp: the time of recording was taken";
+  const Outcome run = egocal("solve LIDAR CAMERA --log " + folder.path("drive.log"));
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, ::testing::AllOf(HasSubstr("LIDAR" + note), HasSubstr("CAMERA" + note)));
 }
 
 TEST_F(Recordings, ColumnsAndRateGoWithEveryCommand) {

@@ -1,66 +1,24 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// `egocal solve` with three sensors and more, unknown scale and several drives: the program itself on
-// simulated drives.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
+// `egocal solve` with three sensors and more, and several drives, on simulated drives.
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <sstream>
-#include <vector>
 
 #include "egocal/geometry/pose.hpp"
-#include "support/paths.hpp"
+#include "rig_command.hpp"
 #include "support/random_motion.hpp"
-#include "support/scratch_folder.hpp"
 
 namespace egocal {
 namespace {
 
 using nlohmann::json;
+using testing::content_of;
+using testing::words_of;
 
-std::string content_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-class Command : public ::testing::Test {
- protected:
-  struct Result {
-    int code = -1;
-    std::string out, error;
-    json object() const { return json::parse(out); }
-  };
-  Result run(const std::string& arguments) {
-    const std::string out = folder.path("out"), error = folder.path("err");
-    const int status =
-        std::system((paths::bin_dir() + "/egocal " + arguments + " >" + out + " 2>" + error).c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(error)};
-  }
-  /// lidar, camera and radar in free motion; their three files.
-  std::string rig(const std::string& name, const std::string& options = "", int poses = 700,
-                  const std::string& terrain = "free") {
-    const Result result = run("simulate --terrain " + terrain + " --noise 0.01 --out " + folder.path(name) +
-                              " --poses " + std::to_string(poses) + sensors + options);
-    EXPECT_EQ(result.code, 0) << result.error;
-    std::string files;
-    for (const char* sensor : {"lidar", "camera", "radar"})
-      files += " " + folder.path(name) + "/" + sensor + ".tum";
-    return files;
-  }
-
-  const std::string sensors =
-      " --sensor lidar=0,0,1.8,1,0,0,0 --sensor camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5 --sensor "
-      "radar=2,0,0.5,1,0,0,0 ";
-  testing::ScratchFolder folder;
-};
+using RigOfFiles = testing::RigCommand;
 
 /// A flat figure eight every five seconds, seen by three sensors on one body.
 std::string figure_eights(const testing::ScratchFolder& folder) {
@@ -86,7 +44,7 @@ std::string figure_eights(const testing::ScratchFolder& folder) {
   return files;
 }
 
-TEST_F(Command, OffsetsOfARigThatRepeatsItsMotionAreOpen) {
+TEST_F(RigOfFiles, OffsetsOfARigThatRepeatsItsMotionAreOpen) {
   const std::string files = figure_eights(folder);
   const json found = run("solve --json --time-offset auto" + files).object();
   for (const json& extrinsic : found["extrinsics"]) {
@@ -99,7 +57,7 @@ TEST_F(Command, OffsetsOfARigThatRepeatsItsMotionAreOpen) {
     EXPECT_EQ(extrinsic["findings"].dump().find("The motion repeats"), std::string::npos);
 }
 
-TEST_F(Command, ARigOfThreeClosesItsLoopAndIsCertified) {
+TEST_F(RigOfFiles, ARigOfThreeClosesItsLoopAndIsCertified) {
   const Result result = run("solve --json" + rig("drive"));
   ASSERT_EQ(result.code, 0) << result.error;
   const json object = result.object();
@@ -142,14 +100,7 @@ std::string part_of(const testing::ScratchFolder& folder, const std::string& fil
   return folder.path(name);
 }
 
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-TEST_F(Command, APairsAnswerIsThatOfItsTwoStreamsAlone) {
+TEST_F(RigOfFiles, APairsAnswerIsThatOfItsTwoStreamsAlone) {
   // the third sensor was on for three seconds: all three share next to nothing
   const std::vector<std::string> files = words_of(rig("drive"));
   const std::string shortened = part_of(folder, files[2], "short.tum", 0, 3);
@@ -180,7 +131,7 @@ TEST_F(Command, APairsAnswerIsThatOfItsTwoStreamsAlone) {
   EXPECT_NE(run("solve " + two + " " + shortened).out.find(": unknown"), std::string::npos);
 }
 
-TEST_F(Command, TheJointAnswerStatesItsOwnSpread) {
+TEST_F(RigOfFiles, TheJointAnswerStatesItsOwnSpread) {
   const json object = run("solve --json" + rig("drive")).object();
   EXPECT_EQ(object["joint"]["source"], "joint");
   for (std::size_t k = 0; k < 2; ++k) {
@@ -194,7 +145,7 @@ TEST_F(Command, TheJointAnswerStatesItsOwnSpread) {
   }
 }
 
-TEST_F(Command, TwoSensorsThatShareNoTimeLeaveTheOthers) {
+TEST_F(RigOfFiles, TwoSensorsThatShareNoTimeLeaveTheOthers) {
   const std::vector<std::string> files = words_of(rig("drive"));
   const std::string first = part_of(folder, files[0], "first.tum", 0, 30),
                     last = part_of(folder, files[2], "last.tum", 35, 70);
@@ -212,66 +163,7 @@ TEST_F(Command, TwoSensorsThatShareNoTimeLeaveTheOthers) {
   EXPECT_NE(apart.error.find("first"), std::string::npos) << apart.error;
 }
 
-TEST_F(Command, EachKeyOfTheRigFileIsUsed) {
-  const std::vector<std::string> files =
-      words_of(rig("drive", "--scale camera=2.7 --clock-offset radar=0.2"));
-  const auto solve_with = [&](const std::string& of_camera, const std::string& of_radar,
-                              const std::string& of_pair = "") {
-    std::string text;
-    for (const char* name : {"lidar", "camera", "radar"})
-      text += std::string("[[sensor]]\nname = \"") + name + "\"\nchannel = \"" + name + "\"\n" +
-              (name == std::string("camera") ? of_camera : "");
-    text += "[[pair]]\na = \"lidar\"\nb = \"camera\"\n" + of_pair;
-    text += "[[pair]]\na = \"lidar\"\nb = \"radar\"\n" + of_radar;
-    const std::string toml = folder.file("rig.toml", text);
-    return run("solve --json --rig " + toml + " --from lidar=" + files[0] + " --from camera=" + files[1] +
-               " --from radar=" + files[2]);
-  };
-  const std::string truth = "truth = [1.5, 0.2, -0.3, 0.5, -0.5, 0.5, -0.5]\n";
-  const json as_given = solve_with("", "").object();
-  EXPECT_EQ(as_given["extrinsics"][0]["verdict"], "contradictory");
-  // number, sign and cure are those of the sensor that is named
-  bool scale = false, clock = false;
-  double lacking = 0;
-  for (const json& finding : as_given["findings"]) {
-    EXPECT_EQ(finding["remedy"].dump().find("--scale"), std::string::npos) << finding["remedy"];
-    if (finding["code"] == "scale" && finding["sensor"] == "camera") {
-      scale = true;
-      EXPECT_NEAR(finding["value"].get<double>(), 2.7, 0.05);
-      EXPECT_NE(finding["message"].dump().find("The lengths of camera times 2."), std::string::npos);
-      EXPECT_NE(finding["remedy"].dump().find("for camera"), std::string::npos);
-    }
-    if (finding["code"] == "clock_offset" && finding["sensor"] == "radar") {
-      clock = true;
-      lacking = finding["value"].get<double>();
-      EXPECT_NEAR(std::abs(lacking), 0.2, 0.01);
-      EXPECT_NE(finding["message"].dump().find("the stamps of radar"), std::string::npos);
-    }
-  }
-  EXPECT_TRUE(scale) << as_given["findings"];
-  EXPECT_TRUE(clock) << as_given["findings"];
-  for (const std::string& offset : {std::to_string(lacking), std::string("\"auto\"")}) {
-    const Result cured = solve_with("scale = 2.7\n", "time_offset = " + offset + "\n", truth);
-    ASSERT_EQ(cured.code, 0) << cured.out;
-    const json object = cured.object();
-    for (const json& extrinsic : object["extrinsics"]) EXPECT_EQ(extrinsic["verdict"], "good") << offset;
-    EXPECT_LT(object["extrinsics"][0]["error_translation_m"], 0.05);
-    EXPECT_NEAR(object["extrinsics"][1]["time_offset_s"].get<double>(), lacking, 0.01);
-  }
-  const std::string cured = "time_offset = " + std::to_string(lacking) + "\n";
-  const Result goal = solve_with("scale = 2.7\n", cured, "goal = \"0.0001deg,0.001cm\"\n");
-  EXPECT_EQ(goal.code, 3);
-  EXPECT_FALSE(goal.object()["extrinsics"][0]["goal"]["reached"]);
-  const json stride = solve_with("scale = 2.7\n", cured, "stride = 3\nweights = \"equal\"\n").object();
-  EXPECT_EQ(stride["extrinsics"][0]["stride"], 3);
-  EXPECT_EQ(stride["extrinsics"][0]["weights"]["translation"], 1);
-  const Result unknown = solve_with("scale = \"auto\"\n", "");
-  EXPECT_EQ(unknown.code, 1);
-  for (const char* part : {"rig.toml", "camera", "scale = \"auto\"", "solve A B"})
-    EXPECT_NE(unknown.error.find(part), std::string::npos) << unknown.error;
-}
-
-TEST_F(Command, TheConsistentSetIsWrittenAsOneTree) {
+TEST_F(RigOfFiles, TheConsistentSetIsWrittenAsOneTree) {
   const std::string files = rig("drive", "", 300), urdf = folder.path("rig.urdf");
   ASSERT_EQ(run("solve" + files + " --format urdf --out " + urdf).code, 0);
   const std::string text = content_of(urdf);
@@ -286,7 +178,7 @@ TEST_F(Command, TheConsistentSetIsWrittenAsOneTree) {
   EXPECT_TRUE(content_of(folder.path("none")).empty());
 }
 
-TEST_F(Command, ASensorThatIsWrongIsNamed) {
+TEST_F(RigOfFiles, ASensorThatIsWrongIsNamed) {
   const struct {
     const char* fault;
     const char* code;
@@ -307,49 +199,13 @@ TEST_F(Command, ASensorThatIsWrongIsNamed) {
   }
 }
 
-TEST_F(Command, ARelocalisationIsNoMovedMount) {
+TEST_F(RigOfFiles, ARelocalisationIsNoMovedMount) {
   const Result result = run("solve --json" + rig("jump", "--jump camera=40:0.5,0,0,0,0,5", 1200));
   EXPECT_EQ(result.code, 0);
   EXPECT_TRUE(result.object()["blamed"].is_null());
 }
 
-TEST_F(Command, ARigFileNamesItsSensors) {
-  const std::string log = folder.path("drive.log"), toml = folder.path("rig.toml");
-  ASSERT_EQ(
-      run("simulate --terrain free --noise 0.01 --poses 400 --out " + log + " --rig-out " + toml + sensors)
-          .code,
-      0);
-  const Result logged = run("solve --json --rig " + toml + " --log " + log);
-  ASSERT_EQ(logged.code, 0) << logged.error;
-  EXPECT_EQ(logged.object()["extrinsics"].size(), 3u);
-  EXPECT_EQ(logged.object()["extrinsics"][2]["b"], "radar");
-  rig("files", "", 400);
-  const auto from = [&](const std::string& name) {
-    return " --from " + name + "=" + folder.path("files") + "/" + name + ".tum";
-  };
-  const Result named = run("solve --json --rig " + toml + from("radar") + from("lidar") + from("camera"));
-  ASSERT_EQ(named.code, 0) << named.error;
-  EXPECT_EQ(named.object()["extrinsics"][0]["a"], "radar");
-  const Result unknown = run("solve --rig " + toml + " --from sonar=x --from lidar=y");
-  EXPECT_EQ(unknown.code, 1);
-  EXPECT_NE(unknown.error.find("sonar"), std::string::npos);
-}
-
-TEST_F(Command, WhatDoesNotGoTogetherIsRefused) {
-  const std::string files = rig("drive", "", 50);
-  for (const char* option : {" --scale auto", " --truth 0,0,0,1,0,0,0", " --pairs x", " --time-offset 0.1",
-                             " --append x", " --method analytic"}) {
-    const Result result = run("solve" + files + option);
-    EXPECT_EQ(result.code, 2) << option << result.error;
-    EXPECT_TRUE(result.out.empty()) << option;
-  }
-  EXPECT_EQ(run("solve --rig " + folder.path("none.toml")).code, 1);
-  const Result missing = run("solve" + files + " " + folder.path("none.tum"));
-  EXPECT_EQ(missing.code, 1);
-  EXPECT_NE(missing.error.find("none.tum"), std::string::npos);
-}
-
-TEST_F(Command, AnotherDriveOfTheRigAddsUp) {
+TEST_F(RigOfFiles, AnotherDriveOfTheRigAddsUp) {
   const std::string one = rig("one", "--seed 1", 300), two = rig("two", "--seed 2", 300);
   const json single = run("solve --json" + one).object();
   std::string append;
@@ -358,106 +214,6 @@ TEST_F(Command, AnotherDriveOfTheRigAddsUp) {
   const Result result = run("solve --json" + one + " --append" + append);
   ASSERT_EQ(result.code, 0) << result.error;
   EXPECT_GT(result.object()["extrinsics"][0]["pairs"], 1.8 * single["extrinsics"][0]["pairs"].get<double>());
-}
-
-TEST_F(Command, TheScaleOfACameraIsFound) {
-  const std::string drive = folder.path("mono");
-  ASSERT_EQ(run("simulate --terrain rough --noise 0.01 --poses 1200 --scale camera=2.7 --out " + drive).code,
-            0);
-  const std::string files = " " + drive + "/camera.tum " + drive + "/lidar.tum";
-  const Result result = run("solve --json --scale auto" + files);
-  ASSERT_EQ(result.code, 0) << result.error;
-  const json scale = result.object()["scale"];
-  EXPECT_NEAR(scale["value"].get<double>(), 2.7, 3 * scale["stddev"].get<double>());
-  EXPECT_NEAR(scale["value"].get<double>(), 2.7, 0.005 * 2.7);
-  EXPECT_TRUE(scale["certified"]);
-  EXPECT_TRUE(scale["observable"]);
-  EXPECT_LE(scale["least"], scale["value"]);
-  EXPECT_GE(scale["most"], scale["value"]);
-  EXPECT_TRUE(result.object()["certified"]);
-  // from the other side, and given
-  const std::string turned = " " + drive + "/lidar.tum " + drive + "/camera.tum";
-  const json on_b = run("solve --json --scale-b auto" + turned).object();
-  EXPECT_NEAR(on_b["scale"]["value"].get<double>(), 2.7, 0.005 * 2.7);
-  const json given = run("solve --json --scale-b 2.7" + turned).object();
-  EXPECT_EQ(given["scale_applied"], 2.7);
-  EXPECT_FALSE(given.contains("scale"));
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(given["translation"][i].get<double>(), on_b["translation"][i].get<double>(), 0.02);
-  for (const char* wrong :
-       {" --scale 0", " --scale -1", " --scale nan", " --scale x", " --scale 1 --scale-b 1"}) {
-    const Result refused = run("solve" + files + wrong);
-    EXPECT_EQ(refused.code, 2) << wrong;
-    EXPECT_TRUE(refused.out.empty()) << wrong;
-  }
-}
-
-TEST_F(Command, AScaleThatDriftsIsFollowed) {
-  const std::string drive = folder.path("drifting");
-  ASSERT_EQ(
-      run("simulate --terrain free --noise 0.01 --poses 1200 --scale camera=4 --scale-drift camera=0.002 "
-          "--out " +
-          drive)
-          .code,
-      0);
-  const Result result = run("solve --json --scale auto " + drive + "/camera.tum " + drive +
-                            "/lidar.tum --truth 0.2,-0.3,-0.5,0.5,0.5,-0.5,0.5");
-  ASSERT_EQ(result.code, 0) << result.error;
-  const json object = result.object();
-  const json& segments = object["scale"]["segments"];
-  ASSERT_FALSE(segments.empty());
-  EXPECT_NEAR(segments.front()["begin_scale"].get<double>(), 4, 0.06);
-  EXPECT_NEAR(segments.back()["end_scale"].get<double>(), 4 * std::exp(0.24), 0.08);
-  EXPECT_LT(object["error_rotation_deg"], 0.2);
-  EXPECT_LT(object["error_translation_m"], 0.05);
-  EXPECT_TRUE(object["certified"]);
-}
-
-TEST_F(Command, TheScaleOfTwoDrivesIsOne) {
-  std::string drives[2];
-  for (int i = 0; i < 2; ++i) {
-    drives[i] = folder.path("mono" + std::to_string(i));
-    ASSERT_EQ(run("simulate --terrain free --noise 0.01 --poses 300 --scale camera=0.37 --out " + drives[i] +
-                  " --seed " + std::to_string(i + 1))
-                  .code,
-              0);
-  }
-  const auto files = [&](int i) { return " " + drives[i] + "/camera.tum " + drives[i] + "/lidar.tum"; };
-  const json one = run("solve --json --scale auto" + files(0)).object();
-  const Result both = run("solve --json --scale auto" + files(0) + " --append" + files(1));
-  ASSERT_EQ(both.code, 0) << both.error;
-  EXPECT_NEAR(both.object()["scale"]["value"].get<double>(), 0.37, 0.005 * 0.37);
-  EXPECT_GT(both.object()["pairs"], 1.5 * one["pairs"].get<double>());
-}
-
-TEST_F(Command, AKittiCameraWithoutScaleGivesTheSameExtrinsic) {
-  const std::string kitti = paths::data_dir() + "/kitti_07/";
-  std::ifstream camera(kitti + "cam0_orbslam2.tum");
-  if (!camera) GTEST_SKIP() << "no drive at " << kitti;
-  // every length divided by 0.37
-  std::ostringstream scaled;
-  scaled.precision(17);
-  for (std::string line; std::getline(camera, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream numbers(line);
-    double value[8];
-    for (double& number : value) numbers >> number;
-    for (int i = 1; i < 4; ++i) value[i] *= 0.37;
-    for (int i = 0; i < 8; ++i) scaled << (i ? " " : "") << value[i];
-    scaled << "\n";
-  }
-  const std::string mono = folder.file("mono.tum", scaled.str());
-  const std::string lidar = kitti + "velodyne_pylidar.tum ";
-  const json whole = run("solve --json --scale-b auto " + lidar + kitti + "cam0_orbslam2.tum").object();
-  const json found = run("solve --json --scale-b auto " + lidar + mono).object();
-  EXPECT_NEAR(found["scale"]["value"].get<double>() * 0.37, whole["scale"]["value"].get<double>(), 1e-4);
-  EXPECT_NEAR(found["scale"]["value"].get<double>() * 0.37, 1, 0.005);
-  double difference = 0, length = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    difference += std::pow(found["translation"][i].get<double>() - whole["translation"][i].get<double>(), 2);
-    length += std::pow(whole["translation"][i].get<double>(), 2);
-  }
-  EXPECT_LT(std::sqrt(difference), 0.05 * std::sqrt(length));
 }
 
 }  // namespace

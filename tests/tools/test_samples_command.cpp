@@ -7,25 +7,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
 #include "egocal/io/trajectory_file.hpp"
 #include "support/arm_samples.hpp"
+#include "support/file_content.hpp"
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace egocal {
 namespace {
 
-std::string content_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
+using testing::content_of;
 
 /// The largest difference of three numbers from a vector.
 double furthest(const nlohmann::json& numbers, const Eigen::Vector3d& vector) {

@@ -7,10 +7,8 @@
 
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
-#include "egocal/error.hpp"
 #include "offline/calibration.hpp"
 #include "offline/provenance.hpp"
-#include "offline/remedies.hpp"
 #include "offline/trust_report.hpp"
 #include "warnings.hpp"
 
@@ -33,25 +31,14 @@ std::string tenths_text(const Fit& fit) {
   return text;
 }
 
-SolveResult checked(const SolveRequest& request) {
-  try {
-    SolveResult result = calibrate_offline(request);
-    for (std::string& warning : result.warnings) warning = advice_of_solve(std::move(warning));
-    for (Finding& finding : result.calibration.findings)
-      finding.remedy = advice_of_solve(std::move(finding.remedy));
-    return result;
-  } catch (const Error& error) {
-    throw Error(advice_of_solve(error.what()));
-  }
-}
-
 void run(const Options& options, const std::string& command_line) {
   if (!options.source.log.empty()) refuse_reading_options(options.reading, "--log");
   SolveRequest request;
   request.source = options.source;
   request.source.reading_a = options.reading.of_a();
   request.source.reading_b = options.reading.of_b();
-  const SolveResult result = checked(request);
+  request.solve = "egocal solve A B ";  // check has none of its options but those for reading
+  const SolveResult result = calibrate_offline(request);
   print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
   if (options.json) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <memory>
 #include <set>
@@ -12,6 +11,7 @@
 #include "answers/answers.hpp"
 #include "arguments.hpp"
 #include "commands/commands.hpp"
+#include "egocal/bus/backing.hpp"
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/loop.hpp"
@@ -57,7 +57,7 @@ PairName chosen(const std::string& wanted, const std::vector<PairName>& pairs) {
 struct Found {
   std::vector<PairName> pairs;  ///< the one that was asked for, or all of them
   Answers answers;
-  std::set<PairName> with_nominal{};  ///< as the rig file says
+  std::set<PairName> with_nominal{};  ///< as the rig file says; of a log that is not known
 };
 
 Found recorded(const Options& options) {
@@ -112,19 +112,6 @@ bool is_current(const PairName& pair, const Answers& answers, bool live) {
                    answers.seconds_not_answered(pair) <= longest_not_judged);
 }
 
-/// What the numbers rest on. has_nominal: the rig gives one; of a log that is not known. In the plane a hint
-/// says that x, y or yaw are not shown either; which is not sent.
-std::array<Backing, 6> backing_of(const Answers::Best& best, bool has_nominal) {
-  const Observability& observability = best.checked.answer.observability;
-  const bool planar = best.message.method == "planar";
-  const Backing instead = planar ? (observability.hint.empty() ? Backing::planes : Backing::none)
-                                 : (has_nominal ? Backing::nominal : Backing::none);
-  std::array<Backing, 6> backing{};
-  for (std::size_t i = 0; i < backing.size(); ++i)
-    if (!observability.observable[i]) backing[i] = instead;
-  return backing;
-}
-
 /// Of a pair that has an answer; warns of what is missing for it to be certified.
 NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
   const Answers& answers = found.answers;
@@ -161,7 +148,8 @@ NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
     extrinsic.verdict = to_string(diagnosis->verdict);
     extrinsic.reason = diagnosis->reason;
   }
-  extrinsic.backing = backing_of(best, found.with_nominal.contains(pair));
+  extrinsic.backing = bus::backing_of(answer.observability, best.message.method == "planar",
+                                      found.with_nominal.contains(pair));
   if (const std::string not_shown = not_shown_in_words(extrinsic); !not_shown.empty())
     say(fmt::format("egocal: {}: {}", text(pair), not_shown));
   if (scale)

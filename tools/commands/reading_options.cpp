@@ -43,8 +43,10 @@ void add_reading_options(cli::App command, ReadOptions& options) {
                      "yaw[deg]; - for others");
   command.add_option("--rate", options.rate, "of poses without times [Hz; 10]")
       .check(cli::Check::above_zero(1e6, 1e-3));
-  command.add_flag("--strict", options.strict,
-                   "refuse poses out of order, repeated times and damage instead of repairing them");
+  command.add_flag(
+      "--strict", options.strict,
+      "refuse what is repaired or passed over otherwise: poses out of order, repeated times, rows and "
+      "messages that hold no pose, damage, and recordings that contradict themselves");
 }
 
 void add_reading_options(cli::App command, ReadingOptions& options) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <utility>
 
 #include "degrees.hpp"
 #include "egocal/baselines/baselines.hpp"
@@ -15,6 +16,7 @@
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
 #include "egocal/solvers/sqp.hpp"
+#include "experiments/figure.hpp"
 
 namespace egocal::tools {
 
@@ -29,8 +31,7 @@ double median_milliseconds(int repeats, const Work& work) {
     times.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  return times[times.size() / 2];
+  return median(std::move(times));
 }
 
 std::string verdict_of(const BaselineAnswer& answer) {

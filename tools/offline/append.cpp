@@ -17,6 +17,7 @@
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
+#include "offline/median.hpp"
 
 namespace egocal::tools {
 
@@ -73,9 +74,8 @@ Drives::Repeated Drives::repeated(const Trajectory& trajectory, std::size_t driv
       shifts.push_back(other->time_us - place.time_us);
   }
   if (shifts.empty()) return {};
-  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
-  std::nth_element(shifts.begin(), middle, shifts.end());
-  return {static_cast<double>(shifts.size()) / static_cast<double>(places.size()), *middle};
+  const double part = static_cast<double>(shifts.size()) / static_cast<double>(places.size());
+  return {part, median_of(std::move(shifts))};
 }
 
 bool Drives::is_repeated(const std::vector<Trajectory>& drive, const std::vector<std::string>& names,

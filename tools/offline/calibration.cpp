@@ -7,13 +7,16 @@
 #include <filesystem>
 #include <functional>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "arguments.hpp"
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/calibrate_beside.hpp"
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/error.hpp"
+#include "egocal/io/misplaced_times.hpp"
 #include "egocal/io/pairs_file.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/online/answer.hpp"
@@ -21,6 +24,7 @@
 #include "offline/append.hpp"
 #include "offline/beside.hpp"
 #include "offline/log_trajectory.hpp"
+#include "offline/median.hpp"
 #include "offline/remedies.hpp"
 #include "offline/samples.hpp"
 #include "offline/trajectory_source.hpp"
@@ -48,13 +52,9 @@ bool is_long_file(const std::string& name) {
   return std::filesystem::is_regular_file(file, none) && std::filesystem::file_size(file, none) >= least;
 }
 
-/// A file of times for both, where one of them has its own.
-std::string cure_of_times(const MotionSource& source, const std::string& error) {
-  const bool common =
-      !source.reading_a.times_file.empty() && source.reading_a.times_file == source.reading_b.times_file;
-  return common && error.find("a file of times belongs to") != std::string::npos
-             ? "; --times-a or --times-b gives the times of one file alone"
-             : "";
+/// A file of times was given for both.
+bool has_common_times(const MotionSource& source) {
+  return !source.reading_a.times_file.empty() && source.reading_a.times_file == source.reading_b.times_file;
 }
 
 Motions read_both(const MotionSource& source) {
@@ -65,8 +65,9 @@ Motions read_both(const MotionSource& source) {
   const bool are_long = is_long_file(source.a) && is_long_file(source.b);
   try {
     (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b);
-  } catch (const Error& error) {
-    throw Error(error.what() + cure_of_times(source, error.what()));
+  } catch (const MisplacedTimes& error) {
+    if (!has_common_times(source)) throw;
+    throw Error(std::string(error.what()) + "; --times-a or --times-b gives the times of one file alone");
   }
   motions.warnings.insert(motions.warnings.end(), warnings_b.begin(), warnings_b.end());
   return motions;
@@ -80,7 +81,8 @@ Motions read_motions(const MotionSource& source) {
       [&] { a = read_log_trajectory(source.log, source.a); },
       [&] { b = read_log_trajectory(source.log, source.b); });
   Motions motions{std::move(a.poses), std::move(b.poses), {}, {}};
-  for (std::string* warning : {&a.not_used, &b.not_used, &a.damage})  // damage is of both
+  // damage is of both
+  for (std::string* warning : {&a.not_used, &b.not_used, &a.times, &b.times, &a.damage})
     if (!warning->empty()) motions.warnings.push_back(std::move(*warning));
   return motions;
 }
@@ -104,12 +106,14 @@ Drives append_drives(const SolveRequest& request, Motions& motions) {
 }
 
 Calibration calibrate_motions(const MotionSource& source, const Motions& motions,
-                              const CalibrationOptions& options) {
+                              const CalibrationOptions& options, const Terms& terms) {
   if (!source.pairs.empty()) return calibrate(motions.pairs, options);
   constexpr std::size_t least_poses = 1000;  // worth a thread: some milliseconds
   const bool is_long = std::min(motions.a.size(), motions.b.size()) >= least_poses;
   try {
     return calibrate(motions.a, motions.b, options, is_long ? Beside(at_the_same_time) : Beside());
+  } catch (const AdvisedError& error) {
+    throw Error(source.a + ", " + source.b + ": " + error.in_terms(terms));
   } catch (const Error& error) {
     throw Error(source.a + ", " + source.b + ": " + error.what());
   }
@@ -123,8 +127,7 @@ double median_us(const std::function<double()>& measure_us) {
   const auto begin = Clock::now();
   while (times.size() < 5 || (times.size() < 201 && Clock::now() - begin < std::chrono::milliseconds(100)))
     times.push_back(measure_us());
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  return times[times.size() / 2];
+  return median_of(std::move(times));
 }
 
 /// Of the solver, as it answered: without proof and observability.
@@ -242,18 +245,19 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   result.warnings = motions.warnings;
   if (request.samples) {
     answer_samples(request, motions.a, motions.b, result);
-    if (request.samples->eye_to_hand)
-      word_for_eye_to_hand(result.calibration);
-    else
-      word_for_options(options, result.calibration);
+    word_for_options_of_samples(options, request.samples->eye_to_hand, result.calibration);
     result.solve_us = time_of_method(Method::dual, result.calibration.problem);
     return result;
   }
   if (look_like_samples(motions.a, motions.b))
-    result.warnings.push_back("these look like still poses of an arm rather than streams: try --samples");
-  result.calibration = calibrate_motions(request.source, motions, options);
+    result.warnings.push_back("these look like still poses of an arm rather than streams: try " +
+                              request.solve + "--samples");
+  Terms terms;
+  terms.solve = request.solve;
+  result.calibration = calibrate_motions(request.source, motions, options, terms);
   follow_scale(motions, options, result);
   word_for_options(options, result.calibration);
+  for (Finding& finding : result.calibration.findings) finding.remedy = remedy_in_terms(finding, terms);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);
   if (!request.append.empty()) {

@@ -35,6 +35,8 @@ struct SolveRequest {
   std::optional<Pose> truth;
   std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
   bool keep_motions = false;              ///< hand back what was solved, for a report
+  /// Before options of `egocal solve` in what is said to the user; empty: they are options of this command.
+  std::string solve;
 };
 
 /// Times of one stream, for people who wonder why nothing matched.

@@ -4,48 +4,62 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::tools {
 
 namespace {
 
-void replace(std::string& text, const std::string& part, const std::string& by) {
-  if (const std::size_t at = text.find(part); at != std::string::npos) text.replace(at, part.size(), by);
+/// Which streams an option inverts.
+struct Inverted {
+  bool a = false, b = false;
+};
+
+Inverted inverted_by(const CalibrationOptions& options) {
+  return {options.read_a.invert, options.read_b.invert};
 }
 
-/// own, other: whether the poses of this stream and of the other one are inverted by an option.
-void word_inverted(Finding& finding, char which, bool own, bool other) {
+/// Of a finding that the poses of this stream are inverted.
+std::string cure_of_inverted(char which, const Inverted& given) {
   const char rest = which == 'a' ? 'b' : 'a';
-  if (own) {
-    replace(finding.message, "are world-to-sensor, not sensor-to-world",
-            fmt::format("are sensor-to-world already, --invert-{} makes them world-to-sensor", which));
-    replace(finding.remedy, fmt::format("--invert-{}", which), fmt::format("leave out --invert-{}", which));
-  } else if (other) {
-    // both inverted, or none: without noise the motions do not tell which
-    replace(
-        finding.message, fmt::format("The poses of {} are world-to-sensor, not sensor-to-world", which),
-        fmt::format("The poses of {} are inverted by --invert-{}, those of {} are not", rest, rest, which));
-    replace(finding.remedy, fmt::format("--invert-{}", which),
-            fmt::format("leave out --invert-{}, or give --invert-{} as well", rest, which));
-  }
+  if (which == 'a' ? given.a : given.b) return fmt::format("leave out --invert-{}", which);
+  // both inverted, or none: without noise the motions do not tell which
+  if (given.a || given.b)
+    return fmt::format("leave out --invert-{}, or give --invert-{} as well", rest, which);
+  return fmt::format("--invert-{}", which);
 }
 
-void word_inverted_both(Finding& finding, bool a, bool b) {
-  if (!a && !b) return;
-  const std::string cure = a && b ? "leave out --invert-a and --invert-b"
-                           : a    ? "leave out --invert-a and give --invert-b"
-                                  : "leave out --invert-b and give --invert-a";
-  if (a && b) {
-    replace(finding.message, "are world-to-sensor, not sensor-to-world", "are sensor-to-world already");
-    replace(finding.message, "If the poses of both streams are world-to-sensor",
-            "If the poses of both streams are sensor-to-world already");
-    replace(finding.remedy, "Make sure that the poses are sensor-to-world",
-            "Make sure that the poses are world-to-sensor");
+void word_inverted(Finding& finding, char which, const Inverted& given) {
+  FindingWords words = finding.words;
+  const char rest = which == 'a' ? 'b' : 'a';
+  if (which == 'a' ? given.a : given.b)
+    words.claim = fmt::format(
+        "The poses of {} are sensor-to-world already, --invert-{} makes them world-to-sensor", which, which);
+  else if (given.a || given.b)
+    words.claim =
+        fmt::format("The poses of {} are inverted by --invert-{}, those of {} are not", rest, rest, which);
+  words.cure = cure_of_inverted(which, given);
+  say(finding, std::move(words));
+}
+
+void word_inverted_both(Finding& finding, const Inverted& given) {
+  FindingWords words = finding.words;
+  std::string before = "Make sure that the poses are sensor-to-world; otherwise ";
+  if (given.a && given.b) {
+    words.claim = finding.certain ? "The poses of both streams are sensor-to-world already"
+                                  : "If the poses of both streams are sensor-to-world already";
+    words.cure = "leave out --invert-a and --invert-b";
+    before = "Make sure that the poses are world-to-sensor; otherwise ";
+  } else {
+    words.cure =
+        given.a ? "leave out --invert-a and give --invert-b" : "leave out --invert-b and give --invert-a";
   }
-  replace(finding.remedy, "--invert-a --invert-b", cure);
+  if (!finding.certain) words.cure = before + words.cure + ".";
+  say(finding, std::move(words));
 }
 
 /// The factor was given: another one takes its place.
@@ -55,47 +69,76 @@ void word_scale(Finding& finding, const CalibrationOptions& options) {
   const std::string option = of_a ? "--scale" : "--scale-b";
   const double right = of_a ? options.scale / *finding.value : options.scale * *finding.value;
   constexpr double none = 1e-3;  // limit: a factor that is one
-  if (std::abs(right - 1) < none)
-    finding.remedy = fmt::format("leave out {}", option);
-  else
-    finding.remedy = fmt::format("{} {:.4g} or {} auto, in place of {} {:.10g}", option, right, option,
-                                 option, options.scale);
+  const std::string cure = std::abs(right - 1) < none
+                               ? fmt::format("leave out {}", option)
+                               : fmt::format("{} {:.4g} or {} auto, in place of {} {:.10g}", option, right,
+                                             option, option, options.scale);
+  say(finding, finding.words.claim, cure, finding.words.evidence);
+}
+
+/// Rewords findings, and the reason of the verdict where it is one of them.
+template <class Word>
+void reword(Calibration& calibration, const Word& word) {
+  for (Finding& finding : calibration.findings) {
+    const bool is_reason = calibration.reason == finding.message;
+    word(finding);
+    if (is_reason) calibration.reason = finding.message;
+  }
+}
+
+/// The factor was looked for, and lies beyond what was searched.
+void word_scale_beyond_range(Finding& finding, const CalibrationOptions& options, double searched) {
+  if (!finding.value || !(*finding.value > 0)) return;
+  const bool of_a = options.scale_side == Side::a;
+  const double right = of_a ? searched / *finding.value : searched * *finding.value;
+  const std::string option = of_a ? "--scale" : "--scale-b";
+  say(finding, finding.words.claim,
+      fmt::format("{} {:.4g}, or multiply the lengths of {} by {:.4g} before {} auto", option, right,
+                  of_a ? "{a}" : "{b}", searched, option),
+      finding.words.evidence);
+}
+
+void word_scale_of(Finding& finding, const CalibrationOptions& options, const Calibration& calibration) {
+  if (finding.code != "scale" && finding.code != "units") return;
+  if (!options.estimate_scale && options.scale != 1) word_scale(finding, options);
+  if (calibration.scale && calibration.scale->at_limit)
+    word_scale_beyond_range(finding, options, calibration.scale->scale);
 }
 
 }  // namespace
 
 void word_for_options(const CalibrationOptions& options, Calibration& calibration) {
-  const bool invert_a = options.read_a.invert, invert_b = options.read_b.invert;
-  const bool scale_given = options.scale != 1 && !options.estimate_scale;
-  for (Finding& finding : calibration.findings) {
-    const std::string message = finding.message;
-    if (finding.code == "inverted_a") word_inverted(finding, 'a', invert_a, invert_b);
-    if (finding.code == "inverted_b") word_inverted(finding, 'b', invert_b, invert_a);
-    if (finding.code == "inverted_both") word_inverted_both(finding, invert_a, invert_b);
-    if (scale_given && (finding.code == "scale" || finding.code == "units")) word_scale(finding, options);
-    if (calibration.reason == message) calibration.reason = finding.message;
-  }
+  const Inverted given = inverted_by(options);
+  reword(calibration, [&](Finding& finding) {
+    word_scale_of(finding, options, calibration);
+    if (!given.a && !given.b) return;
+    if (finding.code == "inverted_a") word_inverted(finding, 'a', given);
+    if (finding.code == "inverted_b") word_inverted(finding, 'b', given);
+    if (finding.code == "inverted_both") word_inverted_both(finding, given);
+  });
 }
 
-void word_for_eye_to_hand(Calibration& calibration) {
-  for (Finding& finding : calibration.findings) {
-    if (finding.code != "inverted_a") continue;
-    const std::string message = finding.message;
-    replace(finding.message, "With the poses of a inverted", "Without --eye-to-hand");
-    replace(finding.message, "they are base-to-hand, or the camera stands beside the arm and sees the hand",
-            "the camera is on the hand, or the poses of a are base-to-hand");
-    finding.remedy = "Leave out --eye-to-hand.";
-    if (calibration.reason == message) calibration.reason = finding.message;
-  }
-}
-
-std::string advice_of_solve(std::string advice) {
-  std::size_t first = std::string::npos;
-  for (const char* option : {"--time-offset", "--max-gap", "--scale", "--invert-", "--quaternion-order-",
-                             "--samples", "--eye-", "--plane-"})
-    first = std::min(first, advice.find(option));
-  if (first != std::string::npos) advice.insert(first, "egocal solve A B ");
-  return advice;
+void word_for_options_of_samples(const CalibrationOptions& options, bool eye_to_hand,
+                                 Calibration& calibration) {
+  const Inverted given = inverted_by(options);
+  reword(calibration, [&](Finding& finding) {
+    if (eye_to_hand && finding.code == "inverted_a")
+      say(finding,
+          fmt::format(
+              "Without --eye-to-hand the squared residuals are {:.3g} times smaller: the camera is on "
+              "the hand, or the poses of {{a}} are base-to-hand",
+              finding.improvement),
+          "Leave out --eye-to-hand.", finding.words.evidence);
+    if (eye_to_hand) return;
+    word_scale_of(finding, options, calibration);
+    if (!given.a && !given.b) return;
+    for (const char which : {'a', 'b'}) {
+      if (finding.code != std::string("inverted_") + which) continue;
+      FindingWords words = finding.words;
+      words.cure = cure_of_inverted(which, given) + ".";
+      say(finding, std::move(words));
+    }
+  });
 }
 
 }  // namespace egocal::tools

@@ -97,6 +97,7 @@ nlohmann::ordered_json scale_json(const SolveResult& result) {
           {"stddev", scale.stddev},
           {"observable", scale.observable},
           {"certified", scale.certified},
+          {"at_limit", scale.at_limit},
           {"least", scale.least_scale},
           {"most", scale.most_scale},
           {"gap", scale.gap},
@@ -111,6 +112,12 @@ std::string scale_text(const Calibration& calibration) {
     return calibration.scale_applied == 1 ? ""
                                           : fmt::format("scale         {:g}\n", calibration.scale_applied);
   const ScaleSolution& scale = *calibration.scale;
+  if (scale.at_limit)
+    return fmt::format(
+        "scale         {:.6g} NOT FOUND, this is the end of the range that was searched: multiply the "
+        "lengths "
+        "by it first, then look for the rest\n",
+        scale.scale);
   const std::string value =
       scale.observable
           ? fmt::format("+- {:.6g}", scale.stddev)

@@ -32,7 +32,8 @@ std::vector<Trajectory> read(const RigRequest& request, const RigSettings& setti
       continue;
     }
     LogTrajectory channel = read_log_trajectory(request.log, source);
-    if (!channel.not_used.empty()) report.warnings.push_back(channel.not_used);
+    for (std::string* warning : {&channel.not_used, &channel.times})
+      if (!warning->empty()) report.warnings.push_back(std::move(*warning));
     damage = std::move(channel.damage);
     trajectories.push_back(std::move(channel.poses));
   }

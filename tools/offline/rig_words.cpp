@@ -4,46 +4,19 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cctype>
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::tools {
 
 namespace {
 
-bool is_letter(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0;
+Terms terms_of(const RigWords& words) {
+  return {words.name_a, words.name_b, {}};
 }
 
-/// Whether the letter at this place stands for a stream: alone, and "a" not as an article.
-bool is_stream(const std::string& text, std::size_t at) {
-  if (at > 0 && (is_letter(text[at - 1]) || text[at - 1] == '-' || text[at - 1] == '_')) return false;
-  const std::string rest = text.substr(at + 1);
-  if (!rest.empty() && is_letter(rest.front())) return false;
-  if (text[at] == 'b' || rest.empty()) return true;
-  if (std::string(".,;:'").find(rest.front()) != std::string::npos) return true;
-  for (const char* verb : {" are ", " is ", " was ", " were ", " lie ", " fit", " and b", " at ", " by ",
-                           " do ", " does ", " has ", " have ", " in ", " with ", " repeat", " turn", " to "})
-    if (rest.starts_with(verb)) return true;
-  return false;
-}
-
-/// The streams a and b by their names.
-std::string named(const std::string& text, const RigWords& words) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if ((text[i] == 'a' || text[i] == 'b') && is_stream(text, i))
-      result += text[i] == 'a' ? words.name_a : words.name_b;
-    else
-      result += text[i];
-  }
-  return result;
-}
-
-/// What follows the first colon: how well it fits.
-std::string after_colon(const std::string& message) {
-  const std::size_t at = message.find(": ");
-  return at == std::string::npos ? "." : message.substr(at);
+/// How well it fits, after a claim of the rig's own.
+std::string evidence_of(const Finding& found, const RigWords& words) {
+  return found.words.evidence.empty() ? "." : in_terms(found.words.evidence, terms_of(words));
 }
 
 void word_scale(const Finding& found, bool of_b, const RigWords& words, RigFinding& finding) {
@@ -53,7 +26,7 @@ void word_scale(const Finding& found, bool of_b, const RigWords& words, RigFindi
   const double in_all = factor * (of_b ? words.scale_b : words.scale_a);
   finding.value = factor;
   finding.message = fmt::format("The lengths of {} times {:.4g} fit those of {}{}", name, factor, other,
-                                named(after_colon(found.message), words));
+                                evidence_of(found, words));
   finding.remedy =
       words.rig.empty()
           ? fmt::format(
@@ -69,9 +42,8 @@ void word_clock_offset(const Finding& found, bool of_b, const RigWords& words, R
   const double in_all = lacking + (of_b ? words.time_offset : -words.time_offset);
   const std::string& name = of_b ? words.name_b : words.name_a;
   finding.value = in_all;
-  const std::size_t at = found.message.find("; ");
   finding.message = fmt::format("The clocks differ: {:+.4f} s has to be added to the stamps of {}{}", in_all,
-                                name, at == std::string::npos ? "." : named(found.message.substr(at), words));
+                                name, evidence_of(found, words));
   finding.remedy = words.offset_found  ? "Synchronise the clocks, or correct the stamps of " + name + "."
                    : words.rig.empty() ? "--time-offset auto"
                                        : fmt::format(
@@ -98,7 +70,7 @@ std::string cure(const Finding& found, const RigWords& words) {
   if (code == "samples") return "Calibrate two of them at a time: solve A B --samples.";
   if (code.starts_with("plane_") && !words.rig.empty())
     return "Correct the plane of " + whose + " in " + words.rig + ".";
-  return named(found.remedy, words);
+  return remedy_in_terms(found, terms_of(words));
 }
 
 }  // namespace
@@ -112,7 +84,7 @@ void word_for_rig(const Finding& found, std::optional<bool> of_b, const RigWords
   if (found.code == "clock_offset" && has_value)
     return word_clock_offset(found, of_b.value_or(true), words, finding);
   if (found.code == "clock_drift" && has_value && of_b && !*of_b) finding.value = -*found.value;
-  finding.message = named(found.message, words);
+  finding.message = message_in_terms(found, terms_of(words));
   finding.remedy = cure(found, words);
 }
 

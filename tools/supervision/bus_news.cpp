@@ -96,11 +96,11 @@ void BusNews::hear_error(const status_t& status, std::int64_t now_us) {
   // one that lets its namesake work says nothing of that one's errors
   if (status.last_error.empty() && status.state == bus::state_name(bus::State::waiting)) return;
   Error& error = errors_[status.role];
-  const std::string line = status.last_error.empty() ? ""
-                                                     : bus::printable(status.name, 40) + ": " +
-                                                           bus::printable(status.last_error, 300);
-  if (line == error.now) return;
-  error.now = line;
+  Complaint heard;
+  if (!status.last_error.empty())
+    heard = {bus::printable(status.name, 40), bus::printable(status.last_error, 300)};
+  if (heard == error.now) return;
+  error.now = std::move(heard);
   error.since_us = now_us;
 }
 
@@ -108,17 +108,16 @@ std::string BusNews::errors(std::int64_t now_us) {
   std::string text;
   for (auto& [role, error] : errors_) {
     if (error.now == error.reported) continue;
-    if (error.now.empty()) {
+    if (error.now.text.empty()) {
       if (seconds_between(error.since_us, now_us) < options_.over_after) continue;
-      const std::size_t name_end = error.reported.find(": ");
-      text += error.reported.substr(0, name_end) + ": this is over" + error.reported.substr(name_end) + "\n";
+      text += error.reported.process + ": this is over: " + error.reported.text + "\n";
     } else {
-      const auto before = reported_us_.find(error.now);
+      const auto before = reported_us_.find(error.now.line());
       if (before == reported_us_.end() ? reported_us_.size() >= most_errors
                                        : seconds_between(before->second, now_us) < options_.repeat_report)
         continue;
-      reported_us_[error.now] = now_us;
-      text += error.now + "\n";
+      reported_us_[error.now.line()] = now_us;
+      text += error.now.line() + "\n";
     }
     error.reported = error.now;
   }

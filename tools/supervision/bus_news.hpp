@@ -76,9 +76,15 @@ class BusNews {
   struct Rejected {
     std::int64_t count = 0, growth = 0, grown_us = 0;
   };
+  /// What a process says that it could not do; an empty text: nothing.
+  struct Complaint {
+    std::string process, text;
+    bool operator==(const Complaint&) const = default;
+    std::string line() const { return process + ": " + text; }
+  };
   /// Of the processes of a role.
   struct Error {
-    std::string now, reported;  ///< lines; empty: none
+    Complaint now, reported;
     std::int64_t since_us = 0;
   };
 

@@ -5,10 +5,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +19,9 @@
 
 #include "egocal/error.hpp"
 #include "supervision/output_file.hpp"
-#include "warnings.hpp"
+#include "supervision/reports.hpp"
+#include "supervision/spawn.hpp"
+#include "supervision/terminal_modes.hpp"
 
 namespace egocal::tools {
 
@@ -50,83 +50,10 @@ struct Child {
   bool silence_reported = false;  ///< and not over yet
 };
 
-/// In the child, between fork and exec: only what is safe there.
-[[noreturn]] void become(const Program& program, char* const* arguments, int output, pid_t parent,
-                         const sigset_t& mask) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);  // whatever happens to us, nothing is left behind
-  if (getppid() != parent) _exit(exec_failed);
-  if (!program.foreground) setpgid(0, 0);
-  signal(SIGPIPE, SIG_DFL);  // that it is ignored would be inherited
-  sigprocmask(SIG_SETMASK, &mask, nullptr);
-  if (!program.foreground) {
-    if (output >= 0) {
-      dup2(output, STDOUT_FILENO);
-      dup2(output, STDERR_FILENO);
-    }
-    const int null = open("/dev/null", O_RDONLY);
-    if (null >= 0) dup2(null, STDIN_FILENO);
-  }
-  execv(arguments[0], arguments);
-  constexpr char text[] = "cannot be started\n";
-  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(exec_failed);
-  _exit(exec_failed);
-}
-
 std::string ending(int status) {
   if (WIFSIGNALED(status)) return fmt::format("killed by signal {}", WTERMSIG(status));
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }
-
-/// What the supervisor reports. Where the screen is the monitor's, lines go to a file, the last one also to
-/// the screen in the end.
-class Messages {
- public:
-  explicit Messages(const SupervisorOptions& options) : options_(options) {}
-  ~Messages() {
-    if (output_ >= 0) close(output_);
-  }
-  Messages(const Messages&) = delete;
-  Messages& operator=(const Messages&) = delete;
-
-  void report(const std::string& line, bool at_the_end_too = false) {
-    if (!options_.quiet || options_.output_dir.empty()) {
-      say("egocal up: " + line);
-      return;
-    }
-    if (at_the_end_too) last_line_ = line;
-    try {
-      if (output_ < 0) output_ = open_output(options_.output_dir + "/up.out");
-    } catch (const Error&) {
-      last_line_ = line;
-      return;
-    }
-    const std::string text = line + "\n";
-    if (write(output_, text.data(), text.size()) < 0) last_line_ = line;
-  }
-
-  void end() {
-    if (!last_line_.empty()) say("egocal up: " + last_line_);
-  }
-
- private:
-  const SupervisorOptions& options_;
-  int output_ = -1;
-  std::string last_line_;
-};
-
-/// The modes of the terminal as they were before programs that change them.
-class TerminalModes {
- public:
-  TerminalModes() { known_ = tcgetattr(STDIN_FILENO, &modes_) == 0; }
-  /// Not of a terminal that is another job's now.
-  void restore() const {
-    if (known_ && tcgetpgrp(STDIN_FILENO) == getpgrp()) tcsetattr(STDIN_FILENO, TCSADRAIN, &modes_);
-  }
-
- private:
-  struct termios modes_ {};
-  bool known_ = false;
-};
 
 class Supervisor {
  public:
@@ -149,7 +76,7 @@ class Supervisor {
   }
   ~Supervisor() {
     close(signals_);
-    messages_.end();  // before a signal that waits can end us
+    reports_.end();  // before a signal that waits can end us
     sigprocmask(SIG_SETMASK, &old_mask_, nullptr);
   }
   Supervisor(const Supervisor&) = delete;
@@ -204,17 +131,17 @@ class Supervisor {
       if (child.program.foreground || !since) continue;
       child.silent = std::min(*since, any_heard ? child.silent + passed : child.silent);
       if (child.silent < options_.silent) {
-        if (child.silence_reported) messages_.report(fmt::format("{} is heard again", child.program.name));
+        if (child.silence_reported) reports_.report(fmt::format("{} is heard again", child.program.name));
         child.silence_reported = false;
       } else if (!child.silence_reported) {
         child.silence_reported = true;
-        messages_.report(
+        reports_.report(
             fmt::format("{} is silent for {:.1f} s: it hangs or was stopped; it is continued, and "
                         "killed where that does not help",
                         child.program.name, 1e-3 * static_cast<double>(since->count())));
         kill(child.pid, SIGCONT);
       } else if (child.silent > options_.hangs) {
-        messages_.report(fmt::format("{} still hangs and is killed", child.program.name));
+        reports_.report(fmt::format("{} still hangs and is killed", child.program.name));
         kill(child.pid, SIGKILL);
         child.silence_reported = false;
         child.silent = {};
@@ -228,7 +155,7 @@ class Supervisor {
     if (awaited == 0) return false;
     if (!awaited_ || awaited < *awaited_) {
       if (!awaited_)
-        messages_.report(
+        reports_.report(
             fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
       awaited_ = awaited;
       fell_at_ = now;
@@ -239,14 +166,8 @@ class Supervisor {
 
   void start(Child& child) {
     const int output = output_of(child);
-    std::vector<std::string> command = command_of(child);
-    std::vector<char*> arguments;
-    for (std::string& argument : command) arguments.push_back(argument.data());
-    arguments.push_back(nullptr);
-    const pid_t parent = getpid();
     child.started = awake();
-    child.pid = fork();
-    if (child.pid == 0) become(child.program, arguments.data(), output, parent, programs_mask_);
+    child.pid = spawn(child.program, command_of(child), output, programs_mask_);
     const int reason = errno;
     if (output >= 0) close(output);
     child.has_started = true;
@@ -267,7 +188,7 @@ class Supervisor {
     std::error_code none;
     std::filesystem::create_directories(folder, none);
     if (std::filesystem::is_directory(folder, none)) return command;
-    messages_.report(
+    reports_.report(
         fmt::format("{}: is gone and cannot be made again; {} starts without the state file there",
                     folder.string(), child.program.name));
     command.erase(option, option + 2);
@@ -285,7 +206,7 @@ class Supervisor {
       return open_output(output_file(child));
     } catch (const Error& error) {
       if (!child.has_started) throw;
-      messages_.report(std::string(error.what()) + "; its output is not kept");
+      reports_.report(std::string(error.what()) + "; its output is not kept");
       return open("/dev/null", O_WRONLY | O_CLOEXEC);
     }
   }
@@ -322,16 +243,15 @@ class Supervisor {
     if (n > 0) {
       said_.append(part, static_cast<std::size_t>(n));
       for (std::size_t end = said_.find('\n'); end != std::string::npos; end = said_.find('\n')) {
-        messages_.report(said_.substr(0, end));
+        reports_.report(said_.substr(0, end));
         said_.erase(0, end + 1);
       }
     } else if (n == 0 || errno != EAGAIN) {
       const std::optional<int> again = options_.lines_again ? options_.lines_again() : std::nullopt;
       lines_ = again.value_or(-1);
-      messages_.report(again
-                           ? "the process that listens to the bus has ended; it is started again"
-                           : "the process that listens to the bus has ended: nothing that hangs, errs or is "
-                             "not answered is reported any more");
+      reports_.report(again ? "the process that listens to the bus has ended; it is started again"
+                            : "the process that listens to the bus has ended: nothing that hangs, errs or is "
+                              "not answered is reported any more");
     }
   }
 
@@ -382,9 +302,9 @@ class Supervisor {
         end_at_ = awake() + (wanted_at_once_ ? milliseconds(0) : options_.settle);
         return;
       case Restarts::Next::hopeless:
-        messages_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
-                                     options_.output_dir.empty() ? "" : ", see " + output_file(child)),
-                         true);
+        reports_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
+                                    options_.output_dir.empty() ? "" : ", see " + output_file(child)),
+                        true);
         failed_ = true;
         end_all(SIGTERM, false);
         return;
@@ -403,8 +323,8 @@ class Supervisor {
       return;
     child.reported = reason;
     child.reported_at = now;
-    messages_.report(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason,
-                                 child.restarts.pause().count()));
+    reports_.report(fmt::format("{} ended ({}), starting it again in {} ms", child.program.name, reason,
+                                child.restarts.pause().count()));
   }
 
   /// How it ended, and its last line of output, unless somebody killed it, whatever it had said.
@@ -426,7 +346,7 @@ class Supervisor {
   void kill_all() {
     for (const Child& child : children_) {
       if (child.pid <= 0) continue;
-      messages_.report(fmt::format("{} did not end and is killed", child.program.name));
+      reports_.report(fmt::format("{} did not end and is killed", child.program.name));
       kill(child.pid, SIGKILL);
     }
     kill_at_ = awake() + options_.patience;
@@ -445,7 +365,7 @@ class Supervisor {
   Clock::time_point watched_at_ = awake_;
   sigset_t old_mask_{}, programs_mask_{};
   int signals_ = -1;
-  Messages messages_{options_};
+  Reports reports_{options_.output_dir, options_.quiet};
   std::optional<TerminalModes> terminal_;  ///< where a program has the terminal
   int lines_ = options_.lines;
   std::string said_;  ///< the beginning of a line

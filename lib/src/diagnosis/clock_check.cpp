@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/online/answer.hpp"
@@ -109,11 +110,11 @@ std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory&
   finding.value = found->seconds;
   finding.improvement = 1 / change->cost_ratio;
   finding.T_a_b = to_pose(frame_a_moved(answered.T_a_b, moved));
-  finding.message = format(
-      "The clocks differ: %+.4f s has to be added to the stamps of b, %.0f times its standard deviation; "
-      "without it the answer is off by more than it states.",
-      found->seconds, std::abs(more) / found->stddev);
-  finding.remedy = "--time-offset auto";
+  say(finding,
+      format("The clocks differ: %+.4f s has to be added to the stamps of {b}, %.0f times its standard "
+             "deviation",
+             found->seconds, std::abs(more) / found->stddev),
+      "{solve}--time-offset auto", "; without it the answer is off by more than it states.");
   return finding;
 }
 
@@ -122,8 +123,8 @@ Finding rival_clock_offset(const TimeOffset& offset, const DualQuaternion& T_a_b
   finding.code = "clock_offset";
   finding.value = offset.rival.value();
   finding.T_a_b = to_pose(T_a_b);
-  finding.message = rival_offsets_in_words(std::abs(*offset.rival - offset.seconds));
-  finding.remedy = "Add some motion that does not repeat, or give --time-offset SECONDS.";
+  say(finding, rival_offsets_in_words(std::abs(*offset.rival - offset.seconds)),
+      "Add some motion that does not repeat, or give {solve}--time-offset SECONDS.");
   return finding;
 }
 

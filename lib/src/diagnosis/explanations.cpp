@@ -12,6 +12,7 @@
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/scale.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/estimate_scale.hpp"
 
@@ -38,9 +39,8 @@ Finding shown_by_few(const Explanation& scaled, const Comparison& comparison, do
                      const DiagnosisOptions& options) {
   Finding finding = scale_finding(scaled, comparison, true, options);
   if (finding.code == "scale" && comparison.gain < options.gain)
-    finding.message = format(
-        "The lengths of b times %.4g fit those of a: few motions show it, but by %.0f standard deviations.",
-        scaled.scale, sigmas);
+    say(finding, format("The lengths of {b} times %.4g fit those of {a}", scaled.scale), finding.words.cure,
+        format(": few motions show it, but by %.0f standard deviations.", sigmas));
   return finding;
 }
 
@@ -101,11 +101,12 @@ void name_part(const Explained& final, std::vector<Finding>& findings) {
   const std::optional<UnexplainedPart> part = unexplained_part(final.motions, final.fit.T, shortest);
   if (!part) return;
   for (Finding& finding : findings) {
-    finding.message +=
-        format(" This explains the drive without the part from %.0f to %.0f s after the start.", part->begin,
-               part->end);
-    finding.remedy = format("Calibrate the drive from %.0f to %.0f s separately; of the rest: %s",
-                            part->begin, part->end, finding.remedy.c_str());
+    FindingWords words = finding.words;
+    words.evidence += format(" This explains the drive without the part from %.0f to %.0f s after the start.",
+                             part->begin, part->end);
+    words.scope =
+        format("Calibrate the drive from %.0f to %.0f s separately; of the rest: ", part->begin, part->end);
+    say(finding, std::move(words));
   }
 }
 
@@ -167,8 +168,13 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     clocks = with_clock(evidence, best, options);
 
   const Explained& final = clocks.empty() ? best.explained : clocks.back().explained;
-  // an explanation under which the motions still do not agree explains nothing
-  if (!explains(final, options)) return findings;
+  // an explanation under which the motions still do not agree explains nothing; both streams inverted may
+  if (!explains(final, options)) {
+    if (std::optional<Finding> both = both_inverted(evidence, options);
+        both && both->certain && both->improvement > options.overwhelming)
+      findings.push_back(worded_reading(std::move(*both), {}, {}));
+    return findings;
+  }
   const Comparison overall = compare(given, final);
   const bool certain = overall.gain >= options.gain;
   // of which stream the axes are wrong may be open, not that they are

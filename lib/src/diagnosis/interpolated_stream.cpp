@@ -6,6 +6,7 @@
 #include <string>
 
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
 
 namespace egocal::detail {
@@ -79,11 +80,11 @@ std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory&
       Finding finding;
       finding.code = std::string("undersampled_") + which;
       finding.certain = true;
-      finding.message = format(
-          "Of the %s of %c %.0f %% lie on straight lines between about %.1f %s a second: they were "
-          "interpolated before, and what its sensor did between those is lost.",
-          name, which, 100 * lines.part(), lines.rate(), name);
-      finding.remedy = format("Give the %s of %c as they were measured, at their own times.", name, which);
+      say(finding,
+          format("Of the %s of %s %.0f %% lie on straight lines between about %.1f %s a second: they were "
+                 "interpolated before, and what its sensor did between those is lost.",
+                 name, mark(which), 100 * lines.part(), lines.rate(), name),
+          format("Give the %s of %s as they were measured, at their own times.", name, mark(which)));
       return {finding};
     }
   return {};

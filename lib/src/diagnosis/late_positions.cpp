@@ -12,6 +12,7 @@
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -116,13 +117,14 @@ std::optional<Finding> late_positions(const Instants& instants, const Explained&
   finding.improvement = std::exp(best->comparison.gain);
   finding.T_a_b = to_pose(best->explained.fit.T);
   finding.value = best->delay;
-  finding.message = format(
-      "The positions of %c are about %.2f s %s than its rotations: the squared residuals are %.3g times "
-      "smaller with both at the same times.",
-      which, std::abs(best->delay), best->delay > 0 ? "later" : "earlier", finding.improvement);
-  finding.remedy = format(
-      "Give positions and rotations of %c of the same times: no filter that smooths or delays one of them.",
-      which);
+  say(finding,
+      format(
+          "The positions of %s are about %.2f s %s than its rotations: the squared residuals are %.3g times "
+          "smaller with both at the same times.",
+          mark(which), std::abs(best->delay), best->delay > 0 ? "later" : "earlier", finding.improvement),
+      format("Give positions and rotations of %s of the same times: no filter that smooths or delays one of "
+             "them.",
+             mark(which)));
   return finding;
 }
 

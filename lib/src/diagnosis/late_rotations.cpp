@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnosis/late_positions.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -31,7 +32,9 @@ void name_late_rotations(const Evidence& evidence, double max_gap, const Diagnos
       late_positions(instants, corrected, options, *clock->value < 0 ? Side::b : Side::a);
   if (!late) late = late_positions(instants, corrected, options);
   if (!late) return;
-  late->message = "At this clock: " + late->message;
+  FindingWords words = late->words;
+  words.claim = "At this clock: " + words.claim;
+  say(*late, std::move(words));
   clock->T_a_b = late->T_a_b;
   findings.insert(std::next(clock), *std::move(late));
 }

@@ -11,15 +11,13 @@
 #include "diagnosis/correction.hpp"
 #include "diagnosis/mount_pairs.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/moves/find_moves.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-/// Begins the last sentence of the message of a bump.
-constexpr const char* before_it = ". Before it the answer is ";
 
 /// observable: of the answer; the size of a change in another direction is noise.
 ShownChange known_change(Move move, const std::array<bool, 6>& observable) {
@@ -45,32 +43,36 @@ void word(const Move& move, const Answered& answered, double begin, double long_
                                     before.translation.y(), before.translation.z(), before.rotation.w(),
                                     before.rotation.x(), before.rotation.y(), before.rotation.z());
   if (move.kind == MoveKind::creep) {
-    finding.message = format("The mounting creeps%s from %.1f to %.1f s after the start",
-                             size.empty() ? "" : (": " + size).c_str(), from, to);
+    finding.change = MountingChange::slowly;
+    std::string claim = format("The mounting creeps%s from %.1f to %.1f s after the start",
+                               size.empty() ? "" : (": " + size).c_str(), from, to);
     const Eigen::Vector3d turned(move.change[3], move.change[4], move.change[5]);
     if (to > from && turned.allFinite())
-      finding.message +=
-          format(", %.2g deg an hour", turned.norm() * 180 / std::numbers::pi * 3600 / (to - from));
-    finding.message += ". At its begin the answer is " + answer + ".";
-    finding.remedy = "Fasten the mounting; calibrate a shorter part of the drive.";
+      claim += format(", %.2g deg an hour", turned.norm() * 180 / std::numbers::pi * 3600 / (to - from));
+    say(finding, std::move(claim), "Fasten the mounting; calibrate a shorter part of the drive.",
+        ". At its begin the answer is " + answer + ".");
     return;
   }
-  finding.message = format("The mounting changed%s about %.1f s after the start",
-                           size.empty() ? "" : (" by " + size).c_str(), *finding.time);
-  if (to - from > long_interval) finding.message += format(" (between %.1f and %.1f s)", from, to);
-  finding.message += before_it + answer + ".";
-  finding.remedy = format("Calibrate the drive before and after %.1f s separately.", *finding.time);
+  finding.change = MountingChange::at_once;
+  std::string claim = format("The mounting changed%s about %.1f s after the start",
+                             size.empty() ? "" : (" by " + size).c_str(), *finding.time);
+  if (to - from > long_interval) claim += format(" (between %.1f and %.1f s)", from, to);
+  say(finding, std::move(claim),
+      format("Calibrate the drive before and after %.1f s separately.", *finding.time),
+      ". Before it the answer is " + answer + ".");
 }
 
 /// Of a mount that moved and fell back.
 void word_falling_back(Finding& first, Finding& second) {
   const double moved = *first.time, back = *second.time;
-  second.message.insert(second.message.rfind(before_it),
-                        format(", back to where it was before %.1f s", moved));
-  first.remedy = second.remedy = format(
+  second.change = MountingChange::back;
+  const std::string cure = format(
       "Fasten the mounting. Calibrate the parts before %.1f s, from then to %.1f s and after it "
       "separately.",
       moved, back);
+  say(first, first.words.claim, cure, first.words.evidence);
+  say(second, second.words.claim + format(", back to where it was before %.1f s", moved), cure,
+      second.words.evidence);
 }
 
 using Strides = std::vector<std::vector<MotionPair>>;
@@ -209,8 +211,7 @@ std::optional<Finding> contradicting_times(double chance, const DiagnosisOptions
 }
 
 bool one_move(const std::vector<Finding>& moves) {
-  // a mount that fell back has one remedy, which names both times
-  return moves.size() == 1 || (moves.size() == 2 && moves[0].remedy == moves[1].remedy);
+  return moves.size() == 1 || (moves.size() == 2 && moves[1].change == MountingChange::back);
 }
 
 }  // namespace egocal::detail

@@ -15,6 +15,7 @@
 #include "diagnosis/standing_still.hpp"
 #include "diagnosis/wandering_scale.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/error.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/estimate_scale.hpp"
@@ -119,9 +120,10 @@ bool changes_while_moving(const ScaleCourse& course, const Explained& given, std
 }
 
 /// With the scale of b as it is found from a first guess; empty where it does not change, or where a mount
-/// still moves.
+/// still moves. moved: whether one seems to move as given; where none does, the scales may leave small moves,
+/// as each is wrong by a little, but must explain more than those.
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
-                                      const Answered& answered, const ScaleSolution& guess,
+                                      const Answered& answered, const ScaleSolution& guess, bool moved,
                                       const DiagnosisOptions& options) {
   const Trajectory& a = evidence.streams.a;
   const Trajectory& b = evidence.streams.b;
@@ -130,15 +132,16 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
     return std::nullopt;
   const Trajectory followed = scaled(b, course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
-  if (!moved_mount(instants, answered, options).findings.empty() ||
-      large_move(instants, evidence.stride, options))
-    return std::nullopt;
+  const std::vector<Finding> left = moved_mount(instants, answered, options).findings;
+  if ((moved && !left.empty()) || large_move(instants, evidence.stride, options)) return std::nullopt;
   Explained explained;
   explained.motions = motions_of(instants, {}, {}, evidence.stride, options.motions.most, options.motions);
   if (explained.motions.all.empty()) return std::nullopt;
   explained.fit = robust_fit(explained.motions, options.fit);
   const double gain = compare(evidence.given.explained, explained).gain;
-  if (!(gain > options.least_gain)) return std::nullopt;
+  if (!(gain > options.least_gain) ||
+      (!left.empty() && !(gain > compare(explained, in_parts(explained, left, options)).gain)))
+    return std::nullopt;
   const std::int64_t origin_us = a.front().time_us;
   Finding finding;
   finding.code = "scale_change";
@@ -148,9 +151,10 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   const bool drifts = course.segments.size() == 1;
   finding.time = to_seconds((drifts ? first.begin_us : first.end_us) - origin_us);
   finding.T_a_b = to_pose(explained.fit.T);
-  finding.message = "The lengths of b must be multiplied by a factor that changes along the drive: " +
-                    in_words(course, origin_us) + ". With these the mounting does not move.";
-  finding.remedy = "--scale-b auto finds the factors; --scale auto where b is in metres.";
+  say(finding,
+      "The lengths of {b} must be multiplied by a factor that changes along the drive: " +
+          in_words(course, origin_us) + (left.empty() ? ". With these the mounting does not move." : "."),
+      "{solve}--scale-b auto finds the factors; --scale auto where {b} is in metres.");
   return finding;
 }
 
@@ -161,7 +165,8 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
                                       const std::vector<Finding>& moves) {
   std::optional<Finding> best;
   for (const ScaleSolution& guess : scales_of_b(evidence.streams.a, evidence.streams.b, pairing, moves)) {
-    std::optional<Finding> found = changing_scale(pairing, evidence, answered, guess, options);
+    std::optional<Finding> found =
+        changing_scale(pairing, evidence, answered, guess, !moves.empty(), options);
     if (found && (!best || found->improvement > best->improvement)) best = std::move(found);
   }
   return best;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal::detail {
@@ -27,12 +28,11 @@ bool axis_of(const Eigen::Matrix3d& squares, double one_axis, Eigen::Vector3d& a
   return eigen.values[2] > one_axis * std::max(0.0, eigen.values[1]) && eigen.values[2] > 0;
 }
 
-Finding plane_finding(char which, std::string message, std::string remedy, bool certain = true) {
+Finding plane_finding(char which, std::string claim, std::string cure, bool certain = true) {
   Finding finding;
   finding.code = std::string("plane_") + which;
   finding.certain = certain;
-  finding.message = std::move(message);
-  finding.remedy = std::move(remedy);
+  say(finding, std::move(claim), std::move(cure));
   return finding;
 }
 
@@ -46,10 +46,10 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
       findings.push_back(plane_finding(
           which,
           format(
-              "The ground plane of %c lies %.2f m above the sensor: the normal points down, or the distance "
+              "The ground plane of %s lies %.2f m above the sensor: the normal points down, or the distance "
               "has the wrong sign.",
-              which, plane.distance),
-          format("--plane-%c with the normal up and D = -%.4g (minus the mounting height)", which,
+              mark(which), plane.distance),
+          format("{solve}--plane-%c with the normal up and D = -%.4g (minus the mounting height)", which,
                  plane.distance)));
 
   Turning turning;
@@ -68,25 +68,25 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
   if (!a_fits && !b_fits && std::abs(axis_a.dot(b.normal)) > options.aligned &&
       std::abs(axis_b.dot(a.normal)) > options.aligned) {
     for (const char which : {'a', 'b'})
-      findings.push_back(plane_finding(which, "The ground planes of a and b are exchanged.",
-                                       "Exchange --plane-a and --plane-b."));
+      findings.push_back(plane_finding(which, "The ground planes of {a} and {b} are exchanged.",
+                                       "Exchange {solve}--plane-a and --plane-b."));
   } else {
     for (const auto& [which, fits, axis] : {std::tuple{'a', a_fits, axis_a}, std::tuple{'b', b_fits, axis_b}})
       if (!fits)
         findings.push_back(plane_finding(
             which,
-            format("Sensor %c turns about (%.2f, %.2f, %.2f), which is not the normal of its ground plane.",
-                   which, axis.x(), axis.y(), axis.z()),
-            format("Check the normal of --plane-%c.", which)));
+            format("Sensor %s turns about (%.2f, %.2f, %.2f), which is not the normal of its ground plane.",
+                   mark(which), axis.x(), axis.y(), axis.z()),
+            format("Check the normal of {solve}--plane-%c.", which)));
   }
   // both turn left at the same time: one normal is upside down otherwise
   if (a_fits && b_fits && turning.common < 0 && findings.empty())
     for (const char which : {'a', 'b'})
-      findings.push_back(
-          plane_finding(which,
-                        "The normals of the two ground planes point in opposite directions: "
-                        "when a turns left about its normal, b turns right.",
-                        format("Turn the normal of --plane-%c round, if it points down.", which), false));
+      findings.push_back(plane_finding(
+          which,
+          "The normals of the two ground planes point in opposite directions: "
+          "when {a} turns left about its normal, {b} turns right.",
+          format("Turn the normal of {solve}--plane-%c round, if it points down.", which), false));
   return findings;
 }
 

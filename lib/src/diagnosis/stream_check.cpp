@@ -10,6 +10,7 @@
 #include "diagnosis/rounded_copy.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/median.hpp"
@@ -71,11 +72,11 @@ Finding frozen(char which, double part) {
   Finding finding;
   finding.code = std::string("frozen_") + which;
   finding.certain = true;
-  finding.message = format(
-      "%c repeats its pose during %.0f %% of the way that the other one travels: it is frozen or "
-      "has no new poses.",
-      which, 100 * part);
-  finding.remedy = format("Look at the odometry of %c; use the part of the drive where both move.", which);
+  say(finding,
+      format("%s repeats its pose during %.0f %% of the way that the other one travels: it is frozen or "
+             "has no new poses.",
+             mark(which), 100 * part),
+      format("Look at the odometry of %s; use the part of the drive where both move.", mark(which)));
   return finding;
 }
 
@@ -168,16 +169,17 @@ Finding flat(char which, char coordinate, double tilt, bool of_other) {
   Finding finding;
   finding.code = std::string("flat_") + which;
   finding.certain = true;
-  finding.message =
+  const std::string claim =
       of_other ? format(
-                     "The positions of %c never change in %c, and it turns about that axis alone, although "
-                     "%c tilts by %.1f deg: an odometry in two dimensions beside one in three.",
-                     which, coordinate, which == 'a' ? 'b' : 'a', tilt * 180 / std::numbers::pi)
+                     "The positions of %s never change in %c, and it turns about that axis alone, although "
+                     "%s tilts by %.1f deg: an odometry in two dimensions beside one in three.",
+                     mark(which), coordinate, mark(which == 'a' ? 'b' : 'a'), tilt * 180 / std::numbers::pi)
                : format(
-                     "The positions of %c never change in %c although it tilts by %.1f deg: a coordinate is "
+                     "The positions of %s never change in %c although it tilts by %.1f deg: a coordinate is "
                      "missing.",
-                     which, coordinate, tilt * 180 / std::numbers::pi);
-  finding.remedy = format("Give positions of %c in three dimensions, or ground planes (planar mode).", which);
+                     mark(which), coordinate, tilt * 180 / std::numbers::pi);
+  say(finding, claim,
+      format("Give positions of %s in three dimensions, or ground planes (planar mode).", mark(which)));
   return finding;
 }
 
@@ -211,18 +213,18 @@ std::optional<Finding> without_part(char which, const Trajectory& own, const Tra
   Finding finding;
   finding.code = std::string("missing_") + which;
   finding.certain = true;
-  finding.message = format("The %s of %c never change although %s: they are missing.",
-                           no_positions ? "positions" : "rotations", which,
-                           no_positions ? "the other sensor travels" : "the other sensor turns");
-  finding.remedy = format("Give poses of %c with positions and rotations.", which);
+  say(finding,
+      format("The %s of %s never change although %s: they are missing.",
+             no_positions ? "positions" : "rotations", mark(which),
+             no_positions ? "the other sensor travels" : "the other sensor turns"),
+      format("Give poses of %s with positions and rotations.", mark(which)));
   return finding;
 }
 
 Finding samples() {
   Finding finding;
   finding.code = "samples";
-  finding.message = "These look like still poses of an arm rather than streams.";
-  finding.remedy = "--samples";
+  say(finding, "These look like still poses of an arm rather than streams.", "{solve}--samples");
   return finding;
 }
 

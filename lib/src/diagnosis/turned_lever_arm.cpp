@@ -11,6 +11,7 @@
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -92,11 +93,11 @@ std::optional<Finding> turned_lever_arm(const Instants& instants, const Explaine
   finding.certain = true;
   finding.improvement = std::exp(best->comparison.gain);
   finding.T_a_b = to_pose(best->explained.fit.T);
-  finding.message = format(
-      "The positions of %c hold a lever arm (%.2f %.2f %.2f m) that was turned by the inverse rotations: the "
-      "squared residuals are %.3g times smaller without it.",
-      which, best->arm.x(), best->arm.y(), best->arm.z(), finding.improvement);
-  finding.remedy = format("Move the positions of %c by p + R l, with R from the body to the world.", which);
+  say(finding,
+      format("The positions of %s hold a lever arm (%.2f %.2f %.2f m) that was turned by the inverse "
+             "rotations: the squared residuals are %.3g times smaller without it.",
+             mark(which), best->arm.x(), best->arm.y(), best->arm.z(), finding.improvement),
+      format("Move the positions of %s by p + R l, with R from the body to the world.", mark(which)));
   return finding;
 }
 

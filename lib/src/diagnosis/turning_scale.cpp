@@ -14,6 +14,7 @@
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/median.hpp"
 
@@ -201,14 +202,13 @@ std::optional<Finding> vectors_of_another_length(const Instants& instants, const
       best->improvement = std::exp(comparison.gain);
       best->T_a_b = to_pose(here.fit.T);
       best->value = factor;
-      best->message = format(
-          "The rotation vectors of %c, from its world, are %.4g times as long as they should be: the squared "
-          "residuals are %.3g times smaller without that.",
-          which, factor, best->improvement);
-      best->remedy = format(
-          "Correct the conversion of the rotations of %c: a quaternion has half the angle of its rotation "
-          "vector, in radians.",
-          which);
+      say(*best,
+          format("The rotation vectors of %s, from its world, are %.4g times as long as they should be: the "
+                 "squared residuals are %.3g times smaller without that.",
+                 mark(which), factor, best->improvement),
+          format("Correct the conversion of the rotations of %s: a quaternion has half the angle of its "
+                 "rotation vector, in radians.",
+                 mark(which)));
     }
   return best;
 }
@@ -221,12 +221,12 @@ Finding worded(const Scaled& scaled) {
   finding.improvement = std::exp(scaled.comparison.gain);
   finding.T_a_b = to_pose(scaled.explained.fit.T);
   finding.value = 1 / (1 - scaled.part);
-  finding.message = format(
-      "The rotations of %c turn %.4g times as far as they should about one axis: the squared residuals are "
-      "%.3g "
-      "times smaller without that.",
-      which, *finding.value, finding.improvement);
-  finding.remedy = format("Calibrate the gyroscope or the compass of %c, then record again.", which);
+  say(finding,
+      format(
+          "The rotations of %s turn %.4g times as far as they should about one axis: the squared residuals "
+          "are %.3g times smaller without that.",
+          mark(which), *finding.value, finding.improvement),
+      format("Calibrate the gyroscope or the compass of %s, then record again.", mark(which)));
   return finding;
 }
 

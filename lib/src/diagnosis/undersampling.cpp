@@ -9,6 +9,7 @@
 
 #include "diagnosis/answer_change.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
 
 namespace egocal::detail {
@@ -60,13 +61,13 @@ std::optional<Finding> undersampled(const Instants& instants, const Answered& an
   Finding finding;
   finding.code = std::string("undersampled_") + interpolated;
   finding.certain = true;
-  finding.message = format(
-      "The motion is too fast for the rate of %c: what is lost between its poses, at the times of %c, makes "
-      "%s uncertain by %.2g %s (one standard deviation) rather than by %.2g.",
-      interpolated, other, direction_names[worst], unit * interpolation_stddev[worst], length ? "cm" : "deg",
-      unit * answered.observability.stddev[worst]);
-  finding.remedy =
-      format("Measure with %c at a higher rate, or with both sensors at the same times.", interpolated);
+  say(finding,
+      format("The motion is too fast for the rate of %s: what is lost between its poses, at the times of %s, "
+             "makes %s uncertain by %.2g %s (one standard deviation) rather than by %.2g.",
+             mark(interpolated), mark(other), direction_names[worst], unit * interpolation_stddev[worst],
+             length ? "cm" : "deg", unit * answered.observability.stddev[worst]),
+      format("Measure with %s at a higher rate, or with both sensors at the same times.",
+             mark(interpolated)));
   return finding;
 }
 

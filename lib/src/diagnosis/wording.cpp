@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "diagnosis/axes.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -58,12 +59,16 @@ void word_axes(Finding& finding, const PoseReading& reading, const char* stream)
     if (reading.conjugate)
       change += std::string(change.empty() ? "" : ", and ") + "each rotation taken as its inverse";
   }
-  finding.message = format("The position and the rotation of %s do not belong together: with %s, %s.", stream,
-                           change.c_str(), fits(finding).c_str());
-  finding.remedy = format("Write positions and rotations of %s in the same axes.", stream);
+  say(finding, format("The position and the rotation of %s do not belong together", stream),
+      format("Write positions and rotations of %s in the same axes.", stream),
+      format(": with %s, %s.", change.c_str(), fits(finding).c_str()));
 }
 
 }  // namespace
+
+const char* mark(char stream) {
+  return stream == 'a' ? "{a}" : "{b}";
+}
 
 std::string format(const char* pattern, ...) {
   char text[512];
@@ -80,31 +85,29 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
   const char* order_b = read_b.quaternion_order == QuaternionOrder::xyzw ? "xyzw" : "wxyz";
   if (code == "inverted_a" || code == "inverted_b") {
     const char which = code.back();
-    finding.message =
-        format("The poses of %c are world-to-sensor, not sensor-to-world: %s.", which, fits(finding).c_str());
-    finding.remedy = format("--invert-%c", which);
+    say(finding, format("The poses of %s are world-to-sensor, not sensor-to-world", mark(which)),
+        format("{solve}--invert-%c", which), format(": %s.", fits(finding).c_str()));
   } else if (code == "inverted_both") {
-    finding.message =
-        finding.certain ? "The poses of both streams are world-to-sensor, not sensor-to-world."
-                        : "If the poses of both streams are world-to-sensor, the answer is another one; the "
-                          "motions cannot tell.";
-    finding.remedy = finding.certain ? "--invert-a --invert-b"
-                                     : "Make sure that the poses are sensor-to-world; otherwise --invert-a "
-                                       "--invert-b.";
+    if (finding.certain)
+      say(finding, "The poses of both streams are world-to-sensor, not sensor-to-world",
+          "{solve}--invert-a --invert-b", ".");
+    else
+      say(finding, "If the poses of both streams are world-to-sensor",
+          "Make sure that the poses are sensor-to-world; otherwise {solve}--invert-a --invert-b.",
+          ", the answer is another one; the motions cannot tell.");
   } else if (code == "quaternion_order_a" || code == "quaternion_order_b") {
     const char which = code.back();
     const char* order = which == 'a' ? order_a : order_b;
-    finding.message =
-        format("The quaternions of %c are in the order %s: %s.", which, order, fits(finding).c_str());
-    finding.remedy = format("--quaternion-order-%c %s", which, order);
+    say(finding, format("The quaternions of %s are in the order %s", mark(which), order),
+        format("{solve}--quaternion-order-%c %s", which, order), format(": %s.", fits(finding).c_str()));
   } else if (code == "quaternion_order_both") {
-    finding.message =
-        format("The quaternions of both streams are in the order %s: %s.", order_a, fits(finding).c_str());
-    finding.remedy = format("--quaternion-order-a %s --quaternion-order-b %s", order_a, order_b);
+    say(finding, format("The quaternions of both streams are in the order %s", order_a),
+        format("{solve}--quaternion-order-a %s --quaternion-order-b %s", order_a, order_b),
+        format(": %s.", fits(finding).c_str()));
   } else if (code == "axes_a") {
-    word_axes(finding, read_a, "a");
+    word_axes(finding, read_a, mark('a'));
   } else if (code == "axes_b") {
-    word_axes(finding, read_b, "b");
+    word_axes(finding, read_b, mark('b'));
   } else if (code == "axes_both") {
     word_axes(finding, read_a, "both streams");
   }
@@ -114,27 +117,28 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
 Finding worded_scale(Finding finding) {
   const double scale = finding.value.value_or(1);
   if (finding.code == "units") {
-    finding.message = format("The lengths of %s are not in metres: those of b times %g fit those of a.",
-                             scale < 1 ? "b" : "a", scale);
-    finding.remedy = scale < 1 ? format("--scale-b %g", scale) : format("--scale %g", 1 / scale);
+    say(finding, format("The lengths of %s are not in metres", mark(scale < 1 ? 'b' : 'a')),
+        scale < 1 ? format("{solve}--scale-b %g", scale) : format("{solve}--scale %g", 1 / scale),
+        format(": those of {b} times %g fit those of {a}.", scale));
   } else {
-    finding.message = format("The lengths of b times %.4g fit those of a: %s.", scale, fits(finding).c_str());
-    finding.remedy = "--scale-b auto, or --scale auto if it is the lengths of a that are wrong.";
+    say(finding, format("The lengths of {b} times %.4g fit those of {a}", scale),
+        "{solve}--scale-b auto, or --scale auto if it is the lengths of {a} that are wrong.",
+        format(": %s.", fits(finding).c_str()));
   }
   return finding;
 }
 
 Finding worded_clock(Finding finding, const ClockModel& clock) {
   if (finding.code == "clock_drift") {
-    finding.message = format(
-        "The clocks drift apart: b's stamps need %+.4f s in the middle of the drive and "
-        "%+.0f us more each second; %s.",
-        clock.offset, 1e6 * clock.rate, fits(finding).c_str());
-    finding.remedy = "Synchronise the clocks; for a short drive --time-offset auto.";
+    say(finding,
+        format("The clocks drift apart: {b}'s stamps need %+.4f s in the middle of the drive and "
+               "%+.0f us more each second",
+               clock.offset, 1e6 * clock.rate),
+        "Synchronise the clocks; for a short drive {solve}--time-offset auto.",
+        format("; %s.", fits(finding).c_str()));
   } else {
-    finding.message = format("The clocks differ: %+.4f s added to the stamps of b fits; %s.", clock.offset,
-                             fits(finding).c_str());
-    finding.remedy = "--time-offset auto";
+    say(finding, format("The clocks differ: %+.4f s added to the stamps of {b} fits", clock.offset),
+        "{solve}--time-offset auto", format("; %s.", fits(finding).c_str()));
   }
   return finding;
 }

@@ -12,6 +12,9 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
 Finding worded_scale(Finding finding);
 Finding worded_clock(Finding finding, const ClockModel& clock);
 
+/// The mark of a stream ('a' or 'b') in a sentence of a finding (finding_words.hpp).
+const char* mark(char stream);
+
 /// printf into a string of at most 511 characters.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 

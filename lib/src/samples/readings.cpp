@@ -12,6 +12,7 @@
 
 #include "diagnosis/reading.hpp"
 #include "diagnosis/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
@@ -132,16 +133,19 @@ Finding worded(Finding finding, const Alternative& other) {
   finding = worded_reading(std::move(finding), full(other.a), full(other.b));
   const bool of_a = finding.code == "inverted_a";
   if (!of_a && finding.code != "inverted_b") return finding;
-  finding.message = format(
-      "With the poses of %s inverted the squared residuals are %.3g times smaller: they are %s.%s",
-      of_a ? "a" : "b", finding.improvement,
-      of_a ? "base-to-hand, or the camera stands beside the arm and sees the hand"
-           : "those of the target in the camera, as detectors report them",
-      finding.certain ? ""
-                      : (of_a ? " Those of b inverted fit as well." : " Those of a inverted fit as well."));
-  finding.remedy =
-      of_a ? "--eye-to-hand for a camera beside the arm, --eye-in-hand for one on the hand, or --invert-a."
-           : "--invert-b.";
+  FindingWords words;
+  words.claim =
+      format("With the poses of %s inverted the squared residuals are %.3g times smaller: they are %s",
+             of_a ? "{a}" : "{b}", finding.improvement,
+             of_a ? "base-to-hand, or the camera stands beside the arm and sees the hand"
+                  : "those of the target in the camera, as detectors report them");
+  words.evidence = finding.certain ? "."
+                   : of_a          ? ". Those of {b} inverted fit as well."
+                                   : ". Those of {a} inverted fit as well.";
+  if (of_a)
+    words.scope = "{solve}--eye-to-hand for a camera beside the arm, --eye-in-hand for one on the hand, or ";
+  words.cure = of_a ? "--invert-a." : "{solve}--invert-b.";
+  say(finding, std::move(words));
   return finding;
 }
 
@@ -255,7 +259,7 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
     finding.value = scale->scale;
     finding.T_a_b = scale->X;
     finding = worded_scale(std::move(finding));
-    finding.remedy = format("--scale-b %.6g", scale->scale);
+    say(finding, finding.words.claim, format("{solve}--scale-b %.6g", scale->scale), finding.words.evidence);
     findings.push_back(std::move(finding));
   }
   return findings;

@@ -42,7 +42,24 @@ struct Fit {
   std::vector<FitTenth> tenths;
 };
 
-/// An explanation that fits better than the streams as given, or as well and with another answer.
+/// What a finding says, in parts, so that nobody has to take its sentences to pieces. {a} and {b} stand for
+/// the streams, {solve} for the command before an option of `egocal solve`. Empty where nothing is marked,
+/// and where the finding came over the bus.
+struct FindingWords {
+  std::string claim;     ///< the message is claim and evidence
+  std::string evidence;  ///< from the mark after the claim to the end; may be empty
+  std::string scope;     ///< the remedy is scope and cure; empty: of the whole drive
+  std::string cure;
+};
+
+/// How a mounting changed.
+enum class MountingChange {
+  at_once,
+  slowly,
+  back,  ///< at once, to where it was before the change before
+};
+
+/// Something found in the streams: another explanation that fits better or as well, or a fault.
 struct Finding {
   /// inverted_a|_b|_both, quaternion_order_a|_b|_both, scale, units, scale_change, clock_offset, clock_drift,
   /// time_unit, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, plane_a|_b, mount_moved, unrelated,
@@ -54,10 +71,12 @@ struct Finding {
   std::string remedy;           ///< option or action that cures it
   double improvement = 1;       ///< squared residuals as given / under this explanation
   std::optional<Pose> T_a_b;    ///< the answer under this explanation, where it has one
-  std::optional<double> time;   ///< mount_moved, scale_change: since the first pose of a [s]
+  std::optional<double> time;   ///< mount_moved, scale_change, unrelated: since the first pose of a [s]
   std::optional<double> value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
                                 ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
-                                ///< how late they are [s]; time_unit: likely factor of the times
+                                ///< how late they are [s]; time_unit, turning_scale_a|_b: factor
+  FindingWords words{};         ///< of message and remedy, for those who name the streams
+  std::optional<MountingChange> change{};  ///< mount_moved: how, where that is known
 };
 
 /// What carries the sensors: which manoeuvres can be asked for.

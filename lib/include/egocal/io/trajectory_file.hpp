@@ -18,8 +18,8 @@ struct ReadOptions {
   /// A unit may follow in brackets: t[ns], yaw[deg].
   std::string columns;
   double rate = 0;  ///< poses without times: their rate [Hz]; 0: 10 is assumed and reported in the notes
-  /// Nothing is repaired: an Error where poses are out of order, have the time of another one, or are lost,
-  /// and where the recording contradicts itself.
+  /// Nothing is repaired or passed over: an Error where poses are out of order, have the time of another one,
+  /// or are lost (damage, rows and messages that hold no pose), and where the recording contradicts itself.
   bool strict = false;
 };
 

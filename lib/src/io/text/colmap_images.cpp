@@ -88,7 +88,7 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
   streams_[0].poses = true;
   losses_ = {};
   notes_ = {"the poses are world-to-camera and are inverted",
-            "the scale of a COLMAP model is arbitrary: --scale auto finds it"};
+            "the scale of a COLMAP model is arbitrary: egocal solve --scale auto finds it"};
 
   std::vector<Image> images;
   double largest = 0;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "egocal/error.hpp"
+#include "egocal/io/misplaced_times.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
 #include "io/checked_pose.hpp"
@@ -29,8 +30,8 @@ TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions opt
   layout_ = detect_layout(*source_, options_);
   if (!options_.times_file.empty()) {
     if (!layout_.matrix || layout_.first_column != 0)
-      throw error_at(file_, 0, "",
-                     "a file of times belongs to KITTI poses (12 fields a line), this is not one");
+      throw MisplacedTimes(error_at(
+          file_, 0, "", "a file of times belongs to KITTI poses (12 fields a line), this is not one"));
     times_ = read_times_file(options_.times_file);
   }
   if (options_.rate != 0 && !rates_of_poses.contains(options_.rate))

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// `egocal solve` where a camera has no scale.
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "rig_command.hpp"
+
+namespace egocal {
+namespace {
+
+using nlohmann::json;
+
+using ScaleCommand = testing::RigCommand;
+
+TEST_F(ScaleCommand, TheScaleOfACameraIsFound) {
+  const std::string drive = folder.path("mono");
+  ASSERT_EQ(run("simulate --terrain rough --noise 0.01 --poses 1200 --scale camera=2.7 --out " + drive).code,
+            0);
+  const std::string files = " " + drive + "/camera.tum " + drive + "/lidar.tum";
+  const Result result = run("solve --json --scale auto" + files);
+  ASSERT_EQ(result.code, 0) << result.error;
+  const json scale = result.object()["scale"];
+  EXPECT_NEAR(scale["value"].get<double>(), 2.7, 3 * scale["stddev"].get<double>());
+  EXPECT_NEAR(scale["value"].get<double>(), 2.7, 0.005 * 2.7);
+  EXPECT_TRUE(scale["certified"]);
+  EXPECT_TRUE(scale["observable"]);
+  EXPECT_LE(scale["least"], scale["value"]);
+  EXPECT_GE(scale["most"], scale["value"]);
+  EXPECT_TRUE(result.object()["certified"]);
+  // from the other side, and given
+  const std::string turned = " " + drive + "/lidar.tum " + drive + "/camera.tum";
+  const json on_b = run("solve --json --scale-b auto" + turned).object();
+  EXPECT_NEAR(on_b["scale"]["value"].get<double>(), 2.7, 0.005 * 2.7);
+  const json given = run("solve --json --scale-b 2.7" + turned).object();
+  EXPECT_EQ(given["scale_applied"], 2.7);
+  EXPECT_FALSE(given.contains("scale"));
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(given["translation"][i].get<double>(), on_b["translation"][i].get<double>(), 0.02);
+  for (const char* wrong :
+       {" --scale 0", " --scale -1", " --scale nan", " --scale x", " --scale 1 --scale-b 1"}) {
+    const Result refused = run("solve" + files + wrong);
+    EXPECT_EQ(refused.code, 2) << wrong;
+    EXPECT_TRUE(refused.out.empty()) << wrong;
+  }
+}
+
+TEST_F(ScaleCommand, AScaleThatDriftsIsFollowed) {
+  const std::string drive = folder.path("drifting");
+  ASSERT_EQ(
+      run("simulate --terrain free --noise 0.01 --poses 1200 --scale camera=4 --scale-drift camera=0.002 "
+          "--out " +
+          drive)
+          .code,
+      0);
+  const Result result = run("solve --json --scale auto " + drive + "/camera.tum " + drive +
+                            "/lidar.tum --truth 0.2,-0.3,-0.5,0.5,0.5,-0.5,0.5");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const json object = result.object();
+  const json& segments = object["scale"]["segments"];
+  ASSERT_FALSE(segments.empty());
+  EXPECT_NEAR(segments.front()["begin_scale"].get<double>(), 4, 0.06);
+  EXPECT_NEAR(segments.back()["end_scale"].get<double>(), 4 * std::exp(0.24), 0.08);
+  EXPECT_LT(object["error_rotation_deg"], 0.2);
+  EXPECT_LT(object["error_translation_m"], 0.05);
+  EXPECT_TRUE(object["certified"]);
+}
+
+TEST_F(ScaleCommand, TheScaleOfTwoDrivesIsOne) {
+  std::string drives[2];
+  for (int i = 0; i < 2; ++i) {
+    drives[i] = folder.path("mono" + std::to_string(i));
+    ASSERT_EQ(run("simulate --terrain free --noise 0.01 --poses 300 --scale camera=0.37 --out " + drives[i] +
+                  " --seed " + std::to_string(i + 1))
+                  .code,
+              0);
+  }
+  const auto files = [&](int i) { return " " + drives[i] + "/camera.tum " + drives[i] + "/lidar.tum"; };
+  const json one = run("solve --json --scale auto" + files(0)).object();
+  const Result both = run("solve --json --scale auto" + files(0) + " --append" + files(1));
+  ASSERT_EQ(both.code, 0) << both.error;
+  EXPECT_NEAR(both.object()["scale"]["value"].get<double>(), 0.37, 0.005 * 0.37);
+  EXPECT_GT(both.object()["pairs"], 1.5 * one["pairs"].get<double>());
+}
+
+TEST_F(ScaleCommand, AKittiCameraWithoutScaleGivesTheSameExtrinsic) {
+  const std::string kitti = paths::data_dir() + "/kitti_07/";
+  std::ifstream camera(kitti + "cam0_orbslam2.tum");
+  if (!camera) GTEST_SKIP() << "no drive at " << kitti;
+  // every length divided by 0.37
+  std::ostringstream scaled;
+  scaled.precision(17);
+  for (std::string line; std::getline(camera, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream numbers(line);
+    double value[8];
+    for (double& number : value) numbers >> number;
+    for (int i = 1; i < 4; ++i) value[i] *= 0.37;
+    for (int i = 0; i < 8; ++i) scaled << (i ? " " : "") << value[i];
+    scaled << "\n";
+  }
+  const std::string mono = folder.file("mono.tum", scaled.str());
+  const std::string lidar = kitti + "velodyne_pylidar.tum ";
+  const json whole = run("solve --json --scale-b auto " + lidar + kitti + "cam0_orbslam2.tum").object();
+  const json found = run("solve --json --scale-b auto " + lidar + mono).object();
+  EXPECT_NEAR(found["scale"]["value"].get<double>() * 0.37, whole["scale"]["value"].get<double>(), 1e-4);
+  EXPECT_NEAR(found["scale"]["value"].get<double>() * 0.37, 1, 0.005);
+  double difference = 0, length = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    difference += std::pow(found["translation"][i].get<double>() - whole["translation"][i].get<double>(), 2);
+    length += std::pow(whole["translation"][i].get<double>(), 2);
+  }
+  EXPECT_LT(std::sqrt(difference), 0.05 * std::sqrt(length));
+}
+
+/// A scale from 0.01 to 100 is searched. The cure was the option that had been given.
+TEST_F(ScaleCommand, AScaleBeyondWhatIsSearchedIsSaidWithItsCure) {
+  const std::string drive = folder.path("mono");
+  ASSERT_EQ(run("simulate --terrain free --noise 0.01 --poses 600 --scale camera=5000 --out " + drive).code,
+            0);
+  const std::string files = " " + drive + "/camera.tum " + drive + "/lidar.tum";
+  const Result result = run("solve --json --scale auto" + files);
+  const json object = result.object();
+  EXPECT_NE(object["verdict"], "good");
+  EXPECT_TRUE(object["scale"]["at_limit"]);
+  const auto reason = object["reason"].get<std::string>();
+  EXPECT_NE(reason.find("is the end, 100, of the range that was searched, 0.01 to 100. Multiply the lengths "
+                        "of a by 100 first."),
+            std::string::npos)
+      << reason;
+  EXPECT_NE(run("solve --scale auto" + files).out.find("100 NOT FOUND, this is the end of the range"),
+            std::string::npos);
+  for (const json& finding : object["findings"])
+    if (finding["code"] == "scale" || finding["code"] == "units") {
+      EXPECT_EQ(finding["remedy"].get<std::string>().rfind("--scale 5", 0), 0u) << finding;
+    }
+}
+
+}  // namespace
+}  // namespace egocal
