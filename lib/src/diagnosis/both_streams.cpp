@@ -53,7 +53,7 @@ std::size_t jumps(const Evidence& evidence, const Explanation& both, const Diagn
 /// the distance, metres where a camera watches a target.
 bool one_mounting_only_if_inverted(const Evidence& evidence, const Explanation& both,
                                    const Comparison& comparison, const DiagnosisOptions& options) {
-  constexpr std::size_t more_than_moves = 3;
+  constexpr std::size_t more_than_moves = 3;  // a mount that moved and fell back has two
   return explains(both.explained, options) && better(comparison, decisive_loss, options) &&
          loss_in_metres(evidence.given.explained, both.explained) < -decisive_loss &&
          jumps(evidence, both, options) >= more_than_moves;
