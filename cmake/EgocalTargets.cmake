@@ -37,6 +37,7 @@ endfunction()
 
 function(egocal_compile_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+  egocal_collect_later(${target})
   # a*b+c must round the same way wherever it is compiled: answers are bit-identical from run to run
   target_compile_options(${target} PRIVATE -ffp-contract=off)
   # GCC's vectoriser of straight code fuses products with alternating sums in spite of it (GCC 12: vfmaddsub)

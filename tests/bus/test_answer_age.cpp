@@ -5,7 +5,7 @@
 
 #include "egocal/bus/answer_age.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_answer_age {
 namespace {
 
 constexpr std::int64_t second = 1'000'000;
@@ -42,4 +42,4 @@ TEST(AnswerAge, AnAnswerToTheNewestProblemIsNeverOld) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_answer_age

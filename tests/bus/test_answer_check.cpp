@@ -9,7 +9,7 @@
 
 #include "egocal/bus/answer_check.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_answer_check {
 namespace {
 
 const DualQuaternion truth = to_dual_quaternion(Pose{rotation_exp({0.3, -0.2, 0.9}), {0.4, -0.8, 0.3}});
@@ -251,4 +251,4 @@ TEST(AnswerCheck, PairsAndProblemsAreBounded) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_answer_check

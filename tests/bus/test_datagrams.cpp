@@ -9,7 +9,7 @@
 
 #include "egocal/bus/datagrams.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_datagrams {
 namespace {
 
 using Data = std::vector<std::byte>;
@@ -147,4 +147,4 @@ TEST(Datagrams, WhatDoesNotFitIsNotSent) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_datagrams

@@ -10,7 +10,7 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/error.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_lcm_url {
 namespace {
 
 std::string refused(const std::string& url) {
@@ -54,4 +54,4 @@ TEST(LcmUrl, FilesAreNeverTouched) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_lcm_url

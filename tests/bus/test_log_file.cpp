@@ -19,7 +19,7 @@
 #include "support/in_memory_file.hpp"
 #include "support/largest_allocation.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_log_file {
 namespace {
 
 using test::Accident;
@@ -379,4 +379,4 @@ TEST_F(LogFile, AWriterLeavesTheWholeFileOrNone) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_log_file

@@ -12,7 +12,7 @@
 #include "support/damaged_log.hpp"
 #include "support/largest_allocation.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_log_file_limits {
 namespace {
 
 /// Nothing in it but holes: a file of any size that takes no room.
@@ -52,4 +52,4 @@ TEST_F(LogFile, AHostileFileTakesNoLongerThanItsSize) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_log_file_limits

@@ -16,7 +16,7 @@
 #include "egocal/error.hpp"
 #include "support/virtual_time.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_loop {
 namespace {
 
 using namespace std::chrono_literals;
@@ -91,7 +91,7 @@ TEST(Loop, TimersRunInTheirTime) {
   loop.after(7ms, [&] { once = loop.mono_us(); });
   const std::int64_t begin = loop.mono_us();
   test::run_for(clock, {&loop}, 22ms);
-  EXPECT_THAT(ticks, testing::ElementsAre(begin + 5000, begin + 10000, begin + 15000, begin + 20000));
+  EXPECT_THAT(ticks, ::testing::ElementsAre(begin + 5000, begin + 10000, begin + 15000, begin + 20000));
   EXPECT_EQ(once, begin + 7000);
 }
 
@@ -118,7 +118,7 @@ TEST(Loop, ANetworkThatIsAwayIsWaitedFor) {
   network.set_away(false);
   test::run_for(clock, {&loop, &other}, 2s);
   EXPECT_EQ(heard, 4);
-  EXPECT_THAT(reports, testing::ElementsAre(testing::HasSubstr("away"), ""));
+  EXPECT_THAT(reports, ::testing::ElementsAre(::testing::HasSubstr("away"), ""));
   EXPECT_EQ(loop.send_error(), "");
 }
 
@@ -289,4 +289,4 @@ TEST(Peers, ANamesakeThatWorksPrecedesOneThatDoesNotWhateverTheDatesOfTheirStart
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_loop

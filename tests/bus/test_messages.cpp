@@ -13,7 +13,7 @@
 #include "egocal/bus/verdict.hpp"
 #include "egocal/evaluation/errors.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_messages {
 namespace {
 
 Problem example_problem() {
@@ -134,9 +134,9 @@ scale_t example() {
 }
 
 template <class Message>
-class EveryMessage : public testing::Test {};
-using Messages = testing::Types<odometry_t, bot_core::pose_t, motion_pair_t, problem_t, calibration_t,
-                                status_t, command_t, verdict_t, scale_problem_t, scale_t>;
+class EveryMessage : public ::testing::Test {};
+using Messages = ::testing::Types<odometry_t, bot_core::pose_t, motion_pair_t, problem_t, calibration_t,
+                                  status_t, command_t, verdict_t, scale_problem_t, scale_t>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, RoundTrips) {
@@ -299,4 +299,4 @@ TEST(Text, IsMadePrintable) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_messages

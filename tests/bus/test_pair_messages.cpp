@@ -7,7 +7,7 @@
 
 #include "egocal/bus/pair_messages.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_pair_messages {
 namespace {
 
 using namespace std::chrono_literals;
@@ -46,4 +46,4 @@ TEST(PairMessages, ThatNameAnotherPairAreNotHeard) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_pair_messages

@@ -12,7 +12,7 @@
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_rig {
 namespace {
 
 const std::string sensors = R"([[sensor]]
@@ -177,8 +177,8 @@ TEST(Rig, ErrorsNameFileLineAndKey) {
   };
   for (const auto& c : cases) {
     const std::string message = error_of(c.text);
-    EXPECT_THAT(message, testing::StartsWith(c.file_and_line)) << c.text;
-    EXPECT_THAT(message, testing::HasSubstr(c.key)) << c.text;
+    EXPECT_THAT(message, ::testing::StartsWith(c.file_and_line)) << c.text;
+    EXPECT_THAT(message, ::testing::HasSubstr(c.key)) << c.text;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
 }
@@ -197,8 +197,8 @@ std::string all_pairs_of(int count) {
 TEST(Rig, AllPairsOfTwentySensorsAreTakenAndMoreThanListenersKeepAreRefused) {
   EXPECT_EQ(parse_rig(all_pairs_of(20), "my.toml").pairs.size(), 190u);
   const std::string message = error_of(all_pairs_of(24));
-  EXPECT_THAT(message, testing::HasSubstr("at most 256 pairs")) << message;
-  EXPECT_THAT(message, testing::StartsWith("my.toml:"));
+  EXPECT_THAT(message, ::testing::HasSubstr("at most 256 pairs")) << message;
+  EXPECT_THAT(message, ::testing::StartsWith("my.toml:"));
 }
 
 TEST(Rig, MissingFile) {
@@ -210,7 +210,7 @@ TEST(Rig, FoldersAreNamedAsSuch) {
     read_rig("/tmp");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith("/tmp: is a folder"));
+    EXPECT_THAT(error.what(), ::testing::StartsWith("/tmp: is a folder"));
   }
 }
 
@@ -224,7 +224,7 @@ TEST(Rig, ALinkToItselfIsAFileThatCannotBeRead) {
     read_rig(file);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(file + ": cannot be read as a rig file: "));
+    EXPECT_THAT(error.what(), ::testing::StartsWith(file + ": cannot be read as a rig file: "));
   }
   std::filesystem::remove_all(folder);
 }
@@ -245,10 +245,10 @@ TEST(Rig, HostileSizesAreRefusedInOneLine) {
   for (const std::string& text : {dotted + " = 1\n", sensors + dotted + " = 1\n", "[" + dotted + "]\n",
                                   "a = " + nested, "a = " + std::string(100'000, '{'), deep, large}) {
     const std::string message = error_of(text);
-    EXPECT_THAT(message, testing::StartsWith("my.toml")) << text.substr(0, 100);
+    EXPECT_THAT(message, ::testing::StartsWith("my.toml")) << text.substr(0, 100);
     EXPECT_LT(message.size(), 1000U);
   }
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_rig

@@ -9,7 +9,7 @@
 #include "../support/scale_problem.hpp"
 #include "egocal/bus/scale.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_scale_message {
 namespace {
 
 constexpr std::int64_t begin_us = 1'600'000'000'000'000;
@@ -134,4 +134,4 @@ TEST(ScaleMessage, InventedPairsDisplaceNoneThatIsHeardAgain) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_scale_message

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace egocal::bus {
+namespace egocal::bus::test_stream_clock {
 namespace {
 
 using ::testing::ElementsAre;
@@ -152,4 +152,4 @@ TEST(StreamClock, WhatAPlayerDoesIsNoFault) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_stream_clock

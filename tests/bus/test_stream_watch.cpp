@@ -9,15 +9,15 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/stream_watch.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_stream_watch {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr std::int64_t start_us = 1'600'000'000'000'000;
 
-class Watch : public testing::Test {
+class Watch : public ::testing::Test {
  protected:
   Watch()
       : watch({{"lidar", "ODOMETRY_LIDAR", OdometryType::odometry, {}},
@@ -147,4 +147,4 @@ TEST_F(Watch, ItsOwnChannelsAreNoOdometry) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_stream_watch

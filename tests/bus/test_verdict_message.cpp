@@ -9,10 +9,10 @@
 
 #include "egocal/bus/verdict.hpp"
 
-namespace egocal::bus {
+namespace egocal::bus::test_verdict_message {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 constexpr std::int64_t begin_us = 1'600'000'000'000'000;
 
@@ -122,4 +122,4 @@ TEST(VerdictMessage, IsRefusedWhereAnyFieldMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace egocal::bus
+}  // namespace egocal::bus::test_verdict_message

@@ -156,24 +156,24 @@ TEST_F(Processes, AStateFileThatDoesNotFitIsRefusedWithOneLine) {
                 .wait(5s),
             1);
   ASSERT_EQ(lines("in-use.log").size(), 1u);
-  EXPECT_THAT(lines("in-use.log")[0], testing::HasSubstr("another process that is running"));
+  EXPECT_THAT(lines("in-use.log")[0], ::testing::HasSubstr("another process that is running"));
   processes.at("egocal-pairing").signal(SIGTERM);
   EXPECT_EQ(processes.at("egocal-pairing").wait(5s), 0);
   // of another rig
   write_rig("egocal.odometry_t", "[pairing]\nmax_gap = 0.7\n");
   start("egocal-pairing", {"--state", state}, "anew");
   EXPECT_TRUE(until([&] { return !statuses["anew"].last_error.empty(); }, 5s));
-  EXPECT_THAT(statuses["anew"].last_error, testing::HasSubstr("another rig"));
+  EXPECT_THAT(statuses["anew"].last_error, ::testing::HasSubstr("another rig"));
   // the status is sent before the line is written
   ASSERT_TRUE(until([&] { return lines("anew.log").size() == 1u; }, 5s));
-  EXPECT_THAT(lines("anew.log")[0], testing::HasSubstr("kept as " + state + ".refused"));
+  EXPECT_THAT(lines("anew.log")[0], ::testing::HasSubstr("kept as " + state + ".refused"));
   // no state at all: a rig file
   EXPECT_EQ(ChildProcess({bin + "/egocal-pairing", "--rig", rig_file, "--lcm-url", url, "--state", rig_file},
                          folder / "not.log")
                 .wait(5s),
             1);
   ASSERT_EQ(lines("not.log").size(), 1u);
-  EXPECT_THAT(lines("not.log")[0], testing::HasSubstr("not a state of egocal-pairing"));
+  EXPECT_THAT(lines("not.log")[0], ::testing::HasSubstr("not a state of egocal-pairing"));
 }
 
 TEST_F(Processes, KilledAndSwappedSolversLeaveTheAnswerAsItWas) {
@@ -442,7 +442,7 @@ TEST_F(Processes, AnAnswerTakesAFewTimesAsLongAsARelayedMessage) {
 }  // namespace egocal
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  if (!testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
+  ::testing::InitGoogleTest(&argc, argv);
+  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
   return RUN_ALL_TESTS();
 }

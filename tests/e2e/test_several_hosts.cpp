@@ -28,7 +28,7 @@ using test::ChildProcess;
 const std::string bin = paths::bin_dir();
 constexpr int poses = 400;
 
-class SeveralHosts : public testing::Test {
+class SeveralHosts : public ::testing::Test {
  protected:
   SeveralHosts() {
     folder = std::filesystem::temp_directory_path() / ("egocal-hosts-" + std::to_string(getpid()));
@@ -145,7 +145,7 @@ TEST_F(SeveralHosts, WithTheDefaultUrlNothingLeavesAHost) {
 }  // namespace egocal
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  if (!testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
+  ::testing::InitGoogleTest(&argc, argv);
+  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
   return RUN_ALL_TESTS();
 }

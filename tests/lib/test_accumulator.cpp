@@ -8,7 +8,7 @@
 #include "../support/pairing_stages.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_accumulator {
 namespace {
 
 using testing::instants_of;
@@ -121,4 +121,4 @@ TEST(Accumulator, PairsOfOneRigChooseAtDifferentTimes) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_accumulator

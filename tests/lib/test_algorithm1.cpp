@@ -7,7 +7,7 @@
 #include "egocal/online/algorithm1.hpp"
 #include "egocal/problem/blocks.hpp"
 
-namespace egocal {
+namespace egocal::test_algorithm1 {
 namespace {
 
 using testing::displacement;
@@ -111,4 +111,4 @@ TEST(WhichCounts, NewestThenCertifiedThenCheapest) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_algorithm1

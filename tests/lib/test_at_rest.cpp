@@ -13,7 +13,7 @@
 #include "diagnosis/standing_still.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_at_rest {
 namespace {
 
 constexpr std::int64_t period_us = 100'000;
@@ -76,4 +76,4 @@ TEST(AtRest, DoesNotMakeARightAnswerDoubtful) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_at_rest

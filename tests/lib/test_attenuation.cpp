@@ -19,7 +19,7 @@
 #include "egocal/solvers/global.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_attenuation {
 namespace {
 
 using testing::Motion;
@@ -333,4 +333,4 @@ TEST(Attenuation, OfPlanarDrivesIsTheSameBitsHoweverTheyCome) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_attenuation

@@ -9,7 +9,7 @@
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/evaluation/errors.hpp"
 
-namespace egocal {
+namespace egocal::test_baselines {
 namespace {
 
 using testing::displacement;
@@ -181,4 +181,4 @@ TEST(Baselines, NeverInventAnAnswerFromNothing) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_baselines

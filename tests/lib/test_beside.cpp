@@ -14,7 +14,7 @@
 #include "egocal/calibrate_beside.hpp"
 #include "egocal/error.hpp"
 
-namespace egocal {
+namespace egocal::test_beside {
 namespace {
 
 using Work = std::function<void()>;
@@ -147,4 +147,4 @@ TEST(Beside, RefusalsAreTheSame) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_beside

@@ -5,7 +5,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/problem/blocks.hpp"
 
-namespace egocal {
+namespace egocal::test_blocks {
 namespace {
 
 using testing::displacement;
@@ -77,4 +77,4 @@ TEST(BlockStatistics, ContinueFromTheirStateBitForBit) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_blocks

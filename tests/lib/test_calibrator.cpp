@@ -11,7 +11,7 @@
 #include "egocal/error.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 
-namespace egocal {
+namespace egocal::test_calibrator {
 namespace {
 
 testing::Streams rough_drive() {
@@ -82,4 +82,4 @@ TEST(Calibrator, CallsNothingGoodThatItDidNotLookAt) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_calibrator

@@ -11,7 +11,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/solvers/global.hpp"
 
-namespace egocal {
+namespace egocal::test_certificate {
 namespace {
 
 using testing::displacement;
@@ -194,4 +194,4 @@ TEST(Certificate, GapGrowsWithTheErrorWhateverTheNumberOfFrames) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_certificate

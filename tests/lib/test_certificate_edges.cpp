@@ -14,7 +14,7 @@
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sqp.hpp"
 
-namespace egocal {
+namespace egocal::test_certificate_edges {
 namespace {
 
 using testing::displacement;
@@ -189,4 +189,4 @@ TEST(CertificateEdges, GarbageStaysVisible) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_certificate_edges

@@ -10,7 +10,7 @@
 #include "egocal/calibrate.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_clock_check {
 namespace {
 
 using testing::BodyPath, testing::body_step, testing::measured, testing::Sensor, testing::Streams;
@@ -140,4 +140,4 @@ TEST(ClockCheck, ATumblingBodyWhoseClocksAgreeIsNotNamed) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_clock_check

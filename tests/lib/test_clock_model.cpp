@@ -4,7 +4,7 @@
 
 #include "diagnosis/motions.hpp"
 
-namespace egocal::detail {
+namespace egocal::detail::test_clock_model {
 namespace {
 
 TEST(ClockModel, AddsOffsetAndDrift) {
@@ -24,4 +24,4 @@ TEST(ClockModel, GivesTheTimesOfAStream) {
 }
 
 }  // namespace
-}  // namespace egocal::detail
+}  // namespace egocal::detail::test_clock_model

@@ -13,7 +13,7 @@
 #include "../support/real_drives.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_congruence {
 namespace {
 
 using testing::displacement;
@@ -116,4 +116,4 @@ TEST(RealCongruence, StepsOfRealDrivesAreHardlyEverDoubtful) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_congruence

@@ -9,7 +9,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 
-namespace egocal {
+namespace egocal::test_consensus {
 namespace {
 
 using testing::displacement;
@@ -229,4 +229,4 @@ TEST(RobustStatistics, AreBoundedAndContinueFromTheirStateBitForBit) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_consensus

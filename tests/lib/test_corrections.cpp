@@ -14,7 +14,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 
-namespace egocal {
+namespace egocal::test_corrections {
 namespace {
 
 using testing::find;
@@ -90,4 +90,4 @@ TEST(Correction, IsNoneWhereTheMountMoved) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_corrections

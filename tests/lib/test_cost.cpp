@@ -7,7 +7,7 @@
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
 
-namespace egocal {
+namespace egocal::test_cost {
 namespace {
 
 using testing::displacement;
@@ -140,4 +140,4 @@ TEST(Constraints, PlanarOnesVanishOnPlanarDisplacementsOnly) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_cost

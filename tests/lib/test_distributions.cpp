@@ -8,7 +8,7 @@
 
 #include "statistics/distributions.hpp"
 
-namespace egocal {
+namespace egocal::test_distributions {
 namespace {
 
 TEST(Distributions, TailsOfFAreRight) {
@@ -25,4 +25,4 @@ TEST(Distributions, TailsOfFAreRight) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_distributions

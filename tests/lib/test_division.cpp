@@ -8,7 +8,7 @@
 #include "../support/random_motion.hpp"
 #include "moves/division.hpp"
 
-namespace egocal::detail {
+namespace egocal::detail::test_division {
 namespace {
 
 /// Blocks that each show all directions equally well. To a linear model the first ten err by `noise`, the
@@ -64,4 +64,4 @@ TEST(Division, UnlessItsMotionsFitTheOtherOptimumFarWorse) {
 }
 
 }  // namespace
-}  // namespace egocal::detail
+}  // namespace egocal::detail::test_division

@@ -17,7 +17,7 @@
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/tangent.hpp"
 
-namespace egocal {
+namespace egocal::test_double_proof {
 namespace {
 
 using detail::Curvatures;
@@ -274,4 +274,4 @@ TEST(DoubleProof, OrdinaryAnswersNeedNoLongerMantissa) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_double_proof

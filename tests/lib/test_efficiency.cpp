@@ -13,7 +13,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 
-namespace egocal {
+namespace egocal::test_efficiency {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;  // rotation [rad], then translation [m]
@@ -128,4 +128,4 @@ TEST(Efficiency, InSixDegreesOfFreedomNearlyAsGoodAsKnowingTheNoise) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_efficiency

@@ -15,7 +15,7 @@
 #include "egocal/online/answer.hpp"
 #include "problem/motion_square.hpp"
 
-namespace egocal {
+namespace egocal::test_estimation {
 namespace {
 
 using testing::displacement;
@@ -242,4 +242,4 @@ TEST(Estimation, GivenSettingsAndPlainWeightsAreNeverSummed) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_estimation

@@ -16,7 +16,7 @@
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
 
-namespace egocal {
+namespace egocal::test_explanations {
 namespace {
 
 using testing::drive;
@@ -508,4 +508,4 @@ TEST(Explanations, AreDeterministic) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_explanations

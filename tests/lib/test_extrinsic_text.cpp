@@ -10,7 +10,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_text.hpp"
 
-namespace egocal {
+namespace egocal::test_extrinsic_text {
 namespace {
 
 using ::testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(ExtrinsicText, NobodyMountsASensorAtNan) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_extrinsic_text

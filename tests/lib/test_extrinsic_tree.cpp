@@ -12,7 +12,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/extrinsic_tree.hpp"
 
-namespace egocal {
+namespace egocal::test_extrinsic_tree {
 namespace {
 
 using ::testing::HasSubstr;
@@ -134,4 +134,4 @@ TEST(ExtrinsicTree, TwoSensorsAreNotOneFrame) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_extrinsic_tree

@@ -15,7 +15,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "moves/segment_test.hpp"
 
-namespace egocal {
+namespace egocal::test_falling_back {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -195,4 +195,4 @@ TEST(FallingBack, TheRestOfACourseInStepsDiffers) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_falling_back

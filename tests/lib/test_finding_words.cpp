@@ -8,7 +8,7 @@
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 
-namespace egocal {
+namespace egocal::test_finding_words {
 namespace {
 
 const Terms rig{"lidar", "{b}", "egocal solve A B "};
@@ -69,4 +69,4 @@ TEST(FindingWords, AFindingAboutAStreamNamesItByTheReadersTerm) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_finding_words

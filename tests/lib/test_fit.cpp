@@ -7,10 +7,11 @@
 #include <cmath>
 
 #include "../support/mistakes.hpp"
+#include "../support/standing.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/robust_fit.hpp"
 
-namespace egocal {
+namespace egocal::test_fit {
 namespace {
 
 using detail::Motions;
@@ -112,6 +113,19 @@ TEST(Fit, TenthsShowWhereTheMountMoved) {
   EXPECT_GT(fit.tenths[9].translation_relative, 0.05);
 }
 
+// a residual of 0.00 % of the distance looked like the best tenth of the drive
+TEST(Fit, ATenthAtRestHasNoResidualAsAPartOfTheDistance) {
+  testing::Streams streams = drive(Terrain::free, 0.001);
+  testing::Random random(3);
+  for (Trajectory* one : {&streams.a, &streams.b})
+    *one = testing::with_stand(*one, 150, 300, 100'000, 1e-4, random);
+  const Fit fit = detail::fit_at(motions_of(streams, 5), to_pose(streams.T), 0.5);
+  ASSERT_EQ(fit.tenths.size(), 10u);
+  EXPECT_TRUE(std::isnan(fit.tenths[4].translation_relative));
+  EXPECT_GT(fit.tenths[4].translation_median, 0);
+  EXPECT_LT(fit.tenths[1].translation_relative, 0.01);
+}
+
 TEST(Comparison, FavoursTheTruthAndIsAntisymmetric) {
   const testing::Streams streams = drive(Terrain::free, 0.02);
   const Motions motions = motions_of(streams, 5);
@@ -137,4 +151,4 @@ TEST(RobustFit, StandsAFifthOfGrossOutliers) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_fit

@@ -12,7 +12,7 @@
 #include "diagnosis/following_mount.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_following_mount {
 namespace {
 
 using testing::find;
@@ -92,4 +92,4 @@ TEST(ContradictingParts, AreNotASingleJump) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_following_mount

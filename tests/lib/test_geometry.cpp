@@ -8,7 +8,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/problem/problem.hpp"
 
-namespace egocal {
+namespace egocal::test_geometry {
 namespace {
 
 using testing::displacement;
@@ -164,4 +164,4 @@ TEST(GroundPlane, MotionOnTheGroundIsPlanarAndTComesBack) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_geometry

@@ -8,7 +8,7 @@
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_goal {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -69,4 +69,4 @@ TEST(Goal, ThePlatformChoosesTheWords) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_goal

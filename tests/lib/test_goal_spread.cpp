@@ -13,7 +13,7 @@
 #include "diagnosis/goal_spread.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_goal_spread {
 namespace {
 
 Answered answered_at(const testing::Streams& streams) {
@@ -131,4 +131,4 @@ TEST(GoalSpread, UnknownDirectionsStayUnknown) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_goal_spread

@@ -15,7 +15,7 @@
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 
-namespace egocal {
+namespace egocal::test_golden {
 namespace {
 
 struct Golden {
@@ -87,4 +87,4 @@ TEST(Golden, StatisticsCostMatrixMultipliersAndBound) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_golden

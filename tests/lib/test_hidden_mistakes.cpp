@@ -16,7 +16,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 
-namespace egocal {
+namespace egocal::test_hidden_mistakes {
 namespace {
 
 using testing::bounded_drive;
@@ -320,4 +320,4 @@ TEST(HiddenMistakes, SteadyMotionIsNoInterpolation) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_hidden_mistakes

@@ -23,7 +23,7 @@
 #include "statistics/order_statistic.hpp"
 #include "statistics/select.hpp"
 
-namespace egocal {
+namespace egocal::test_hot_paths {
 namespace {
 
 using testing::displacement;
@@ -238,4 +238,4 @@ TEST(Disagreement, OfAMotionIsThatOfItsStatistics) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_hot_paths

@@ -6,7 +6,7 @@
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 
-namespace egocal {
+namespace egocal::test_in_words {
 namespace {
 
 TEST(InWords, OneIsNoPlural) {
@@ -42,4 +42,4 @@ TEST(InWords, OfStreamsThatMakeNoMotions) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_in_words

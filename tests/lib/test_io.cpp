@@ -13,7 +13,7 @@
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/io/whole_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(Io, FilesAreWholeOrAbsent) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io

@@ -17,7 +17,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_bag_folders {
 namespace {
 
 using ::testing::Contains;
@@ -211,4 +211,4 @@ TEST_F(BagFolders, ABagOfAnOldFormatIsNoTextFile) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_bag_folders

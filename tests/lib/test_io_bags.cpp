@@ -15,7 +15,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_bags {
 namespace {
 
 using testing::BagOptions;
@@ -354,4 +354,4 @@ TEST_F(RealBags, OdometryAndItsTransformAgree) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_bags

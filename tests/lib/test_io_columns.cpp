@@ -12,7 +12,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_columns {
 namespace {
 
 using ::testing::Contains;
@@ -107,4 +107,4 @@ TEST_F(Columns, RollAndPitchBesideAHeadingAreThoseOfAVehicle) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_columns

@@ -10,7 +10,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_contradictions {
 namespace {
 
 using ::testing::AllOf;
@@ -151,4 +151,4 @@ TEST_F(Contradictions, ATopicOfAnotherTypeIsNamedAsOne) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_contradictions

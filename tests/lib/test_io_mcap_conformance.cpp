@@ -15,7 +15,7 @@
 #include "io/bag/mcap_records.hpp"
 #include "io/bytes/little_endian.hpp"
 
-namespace egocal::detail {
+namespace egocal::detail::test_io_mcap_conformance {
 namespace {
 
 using nlohmann::json;
@@ -214,4 +214,4 @@ TEST(McapConformance, EveryFileIsReadAsDescribed) {
 }
 
 }  // namespace
-}  // namespace egocal::detail
+}  // namespace egocal::detail::test_io_mcap_conformance

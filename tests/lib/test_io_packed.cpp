@@ -18,7 +18,7 @@
 #include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_packed {
 namespace {
 
 using ::testing::AllOf;
@@ -169,4 +169,4 @@ TEST_F(Packed, WhatIsNotUnpackedOnTheWayIsRefusedWithTheCommandToo) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_packed

@@ -10,7 +10,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_rows {
 namespace {
 
 using ::testing::Contains;
@@ -147,4 +147,4 @@ TEST_F(TextRows, TimesOfAnotherFileMayBeDates) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_rows

@@ -12,7 +12,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_tables {
 namespace {
 
 using ::testing::ElementsAre;
@@ -408,4 +408,4 @@ TEST_F(Tables, DamagedImagesOfColmap) {
   EXPECT_EQ(read(colmap + image + "2 1 0 0").trajectory.size(), 1u);  // cut off
 }
 
-}  // namespace egocal
+}  // namespace egocal::test_io_tables

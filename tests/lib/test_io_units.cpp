@@ -13,7 +13,7 @@
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
-namespace egocal {
+namespace egocal::test_io_units {
 namespace {
 
 using ::testing::Contains;
@@ -196,4 +196,4 @@ TEST_F(Units, OfOneAngleIsThatOfTheOthers) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_io_units

@@ -17,7 +17,7 @@
 #include "uncertainty/takes_off.hpp"
 #include "uncertainty/tangent_form.hpp"
 
-namespace egocal {
+namespace egocal::test_jackknife {
 namespace {
 
 using detail::Matrix6d;
@@ -201,4 +201,4 @@ TEST(SumBlocks, HasTheBitsOfOneAfterTheOther) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_jackknife

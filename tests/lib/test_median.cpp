@@ -11,7 +11,7 @@
 
 #include "../support/random_motion.hpp"
 
-namespace egocal {
+namespace egocal::test_median {
 namespace {
 
 using detail::median;
@@ -56,4 +56,4 @@ TEST(OrderStatisticInPlace, IsWhatSortingFinds) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_median

@@ -11,7 +11,7 @@
 #include "estimation/missed_noise.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_missed_noise {
 namespace {
 
 TEST(MissedNoise, LongMotionsHideTheNoiseOfTheirSteps) {
@@ -38,4 +38,4 @@ TEST(MissedNoise, ShortDrivesWithNoiseOnMotionsAreCovered) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_missed_noise

@@ -13,7 +13,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 
-namespace egocal {
+namespace egocal::test_motion_pairing {
 namespace {
 
 using Simulated = testing::Streams;
@@ -407,4 +407,4 @@ TEST(Simulation, NoiseHasTheSizeThatWasAskedFor) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_motion_pairing

@@ -21,7 +21,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 
-namespace egocal {
+namespace egocal::test_moved_mounts {
 namespace {
 
 using testing::drive;
@@ -353,4 +353,4 @@ TEST(MovedMount, TheSizeOfAMoveIsWhatTheMotionsShowOfIt) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_moved_mounts

@@ -12,7 +12,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 
-namespace egocal {
+namespace egocal::test_moves {
 namespace {
 
 using testing::bump;
@@ -330,4 +330,4 @@ TEST(Moves, CreepIsCalledThatWhereADriveIsNotKeptEvenly) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_moves

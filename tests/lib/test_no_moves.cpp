@@ -11,7 +11,7 @@
 #include "../support/real_drives.hpp"
 #include "../support/standing.hpp"
 
-namespace egocal {
+namespace egocal::test_no_moves {
 namespace {
 
 using testing::bump;
@@ -123,4 +123,4 @@ TEST(NoMoves, NoRealDriveRaisesAnAlarm) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_no_moves

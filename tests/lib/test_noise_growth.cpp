@@ -14,7 +14,7 @@
 #include "egocal/online/answer.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_noise_growth {
 namespace {
 
 const std::vector<double> growths{0, 0.01, 0.1, 1, 10};
@@ -71,4 +71,4 @@ TEST(NoiseGrowth, DrivesWithNoiseOnMotionsAreWeighedByTheirResiduals) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_noise_growth

@@ -10,7 +10,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/problem/blocks.hpp"
 
-namespace egocal {
+namespace egocal::test_observability {
 namespace {
 
 using testing::displacement;
@@ -357,4 +357,4 @@ TEST(Observability, SharedRotationNoiseOnRampsKeepsTheHeight) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_observability

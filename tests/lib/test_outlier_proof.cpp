@@ -8,7 +8,7 @@
 #include "../support/truncated_problems.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_outlier_proof {
 namespace {
 
 using testing::Random;
@@ -105,4 +105,4 @@ TEST(OutlierProof, OfCalibrations) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_outlier_proof

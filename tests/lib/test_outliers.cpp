@@ -15,7 +15,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_outliers {
 namespace {
 
 using testing::corrupted;
@@ -124,4 +124,4 @@ TEST_F(RealOutliers, HandheldAtDifferentRates) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_outliers

@@ -12,7 +12,7 @@
 #include "egocal/error.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_pairing_stages {
 namespace {
 
 using testing::Corruption;
@@ -111,4 +111,4 @@ TEST(MotionPairing, BelievesWhatTheFirstVersionBelieved) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_pairing_stages

@@ -21,7 +21,7 @@
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/pairing/time_offset.hpp"
 
-namespace egocal {
+namespace egocal::test_real_data {
 namespace {
 
 using testing::arm_reference;
@@ -216,4 +216,4 @@ TEST_F(RealData, AnInvertedStreamOfTheBenchmarkIsNamed) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_real_data

@@ -9,7 +9,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 
-namespace egocal {
+namespace egocal::test_refusals {
 namespace {
 
 /// Every step-th pose from the first one on.
@@ -68,4 +68,4 @@ TEST(Refusals, AStreamThatRepeatsItsPosesIsToldSoAndWhatToDo) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_refusals

@@ -14,7 +14,7 @@
 #include "egocal/pairing/motion_pairing.hpp"
 #include "pairing/offset/correlation.hpp"
 
-namespace egocal {
+namespace egocal::test_repeating_motion {
 namespace {
 
 using testing::BodyPath, testing::body_step, testing::measured, testing::Sensor, testing::Streams;
@@ -229,4 +229,4 @@ TEST(Peaks, NoiseOnAWidePeakMakesNone) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_repeating_motion

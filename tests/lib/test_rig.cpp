@@ -12,7 +12,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/rig/rig.hpp"
 
-namespace egocal {
+namespace egocal::test_rig {
 namespace {
 
 using testing::Random;
@@ -189,4 +189,4 @@ TEST(Rig, TangoClosesItsLoop) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_rig

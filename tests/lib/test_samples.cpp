@@ -18,7 +18,7 @@
 #include "samples/agreeing.hpp"
 #include "samples/sample_fit.hpp"
 
-namespace egocal {
+namespace egocal::test_samples {
 namespace {
 
 using testing::ArmSamples;
@@ -378,4 +378,4 @@ TEST_F(RealSamples, OfAuboAreAllUsed) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_samples

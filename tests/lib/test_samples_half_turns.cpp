@@ -9,7 +9,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
 
-namespace egocal {
+namespace egocal::test_samples_half_turns {
 namespace {
 
 using testing::Random;
@@ -88,4 +88,4 @@ TEST(HalfTurns, AmongQuarterTurnsOfFewSamplesAreDecided) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_samples_half_turns

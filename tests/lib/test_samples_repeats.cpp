@@ -10,7 +10,7 @@
 #include "../support/arm_samples.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
 
-namespace egocal {
+namespace egocal::test_samples_repeats {
 namespace {
 
 using testing::ArmSamples;
@@ -188,4 +188,4 @@ TEST(RepeatedSamples, OfOnePoseAloneShowNothing) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_samples_repeats

@@ -18,7 +18,7 @@
 #include "egocal/scale/solve_scale.hpp"
 #include "egocal/solvers/global.hpp"
 
-namespace egocal {
+namespace egocal::test_scale {
 namespace {
 
 using testing::Motion;
@@ -345,4 +345,4 @@ TEST(Scale, RealCameraScaledDown) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_scale

@@ -14,7 +14,7 @@
 #include "egocal/scale/estimate_scale.hpp"
 #include "egocal/scale/scale_course.hpp"
 
-namespace egocal {
+namespace egocal::test_scale_course {
 namespace {
 
 SimulationOptions drive(std::uint64_t seed, Terrain terrain = Terrain::rough, int poses = 1801) {
@@ -242,4 +242,4 @@ TEST(ScaleCourse, TooShortADriveHasOneScale) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_scale_course

@@ -13,7 +13,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/scale/scale_drive.hpp"
 
-namespace egocal {
+namespace egocal::test_scale_drive {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
@@ -197,4 +197,4 @@ TEST(ScaleDrive, AGapInTheStreamsEndsTheMotions) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_scale_drive

@@ -7,7 +7,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_screening {
 namespace {
 
 using testing::displacement;
@@ -81,4 +81,4 @@ TEST(Screening, LongLeverArmsAreAnOption) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_screening

@@ -11,7 +11,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/solvers/global.hpp"
 
-namespace egocal {
+namespace egocal::test_sdp {
 namespace {
 
 using testing::cost_of;
@@ -121,4 +121,4 @@ TEST(Sdp, GivesTheSameBitsEveryTime) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_sdp

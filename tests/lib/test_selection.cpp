@@ -13,7 +13,7 @@
 #include "egocal/pairing/selection.hpp"
 #include "egocal/problem/blocks.hpp"
 
-namespace egocal {
+namespace egocal::test_selection {
 namespace {
 
 using testing::displacement;
@@ -126,4 +126,4 @@ TEST(Selection, SmallerBalancesAreTriedWhereTranslationsWeighFarMore) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_selection

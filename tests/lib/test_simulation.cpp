@@ -9,7 +9,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/simulation/simulation.hpp"
 
-namespace egocal {
+namespace egocal::test_simulation {
 namespace {
 
 SimulationOptions two_sensors(Terrain terrain = Terrain::rough) {
@@ -199,4 +199,4 @@ TEST(Simulation, ValuesOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_simulation

@@ -11,7 +11,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/solvers/global.hpp"
 
-namespace egocal {
+namespace egocal::test_slsqp {
 namespace {
 
 using testing::cost_of;
@@ -143,4 +143,4 @@ TEST(Slsqp, GivesTheSameBitsEveryTime) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_slsqp

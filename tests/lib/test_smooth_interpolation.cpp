@@ -13,7 +13,7 @@
 #include "pairing/smooth_interpolation.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_smooth_interpolation {
 namespace {
 
 using detail::interpolate_smoothly;
@@ -176,4 +176,4 @@ TEST(SmoothInterpolation, AShakenCarIsCalibratedWhateverTheRates) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_smooth_interpolation

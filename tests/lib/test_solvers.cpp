@@ -11,7 +11,7 @@
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sqp.hpp"
 
-namespace egocal {
+namespace egocal::test_solvers {
 namespace {
 
 using testing::displacement;
@@ -224,4 +224,4 @@ TEST(Sqp, AWrongStartMoves) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_solvers

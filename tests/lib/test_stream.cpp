@@ -10,10 +10,10 @@
 #include "egocal/limits.hpp"
 #include "egocal/pairing/stream.hpp"
 
-namespace egocal {
+namespace egocal::test_stream {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 /// Messages at 10 Hz, numbered from 0; time in steps of 0.1 s.
 NumberedPose sample(std::int64_t step, std::int64_t seq) {
@@ -393,7 +393,7 @@ TEST(Stream, NumbersAtTheEdgeOfTheirTypeAreRefusedAndCostNoTime) {
   Stream stream;
   NumberedPose late = sample(0, 0);
   late.pose.time_us = most;
-  EXPECT_THAT(stream.push(late), testing::IsEmpty());
+  EXPECT_THAT(stream.push(late), ::testing::IsEmpty());
   EXPECT_THAT(feed(stream, {sample(0, limits::largest_count), sample(1, 0), sample(2, 1), sample(3, 2)}),
               ElementsAre(0, 1, 2, 3));
 }
@@ -449,4 +449,4 @@ TEST(Stream, WithALookAheadADamagedStampCostsOnlyItsOwnPose) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_stream

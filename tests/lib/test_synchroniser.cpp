@@ -10,7 +10,7 @@
 #include "../support/random_motion.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_synchroniser {
 namespace {
 
 using testing::displacement;
@@ -200,4 +200,4 @@ TEST(Synchroniser, AlongScrewsAKeyWaitsForTheNextOne) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_synchroniser

@@ -11,7 +11,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 
-namespace egocal {
+namespace egocal::test_time_offset {
 namespace {
 
 using testing::Streams;
@@ -430,4 +430,4 @@ TEST(ClockOffset, StrayStampsCostOnlyThemselves) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_time_offset

@@ -20,7 +20,7 @@
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 
-namespace egocal {
+namespace egocal::test_trajectory_benchmark {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ TEST_F(TrajectoryBenchmark, Mixture) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_trajectory_benchmark

@@ -8,7 +8,7 @@
 #include "../support/turning_bodies.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_turning_bodies {
 namespace {
 
 using testing::find;
@@ -89,4 +89,4 @@ TEST(TumblingBody, ShowsTheScaleThatItsDriftShows) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_turning_bodies

@@ -9,7 +9,7 @@
 #include "../support/turning_bodies.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_turning_in_noise {
 namespace {
 
 using testing::find;
@@ -78,4 +78,4 @@ TEST(TurningInNoise, OfSensorsThatStandIsTooLittleMotion) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_turning_in_noise

@@ -18,7 +18,7 @@
 #include "egocal/io/twist_integrator.hpp"
 #include "egocal/simulation/simulation.hpp"
 
-namespace egocal {
+namespace egocal::test_twist {
 namespace {
 
 using ::testing::HasSubstr;
@@ -158,4 +158,4 @@ TEST_F(RadarDrive, PosesAreTakenWhereBothAreThere) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_twist

@@ -14,7 +14,7 @@
 #include "egocal/scale/scale_statistics.hpp"
 #include "uncertainty/frame_a.hpp"
 
-namespace egocal {
+namespace egocal::test_undersampling {
 namespace {
 
 const Finding* undersampled(const Calibration& calibration) {
@@ -116,4 +116,4 @@ TEST(Undersampling, AWrongScaleIsNamedNevertheless) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_undersampling

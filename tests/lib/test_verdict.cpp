@@ -9,7 +9,7 @@
 #include "diagnosis/judge.hpp"
 #include "egocal/calibrate.hpp"
 
-namespace egocal {
+namespace egocal::test_verdict {
 namespace {
 
 testing::Streams drive(Terrain terrain, double noise, int poses, std::uint64_t seed = 1) {
@@ -119,4 +119,4 @@ TEST(Verdict, AClearlyWrongScaleIsDoubtfulWhereItMovesTheAnswerByMoreThanItState
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_verdict

@@ -11,7 +11,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/scale/scale_course.hpp"
 
-namespace egocal {
+namespace egocal::test_wandering_scale {
 namespace {
 
 /// 120 s of a car that mostly turns left, whose sensor b makes its steps 0.3 % too short for a minute, then
@@ -86,4 +86,4 @@ TEST(WanderingScale, AnotherScaleInAThirdOfTheDriveIsNamed) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_wandering_scale

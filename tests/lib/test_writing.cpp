@@ -22,7 +22,7 @@
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/io/whole_file.hpp"
 
-namespace egocal {
+namespace egocal::test_writing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ TEST_F(Writing, AnMcapFileHoldsNoMoreChannelsThanItsFormatCounts) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_writing

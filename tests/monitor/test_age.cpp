@@ -10,14 +10,14 @@
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_age {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
-class AnswerAge : public testing::Test {
+class AnswerAge : public ::testing::Test {
  protected:
   AnswerAge() { view.charset = Charset::unicode; }
   static Now at(double seconds) {
@@ -144,4 +144,4 @@ TEST_F(AnswerAge, ASecondMonitorIsNoRestart) {
 }
 
 }  // namespace
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_age

@@ -13,13 +13,13 @@
 #include "pair_drive.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_answer {
 namespace {
 
 using test::PairDrive;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -147,4 +147,4 @@ TEST(Lines, AnswersOfAPairingThatIsSilentAreShown) {
   EXPECT_THAT(pair_lines(late, Charset::ascii), Not(HasSubstr("silent")));
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_answer

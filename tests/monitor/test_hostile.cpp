@@ -13,16 +13,16 @@
 #include "pair_drive.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_hostile {
 namespace {
 
 using test::calibration_at;
 using test::PairDrive;
 using test::problem_at;
 using test::status_of;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -146,4 +146,4 @@ TEST(Hostile, TimeRunningBackwardsIsSaidAndTheCurveGoesOn) {
   EXPECT_NEAR(drive.pair().solvers[0].history.last_time(), 11.1, 1e-9);
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_hostile

@@ -12,19 +12,19 @@
 #include "pair_drive.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_interruptions {
 namespace {
 
 using test::begin_utime;
 using test::PairDrive;
 using test::status_of;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
-class Interrupted : public testing::Test {
+class Interrupted : public ::testing::Test {
  protected:
   Interrupted() {
     count(player, "seeks", 0);
@@ -320,4 +320,4 @@ TEST(HeardOthers, TheOwnHeartbeatDoesNotCount) {
   EXPECT_TRUE(model.heard_others());
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_interruptions

@@ -6,8 +6,7 @@
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
-using namespace egocal::monitor;
-
+namespace egocal::monitor::test_layout {
 namespace {
 
 void expect_apart(const std::vector<Rect>& rects, int w, int h) {
@@ -74,3 +73,5 @@ TEST(Layout, TheAnswerIsVisibleAt40x8AndHostileValuesNeverReachTheScreen) {
             }
         }
 }
+
+}  // namespace egocal::monitor::test_layout

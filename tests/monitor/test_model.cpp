@@ -10,7 +10,7 @@
 #include "pair_drive.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_model {
 namespace {
 
 using test::begin_utime;
@@ -18,11 +18,11 @@ using test::calibration_at;
 using test::PairDrive;
 using test::problem_at;
 using test::status_of;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
 }  // namespace
 
@@ -444,4 +444,4 @@ TEST(Memory, FlatOverASimulatedDay) {
       EXPECT_LE(solver.history.since(solver.history.last_time() - back).size(), History::slices);
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_model

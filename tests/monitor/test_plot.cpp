@@ -11,11 +11,11 @@
 
 #include "egocal/monitor/plot.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_plot {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr int field_x = 9;  // columns before the field: numbers and axis
@@ -224,4 +224,4 @@ TEST(History, IsBoundedAndKeepsItsExtremes) {
   EXPECT_EQ(history.since(0).front().low[rotation_error], 1.0f);
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_plot

@@ -9,16 +9,16 @@
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_streams {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 using Severity_ = bus::StreamLine::Severity;
 
 constexpr Now some_time{1'000'000, 1'600'000'100'000'000};
 
-class Streams : public testing::Test {
+class Streams : public ::testing::Test {
  protected:
   std::string shown(Screen screen, int w, int h) {
     view.screen = screen;
@@ -128,4 +128,4 @@ TEST_F(Streams, TheGapPanelIsAboutTheFastSolution) {
 }
 
 }  // namespace
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_streams

@@ -22,8 +22,8 @@
 namespace egocal {
 
 using namespace std::chrono_literals;
-using testing::MatchesRegex;
-using testing::Not;
+using ::testing::MatchesRegex;
+using ::testing::Not;
 
 struct Kind {
   friend std::ostream& operator<<(std::ostream& out, const Kind& kind) {
@@ -35,7 +35,7 @@ struct Kind {
   bool colours;
 };
 
-class EveryTerminal : public testing::TestWithParam<Kind> {};
+class EveryTerminal : public ::testing::TestWithParam<Kind> {};
 
 TEST_P(EveryTerminal, ShowsWhatTheViewsDrewAndIsLeftAsItWas) {
   const Kind& kind = GetParam();
@@ -72,11 +72,11 @@ TEST_P(EveryTerminal, ShowsWhatTheViewsDrewAndIsLeftAsItWas) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, EveryTerminal,
-    testing::Values(Kind{"xterm-256color", "C.UTF-8", false, true}, Kind{"xterm-256color", "C", true, true},
-                    Kind{"xterm", "C.UTF-8", false, true}, Kind{"xterm", "C", true, true},
-                    Kind{"screen", "C.UTF-8", false, true}, Kind{"screen", "C", true, true},
-                    Kind{"linux", "C.UTF-8", true, true}, Kind{"linux", "C", true, true},
-                    Kind{"vt100", "C.UTF-8", true, false}, Kind{"vt100", "C", true, false}),
+    ::testing::Values(Kind{"xterm-256color", "C.UTF-8", false, true}, Kind{"xterm-256color", "C", true, true},
+                      Kind{"xterm", "C.UTF-8", false, true}, Kind{"xterm", "C", true, true},
+                      Kind{"screen", "C.UTF-8", false, true}, Kind{"screen", "C", true, true},
+                      Kind{"linux", "C.UTF-8", true, true}, Kind{"linux", "C", true, true},
+                      Kind{"vt100", "C.UTF-8", true, false}, Kind{"vt100", "C", true, false}),
     [](const auto& kind) {
       std::string name = std::string(kind.param.term) + (kind.param.locale[1] ? "_utf8" : "_c");
       std::replace(name.begin(), name.end(), '-', '_');
@@ -128,7 +128,7 @@ TEST(Terminal, FollowsItsSizeBackAndForth) {
   expect_shell_is_back(tmux);
 }
 
-class EverySignal : public testing::TestWithParam<int> {};
+class EverySignal : public ::testing::TestWithParam<int> {};
 
 TEST_P(EverySignal, LeavesTheTerminalAsItWas) {
   const int number = GetParam();
@@ -143,7 +143,7 @@ TEST_P(EverySignal, LeavesTheTerminalAsItWas) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, EverySignal,
-                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGABRT),
+                         ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGABRT),
                          [](const auto& kind) { return std::string("SIG") + sigabbrev_np(kind.param); });
 
 TEST(Terminal, CtrlCEndsIt) {
@@ -199,7 +199,7 @@ TEST(Terminal, IsGivenBackWhileSuspendedAndTakenAgain) {
 }  // namespace egocal
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
+  ::testing::InitGoogleTest(&argc, argv);
   if (!egocal::test::enter_network_namespace()) return 1;
   if (std::system("tmux -V > /dev/null") != 0) {
     std::fprintf(stderr, "these tests need tmux\n");

@@ -22,8 +22,8 @@
 namespace egocal {
 
 using namespace std::chrono_literals;
-using testing::MatchesRegex;
-using testing::Not;
+using ::testing::MatchesRegex;
+using ::testing::Not;
 
 TEST(Terminal, StandardErrorIsShownUnderEventsAndDoesNotTearTheScreen) {
   Tmux tmux(100, 30, script(environment("xterm-256color"), "--log " + recording));

@@ -6,7 +6,7 @@
 
 #include "egocal/monitor/text.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_text {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -157,4 +157,4 @@ TEST(Text, AsciiIsAscii) {
     for (const char* c = word; *c; ++c) EXPECT_LT(static_cast<unsigned char>(*c), 0x7f);
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_text

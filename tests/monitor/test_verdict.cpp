@@ -12,13 +12,13 @@
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_verdict {
 namespace {
 
-using testing::AnyOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AnyOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr Now some_time{1'000'000, 1'600'000'100'000'000};
 
@@ -41,7 +41,7 @@ Diagnosis without_scale() {
   return diagnosis;
 }
 
-class VerdictShown : public testing::Test {
+class VerdictShown : public ::testing::Test {
  protected:
   VerdictShown() {
     view.charset = Charset::unicode;
@@ -328,4 +328,4 @@ TEST(LoopsShown, TheSensorThatAllOpenLoopsHaveInCommonIsNamed) {
 }
 
 }  // namespace
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_verdict

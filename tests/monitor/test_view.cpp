@@ -7,11 +7,11 @@
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
-namespace egocal::monitor {
+namespace egocal::monitor::test_view {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr Now some_time{1'000'000, test::begin_utime};
 
@@ -19,7 +19,7 @@ KeyPress character(char c) {
   return {Key::character, c};
 }
 
-class View : public testing::Test {
+class View : public ::testing::Test {
  protected:
   View() {
     view.charset = Charset::unicode;
@@ -71,7 +71,7 @@ TEST_F(View, DetailHasBothSolversBothDirectionsAndFourCurves) {
   const std::string text = shown(Screen::detail, 110, 42);
   EXPECT_THAT(text, HasSubstr("R | t"));
   // (0.5, -0.5, 0.5, -0.5), turned by a little; and the way back
-  EXPECT_THAT(text, testing::ContainsRegex("q wxyz +0\\.50.* -0\\.49.* 0\\.50.* -0\\.49"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("q wxyz +0\\.50.* -0\\.49.* 0\\.50.* -0\\.49"));
   EXPECT_THAT(text, HasSubstr("the motions show everything"));
 }
 
@@ -149,7 +149,7 @@ TEST_F(View, NothingIsCutInHalfBesideTheClock) {
     std::string first = shown(Screen::detail, w, 30);
     first = first.substr(0, first.find('\n'));
     ASSERT_GE(first.size(), 8u);
-    EXPECT_THAT(first.substr(first.size() - 8), testing::MatchesRegex("[0-9:]*")) << first;
+    EXPECT_THAT(first.substr(first.size() - 8), ::testing::MatchesRegex("[0-9:]*")) << first;
     EXPECT_EQ(first[first.size() - 9], ' ') << first;
   }
 }
@@ -236,7 +236,7 @@ TEST_F(View, NoPartOfAHeaderStandsAlone) {
     for (int w = 20; w < 160; ++w) {
       std::string first = shown(Screen::detail, w, 8);
       first = first.substr(0, first.find('\n'));
-      EXPECT_THAT(first, Not(testing::ContainsRegex("by +[0-9:]*$"))) << first;
+      EXPECT_THAT(first, Not(::testing::ContainsRegex("by +[0-9:]*$"))) << first;
     }
   }
 }
@@ -347,4 +347,4 @@ TEST_F(View, WhatIsExportedStatesItsVerdictAndWhatItRestsOn) {
   EXPECT_EQ(extrinsic_of(model.pairs()[0])->backing->at(2), Backing::nominal);
 }
 
-}  // namespace egocal::monitor
+}  // namespace egocal::monitor::test_view

@@ -14,7 +14,7 @@
 #include "support/file_content.hpp"
 #include "support/scratch_folder.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_check {
 namespace {
 
 const char* const rig_text =
@@ -72,4 +72,4 @@ TEST(Check, pairing_that_contradicts_itself_keeps_the_state_that_was_saved_befor
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_check

@@ -11,7 +11,7 @@
 #include "egocal/bus/decode.hpp"
 #include "pairing/accumulation.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_damaged_numbers {
 namespace {
 
 constexpr std::int64_t begin_us = 1'600'000'000'000'000;
@@ -127,4 +127,4 @@ TEST_F(DamagedNumbers, OfALiveSensorCostTheWindowAndTakeBoundedMemory) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_damaged_numbers

@@ -7,7 +7,7 @@
 
 #include "diagnosis_service.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_diagnosing {
 namespace {
 
 TEST_F(DiagnosisService, CallsACleanDriveGood) {
@@ -215,4 +215,4 @@ TEST_F(DiagnosisService, OutlivesMessagesOfEveryWrongKind) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_diagnosing

@@ -7,7 +7,7 @@
 #include "diagnosis/remedies.hpp"
 #include "diagnosis_service.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_diagnosing_findings {
 namespace {
 
 TEST_F(DiagnosisService, NamesAMistakeAndItsCure) {
@@ -138,4 +138,4 @@ TEST_F(DiagnosisService, TheCureOfACreepIsThatOfARecording) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_diagnosing_findings

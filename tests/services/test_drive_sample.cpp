@@ -7,7 +7,7 @@
 
 #include "diagnosis/drive_sample.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_drive_sample {
 namespace {
 
 constexpr std::int64_t start_us = 1'600'000'000'000'000;
@@ -125,4 +125,4 @@ TEST(DriveSample, KeepsOnlyTheNewSession) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_drive_sample

@@ -19,7 +19,7 @@
 #include "pairing/pairing.hpp"
 #include "support/virtual_time.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_pairing_stopped {
 namespace {
 
 using namespace std::chrono_literals;
@@ -106,4 +106,4 @@ TEST_F(StoppedPairing, WhatNeverComesIsGivenUpAfterwards) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_pairing_stopped

@@ -7,7 +7,7 @@
 
 #include "saved_states.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_refused_state {
 namespace {
 
 using ::testing::HasSubstr;
@@ -132,4 +132,4 @@ TEST_F(SavedStates, OfEarlierBuildsAreRefusedWhereTheyArePairings) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_refused_state

@@ -20,7 +20,7 @@
 #include "support/mistakes.hpp"
 #include "support/virtual_time.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_saved_memory {
 namespace {
 
 using namespace std::chrono_literals;
@@ -334,4 +334,4 @@ TEST_F(SavedMemories, WhateverFailsAtTheEndEndsNothingElse) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_saved_memory

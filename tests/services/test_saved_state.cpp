@@ -7,7 +7,7 @@
 #include "saved_states.hpp"
 #include "support/random_motion.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_saved_state {
 namespace {
 
 /// Killed again and again; what was not saved is sent again, with some of what was.
@@ -131,4 +131,4 @@ TEST_F(SavedStates, AClockThatIsSetBetweenDeathAndRestartCostsNothing) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_saved_state

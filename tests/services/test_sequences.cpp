@@ -8,7 +8,7 @@
 
 #include "fuzz/try_sequence.hpp"
 
-namespace egocal {
+namespace egocal::test_sequences {
 namespace {
 
 template <class Try>
@@ -31,4 +31,4 @@ TEST(Sequences, OfMessagesLeavePairingAsItWouldBeRestored) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_sequences

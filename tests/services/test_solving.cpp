@@ -14,7 +14,7 @@
 #include "solving/global.hpp"
 #include "support/virtual_time.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_solving {
 namespace {
 
 using namespace std::chrono_literals;
@@ -28,7 +28,7 @@ struct Host {
   bus::Heartbeat heartbeat;
 };
 
-class Solving : public testing::Test {
+class Solving : public ::testing::Test {
  protected:
   Solving() {
     rig.pairs.resize(1);
@@ -219,7 +219,7 @@ TEST_F(Solving, AfterTheNetworkWasAwayNoSolverIsMissed) {
   for (int i = 0; i < 100; ++i) {
     pass(100ms);
     for (const char* name : {"egocal-fast", "egocal-global"})
-      EXPECT_THAT(statuses[name].last_error, testing::Not(testing::HasSubstr("solver is alive"))) << name;
+      EXPECT_THAT(statuses[name].last_error, ::testing::Not(::testing::HasSubstr("solver is alive"))) << name;
   }
 }
 
@@ -228,7 +228,7 @@ TEST_F(Solving, AMissingSolverIsReportedAfterTheTimeoutOnly) {
   pass(2900ms);
   EXPECT_EQ(statuses["egocal-fast"].last_error, "");
   pass(2s);
-  EXPECT_THAT(statuses["egocal-fast"].last_error, testing::HasSubstr("no global solver is alive"));
+  EXPECT_THAT(statuses["egocal-fast"].last_error, ::testing::HasSubstr("no global solver is alive"));
 }
 
 TEST_F(Solving, TheGlobalSolverAnswersUntilTheFastOneIsVerifiedAndStepsInWhenItEnds) {
@@ -275,4 +275,4 @@ TEST_F(Solving, AResetMeansTheNewestSessionAlsoWhereNothingWasAnswered) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_solving

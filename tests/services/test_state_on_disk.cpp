@@ -11,7 +11,7 @@
 
 #include "saved_states.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_state_on_disk {
 namespace {
 
 using ::testing::HasSubstr;
@@ -169,4 +169,4 @@ TEST_F(SavedStates, BelongToOneProcessAtATime) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_state_on_disk

@@ -14,7 +14,7 @@ namespace egocal::testing {
 /// The trajectory with a stop of `periods` periods after pose `at`. During the stop the positions jitter by
 /// `jitter` [m], the rotations by a tenth of that [rad].
 inline Trajectory with_stand(const Trajectory& trajectory, std::size_t at, std::int64_t periods,
-                             std::int64_t period_us, double jitter, Random& random) {
+                             std::int64_t spacing_us, double jitter, Random& random) {
   const auto there = trajectory.begin() + static_cast<std::ptrdiff_t>(at) + 1;
   Trajectory result(trajectory.begin(), there);
   const StampedPose stands = result.back();
@@ -22,10 +22,10 @@ inline Trajectory with_stand(const Trajectory& trajectory, std::size_t at, std::
     const DualQuaternion moved =
         jitter > 0 ? stands.pose * displacement(random.normal3(0.1 * jitter), random.normal3(jitter))
                    : stands.pose;
-    result.push_back({stands.time_us + i * period_us, moved});
+    result.push_back({stands.time_us + i * spacing_us, moved});
   }
   for (auto pose = there; pose != trajectory.end(); ++pose)
-    result.push_back({pose->time_us + periods * period_us, pose->pose});
+    result.push_back({pose->time_us + periods * spacing_us, pose->pose});
   return result;
 }
 

@@ -20,7 +20,7 @@
 #include "support/paths.hpp"
 #include "support/scale_problem.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_answers {
 namespace {
 
 using ::testing::AllOf;
@@ -385,4 +385,4 @@ b = "radar"
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_answers

@@ -9,7 +9,7 @@
 
 #include "offline/beside.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_beside_threads {
 namespace {
 
 void fail(const char* what) {
@@ -46,4 +46,4 @@ TEST(AtTheSameTime, WhatTheFirstOneThrowsCountsBeforeTheSecond) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_beside_threads

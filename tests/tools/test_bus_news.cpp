@@ -10,7 +10,7 @@
 #include "egocal/bus/convert.hpp"
 #include "pair_messages.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_bus_news {
 namespace {
 
 using ::testing::AllOf;
@@ -238,4 +238,4 @@ TEST_F(BusNewsTest, MotionsThatNoSolverAnswersAreReportedAndThatOneDoes) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_bus_news

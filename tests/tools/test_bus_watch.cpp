@@ -19,7 +19,7 @@
 #include "egocal/error.hpp"
 #include "supervision/bus_watch.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_bus_watch {
 namespace {
 
 using ::testing::HasSubstr;
@@ -118,4 +118,4 @@ TEST(BusWatch, LeavesNothingOpenWhereItCannotBegin) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_bus_watch

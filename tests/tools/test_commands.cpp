@@ -8,6 +8,7 @@
 #include "egocal/io/pairs_file.hpp"
 #include "support/random_motion.hpp"
 
+namespace egocal::test_commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -259,3 +260,4 @@ TEST_F(Commands, RealDrivesGiveWhatTheyShould) {
 }
 
 }  // namespace
+}  // namespace egocal::test_commands

@@ -4,6 +4,7 @@
 // Values of the real program's options: what is refused, by which name and with which cure.
 #include "commands.hpp"
 
+namespace egocal::test_commands_values {
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,3 +240,4 @@ TEST_F(Commands, CheckNamesTheOptionsThatItDoesNotUse) {
               HasSubstr("lidar.tum: --rate is not used: the poses have times"));
 }
 }  // namespace
+}  // namespace egocal::test_commands_values

@@ -28,7 +28,7 @@
 #include "experiments/source.hpp"
 #include "experiments/table_text.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_experiments {
 namespace {
 
 using testing::content_of;
@@ -372,4 +372,4 @@ TEST(Globality, GivesTheNumbersOfThePageOnThePaper) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_experiments

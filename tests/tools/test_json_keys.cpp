@@ -16,7 +16,7 @@
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
-namespace egocal {
+namespace egocal::test_json_keys {
 namespace {
 
 using nlohmann::json;
@@ -203,4 +203,4 @@ TEST_F(JsonKeys, OfCheckAreThoseOfThePage) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_json_keys

@@ -13,7 +13,7 @@
 #include "offline/log_trajectory.hpp"
 #include "support/damaged_log.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_log_trajectory {
 namespace {
 
 using ::testing::HasSubstr;
@@ -129,4 +129,4 @@ TEST_F(LogTrajectoryTest, AMissingChannelIsOneShortLineHoweverManyThereAre) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_log_trajectory

@@ -13,7 +13,7 @@
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
-namespace egocal {
+namespace egocal::test_manual {
 namespace {
 
 using ::testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST_F(Manual, EveryProgramHasOne) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_manual

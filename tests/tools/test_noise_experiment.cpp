@@ -13,7 +13,7 @@
 #include "experiments/noise_slopes.hpp"
 #include "experiments/noisy_drive.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_noise_experiment {
 namespace {
 
 TEST(Deviations, AreWhatIsLeftWithoutTheSharedError) {
@@ -117,4 +117,4 @@ TEST(Noise, ErrorsFallWithTheRootOfTheNumberOnceTheNoiseIsTakenOff) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_noise_experiment

@@ -10,7 +10,7 @@
 #include "supervision/log_extent.hpp"
 #include "supervision/outcome.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_outcome {
 namespace {
 
 using ::testing::HasSubstr;
@@ -209,4 +209,4 @@ TEST_F(OutcomeTest, OfALogThatWasEmptiedMeanwhileIsUnusableAndIsPrinted) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_outcome

@@ -4,6 +4,7 @@
 // What the real program writes: whole or not at all, never over what it reads.
 #include "commands.hpp"
 
+namespace egocal::test_outputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,3 +141,4 @@ TEST_F(Commands, NothingHalfWrittenIsLeft) {
 }
 
 }  // namespace
+}  // namespace egocal::test_outputs

@@ -14,7 +14,7 @@
 
 #include "figures/plot.hpp"
 
-namespace egocal::tools {
+namespace egocal::tools::test_plot {
 namespace {
 
 using ::testing::HasSubstr;
@@ -174,4 +174,4 @@ TEST(Plot, HistogramsCountEveryFiniteValueOnce) {
 }
 
 }  // namespace
-}  // namespace egocal::tools
+}  // namespace egocal::tools::test_plot

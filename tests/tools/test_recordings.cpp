@@ -24,7 +24,7 @@
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
-namespace egocal {
+namespace egocal::test_recordings {
 namespace {
 
 using nlohmann::json;
@@ -295,4 +295,4 @@ TEST_F(Recordings, APackedLogOfLcmIsRefusedByEveryCommandWithTheSameLine) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_recordings

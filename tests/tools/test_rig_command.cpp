@@ -11,7 +11,7 @@
 #include "rig_command.hpp"
 #include "support/random_motion.hpp"
 
-namespace egocal {
+namespace egocal::test_rig_command {
 namespace {
 
 using nlohmann::json;
@@ -217,4 +217,4 @@ TEST_F(RigOfFiles, AnotherDriveOfTheRigAddsUp) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_rig_command

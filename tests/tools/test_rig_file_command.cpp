@@ -3,7 +3,7 @@
 // `egocal solve --rig`, and options that do not go with rigs.
 #include "rig_command.hpp"
 
-namespace egocal {
+namespace egocal::test_rig_file_command {
 namespace {
 
 using nlohmann::json;
@@ -107,4 +107,4 @@ TEST_F(RigFile, WhatDoesNotGoTogetherIsRefused) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_rig_file_command

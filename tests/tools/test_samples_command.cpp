@@ -16,7 +16,7 @@
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
 
-namespace egocal {
+namespace egocal::test_samples_command {
 namespace {
 
 using testing::content_of;
@@ -137,4 +137,4 @@ TEST_F(SamplesCommand, RefusesWhatOnlyStreamsHave) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_samples_command

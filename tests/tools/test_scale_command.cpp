@@ -7,7 +7,7 @@
 
 #include "rig_command.hpp"
 
-namespace egocal {
+namespace egocal::test_scale_command {
 namespace {
 
 using nlohmann::json;
@@ -138,4 +138,4 @@ TEST_F(ScaleCommand, AScaleBeyondWhatIsSearchedIsSaidWithItsCure) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_scale_command

@@ -4,6 +4,7 @@
 // What is reported to somebody who writes an extrinsic for another program and reads nothing else.
 #include "commands.hpp"
 
+namespace egocal::test_written_extrinsics {
 namespace {
 
 using egocal::test::Commands;
@@ -166,3 +167,4 @@ TEST_F(WrittenExtrinsics, TimesOfOneFileAloneAreNamedWhereTheOtherHasItsOwn) {
 }
 
 }  // namespace
+}  // namespace egocal::test_written_extrinsics

@@ -5,7 +5,7 @@
 #include "egocal/bus/convert.hpp"
 #include "player/in_flight.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_in_flight {
 namespace {
 
 bus::LogEvent event(const std::string& channel, std::int64_t step) {
@@ -102,4 +102,4 @@ TEST(InFlight, AChannelBeginsWithOneMessageUntilItIsAcknowledged) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_in_flight

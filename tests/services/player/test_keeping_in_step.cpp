@@ -17,7 +17,7 @@
 #include "player/player.hpp"
 #include "support/virtual_time.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_keeping_in_step {
 namespace {
 
 using namespace std::chrono_literals;
@@ -139,4 +139,4 @@ TEST_F(InStep, WhatIsLostAtTheEndIsSentAgain) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_keeping_in_step

@@ -404,8 +404,8 @@ TEST_F(OnTerminal, SignalsLeaveTheTerminalAsItWas) {
 }  // namespace egocal
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  if (!testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
+  ::testing::InitGoogleTest(&argc, argv);
+  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
   // a test started by hand must not read the keys of its terminal as the player's
   if (!std::freopen("/dev/null", "r", stdin)) return 1;
   return RUN_ALL_TESTS();

@@ -11,7 +11,7 @@
 #include "player/control.hpp"
 #include "player/tape.hpp"
 
-namespace egocal::services {
+namespace egocal::services::test_tape {
 namespace {
 
 using ::testing::ElementsAre;
@@ -119,4 +119,4 @@ TEST(Controls, KeysAndVerbs) {
 }
 
 }  // namespace
-}  // namespace egocal::services
+}  // namespace egocal::services::test_tape
