@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "commands/commands.hpp"
@@ -22,12 +24,19 @@ struct Options {
   bool json = false;
 };
 
+/// "-": a tenth without motions has no residual.
+std::string column(double value, int width, int decimals, const char* unit) {
+  return std::isnan(value) ? fmt::format("{:>{}} {:{}}", "-", width, "", std::char_traits<char>::length(unit))
+                           : fmt::format("{:{}.{}f} {}", value, width, decimals, unit);
+}
+
 std::string tenths_text(const Fit& fit) {
   std::string text = "\n    from      to   rotation  translation  of the distance\n";
   for (const FitTenth& tenth : fit.tenths)
-    text += fmt::format("{:7.1f} {:7.1f} s {:8.3f} deg {:8.2f} cm {:12.2f} %\n", tenth.begin, tenth.end,
-                        tenth.rotation_median * 57.29577951308232, 100 * tenth.translation_median,
-                        100 * tenth.translation_relative);
+    text += fmt::format("{:7.1f} {:7.1f} s {} {} {}\n", tenth.begin, tenth.end,
+                        column(tenth.rotation_median * 57.29577951308232, 8, 3, "deg"),
+                        column(100 * tenth.translation_median, 8, 2, "cm"),
+                        column(100 * tenth.translation_relative, 12, 2, "%"));
   return text;
 }
 

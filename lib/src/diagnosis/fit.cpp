@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "diagnosis/robust_fit.hpp"
 #include "diagnosis/standing_still.hpp"
@@ -18,6 +19,10 @@ double quantile(std::vector<double> values, double part) {
   const auto place =
       std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())));
   return order_statistic_in_place(values, place);
+}
+
+double median_if_any(const std::vector<double>& values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(values, 0.5);
 }
 
 /// Of b's size to a's, the median over what was travelled, so that a single jump does not matter.
@@ -75,8 +80,8 @@ Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds,
       [](const Motion& motion) { return motion.angle_b; });
   for (std::size_t i = 0; i < parts; ++i) {
     const auto k = static_cast<double>(i);
-    fit.tenths.push_back({begin + k * width, begin + (k + 1) * width, quantile(tenths[i].rotation, 0.5),
-                          quantile(tenths[i].translation, 0.5), quantile(tenths[i].relative, 0.5)});
+    fit.tenths.push_back({begin + k * width, begin + (k + 1) * width, median_if_any(tenths[i].rotation),
+                          median_if_any(tenths[i].translation), median_if_any(tenths[i].relative)});
   }
   return fit;
 }

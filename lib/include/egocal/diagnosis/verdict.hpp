@@ -22,12 +22,12 @@ enum class Verdict {
 };
 std::string_view to_string(Verdict verdict);
 
-/// Agreement in one consecutive tenth of the drive.
+/// Agreement in one consecutive tenth of the drive. NaN where it has no motion.
 struct FitTenth {
   double begin = 0, end = 0;        ///< since the first pose of a [s]
   double rotation_median = 0;       ///< residual [rad]
   double translation_median = 0;    ///< residual [m]
-  double translation_relative = 0;  ///< residual as a part of the distance travelled
+  double translation_relative = 0;  ///< residual as a part of the distance travelled; NaN at rest
 };
 
 /// How well the answer explains the motions: residuals of R_a T = T R_b and of the translations, of motions
