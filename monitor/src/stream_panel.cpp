@@ -29,7 +29,7 @@ Style style_of(bus::StreamLine::Severity severity) {
   return Style::bad;
 }
 
-constexpr int indent = 6;  // of a line that goes on: behind those of a sensor's faults
+constexpr int going_on = 6;  // of a line that goes on: behind those of a sensor's faults
 
 std::size_t room(int width) {
   return static_cast<std::size_t>(std::max(1, width - 3));
@@ -47,7 +47,7 @@ std::vector<Line> lines_of(const Model& model, bool all, int width) {
                        Style::dim});
   std::vector<Line> rows;
   for (const Line& line : lines)
-    for (std::string& row : wrapped(line.text, room(width), indent))
+    for (std::string& row : wrapped(line.text, room(width), going_on))
       rows.push_back({std::move(row), line.style});
   return rows;
 }

@@ -265,6 +265,22 @@ TEST(Attenuation, NoneInThePlaneWhereCurvesDiffer) {
     }
 }
 
+/// Straight on, as in a corridor: nothing but the noise of b's rotations seems to show x and y.
+TEST(Attenuation, NoiseThatShowsNoTranslationPullsNoYaw) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    std::vector<MotionPair> pairs;
+    for (int i = 0; i < 1000; ++i) {
+      const DualQuaternion a = testing::displacement({0, 0, 1e-4 * random.normal()}, {1, 0, 0});
+      const DualQuaternion b = conjugate(T_in_plane) * a * T_in_plane;
+      pairs.push_back({a, b * testing::displacement({0, 0, 0.01 * random.normal()}, {0, 0, 0})});
+    }
+    const Answer answer = solve(planar_problem_of(pairs), Method::dual);
+    ASSERT_TRUE(answer.observability.observable[5]) << seed;
+    EXPECT_LT(answer.observability.stddev[5], 0.002) << seed;
+  }
+}
+
 /// Along circles of one radius nothing shows the yaw but noise, however exact it seems to be.
 TEST(Attenuation, NoYawAlongCirclesOfOneRadius) {
   for (const double noise : {0.001, 0.01, 0.05})

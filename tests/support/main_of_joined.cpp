@@ -5,23 +5,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace {
 
-std::string filter_of(const std::vector<std::string>& files) {
+std::string filter_of(const std::string& file) {
   std::string filter;
   const ::testing::UnitTest& all = *::testing::UnitTest::GetInstance();
   for (int i = 0; i < all.total_test_suite_count(); ++i) {
     const ::testing::TestSuite& suite = *all.GetTestSuite(i);
     for (int k = 0; k < suite.total_test_count(); ++k) {
       const ::testing::TestInfo& test = *suite.GetTestInfo(k);
-      const std::string file = std::filesystem::path(test.file()).filename();
-      if (std::find(files.begin(), files.end(), file) != files.end())
+      if (std::filesystem::path(test.file()).filename() == file)
         filter += std::string(suite.name()) + "." + test.name() + ":";
     }
   }
@@ -32,9 +29,17 @@ std::string filter_of(const std::vector<std::string>& files) {
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleMock(&argc, argv);
-  const std::string filter = filter_of({argv + 1, argv + argc});
+  std::string filter;
+  for (int i = 1; i < argc; ++i) {
+    const std::string of_file = filter_of(argv[i]);
+    if (of_file.empty()) {
+      std::fprintf(stderr, "%s: no test in '%s'\n", argv[0], argv[i]);
+      return 1;
+    }
+    filter += of_file;
+  }
   if (filter.empty()) {
-    std::fprintf(stderr, "%s: no test in the files named\n", argv[0]);
+    std::fprintf(stderr, "%s: expected files of tests\n", argv[0]);
     return 1;
   }
   GTEST_FLAG_SET(filter, filter);

@@ -24,19 +24,18 @@ struct Options {
   bool json = false;
 };
 
-/// "-": a tenth without motions has no residual.
-std::string column(double value, int width, int decimals, const char* unit) {
-  return std::isnan(value) ? fmt::format("{:>{}} {:{}}", "-", width, "", std::char_traits<char>::length(unit))
-                           : fmt::format("{:{}.{}f} {}", value, width, decimals, unit);
+/// "-": a tenth without motions has no residual, one at rest none as a part of the distance.
+std::string number(double value, int decimals) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
 }
 
 std::string tenths_text(const Fit& fit) {
   std::string text = "\n    from      to   rotation  translation  of the distance\n";
   for (const FitTenth& tenth : fit.tenths)
-    text += fmt::format("{:7.1f} {:7.1f} s {} {} {}\n", tenth.begin, tenth.end,
-                        column(tenth.rotation_median * 57.29577951308232, 8, 3, "deg"),
-                        column(100 * tenth.translation_median, 8, 2, "cm"),
-                        column(100 * tenth.translation_relative, 12, 2, "%"));
+    text +=
+        fmt::format("{:7.1f} {:7.1f} s {:>8} deg {:>8} cm {:>12} %\n", tenth.begin, tenth.end,
+                    number(tenth.rotation_median * 57.29577951308232, 3),
+                    number(100 * tenth.translation_median, 2), number(100 * tenth.translation_relative, 2));
   return text;
 }
 

@@ -113,11 +113,8 @@ std::string scale_text(const Calibration& calibration) {
                                           : fmt::format("scale         {:g}\n", calibration.scale_applied);
   const ScaleSolution& scale = *calibration.scale;
   if (scale.at_limit)
-    return fmt::format(
-        "scale         {:.6g} NOT FOUND, this is the end of the range that was searched: multiply the "
-        "lengths "
-        "by it first, then look for the rest\n",
-        scale.scale);
+    return fmt::format("scale         {:.6g} NOT FOUND: the end of the range that was searched\n",
+                       scale.scale);
   const std::string value =
       scale.observable
           ? fmt::format("+- {:.6g}", scale.stddev)

@@ -9,8 +9,7 @@
 
 namespace egocal::detail {
 
-/// Why two streams have no motion in common, with what may cure it; marked as sentences of findings are
-/// (finding_words.hpp).
+/// Why two streams have no motion in common, with what may cure it; {solve} is marked (finding_words.hpp).
 std::string no_motions_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts,
                                 double max_gap);
 

@@ -32,14 +32,14 @@ bool too_fast_unless_inverted(const Evidence& evidence, const Explanation& both,
 /// Of either the odometry under this reading or the mounting under the given one: single steps that fit far
 /// worse than the others, in runs.
 std::size_t jumps(const Evidence& evidence, const Explanation& both, const DiagnosisOptions& options) {
-  constexpr double least_of_typical = 25;    // squared: five times what is usual
-  constexpr double least_of_largest = 0.01;  // squared: noise with heavy tails beside one large jump is none
+  // all of them: one that is not looked at may be the jump
   const Motions steps =
-      motions_of(evidence.instants, both.read_a, both.read_b, 1, options.motions.most, options.motions);
+      motions_of(evidence.instants, both.read_a, both.read_b, 1, evidence.instants.size(), options.motions);
   const RobustFit fit = evaluated(steps, both.explained.fit.T);
   if (fit.squares.empty()) return 0;
-  const double least = std::max(least_of_typical * fit.typical,
-                                least_of_largest * *std::max_element(fit.squares.begin(), fit.squares.end()));
+  const double largest = *std::max_element(fit.squares.begin(), fit.squares.end());
+  const double least = std::max(options.jump * options.jump * fit.typical,
+                                options.part_of_largest_jump * options.part_of_largest_jump * largest);
   std::size_t count = 0;
   for (std::size_t i = 0; i < fit.squares.size(); ++i)
     if (fit.squares[i] > least && (i == 0 || !(fit.squares[i - 1] > least))) ++count;
@@ -53,10 +53,9 @@ std::size_t jumps(const Evidence& evidence, const Explanation& both, const Diagn
 /// the distance, metres where a camera watches a target.
 bool one_mounting_only_if_inverted(const Evidence& evidence, const Explanation& both,
                                    const Comparison& comparison, const DiagnosisOptions& options) {
-  constexpr std::size_t more_than_moves = 3;  // a mount that moved and fell back has two
   return explains(both.explained, options) && better(comparison, decisive_loss, options) &&
          loss_in_metres(evidence.given.explained, both.explained) < -decisive_loss &&
-         jumps(evidence, both, options) >= more_than_moves;
+         jumps(evidence, both, options) >= options.certain_jumps;
 }
 
 }  // namespace

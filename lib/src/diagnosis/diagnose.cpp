@@ -138,13 +138,12 @@ bool has(const std::vector<Finding>& findings, std::string_view code) {
 /// Where the scale of less than half of the drive is another one, its tenths show it. While the sensors stand
 /// any residual is a large part of the way, but a small one in metres.
 bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
-  // a limit on time: with it none of 460 clean simulated drives has a scale that changes
-  constexpr double much_worse = 5;
   const double usual = fit.translation_relative_median;
   return usual > options.scale_change_misfit ||
          std::any_of(fit.tenths.begin(), fit.tenths.end(), [&](const FitTenth& tenth) {
            return tenth.translation_median > fit.translation_median &&
-                  tenth.translation_relative > std::max(options.scale_change_misfit, much_worse * usual);
+                  tenth.translation_relative >
+                      std::max(options.scale_change_misfit, options.scale_change_in_tenth * usual);
          });
 }
 

@@ -187,7 +187,7 @@ MovedMount moved_mount(const Instants& instants, const Answered& answered, const
   for (const Move& move : result.moves) {
     Finding finding;
     finding.code = "mount_moved";
-    finding.certain = true;
+    finding.certain = move.certain;
     finding.time = begin + move.time;
     finding.T_a_b = to_pose(move.after);
     word(move, answered, begin, options.mount.long_interval, finding);

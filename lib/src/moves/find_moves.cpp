@@ -104,6 +104,7 @@ class Finder {
     Linearised stretch;
     bool creep = false;
     bool of_two = false;  ///< found with another one: not tested by itself yet
+    bool certain = true;
   };
 
   std::size_t blocks_in(std::size_t from, std::size_t to) const {
@@ -178,25 +179,29 @@ class Finder {
     return two;
   }
 
+  enum class Shown { no, perhaps, clearly };
+
   /// Noise that wanders for longer than a block makes neighbouring blocks alike, and the test believes it.
   /// Where it still wanders in the longest blocks, its memory is a guess from few of them.
-  bool shows_in_longer_blocks(const Found& found) const {
+  Shown shown_in_longer_blocks(const Found& found) const {
     double correlation = found.test.correlation, chance = found.test.false_alarm;
     for (std::size_t count = blocks_in(found.from, found.to) / 2;
          correlation > options_.most_correlation && count >= options_.least_blocks; count /= 2) {
       const Linearised stretch = detail::linearise(pairs_.subspan(found.from, found.to - found.from),
                                                    problem_, count, options_.test);
-      if (stretch.blocks.empty()) return false;
+      if (stretch.blocks.empty()) return Shown::no;
       const auto split = std::lower_bound(stretch.begin.begin(), stretch.begin.end(), found.at - found.from) -
                          stretch.begin.begin();
       const detail::ChangeAt longer = detail::test_change_at(stretch.blocks, static_cast<std::size_t>(split),
                                                              least_side(count, options_), options_.test);
-      if (!(longer.chance <= options_.false_alarms)) return false;
+      if (!(longer.chance <= options_.false_alarms)) return Shown::no;
       correlation = longer.correlation;
       chance = longer.chance;
     }
     return correlation <= options_.most_correlation ||
-           chance <= options_.false_alarms * options_.of_short_blocks;
+                   chance <= options_.false_alarms * options_.of_short_blocks
+               ? Shown::clearly
+               : Shown::perhaps;
   }
 
   bool large_enough(const Found& found) const {
@@ -264,11 +269,14 @@ class Finder {
       const std::size_t to = i + 1 < found_.size() ? found_[i + 1].at : pairs_.size();
       const bool tested = found_[i].from == from && found_[i].to == to && !found_[i].of_two;
       const std::optional<Found> again = tested ? found_[i] : best(from, to);
-      if (blocks_in(from, to) >= options_.least_blocks && !(again && shows_in_longer_blocks(*again))) {
+      Shown shown = again ? Shown::clearly : Shown::no;
+      if (again && blocks_in(from, to) >= options_.least_blocks) shown = shown_in_longer_blocks(*again);
+      if (shown == Shown::no && blocks_in(from, to) >= options_.least_blocks) {
         found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
         continue;
       }
       if (again && !again->creep) found_[i] = *again;
+      found_[i].certain = shown != Shown::perhaps;
       ++i;
     }
   }
@@ -336,6 +344,7 @@ class Finder {
   std::optional<Move> described(const Found& found) const {
     Move move;
     move.false_alarm = found.test.false_alarm;
+    move.certain = found.certain;
     if (found.creep) {
       move.kind = MoveKind::creep;
       const DualQuaternion q = detail::in_units_of(1 / found.stretch.length, found.stretch.q);

@@ -78,7 +78,7 @@ std::vector<RigMove> find_rig_moves(std::size_t sensors, std::span<const RigPair
     const auto is_here = [i](const ShownMove& move) { return move.pair == i; };
     if (std::none_of(shown.begin(), shown.end(), is_here)) continue;
     for (Move& move : find_moves(pairs[i].pairs, pairs[i].problem, options.moves).moves)
-      if (std::any_of(shown.begin(), shown.end(), [&](const ShownMove& other) {
+      if (move.certain && std::any_of(shown.begin(), shown.end(), [&](const ShownMove& other) {
             return is_here(other) && move.earliest - options.same_time <= other.time &&
                    other.time <= move.latest + options.same_time;
           }))

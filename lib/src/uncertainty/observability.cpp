@@ -163,19 +163,23 @@ std::string hint(const Surroundings& around, const ObservabilityOptions& options
 }
 
 /// Rotation noise pulls the translation towards where it costs least, by the part of D that is noise, and the
-/// rotation with it where both are seen together. basis: its first columns are the directions that are seen.
-Vector6d pull_of_noise(const Surroundings& around, const Matrix6d& basis) {
-  const DualQuaternion& q = around.q;
+/// rotation with it where both are seen together. t: of the minimiser, in sensor a's axes and units of
+/// length; seen: columns, the directions that are seen.
+Vector6d pull_of_noise(const Surroundings& around, const Eigen::Vector3d& t,
+                       const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& seen) {
   Vector6d slope = Vector6d::Zero();
-  slope.head<3>() = 0.5 * around.noise * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
+  slope.head<3>() = 0.25 * around.noise * t;
   Matrix6d clean = around.H;
   clean.diagonal().head<3>().array() -= 0.25 * around.noise;
-  const auto seen = basis.leftCols(6 - around.hidden);
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> curvature =
       seen.transpose() * clean * seen;
   const auto factor = curvature.ldlt();
   if (factor.info() != Eigen::Success || !factor.isPositive()) return Vector6d::Zero();
   return seen * factor.solve(seen.transpose() * slope);
+}
+
+Eigen::Vector3d translation_of(const DualQuaternion& q) {
+  return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
 }
 
 Observability spatial_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
@@ -196,7 +200,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
   // settings of one drive have the same unknown part
   if (errors == ErrorCorrelation::correlated)
     variance += variance_of_hidden(around, problem.prior.has_value(), options);
-  const Vector6d pull = pull_of_noise(around, basis);
+  const Vector6d pull = pull_of_noise(around, translation_of(around.q), basis.leftCols(6 - around.hidden));
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!result.observable[k]) continue;
@@ -222,7 +226,8 @@ Surroundings look_around_in_plane(const Problem& problem, const Matrix8d& Q_metr
   Eigen::Matrix<double, 8, 3> basis;
   basis << all.col(0), all.col(1), all.col(5);
   const double least = cost(Q, T_p);
-  Eigen::Matrix3d clean = basis.transpose() * lagrangian_matrix(Q, {least, 0}) * basis;
+  const Eigen::Matrix3d H = basis.transpose() * lagrangian_matrix(Q, {least, 0}) * basis;
+  Eigen::Matrix3d clean = H;
   around.noise = rotation_noise(Q, T_p);
   const double fluctuation = 4 / std::sqrt(std::max(1.0, around.pairs));
   clean.diagonal().head<2>().array() -= 0.25 * around.noise * (options.independent_noise + fluctuation);
@@ -231,9 +236,12 @@ Surroundings look_around_in_plane(const Problem& problem, const Matrix8d& Q_metr
   const double floor = 0.25e-12 * Q.diagonal().sum();
   while (around.hidden < 3 && !(seen.values[around.hidden] > floor)) ++around.hidden;
   const Eigen::Matrix3d axes = to_pose(G_a).rotation.toRotationMatrix();
+  Eigen::Matrix<double, 6, 3> in_a = Eigen::Matrix<double, 6, 3>::Zero();
+  in_a.topLeftCorner<3, 2>() = axes.leftCols<2>();
+  in_a.bottomRightCorner<3, 1>() = axes.col(2);
+  around.H = in_a * H * in_a.transpose();
   around.vectors.setZero();
-  around.vectors.topLeftCorner<3, 3>() = axes.leftCols<2>() * seen.vectors.topRows<2>();
-  around.vectors.bottomLeftCorner<3, 3>() = axes.col(2) * seen.vectors.row(2);
+  around.vectors.leftCols<3>() = in_a * seen.vectors;
   return around;
 }
 
@@ -260,17 +268,12 @@ std::string planar_hint(const Surroundings& around, const ObservabilityOptions& 
   return detail::planar_hint(translation, yaw, around.hidden);
 }
 
-/// What rotation noise does to the minimiser, in the directions that are seen [m, rad]: D without it has
-/// another one.
-Vector6d pull_in_plane(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
-                       const Surroundings& around) {
-  Matrix8d clean = Q;
-  clean.diagonal().segment<2>(5).array() -= around.noise / (around.length * around.length);
-  const DualQuaternion without = extrinsic_from_planar(solve_planar(clean).q, plane_frame(problem.plane_a),
-                                                       plane_frame(problem.plane_b));
-  Vector6d pull = detail::frame_a_difference(T_a_b, without);
-  pull.head<3>() /= around.length;
-  pull -= around.hidden_vectors() * (around.hidden_vectors().transpose() * pull);
+/// The same in the plane [m, rad].
+Vector6d pull_in_plane(const Problem& problem, const DualQuaternion& T_a_b, const Surroundings& around) {
+  const DualQuaternion G_a = plane_frame(problem.plane_a);
+  const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, plane_frame(problem.plane_b));
+  const Eigen::Vector3d t = to_pose(G_a).rotation * translation_of(T_p) / around.length;
+  Vector6d pull = pull_of_noise(around, t, around.vectors.middleCols(around.hidden, 3 - around.hidden));
   pull.head<3>() *= around.length;
   return pull;
 }
@@ -290,7 +293,7 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
     of_hidden.head<3>() *= around.length * around.length;
     variance += of_hidden;
   }
-  const Vector6d pull = pull_in_plane(problem, Q, T_a_b, around);
+  const Vector6d pull = pull_in_plane(problem, T_a_b, around);
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!result.observable[k]) continue;

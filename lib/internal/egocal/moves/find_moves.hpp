@@ -81,8 +81,8 @@ struct MovesOptions {
   /// Of the variance of sums of blocks to that of independent ones, at most. Where it is more, the noise
   /// wanders for longer than a block, and what was found must show in blocks twice as long, until it is less,
   /// with the chance of a false alarm at this one place. Where it still is more in the longest blocks, the
-  /// chance must be smaller by of_short_blocks, too: of 180 still drives of 30 and 60 s whose errors are
-  /// remembered for 3 and 6 s 25 had a false alarm without it, 6 with it.
+  /// change is certain only where that chance is smaller by of_short_blocks, too: of 180 still drives of 30
+  /// and 60 s whose errors are remembered for 3 and 6 s 25 had a certain change without it, 6 with it.
   /// Study: docs/moves.md; at 1.4 two of 650 drives of 100 s had a false alarm, at 1.2 one, without it three.
   double most_correlation = 1.2;
   std::size_t least_side_blocks = 2;  ///< blocks before and after a change
@@ -137,6 +137,7 @@ struct Move {
   std::array<double, 6> change{};  ///< x y z roll pitch yaw in sensor a's frame, after minus before [m, rad]
   std::array<double, 6> stddev{};  ///< of the change [m, rad]; infinite where the motions do not show it
   double false_alarm = 1;          ///< chance of such evidence in a drive without a change
+  bool certain = true;             ///< false: noise that wanders for as long may have made it
 };
 
 /// Lengths of what the motions show of a change: of the components that exceed three of their standard
