@@ -256,8 +256,8 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
   Observability shown;
   for (std::size_t i = 0; i < 6; ++i) shown.observable[i] = answer->observable[i] != 0;
   shown.hint = answer->hint;
-  extrinsic.backing = bus::backing_of(shown, pair.has_problem && pair.problem.mode == 1,
-                                      pair.has_problem && pair.problem.has_prior != 0);
+  const bool planar = answer->method == "planar" || (pair.has_problem && pair.problem.mode == 1);
+  extrinsic.backing = bus::backing_of(shown, planar, pair.has_problem && pair.problem.has_prior != 0);
   if (pair.scale)
     extrinsic.scale = NamedScale{pair.scale->sensor, pair.scale->solution.scale, pair.scale->solution.stddev,
                                  pair.scale->verified && pair.scale->solution.certified};

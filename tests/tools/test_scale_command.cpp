@@ -129,7 +129,7 @@ TEST_F(ScaleCommand, AScaleBeyondWhatIsSearchedIsSaidWithItsCure) {
                         "of a by 100 first."),
             std::string::npos)
       << reason;
-  EXPECT_NE(run("solve --scale auto" + files).out.find("100 NOT FOUND, this is the end of the range"),
+  EXPECT_NE(run("solve --scale auto" + files).out.find("100 NOT FOUND: the end of the range"),
             std::string::npos);
   for (const json& finding : object["findings"])
     if (finding["code"] == "scale" || finding["code"] == "units") {

@@ -9,8 +9,9 @@
 
 namespace egocal::bus {
 
-/// What the numbers of an answer heard on the bus rest on, of x y z roll pitch yaw. planar: by its method.
-/// In the plane a hint says that x, y or yaw are not shown either; which is not sent.
+/// What the numbers of an answer heard on the bus rest on, of x y z roll pitch yaw. planar: by its method, or
+/// by the mode of its problem where that is known. In the plane a hint says that x, y or yaw are not shown
+/// either; which is not sent.
 std::array<Backing, 6> backing_of(const Observability& observability, bool planar, bool has_nominal);
 
 }  // namespace egocal::bus
