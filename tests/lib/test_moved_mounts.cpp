@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // A mount that moves is named with its time and size, and what only looks like a move is not.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "../support/findings.hpp"
 #include "../support/manoeuvres.hpp"
 #include "../support/mistakes.hpp"
+#include "../support/moved_drive.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/shaken_car.hpp"
 #include "../support/turning_machine.hpp"
@@ -237,6 +239,25 @@ TEST(MovedMount, StrongNoiseThatWandersInAShortDriveIsNoMove) {
   simulation.faults[1].rate = 7;
   simulation.faults[1].phase = 0.37 / 7;
   for (const std::uint64_t seed : {1, 4}) expect_no_finding(seed);
+}
+
+// Of the same kind of noise, remembered for 6 s, and of one drive in which it looks like a move.
+TEST(MovedMount, WhatNoiseMayHaveMadeIsPossible) {
+  int possible = 0;
+  for (std::uint64_t seed = 1; seed <= 60 && possible == 0; ++seed) {
+    SimulationOptions options =
+        testing::moved_drive(seed % 2 == 0 ? Terrain::rough : Terrain::free, 5000 + seed, 30);
+    options.relative_noise = 0.005;
+    const auto streams = simulate(options);
+    const Calibration calibration = calibrate(testing::with_wandering_errors(streams[0], seed), streams[1]);
+    const Finding* moved = find(calibration, "mount_moved");
+    if (moved == nullptr || moved->certain) continue;
+    ++possible;
+    EXPECT_LE(calibration.verdict, Verdict::doubtful);
+    EXPECT_THAT(moved->message, ::testing::HasSubstr("seems to"));
+    EXPECT_THAT(moved->message, ::testing::HasSubstr("Noise that wanders for as long may look the same."));
+  }
+  EXPECT_EQ(possible, 1);
 }
 
 // What a look at a drive shows that is judged again every two seconds.

@@ -19,6 +19,7 @@ using testing::bump;
 using testing::degrees;
 using testing::moved_drive;
 using testing::moves_of;
+using testing::with_wandering_errors;
 
 TEST(Moves, ABumpIsFoundWithItsTimeAndSize) {
   int found = 0, in_interval = 0, drives = 0;
@@ -68,19 +69,6 @@ TEST(Moves, EvidenceIsThatOfTwoStrides) {
   EXPECT_LT(chance({pairs_of(bumped, 2), pairs_of(bumped, 5)}), 1e-10);
   EXPECT_GT(chance({pairs_of(bumped, 2), pairs_of(still, 5)}), 1e-5);
   EXPECT_LT(chance({pairs_of(bumped, 2)}), 1e-10);
-}
-
-/// The orientation and the place of a sensor err by 0.3 degrees and 2 cm, remembered for 6 s.
-Trajectory with_wandering_errors(Trajectory poses, std::uint64_t seed) {
-  testing::Random random(seed);
-  const double keep = std::exp(-0.1 / 6), fresh = std::sqrt(1 - keep * keep);
-  Eigen::Vector3d turn = random.normal3(0.3 / degrees), shift = random.normal3(0.02);
-  for (StampedPose& pose : poses) {
-    turn = keep * turn + fresh * random.normal3(0.3 / degrees);
-    shift = keep * shift + fresh * random.normal3(0.02);
-    pose.pose = pose.pose * to_dual_quaternion(Pose{rotation_exp(turn), shift});
-  }
-  return poses;
 }
 
 /// In a short drive noise that is remembered for seconds has few independent parts, so how long it is

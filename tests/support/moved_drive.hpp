@@ -34,6 +34,19 @@ inline MountChange bump(double time, std::uint64_t seed, double size = 1) {
   return {time, time, {rotation_exp(size * 0.5 / degrees * axis), size * 0.03 * axis}};
 }
 
+/// The orientation and the place of a sensor err by 0.3 degrees and 2 cm, remembered for 6 s.
+inline Trajectory with_wandering_errors(Trajectory poses, std::uint64_t seed) {
+  Random random(seed);
+  const double keep = std::exp(-0.1 / 6), fresh = std::sqrt(1 - keep * keep);
+  Eigen::Vector3d turn = random.normal3(0.3 / degrees), shift = random.normal3(0.02);
+  for (StampedPose& pose : poses) {
+    turn = keep * turn + fresh * random.normal3(0.3 / degrees);
+    shift = keep * shift + fresh * random.normal3(0.02);
+    pose.pose = pose.pose * to_dual_quaternion(Pose{rotation_exp(turn), shift});
+  }
+  return poses;
+}
+
 inline MovesResult moves_of(const Trajectory& a, const Trajectory& b, PairingOptions pairing = {},
                             const MovesOptions& options = {}) {
   const Choice choice = pair_motions(pairing, a, b).drive.choice();

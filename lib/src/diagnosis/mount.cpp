@@ -42,24 +42,27 @@ void word(const Move& move, const Answered& answered, double begin, double long_
   const std::string answer = format("%.4f %.4f %.4f m, w x y z %.5f %.5f %.5f %.5f", before.translation.x(),
                                     before.translation.y(), before.translation.z(), before.rotation.w(),
                                     before.rotation.x(), before.rotation.y(), before.rotation.z());
+  const char* alike = move.certain ? "" : " Noise that wanders for as long may look the same.";
   if (move.kind == MoveKind::creep) {
     finding.change = MountingChange::slowly;
-    std::string claim = format("The mounting creeps%s from %.1f to %.1f s after the start",
+    std::string claim = format("The mounting %s%s from %.1f to %.1f s after the start",
+                               move.certain ? "creeps" : "seems to creep",
                                size.empty() ? "" : (": " + size).c_str(), from, to);
     const Eigen::Vector3d turned(move.change[3], move.change[4], move.change[5]);
     if (to > from && turned.allFinite())
       claim += format(", %.2g deg an hour", turned.norm() * 180 / std::numbers::pi * 3600 / (to - from));
     say(finding, std::move(claim), "Fasten the mounting; calibrate a shorter part of the drive.",
-        ". At its begin the answer is " + answer + ".");
+        ". At its begin the answer is " + answer + "." + alike);
     return;
   }
   finding.change = MountingChange::at_once;
-  std::string claim = format("The mounting changed%s about %.1f s after the start",
+  std::string claim = format("The mounting %s%s about %.1f s after the start",
+                             move.certain ? "changed" : "seems to have changed",
                              size.empty() ? "" : (" by " + size).c_str(), *finding.time);
   if (to - from > long_interval) claim += format(" (between %.1f and %.1f s)", from, to);
   say(finding, std::move(claim),
       format("Calibrate the drive before and after %.1f s separately.", *finding.time),
-      ". Before it the answer is " + answer + ".");
+      ". Before it the answer is " + answer + "." + alike);
 }
 
 /// Of a mount that moved and fell back.
