@@ -20,7 +20,6 @@
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
 #include "support/lossy_relay.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 
 namespace egocal {
@@ -215,9 +214,3 @@ TEST_F(LossyNetwork, TheAnswerIsCertifiedAndHardlyWorse) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

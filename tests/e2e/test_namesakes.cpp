@@ -14,7 +14,6 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "support/child_process.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 
 namespace egocal {
@@ -122,9 +121,3 @@ TEST_F(Namesakes, APausedOneThatIsRestoredIsPausedFromItsFirstStatusOn) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

@@ -15,7 +15,6 @@
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/loop.hpp"
 #include "support/child_process.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 #include "support/several_hosts.hpp"
 
@@ -143,9 +142,3 @@ TEST_F(SeveralHosts, WithTheDefaultUrlNothingLeavesAHost) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

@@ -198,9 +198,3 @@ TEST_F(Trust, AFloodOnAnyChannelStopsNothingElseAndTakesNoMemory) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

@@ -21,7 +21,6 @@
 #include "supervision/output_file.hpp"
 #include "supervision/supervisor.hpp"
 #include "support/child_process.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 
 namespace egocal::test {

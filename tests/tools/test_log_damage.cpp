@@ -14,7 +14,6 @@
 #include "egocal/in_words.hpp"
 #include "support/child_process.hpp"
 #include "support/damaged_log.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 
 namespace egocal {
@@ -184,9 +183,3 @@ TEST_F(LogDamage, LcmLogplayerPlaysARepairedLogToItsEnd) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

@@ -25,7 +25,6 @@
 #include "supervision/output_file.hpp"
 #include "supervision/supervisor.hpp"
 #include "support/child_process.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 
 namespace egocal {
@@ -439,9 +438,3 @@ TEST_F(Supervision, WithTheMonitorOnTheScreenNothingElseIsWrittenThere) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

@@ -81,7 +81,7 @@ TEST_F(Up, TakesARigThatCanBeReadOnceAndNeedsNoStandardError) {
 }
 
 // It was "nothing was calibrated: pairing found no motion".
-TEST_F(Up, SaysThatNobodyTakesTheMonitorsLines) {
+TEST_F(Up, ReportsThatStandardOutputIsGone) {
   ChildProcess egocal({"sh", "-c",
                        paths::bin_dir() + "/egocal up '" + rig + "' --log '" + log +
                            "' --follow --lcm-url 'udpm://239.255.76.67:7758?ttl=0' --output-dir '" +
@@ -143,9 +143,3 @@ TEST_F(Up, ASecondOneOnTheSameBusRefusesUnlessItIsToJoin) {
 
 }  // namespace
 }  // namespace egocal
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (!::testing::GTEST_FLAG(list_tests) && !egocal::test::enter_network_namespace()) return 1;
-  return RUN_ALL_TESTS();
-}

@@ -17,7 +17,6 @@
 
 #include "supervised.hpp"
 #include "support/child_process.hpp"
-#include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 
 namespace egocal::test {

@@ -17,7 +17,7 @@ namespace egocal::detail {
 struct FollowingOptions {
   std::size_t motions = 700;  ///< at most, evenly spread: a limit on time
   std::size_t least = 60;     ///< fewer do not show a relation of 36 numbers
-  /// Motions that take more than so many times the usual time span a gap: what b does is not measured there.
+  /// A motion that lasts longer than this many times the usual duration spans a gap: b is not measured there.
   double across_a_gap = 2;
   double window = 1.0 / 8;  ///< of a motion, on either side, in which turning and acceleration are measured
   /// Turning and acceleration count as a part of what they are beyond in a fifth of the drive, up to this

@@ -42,9 +42,9 @@ struct Fit {
   std::vector<FitTenth> tenths;
 };
 
-/// What a finding says, in parts, so that nobody has to take its sentences to pieces. {a} and {b} stand for
-/// the streams, {solve} for the command before an option of `egocal solve`. Empty where the message is the
-/// same for everybody, and where the finding came over the bus.
+/// What a finding says, in parts: no program has to search in its sentences. {a} and {b} stand for the
+/// streams, {solve} for the command before an option of `egocal solve`. Empty where the message is the same
+/// for everybody, and where the finding came over the bus.
 struct FindingWords {
   std::string claim;     ///< the message is claim and evidence
   std::string evidence;  ///< from the mark after the claim to the end; may be empty
