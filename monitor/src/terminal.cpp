@@ -166,55 +166,50 @@ struct Terminal::State {
 
 Terminal::Terminal() : state_(std::make_unique<State>()) {}
 
-std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::string& why_not) {
-  if (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)) {
-    why_not = "standard input and output are no terminal";
-    return nullptr;
-  }
+namespace {
+
+/// Why nothing can be drawn on standard output; empty: it can.
+std::string why_no_terminal() {
+  if (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)) return "standard input and output are no terminal";
   const char* kind = std::getenv("TERM");
   int error = 0;
-  if (kind == nullptr || setupterm(kind, STDOUT_FILENO, &error) != OK) {
-    why_not = "TERM names no known terminal";
-    return nullptr;
-  }
-  if (!can("cup") || !can("clear")) {
-    why_not = std::string("terminal '") + clean(kind, 20) + "' cannot move its cursor";
-    return nullptr;
-  }
-  rescue = Rescue();
-  rescue.has_modes = tcgetattr(STDIN_FILENO, &rescue.modes) == 0;
+  if (kind == nullptr || setupterm(kind, STDOUT_FILENO, &error) != OK) return "TERM names no known terminal";
+  if (!can("cup") || !can("clear"))
+    return std::string("terminal '") + clean(kind, 20) + "' cannot move its cursor";
+  return "";
+}
 
-  std::unique_ptr<Terminal> terminal(new Terminal());
-  State& s = *terminal->state_;
-  s.screen = newterm(nullptr, stdout, stdin);
-  if (s.screen == nullptr) {
-    why_not = std::string("terminal '") + clean(kind, 20) + "' cannot be opened";
-    return nullptr;
-  }
+/// What puts the terminal back into its state, for the moment when nothing else can be called any more.
+void prepare_rescue() {
   for (const char* name : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_capability(name);
-  if (!can("rmcup")) {
-    for (char c : {'\r', '\n'}) rescue.sequence[rescue.length++] = c;
-    add_capability("ed");
-  }
+  if (can("rmcup")) return;
+  for (char c : {'\r', '\n'}) rescue.sequence[rescue.length++] = c;
+  add_capability("ed");
+}
 
-  const bool utf8 = std::strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+Charset charset_for(const std::optional<Charset>& wanted) {
+  if (std::strcmp(nl_langinfo(CODESET), "UTF-8") != 0) return Charset::ascii;
   // the Linux console has no braille, a vt100 has no UTF-8
-  const std::string_view k = kind;
-  const bool plain = k == "linux" || k.starts_with("vt1") || k.starts_with("vt2");
-  s.charset = options.charset.value_or(utf8 && !plain ? Charset::unicode : Charset::ascii);
-  if (!utf8) s.charset = Charset::ascii;
+  const std::string_view kind = std::getenv("TERM");
+  const bool plain = kind == "linux" || kind.starts_with("vt1") || kind.starts_with("vt2");
+  return wanted.value_or(plain ? Charset::ascii : Charset::unicode);
+}
 
+/// False: the terminal or its user wants none.
+bool start_colours(bool monochrome) {
   const char* no_color = std::getenv("NO_COLOR");
-  s.colours = !options.monochrome && (no_color == nullptr || *no_color == '\0') && has_colors();
-  if (s.colours) {
-    start_color();
-    const bool defaults = use_default_colors() == OK;
-    for (int i = 1; i < static_cast<int>(Style::count_); ++i)
-      init_pair(static_cast<short>(i),
-                colour(static_cast<Style>(i)) < 0 && !defaults ? static_cast<short>(COLOR_WHITE)
-                                                               : colour(static_cast<Style>(i)),
-                static_cast<short>(defaults ? -1 : COLOR_BLACK));
+  if (monochrome || (no_color != nullptr && *no_color != '\0') || !has_colors()) return false;
+  start_color();
+  const bool defaults = use_default_colors() == OK;
+  for (int i = 1; i < static_cast<int>(Style::count_); ++i) {
+    const short wanted = colour(static_cast<Style>(i));
+    init_pair(static_cast<short>(i), wanted < 0 && !defaults ? static_cast<short>(COLOR_WHITE) : wanted,
+              static_cast<short>(defaults ? -1 : COLOR_BLACK));
   }
+  return true;
+}
+
+void start_input() {
   cbreak();
   noecho();
   nonl();
@@ -222,13 +217,17 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
   nodelay(stdscr, TRUE);
   set_escdelay(25);
   curs_set(0);
+}
 
-  if (pipe2(s.capture.data(), O_CLOEXEC | O_NONBLOCK) == 0) {
-    std::fflush(stderr);
-    rescue.real_stderr = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
-    dup2(s.capture[1], STDERR_FILENO);
-  }
+/// What is written to standard error would tear the screen: it becomes events.
+void capture_errors(std::array<int, 2>& capture) {
+  if (pipe2(capture.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
+  std::fflush(stderr);
+  rescue.real_stderr = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+  dup2(capture[1], STDERR_FILENO);
+}
 
+void handle_signals() {
   quit_flag = 0;
   resize_flag = 0;
   suspend_flag = 0;
@@ -242,6 +241,29 @@ std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::st
   sigaltstack(&stack, nullptr);
   for (int signal_number : fatal_signals)
     handle(signal_number, on_crash, static_cast<int>(SA_ONSTACK | SA_RESETHAND));
+}
+
+}  // namespace
+
+std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::string& why_not) {
+  why_not = why_no_terminal();
+  if (!why_not.empty()) return nullptr;
+  rescue = Rescue();
+  rescue.has_modes = tcgetattr(STDIN_FILENO, &rescue.modes) == 0;
+
+  std::unique_ptr<Terminal> terminal(new Terminal());
+  State& s = *terminal->state_;
+  s.screen = newterm(nullptr, stdout, stdin);
+  if (s.screen == nullptr) {
+    why_not = std::string("terminal '") + clean(std::getenv("TERM"), 20) + "' cannot be opened";
+    return nullptr;
+  }
+  prepare_rescue();
+  s.charset = charset_for(options.charset);
+  s.colours = start_colours(options.monochrome);
+  start_input();
+  capture_errors(s.capture);
+  handle_signals();
   return terminal;
 }
 

@@ -243,7 +243,10 @@ class Model {
   PairState* find_pair(const std::string& a, const std::string& b);
   void follow_back(PairState& pair, const problem_t& message, Now now);
   void begin_session(PairState& pair, std::int64_t session);
+  void note_outliers(PairState& pair, Now now);
+  void note_time_offset(PairState& pair, Now now);
   Role role_of(const calibration_t& message) const;
+  SolverTrack& track_of(PairState& pair, const calibration_t& message, Now now);
   void count_answer(PairState& pair, Now now);
   void watch_rejections(ProcessState& process, const std::string& reason, std::int64_t count, Now now);
   void watch_certificate(PairState& pair, Now now);
