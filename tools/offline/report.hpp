@@ -16,6 +16,8 @@ bool any_from_nominal(const Calibration& calibration);
 /// What the cost then is, one sentence.
 inline constexpr const char* cost_with_nominal =
     "The nominal value holds what the motions do not show, and is a part of this cost.";
+/// The same pose with w >= 0 in its quaternion.
+Pose with_positive_scalar(Pose T);
 
 /// One JSON object (docs/json.md); numbers that are not finite are null when it is printed.
 nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth);

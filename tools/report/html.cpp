@@ -52,18 +52,18 @@ std::string matrix_text(const Pose& T) {
   return text + fmt::format("{:12} {:12} {:12} {:12}\n", 0, 0, 0, 1);
 }
 
-std::string transform(const std::string& title, const Pose& T) {
+std::string transform(const std::string& title, const Pose& given) {
+  const Pose T = with_positive_scalar(given);
   const Eigen::Vector3d& t = T.translation;
   const auto& q = T.rotation;
-  const double sign = q.w() < 0 ? -1 : 1;
   const Eigen::Vector3d angles = roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees;
   std::string table = "<table>\n";
   table +=
       row("translation x y z [m]", fmt::format("<code>{:.6f} {:.6f} {:.6f}</code>", t.x(), t.y(), t.z()));
-  table += row("quaternion w x y z", fmt::format("<code>{:.9f} {:.9f} {:.9f} {:.9f}</code>", sign * q.w(),
-                                                 sign * q.x(), sign * q.y(), sign * q.z()));
-  table += row("quaternion x y z w", fmt::format("<code>{:.9f} {:.9f} {:.9f} {:.9f}</code>", sign * q.x(),
-                                                 sign * q.y(), sign * q.z(), sign * q.w()));
+  table += row("quaternion w x y z",
+               fmt::format("<code>{:.9f} {:.9f} {:.9f} {:.9f}</code>", q.w(), q.x(), q.y(), q.z()));
+  table += row("quaternion x y z w",
+               fmt::format("<code>{:.9f} {:.9f} {:.9f} {:.9f}</code>", q.x(), q.y(), q.z(), q.w()));
   table += row("roll pitch yaw [deg], R = Rz(yaw) Ry(pitch) Rx(roll)",
                fmt::format("<code>{:.5f} {:.5f} {:.5f}</code>", angles.x(), angles.y(), angles.z()));
   table += row("matrix", "<pre>" + matrix_text(T) + "</pre>");
