@@ -206,4 +206,7 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    # workers get functions by the name of their module, and would look for these in a __main__ of their own
+    from egocal import fleet
+
+    sys.exit(fleet.main())

@@ -76,6 +76,19 @@ def test_a_drive_that_cannot_be_read_is_a_row(drives, tmp_path):
     assert egocal.fleet.main([str(table), "--out", str(out)]) == 1
 
 
+def test_it_runs_as_a_program(drives, tmp_path):
+    table, out, rigs = tmp_path / "drives.csv", tmp_path / "answers.csv", tmp_path / "rigs.csv"
+    with open(table, "w", newline="") as stream:
+        writer = csv.DictWriter(stream, list(drives[0]))
+        writer.writeheader()
+        writer.writerows(drives[:2])
+    run = subprocess.run([sys.executable, "-m", "egocal.fleet", table, "--out", out, "--pooled", rigs, "--workers", "2"],
+                         cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert [row["error"] for row in csv.DictReader(open(out, newline=""))] == ["", ""]
+    assert next(csv.DictReader(open(rigs, newline="")))["used"] == "2"
+
+
 def test_parquet_is_refused_before_the_work_where_it_cannot_be_written(drives, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setattr(egocal.fleet, "solve", lambda *_: pytest.fail("worked before it looked"))
