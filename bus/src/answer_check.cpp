@@ -88,6 +88,7 @@ CheckedAnswer AnswerCheck::check(const calibration_t& message) const {
     return checked;
   }
   checked.standing = Standing::verified;
+  checked.problem = known->problem;
   return checked;
 }
 

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <random>
 
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/bus/backing.hpp"
 
 namespace egocal::bus::test_answer_check {
 namespace {
@@ -77,6 +79,27 @@ TEST(AnswerCheck, TrueAnswersAreVerifiedInBothModes) {
     }
 }
 
+TEST(AnswerCheck, WhatAnAnswerRestsOnFollowsItsProblemWhateverMethodAnswered) {
+  const Problem problem = noisy_problem(1, Mode::planar);
+  const problem_t message = problem_message(problem);
+  constexpr std::array all{Method::dual, Method::sdp, Method::sqp, Method::slsqp};
+  for (const Method method : all) {
+    const calibration_t answer = answer_message(problem, message, method);
+    AnswerCheck check;
+    const CheckedAnswer unknown = check.check(answer);
+    ASSERT_EQ(unknown.standing, Standing::unverified);
+    EXPECT_FALSE(unknown.problem);
+    // a nominal pose of the rig gives nothing in the plane
+    const auto of_method = backing_of(unknown, answer.method, false);
+    EXPECT_EQ(of_method[2], answer.method == "planar" ? Backing::planes : Backing::none) << answer.method;
+    ASSERT_EQ(check.take(message), "");
+    const auto backing = backing_of(check.check(answer), answer.method, true);
+    EXPECT_THAT(backing, testing::ElementsAre(Backing::motions, Backing::motions, Backing::planes,
+                                              Backing::planes, Backing::planes, Backing::motions))
+        << answer.method;
+  }
+}
+
 /// Of motions on flat ground, which do not show the height, with a prior for it.
 Problem flat_problem_with_prior(unsigned seed) {
   std::mt19937 random(seed);
@@ -113,6 +136,7 @@ TEST(AnswerCheck, AnswersAtThePriorAreVerified) {
     for (const Method method : {Method::dual, Method::sdp, Method::sqp, Method::slsqp}) {
       const CheckedAnswer checked = check.check(answer_message(problem, message, method));
       EXPECT_EQ(checked.standing, Standing::verified) << checked.reason << ", seed " << seed;
+      EXPECT_EQ(backing_of(checked, "", false)[2], Backing::nominal) << "as its problem says";
     }
     // the minimum that noise has elsewhere is not the answer
     Answer elsewhere = answer;

@@ -345,6 +345,18 @@ TEST_F(View, WhatIsExportedStatesItsVerdictAndWhatItRestsOn) {
 
   send([](problem_t& problem) { problem.has_prior = 1; }, hide_z);
   EXPECT_EQ(extrinsic_of(model.pairs()[0])->backing->at(2), Backing::nominal);
+
+  send(
+      [](problem_t& problem) {
+        problem.mode = 1;
+        problem.plane_a[2] = problem.plane_b[2] = 1;
+      },
+      [&](calibration_t& answer) {
+        hide_z(answer);
+        answer.method = "slsqp";
+        answer.hint = "drive curves: they show the yaw";
+      });
+  EXPECT_EQ(extrinsic_of(model.pairs()[0])->backing->at(2), Backing::planes) << "whatever else is missing";
 }
 
 }  // namespace egocal::monitor::test_view

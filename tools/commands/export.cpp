@@ -57,7 +57,7 @@ PairName chosen(const std::string& wanted, const std::vector<PairName>& pairs) {
 struct Found {
   std::vector<PairName> pairs;  ///< the one that was asked for, or all of them
   Answers answers;
-  std::set<PairName> with_nominal{};  ///< as the rig file says; of a log that is not known
+  std::set<PairName> with_nominal{};  ///< as the rig file says, for answers whose problem is not received
 };
 
 Found recorded(const Options& options) {
@@ -148,8 +148,7 @@ NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
     extrinsic.verdict = to_string(diagnosis->verdict);
     extrinsic.reason = diagnosis->reason;
   }
-  extrinsic.backing = bus::backing_of(answer.observability, best.message.method == "planar",
-                                      found.with_nominal.contains(pair));
+  extrinsic.backing = bus::backing_of(best.checked, best.message.method, found.with_nominal.contains(pair));
   if (const std::string not_shown = not_shown_in_words(extrinsic); !not_shown.empty())
     say(fmt::format("egocal: {}: {}", text(pair), not_shown));
   if (scale)

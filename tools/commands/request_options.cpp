@@ -20,8 +20,13 @@ Reading reading(bool invert, const std::string& order) {
   return result;
 }
 
-void read_scale(const char* option, const std::string& text, Side side, CalibrationOptions& calibration) {
+void read_scale(const char* option, const std::string& text, Side side, SolveRequest& request) {
   if (text.empty()) return;
+  if (!request.scale_option.empty())
+    throw UsageError(std::string(option) +
+                     ": one sensor's translations only; the other one's unit is that of the answer");
+  request.scale_option = option;
+  CalibrationOptions& calibration = request.calibration;
   calibration.scale_side = side;
   calibration.estimate_scale = text == "auto";
   if (calibration.estimate_scale) return;
@@ -48,7 +53,7 @@ void read_samples(const RequestOptions& options, SolveRequest& request) {
   refuse(!options.append.empty(), "--append");
   refuse(options.weights != "auto", "--weights");
   refuse(options.max_gap != RequestOptions().max_gap, "--max-gap");
-  refuse(options.scale == "auto" || options.scale_b == "auto", "--scale auto");
+  refuse(options.scale == "auto" || options.scale_a == "auto" || options.scale_b == "auto", "--scale auto");
   refuse(options.method != "global" && options.method != "dual", "--method");
   request.samples.emplace();
   request.samples->eye_to_hand = options.eye_to_hand;
@@ -63,6 +68,20 @@ void refuse_options_of_streams(const RequestOptions& options) {
   refuse(!options.stride.empty(), "--stride");
   refuse(!options.time_offset.empty(), "--time-offset");
   refuse(options.max_gap != RequestOptions().max_gap, "--max-gap");
+}
+
+/// Further drives, and sets of still poses.
+void add_options_of_other_sources(cli::App command, RequestOptions& options) {
+  command.add_option("--append", options.append,
+                     "another drive of the same sensors: a file for A and one for B; may be repeated");
+  command.add_flag(
+      "--samples", options.samples,
+      "still poses in any order, as of a robot arm, instead of streams: never interpolated; rows "
+      "belong together by nearest stamp, or by order");
+  command.add_flag("--eye-in-hand", options.eye_in_hand,
+                   "with --samples: A is the hand in the base, B the camera in the target's frame [default]");
+  command.add_flag("--eye-to-hand", options.eye_to_hand,
+                   "with --samples: the camera stands beside the arm; the answer is the camera in the base");
 }
 
 }  // namespace
@@ -118,10 +137,9 @@ SolveRequest understood(const RequestOptions& options) {
       (options.invert_a || options.invert_b || !options.order_a.empty() || !options.order_b.empty()))
     throw UsageError("--invert, --quaternion-order: apply to poses, not to motion pairs");
   if (!options.goal.empty()) result.calibration.diagnosis.goal = goal("--goal", options.goal);
-  read_scale("--scale", options.scale, Side::a, result.calibration);
-  read_scale("--scale-b", options.scale_b, Side::b, result.calibration);
-  if (!options.scale.empty() && !options.scale_b.empty())
-    throw UsageError("--scale-b: one sensor's translations only; the other one's unit is that of the answer");
+  read_scale("--scale", options.scale, Side::a, result);
+  read_scale("--scale-a", options.scale_a, Side::a, result);
+  read_scale("--scale-b", options.scale_b, Side::b, result);
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
   if (!options.nominal.empty())
     result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
@@ -129,15 +147,16 @@ SolveRequest understood(const RequestOptions& options) {
   return result;
 }
 
-void add_request_options(cli::App command, RequestOptions& options) {
+void add_request_options(cli::App command, RequestOptions& options, Sources sources) {
   command.add_option(
       "A", options.source.a,
       "trajectory of sensor a: FILE or FILE:TOPIC of a ROS bag, MCAP, LCM log, TUM, KITTI, EuRoC or "
       "other csv; with --log its channel");
   command.add_option("B", options.source.b, "trajectory of sensor b");
   command.add_option("--log", options.source.log, "LCM log; A and B are names of its channels");
-  command.add_option("--pairs", options.source.pairs,
-                     "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
+  if (sources == Sources::all)
+    command.add_option("--pairs", options.source.pairs,
+                       "motion pairs instead, one a line: 16 numbers, dual quaternions of a and b");
   add_reading_options(command, options.reading);
   command.add_option("--method", options.method, "solver, or a baseline of the paper")
       .check(cli::Check::one_of(
@@ -172,18 +191,11 @@ void add_request_options(cli::App command, RequestOptions& options) {
                      "ROTATION,TRANSLATION as 0.1deg,2cm: standard deviations that are enough; exit code 3 "
                      "where they are not reached");
   command.add_option("--scale", options.scale,
-                     "the translations of A are multiplied by it: auto (a camera without scale) or a factor");
+                     "the translations of A are multiplied by it: auto (A is a camera without scale) or a "
+                     "factor; the extrinsic is in the unit of B");
+  command.add_option("--scale-a", options.scale_a, "the same as --scale, and says that A is meant");
   command.add_option("--scale-b", options.scale_b, "the same for B; the extrinsic is in the unit of A");
-  command.add_option("--append", options.append,
-                     "another drive of the same sensors: a file for A and one for B; may be repeated");
-  command.add_flag(
-      "--samples", options.samples,
-      "still poses in any order, as of a robot arm, instead of streams: never interpolated; rows "
-      "belong together by nearest stamp, or by order");
-  command.add_flag("--eye-in-hand", options.eye_in_hand,
-                   "with --samples: A is the hand in the base, B the camera in the target's frame [default]");
-  command.add_flag("--eye-to-hand", options.eye_to_hand,
-                   "with --samples: the camera stands beside the arm; the answer is the camera in the base");
+  if (sources == Sources::all) add_options_of_other_sources(command, options);
   command.add_option("--nominal", options.nominal, "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
   command.add_option("--truth", options.truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
 }

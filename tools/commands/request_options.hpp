@@ -18,7 +18,8 @@ struct RequestOptions {
   ReadingOptions reading;
   std::string method = "global";
   bool planar = false;
-  std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal, scale, scale_b;
+  std::string plane_a, plane_b, stride, weights = "auto", time_offset, truth, nominal;
+  std::string scale, scale_a, scale_b;  ///< --scale is that of A, as --scale-a says
   double max_gap = 0.5;
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
@@ -26,8 +27,14 @@ struct RequestOptions {
   std::vector<std::string> append;  ///< further drives: files of A and B alternately
 };
 
-/// Adds A, B and all options of the struct. It must exist until the command has run.
-void add_request_options(cli::App command, RequestOptions& options);
+/// What a command can solve.
+enum class Sources {
+  all,
+  two_trajectories,  ///< no --pairs, --append and --samples
+};
+
+/// Adds A, B and the options of the struct for these sources. It must exist until the command has run.
+void add_request_options(cli::App command, RequestOptions& options, Sources sources = Sources::all);
 
 /// Throws UsageError naming the option that cannot be understood.
 SolveRequest understood(const RequestOptions& options);

@@ -15,6 +15,7 @@
 #include "offline/named_extrinsic.hpp"
 #include "offline/provenance.hpp"
 #include "offline/report.hpp"
+#include "offline/scale_report.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -30,13 +31,14 @@ struct Options {
 };
 
 /// The answer as a file for another program; what its reader must know goes to standard error as well.
-void write_extrinsic(const Options& options, const SolveResult& result, bool scale_of_a) {
+void write_extrinsic(const Options& options, const SolveResult& result) {
   const Calibration& calibration = result.calibration;
   NamedExtrinsic extrinsic = named_extrinsic(options.frame_a, options.frame_b, calibration);
   if (const std::optional<ScaleSolution>& scale = calibration.scale)
-    extrinsic.scale = NamedScale{scale_of_a ? options.frame_a : options.frame_b, scale->scale,
-                                 scale->observable ? scale->stddev : std::numeric_limits<double>::infinity(),
-                                 scale->certified};
+    extrinsic.scale =
+        NamedScale{result.scale_side == Side::a ? options.frame_a : options.frame_b, scale->scale,
+                   scale->observable ? scale->stddev : std::numeric_limits<double>::infinity(),
+                   scale->certified, in_metres(result)};
   for (const std::string& line : remarks(extrinsic, calibration)) say("egocal: " + line);
   if (result.course) say("egocal: the scale changes along the drive: its mean is stated");
   if (!result.note.empty()) say("egocal: " + result.note);
@@ -85,7 +87,7 @@ void run(const Options& options, const std::string& command_line) {
   print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
   const bool written = !options.format.empty() || !options.out.empty();
-  if (written) write_extrinsic(options, result, request.calibration.scale_side == Side::a);
+  if (written) write_extrinsic(options, result);
   if (!written || !options.out.empty())
     fmt::print("{}\n", options.json ? json_text(options, request, result, command_line)
                                     : report_text(result, request.truth));

@@ -43,7 +43,7 @@ void refuse_options_of_two(const RequestOptions& typed) {
   refuse(!typed.source.pairs.empty(), "--pairs");
   refuse(typed.samples || typed.eye_in_hand || typed.eye_to_hand, "--samples");
   refuse(typed.planar || !typed.plane_a.empty() || !typed.plane_b.empty(), "--planar");
-  refuse(!typed.scale.empty() || !typed.scale_b.empty(), "--scale");
+  refuse(!typed.scale.empty() || !typed.scale_a.empty() || !typed.scale_b.empty(), "--scale");
   refuse(!typed.truth.empty(), "--truth");
   refuse(!typed.nominal.empty(), "--nominal");
   refuse(!typed.goal.empty(), "--goal");

@@ -27,6 +27,7 @@
 #include "offline/median.hpp"
 #include "offline/remedies.hpp"
 #include "offline/samples.hpp"
+#include "offline/scale_report.hpp"
 #include "offline/trajectory_source.hpp"
 
 namespace egocal::tools {
@@ -35,7 +36,8 @@ namespace {
 
 /// The motions as they were read.
 struct Motions {
-  Trajectory a, b;                ///< from trajectories or a log
+  Trajectory a, b;  ///< from trajectories or a log
+  bool a_has_scale = true, b_has_scale = true;
   std::vector<MotionPair> pairs;  ///< from a file of pairs
   std::vector<std::string> warnings;
 };
@@ -60,8 +62,12 @@ bool has_common_times(const MotionSource& source) {
 Motions read_both(const MotionSource& source) {
   Motions motions;
   std::vector<std::string> warnings_b;
-  const auto read_a = [&] { motions.a = read_noting(source.a, source.reading_a, motions.warnings); };
-  const auto read_b = [&] { motions.b = read_noting(source.b, source.reading_b, warnings_b); };
+  const auto read_a = [&] {
+    motions.a = read_noting(source.a, source.reading_a, motions.warnings, &motions.a_has_scale);
+  };
+  const auto read_b = [&] {
+    motions.b = read_noting(source.b, source.reading_b, warnings_b, &motions.b_has_scale);
+  };
   const bool are_long = is_long_file(source.a) && is_long_file(source.b);
   try {
     (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b);
@@ -74,13 +80,18 @@ Motions read_both(const MotionSource& source) {
 }
 
 Motions read_motions(const MotionSource& source) {
-  if (!source.pairs.empty()) return {{}, {}, read_pairs(source.pairs), {}};
+  Motions motions;
+  if (!source.pairs.empty()) {
+    motions.pairs = read_pairs(source.pairs);
+    return motions;
+  }
   if (source.log.empty()) return read_both(source);
   LogTrajectory a, b;
   (is_long_file(source.log) ? at_the_same_time : one_after_the_other)(
       [&] { a = read_log_trajectory(source.log, source.a); },
       [&] { b = read_log_trajectory(source.log, source.b); });
-  Motions motions{std::move(a.poses), std::move(b.poses), {}, {}};
+  motions.a = std::move(a.poses);
+  motions.b = std::move(b.poses);
   // damage is of both
   for (std::string* warning : {&a.not_used, &b.not_used, &a.times, &b.times, &a.damage})
     if (!warning->empty()) motions.warnings.push_back(std::move(*warning));
@@ -243,9 +254,13 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   const Drives drives = append_drives(request, motions);
   SolveResult result;
   result.warnings = motions.warnings;
+  result.scale_side = options.scale_side;
+  result.a_has_scale = motions.a_has_scale;
+  result.b_has_scale = motions.b_has_scale;
   if (request.samples) {
     answer_samples(request, motions.a, motions.b, result);
-    word_for_options_of_samples(options, request.samples->eye_to_hand, result.calibration);
+    word_for_options_of_samples(options, request.scale_option, request.samples->eye_to_hand,
+                                result.calibration);
     result.solve_us = time_of_method(Method::dual, result.calibration.problem);
     return result;
   }
@@ -256,7 +271,9 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   terms.solve = request.solve;
   result.calibration = calibrate_motions(request.source, motions, options, terms);
   follow_scale(motions, options, result);
-  word_for_options(options, result.calibration);
+  word_for_options(options, request.scale_option, result.calibration);
+  if (std::string warning = scale_warning(request, result); !warning.empty())
+    result.warnings.push_back(std::move(warning));
   for (Finding& finding : result.calibration.findings) finding.remedy = remedy_in_terms(finding, terms);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);

@@ -35,6 +35,7 @@ struct SolveRequest {
   std::optional<Pose> truth;
   std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
   bool keep_motions = false;              ///< hand back what was solved, for a report
+  std::string scale_option;               ///< as it was typed: "--scale" names no side; empty: not given
   /// Before options of `egocal solve` in what is said to the user; empty: they are options of this command.
   std::string solve;
 };
@@ -57,6 +58,8 @@ struct SolveResult {
   std::optional<SampleCalibration> samples;  ///< of still poses; its calibration is the one above
   MatchedSamples matched;                    ///< the rows that make them
   bool eye_to_hand = false;
+  Side scale_side = Side::a;                    ///< whose translations a scale multiplies
+  bool a_has_scale = true, b_has_scale = true;  ///< false: the format has lengths of no unit
 
   /// Only with keep_motions: with inversions, orders and the scale applied, on the clock of the files.
   Trajectory trajectory_a, trajectory_b;  ///< empty for a file of pairs

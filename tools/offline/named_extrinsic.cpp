@@ -9,32 +9,12 @@
 #include <utility>
 
 #include "answers/answers.hpp"
-#include "egocal/uncertainty/observability.hpp"
+#include "egocal/bus/backing.hpp"
 
 namespace egocal::tools {
 
-namespace {
-
-/// Whether the ground planes give this direction, or a part of it.
-bool of_planes(const Calibration& calibration, std::size_t direction) {
-  const double normal = std::abs(calibration.problem.plane_a.normal[static_cast<int>(direction % 3)]);
-  const double leak = ObservabilityOptions().leak;
-  return direction < 3 ? normal > leak : 1 - normal > leak;
-}
-
-}  // namespace
-
 std::array<Backing, 6> backing_of(const Calibration& calibration) {
-  const bool planar = calibration.problem.mode == Mode::planar;
-  std::array<Backing, 6> backing{};
-  for (std::size_t i = 0; i < backing.size(); ++i) {
-    if (calibration.observability.observable[i]) continue;
-    if (planar)
-      backing[i] = of_planes(calibration, i) ? Backing::planes : Backing::none;
-    else
-      backing[i] = calibration.problem.prior ? Backing::nominal : Backing::none;
-  }
-  return backing;
+  return bus::backing_of(calibration.observability.observable, calibration.problem);
 }
 
 NamedExtrinsic named_extrinsic(std::string parent, std::string child, const Calibration& calibration) {
@@ -68,10 +48,13 @@ std::vector<std::string> remarks(const NamedExtrinsic& extrinsic, const Calibrat
   if (std::string not_shown = not_shown_in_words(extrinsic); !not_shown.empty())
     lines.push_back(std::move(not_shown));
   if (extrinsic.scale)
-    lines.push_back(fmt::format("the lengths of {}, multiplied by {:.6g}, are those of the other sensor{}{}",
-                                extrinsic.scale->sensor, extrinsic.scale->value,
-                                extrinsic.scale->certified ? "" : "; this scale is not certified",
-                                std::isfinite(extrinsic.scale->stddev) ? "" : "; it is NOT OBSERVABLE"));
+    lines.push_back(
+        fmt::format("the lengths of {}, multiplied by {:.6g}, are those of {}{}{}{}", extrinsic.scale->sensor,
+                    extrinsic.scale->value,
+                    extrinsic.scale->sensor == extrinsic.parent ? extrinsic.child : extrinsic.parent,
+                    extrinsic.scale->metres ? "" : ", and the translation is in their unit",
+                    extrinsic.scale->certified ? "" : "; this scale is not certified",
+                    std::isfinite(extrinsic.scale->stddev) ? "" : "; it is NOT OBSERVABLE"));
   return lines;
 }
 

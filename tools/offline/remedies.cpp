@@ -63,10 +63,9 @@ void word_inverted_both(Finding& finding, const Inverted& given) {
 }
 
 /// The factor was given: another one takes its place.
-void word_scale(Finding& finding, const CalibrationOptions& options) {
+void word_scale(Finding& finding, const CalibrationOptions& options, const std::string& option) {
   if (!finding.value || !(*finding.value > 0)) return;
   const bool of_a = options.scale_side == Side::a;
-  const std::string option = of_a ? "--scale" : "--scale-b";
   const double right = of_a ? options.scale / *finding.value : options.scale * *finding.value;
   constexpr double none = 1e-3;  // limit: a factor that is one
   const std::string cure = std::abs(right - 1) < none
@@ -87,30 +86,32 @@ void reword(Calibration& calibration, const Word& word) {
 }
 
 /// The factor was looked for, and lies beyond what was searched.
-void word_scale_beyond_range(Finding& finding, const CalibrationOptions& options, double searched) {
+void word_scale_beyond_range(Finding& finding, const CalibrationOptions& options, const std::string& option,
+                             double searched) {
   if (!finding.value || !(*finding.value > 0)) return;
   const bool of_a = options.scale_side == Side::a;
   const double right = of_a ? searched / *finding.value : searched * *finding.value;
-  const std::string option = of_a ? "--scale" : "--scale-b";
   say(finding, finding.words.claim,
       fmt::format("{} {:.4g}, or multiply the lengths of {} by {:.4g} before {} auto", option, right,
                   of_a ? "{a}" : "{b}", searched, option),
       finding.words.evidence);
 }
 
-void word_scale_of(Finding& finding, const CalibrationOptions& options, const Calibration& calibration) {
+void word_scale_of(Finding& finding, const CalibrationOptions& options, const std::string& option,
+                   const Calibration& calibration) {
   if (finding.code != "scale" && finding.code != "units") return;
-  if (!options.estimate_scale && options.scale != 1) word_scale(finding, options);
+  if (!options.estimate_scale && options.scale != 1) word_scale(finding, options, option);
   if (calibration.scale && calibration.scale->at_limit)
-    word_scale_beyond_range(finding, options, calibration.scale->scale);
+    word_scale_beyond_range(finding, options, option, calibration.scale->scale);
 }
 
 }  // namespace
 
-void word_for_options(const CalibrationOptions& options, Calibration& calibration) {
+void word_for_options(const CalibrationOptions& options, const std::string& scale_option,
+                      Calibration& calibration) {
   const Inverted given = inverted_by(options);
   reword(calibration, [&](Finding& finding) {
-    word_scale_of(finding, options, calibration);
+    word_scale_of(finding, options, scale_option, calibration);
     if (!given.a && !given.b) return;
     if (finding.code == "inverted_a") word_inverted(finding, 'a', given);
     if (finding.code == "inverted_b") word_inverted(finding, 'b', given);
@@ -118,8 +119,8 @@ void word_for_options(const CalibrationOptions& options, Calibration& calibratio
   });
 }
 
-void word_for_options_of_samples(const CalibrationOptions& options, bool eye_to_hand,
-                                 Calibration& calibration) {
+void word_for_options_of_samples(const CalibrationOptions& options, const std::string& scale_option,
+                                 bool eye_to_hand, Calibration& calibration) {
   const Inverted given = inverted_by(options);
   reword(calibration, [&](Finding& finding) {
     if (eye_to_hand && finding.code == "inverted_a")
@@ -130,7 +131,7 @@ void word_for_options_of_samples(const CalibrationOptions& options, bool eye_to_
               finding.improvement),
           "Leave out --eye-to-hand.", finding.words.evidence);
     if (eye_to_hand) return;
-    word_scale_of(finding, options, calibration);
+    word_scale_of(finding, options, scale_option, calibration);
     if (!given.a && !given.b) return;
     for (const char which : {'a', 'b'}) {
       if (finding.code != std::string("inverted_") + which) continue;

@@ -34,15 +34,15 @@ const char* optimality_text(Optimality optimality) {
   return "UNDECIDED: too imprecise to prove or disprove";
 }
 
-std::string pose_text(const char* label, const Pose& T) {
+std::string pose_text(const char* label, const Pose& T, const std::string& unit) {
   const Eigen::Vector3d& t = T.translation;
   const Eigen::Vector3d angles = roll_pitch_yaw(T.rotation) * degrees;
   return fmt::format(
-      "{}\n  translation x y z [m]          {:12.6f} {:12.6f} {:12.6f}\n"
+      "{}\n  {:<30} {:12.6f} {:12.6f} {:12.6f}\n"
       "  quaternion w x y z             {:12.9f} {:12.9f} {:12.9f} {:12.9f}\n"
       "  roll pitch yaw [deg]           {:12.5f} {:12.5f} {:12.5f}   R = Rz(yaw) Ry(pitch) Rx(roll)\n",
-      label, t.x(), t.y(), t.z(), T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z(), angles.x(),
-      angles.y(), angles.z());
+      label, "translation x y z [" + unit + "]", t.x(), t.y(), t.z(), T.rotation.w(), T.rotation.x(),
+      T.rotation.y(), T.rotation.z(), angles.x(), angles.y(), angles.z());
 }
 
 /// What was rejected of the motions, and whether that choice is proven.
@@ -129,12 +129,13 @@ std::string uncertainty_text(const Calibration& calibration) {
 
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth) {
   const Calibration& calibration = result.calibration;
-  std::string text = trust_text(calibration);
+  std::string text = trust_text(calibration) + unit_text(result);
   if (result.samples) text += samples_text(result);
   text += fmt::format("optimality    {} (method {}, {:.2f} us)\n\n",
                       optimality_text(calibration.certificate.optimality), result.method, result.solve_us);
-  text += pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", calibration.T_a_b);
-  text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a));
+  const std::string unit = unit_of_lengths(result);
+  text += pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", calibration.T_a_b, unit);
+  text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a), unit);
   text += "\nmotions       " + motions_in_words(calibration) + "\n";
   text += outliers_text(calibration);
   text += pairing_text(result);

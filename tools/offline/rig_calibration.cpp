@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "arguments.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/scale/scale_statistics.hpp"
@@ -109,6 +110,9 @@ std::vector<PairOutcome> calibrate_all(const RigSettings& settings,
       }
       try {
         outcomes[i].calibration = calibrate_pair(settings.pairs[i], trajectories, clocks, settings.names);
+      } catch (const AdvisedError& error) {
+        const RigPairSettings& pair = settings.pairs[i];
+        outcomes[i].reason = error.in_terms({settings.names[pair.a], settings.names[pair.b], {}});
       } catch (const Error& error) {
         outcomes[i].reason = error.what();
       }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
@@ -38,10 +40,34 @@ std::string segments_text(const SolveResult& result) {
   return "scale         changes along the drive; the extrinsic is one for all of it\n" + text;
 }
 
-std::string value_text(const Calibration& calibration) {
+const char* scaled_name(const SolveResult& result) {
+  return result.scale_side == Side::a ? "a" : "b";
+}
+
+const char* unscaled_name(const SolveResult& result) {
+  return result.scale_side == Side::a ? "b" : "a";
+}
+
+bool scaled_has_scale(const SolveResult& result) {
+  return result.scale_side == Side::a ? result.a_has_scale : result.b_has_scale;
+}
+
+bool unscaled_has_scale(const SolveResult& result) {
+  return result.scale_side == Side::a ? result.b_has_scale : result.a_has_scale;
+}
+
+/// The option for the other side.
+std::string other_side(const SolveResult& result) {
+  return result.scale_side == Side::a ? "--scale-b auto" : "--scale-a auto";
+}
+
+std::string value_text(const SolveResult& result) {
+  const Calibration& calibration = result.calibration;
+  const std::string of = std::string(" times the lengths of ") + scaled_name(result);
   if (!calibration.scale)
-    return calibration.scale_applied == 1 ? ""
-                                          : fmt::format("scale         {:g}\n", calibration.scale_applied);
+    return calibration.scale_applied == 1
+               ? ""
+               : fmt::format("scale         {:g}{}\n", calibration.scale_applied, of);
   const ScaleSolution& scale = *calibration.scale;
   if (scale.at_limit)
     return fmt::format("scale         {:.6g} NOT FOUND: the end of the range that was searched\n",
@@ -50,16 +76,20 @@ std::string value_text(const Calibration& calibration) {
       scale.observable
           ? fmt::format("+- {:.6g}", scale.stddev)
           : "NOT OBSERVABLE, the motions do not show it: drive curves of different radius and speed";
-  return fmt::format("scale         {:.6g} {}, {}, noise can hide up to {:.2g} % more or less\n", scale.scale,
-                     value, scale.certified ? "certified over all scales" : "NOT CERTIFIED",
-                     100 * scale.attenuation);
+  return fmt::format(
+      "scale         {:.6g} {}{}{} are those of {}; {}, noise can hide up to {:.2g} % more or less\n",
+      scale.scale, value, scale.observable ? "" : ";", of, unscaled_name(result),
+      scale.certified ? "certified over all scales" : "NOT CERTIFIED", 100 * scale.attenuation);
 }
 
 }  // namespace
 
 nlohmann::ordered_json scale_json(const SolveResult& result) {
   const ScaleSolution& scale = *result.calibration.scale;
-  return {{"value", scale.scale},
+  return {{"of", scaled_name(result)},
+          {"unit_of", unscaled_name(result)},
+          {"metres", in_metres(result)},
+          {"value", scale.scale},
           {"stddev", scale.stddev},
           {"observable", scale.observable},
           {"certified", scale.certified},
@@ -74,7 +104,46 @@ nlohmann::ordered_json scale_json(const SolveResult& result) {
 }
 
 std::string scale_text(const SolveResult& result) {
-  return value_text(result.calibration) + segments_text(result);
+  return value_text(result) + segments_text(result);
+}
+
+bool in_metres(const SolveResult& result) {
+  if (!result.calibration.scale) return true;
+  if (!unscaled_has_scale(result)) return false;
+  // limit: two sensors that both mean metres do not differ by more
+  constexpr double near_one = 1.1;
+  return !scaled_has_scale(result) ||
+         std::abs(std::log(result.calibration.scale->scale)) < std::log(near_one);
+}
+
+std::string unit_of_lengths(const SolveResult& result) {
+  return in_metres(result) ? "m" : std::string("unit of ") + unscaled_name(result);
+}
+
+std::string unit_text(const SolveResult& result) {
+  if (in_metres(result)) return "";
+  const std::string begin = fmt::format(
+      "unit          lengths are in the unit of {0}, also where m or cm is written: ", unscaled_name(result));
+  if (!unscaled_has_scale(result)) return begin + "not metres, its format has no scale\n";
+  return begin + fmt::format("metres only if {} measures metres. If {} does: {}\n", unscaled_name(result),
+                             scaled_name(result), other_side(result));
+}
+
+std::string scale_warning(const SolveRequest& request, const SolveResult& result) {
+  if (in_metres(result)) return "";
+  const std::string unit = fmt::format("the translation is in the unit of {}", unscaled_name(result));
+  if (!unscaled_has_scale(result))
+    return unit + ", whose format has no scale: these are not metres" +
+           (scaled_has_scale(result)
+                ? fmt::format("; if {} measures metres: {}", scaled_name(result), other_side(result))
+                : std::string());
+  if (request.scale_option != "--scale") return "";
+  return fmt::format(
+      "{}, and the scale that was found, {:.4g}, is far from 1: metres only if {} measures metres; if {} "
+      "does "
+      "and {} is the camera without scale: {}, otherwise --scale-a auto",
+      unit, result.calibration.scale->scale, unscaled_name(result), scaled_name(result),
+      unscaled_name(result), other_side(result));
 }
 
 }  // namespace egocal::tools

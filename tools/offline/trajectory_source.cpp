@@ -41,8 +41,9 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
 }
 
 Trajectory read_noting(const std::string& name, const ReadOptions& options,
-                       std::vector<std::string>& warnings) {
+                       std::vector<std::string>& warnings, bool* has_scale) {
   TrajectoryReading reading = read_any_trajectory(name, options);
+  if (has_scale) *has_scale = reading.has_scale;
   for (const std::string& note : reading.notes) warnings.push_back(name + ": " + note);
   return std::move(reading.trajectory);
 }

@@ -17,8 +17,9 @@ std::unique_ptr<Recording> open_any_recording(const std::string& file, const Rea
 /// The trajectory FILE, FILE:TOPIC or LOG:CHANNEL. Throws Error as read_trajectory_file does.
 TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions& options = {});
 
-/// The same; the reader's notes go to the warnings, with the name.
+/// The same; the reader's notes go to the warnings, with the name. has_scale: whether lengths are meant to be
+/// metres; nullptr: not asked.
 Trajectory read_noting(const std::string& name, const ReadOptions& options,
-                       std::vector<std::string>& warnings);
+                       std::vector<std::string>& warnings, bool* has_scale = nullptr);
 
 }  // namespace egocal::tools

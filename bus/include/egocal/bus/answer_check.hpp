@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct CheckedAnswer {
   /// Its certificate is this listener's own where it could be computed, whatever the sender claimed. Not
   /// certified unless verified.
   Answer answer;
-  std::string reason;  ///< of a refusal, a short constant text that also names its counter
+  std::optional<Problem> problem;  ///< that it answers, without its blocks; of a verified one only
+  std::string reason;              ///< of a refusal, a short constant text that also names its counter
 };
 
 /// The newest problems of all pairs, and the checks of the answers to them: about 2 us each, five times that
