@@ -45,6 +45,13 @@ std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
   return text;
 }
 
+/// As where a monitor is started during a pause. Where others came, a channel that never did has the wrong
+/// name.
+bool nothing_ever_came(const StreamWatch& watch) {
+  return watch.others().empty() && std::none_of(watch.sensors().begin(), watch.sensors().end(),
+                                                [](const SensorStream& s) { return s.heard.has_value(); });
+}
+
 StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::int64_t mono_us,
                    const std::string& why_silent) {
   const Sensor& sensor = stream.sensor;
@@ -56,7 +63,8 @@ StreamLine line_of(const SensorStream& stream, const StreamWatch& watch, std::in
         stream.heard
             ? "silent for " + std::to_string((mono_us - stream.heard->last_mono_us) / 1'000'000) + " s"
             : std::string("nothing received");
-    if (stream.heard && !why_silent.empty()) return {Severity::good, begin + text + ": " + why_silent};
+    if (!why_silent.empty() && (stream.heard || nothing_ever_came(watch)))
+      return {Severity::good, begin + text + ": " + why_silent};
     return {Severity::bad, begin + text + "; " +
                                (instead.empty() ? "no other channel carries anything (expected " +
                                                       expected_type(sensor) + ")"

@@ -166,6 +166,13 @@ std::string before_that(const PairState& pair) {
 
 }  // namespace
 
+std::string unanswered_text(const PairState& pair, Charset charset) {
+  if (pair.has_problem)
+    return "motions arrive (" + count(pair.problem.matched) + " so far), no solver has answered yet";
+  if (pair.scale) return "scale " + scale_text(*pair.scale, charset).text;
+  return "no motions yet: is the odometry of both sensors coming in, and pairing running?";
+}
+
 std::string standing_text(const PairState& pair) {
   return "no new motion for " + age(pair.standing) + (pair.why_standing.empty() ? "" : ": ") +
          pair.why_standing;
@@ -193,7 +200,9 @@ Label advice_of(const PairState& pair) {
     return {with_cure(diagnosis.findings.front()), style};
   if (diagnosis.verdict <= Verdict::incomplete && diagnosis.goal && !diagnosis.goal->reached)
     return {"goal " + goal_text(diagnosis), style};
-  return {(diagnosis.goal && diagnosis.goal->reached ? "goal done. " : "") + diagnosis.reason, style};
+  return {std::string(pair.ended ? "pairing has ended, this is its last answer. " : "") +
+              (diagnosis.goal && diagnosis.goal->reached ? "goal done. " : "") + diagnosis.reason,
+          style};
 }
 
 std::string fit_text(const PairVerdict& verdict, Charset charset) {

@@ -56,6 +56,8 @@ Label proof_of(const calibration_t& answer);
 Label advice_of(const PairState& pair);
 /// "The clocks drift. Cure: ...".
 std::string with_cure(const Finding& finding);
+/// Why there is no answer yet.
+std::string unanswered_text(const PairState& pair, Charset charset);
 /// "no new motion for 12 s: camera sends nothing".
 std::string standing_text(const PairState& pair);
 /// "done", "weak: z yaw, about 2 min more; Take a ramp": empty without a goal.

@@ -19,8 +19,19 @@ void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
   if (answer) {
     const Label proof = proof_of(*answer);
     x = pane.text(x, 0, proof.text, proof.style) + 1;
-    pane.text(x, 0, "by " + clean(answer->solver, 16) + "  gap " + compact(answer->scaled_gap, charset),
-              Style::dim);
+    const std::string by = "by " + clean(answer->solver, 16),
+                      gap = "  gap " + compact(answer->scaled_gap, charset);
+    for (const std::string& text : {by + gap, by, "by " + short_solver(answer->solver)}) {
+      if (x + width_of(text) > pane.width()) continue;
+      pane.text(x, 0, text, Style::dim);
+      break;
+    }
+  }
+  if (!answer) {
+    const std::vector<std::string> lines =
+        wrapped(unanswered_text(pair, charset), static_cast<std::size_t>(std::max(1, pane.width())), 0);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      pane.text(0, 1 + static_cast<int>(i), lines[i], Style::dim);
   }
   if (!answer || !pair.shown.valid) return;
   const std::array<double, 6> values = components(pair.shown.T_a_b);
@@ -154,7 +165,9 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     value(verify_time(answer, charset));
     value(latency(answer, charset));
     value(count(answer.pairs));
-    value(age(seconds_between(solver.at.mono_us, now.mono_us)), solver.silent ? Style::bad : Style::dim);
+    // of an answer that is sent again every second: since the motions that it is about
+    value(age(std::max(seconds_between(solver.at.mono_us, now.mono_us), pair.standing)),
+          solver.silent ? Style::bad : Style::dim);
   }
 }
 

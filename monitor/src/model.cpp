@@ -18,7 +18,7 @@ bool pair_is_paused(const Model& model, const PairState& pair) {
 }
 
 bool pairing_is_silent(const PairState& pair) {
-  return pair.answer() && (!pair.has_problem || pair.silent);
+  return pair.answer() && (!pair.has_problem || pair.silent) && !pair.ended;
 }
 
 std::string pair_name(const std::string& a, const std::string& b) {
@@ -82,7 +82,9 @@ void Model::tick(Now now) {
   watch_loops(now);
   watch_processes(now);
   watch_interruptions(now);
+  const bool ended = pairing_has_ended();
   for (PairState& pair : pairs_) {
+    pair.ended = ended;
     const std::int64_t heard = std::max(pair.problem_at.mono_us, network_mono_us_);
     const bool silent = seconds_between(heard, now.mono_us) > options_.stream_timeout;
     if (network_away_)

@@ -120,6 +120,7 @@ void Model::on_status(const status_t& message, Now now) {
   watch_seeks(*process, message, is_new || restarted, now);
   count_messages(*process, message, is_new, now);
   update_rates(*process, now);
+  if (!process->alive) process->rate_in = process->rate_out = -1;
 }
 
 /// Processes that resume, or that have a network again, hear of each other one after the other: what they
@@ -148,6 +149,16 @@ void Model::watch_processes(Now now) {
     note(Severity::bad, process.status.name,
          "process is gone: no heartbeat for " + rounded(options_.heartbeat_timeout) + " s", now);
   }
+}
+
+bool Model::pairing_has_ended() const {
+  bool ended = false;
+  for (const ProcessState& process : processes_) {
+    if (process.status.role != bus::role_name(Role::pairing)) continue;
+    if (process.state != bus::State::ended) return false;
+    ended = true;
+  }
+  return ended;
 }
 
 bool Model::heard_others() const {

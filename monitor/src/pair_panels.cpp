@@ -19,6 +19,7 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
                                                       : 0) +
                              " frames";
   const std::string mode = paused                    ? "PAUSED  "
+                           : pair.ended              ? "ENDED  "
                            : pairing_is_silent(pair) ? "PAIRING IS SILENT  "
                            : pair.has_problem        ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
                                                      : "";
@@ -38,7 +39,7 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
       if (chosen >> i & 1u) text += *parts[i];
     if (x + width_of(text) + 1 > pane.width()) continue;
     pane.text(pane.width() - width_of(text) - 1, 0, text,
-              pair.silent || pairing_is_silent(pair) || paused ? Style::warning : Style::dim);
+              !pair.ended && (pair.silent || paused) ? Style::warning : Style::dim);
     break;
   }
 }
@@ -116,12 +117,9 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
   draw_counts(pane, pair, now, x, paused);
   const calibration_t* answer = pair.answer();
   if (!answer) {
-    const std::string text =
-        pair.scale && !pair.has_problem ? "scale " + scale_text(*pair.scale, charset).text
-        : pair.has_problem
-            ? "motions arrive (" + count(pair.problem.matched) + " so far), no solver has answered yet"
-            : "no motions yet: is the odometry of both sensors coming in, and pairing running?";
-    pane.text(4, 1, text, Style::dim);
+    pane.text(4, 1,
+              clean(unanswered_text(pair, charset), static_cast<std::size_t>(std::max(0, pane.width() - 5))),
+              Style::dim);
     return;
   }
   if (!pair.shown.valid) {

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "panels.hpp"
+#include "egocal/bus/process.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "answer_text.hpp"
 
@@ -14,6 +16,22 @@ void draw_title(const Pane& pane, const std::string& title, Charset charset) {
   int x = pane.text(2, 0, title, Style::title) + 1;
   while (x < pane.width()) x = pane.text(x, 0, line, Style::dim);
 }
+
+namespace {
+
+/// Where there is no room for all: those that are gone must be seen, other people's monitors need not.
+std::vector<const ProcessState*> in_order(const std::vector<ProcessState>& processes) {
+  std::vector<const ProcessState*> order;
+  for (const ProcessState& process : processes) order.push_back(&process);
+  const auto rank = [](const ProcessState* process) {
+    return process->status.role == bus::role_name(Role::monitor) ? 2 : process->alive ? 1 : 0;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const auto* x, const auto* y) { return rank(x) < rank(y); });
+  return order;
+}
+
+}  // namespace
 
 void draw_processes(const Pane& pane, const Model& model, bool title, Charset charset) {
   const Symbols& s = symbols(charset);
@@ -27,11 +45,7 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     pane.text(2, y, "no heartbeat yet", Style::dim);
     return;
   }
-  // processes that are gone come first: they must be seen when there is no room for all
-  std::vector<const ProcessState*> order;
-  for (const bool alive : {false, true})
-    for (const ProcessState& process : processes)
-      if (process.alive == alive) order.push_back(&process);
+  const std::vector<const ProcessState*> order = in_order(processes);
   const int hidden = static_cast<int>(order.size()) - (pane.height() - y);
   if (title && hidden > 0) {
     const std::string text = " and " + std::to_string(hidden) + " more ";

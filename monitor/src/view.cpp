@@ -3,6 +3,7 @@
 #include "egocal/monitor/view.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "answer_text.hpp"
@@ -15,94 +16,118 @@
 namespace egocal::monitor {
 namespace {
 
+/// Items from left to right, as far as there is room before the clock.
+class HeaderLine {
+ public:
+  HeaderLine(const Pane& pane, const ViewState& view, std::int64_t wall_us)
+      : pane_(pane), view_(view), right_(clock_time(wall_us, view.utc_offset_s)) {
+    if (view.frozen) right_ = "VIEW PAUSED  " + right_;
+    end_ = pane.width() - (pane.width() >= 40 || view.frozen ? width_of(right_) + 3 : 0);
+  }
+
+  int width() const { return pane_.width(); }
+  bool has_room_for(int cells) const { return x_ + cells <= end_; }
+  /// False: there is no room for it.
+  bool item(const std::string& text, Style style, int gap = 0) {
+    if (!has_room_for(width_of(text))) return false;
+    must(text, style, gap);
+    return true;
+  }
+  /// Also where the clock would have been.
+  void must(const std::string& text, Style style, int gap = 0) { x_ = pane_.text(x_, 0, text, style) + gap; }
+  /// Before the clock: nothing else of this line is of the present then.
+  void say_away() {
+    constexpr const char* no_network = "NO NETWORK";
+    if (!view_.network_error.empty() && x_ + width_of(no_network) <= width()) must(no_network, Style::bad, 2);
+  }
+  void draw_clock(const std::string& before = "") {
+    const std::string right = before + right_;
+    const int at = width() - width_of(right) - 1;
+    if (at > x_) pane_.text(at, 0, right, view_.frozen ? Style::warning : Style::dim);
+  }
+
+ private:
+  const Pane& pane_;
+  const ViewState& view_;
+  std::string right_;
+  int x_ = 1, end_ = 0;
+};
+
+/// "lidar -> camera  good by global · 412 frames · 3 outliers · 3-D · offset 0.0 ms · many strides".
+void draw_pair_header(HeaderLine& line, const PairState& pair, bool paused, Charset charset) {
+  const Symbols& s = symbols(charset);
+  line.must(pair_title(pair, charset, line.width() >= 60 ? 24 : 12), Style::title, 2);
+  line.say_away();
+  if (paused) line.item("PAUSED ", Style::warning);
+  if (pair.ended && !paused) line.item("ENDED ", Style::dim);
+  const Label verdict = verdict_of(pair, charset);
+  line.item(verdict.text, verdict.style);
+  const std::string between = std::string(" ") + s.dot + " ";
+  if (const calibration_t* answer = pair.answer()) {
+    const std::string solver = clean(answer->solver, 16), by = " by ";
+    if (line.has_room_for(width_of(by) + width_of(solver))) {
+      line.item(by, Style::dim);
+      line.item(solver, solver_style(pair.counted_solver()->role));
+    }
+    line.item(between + count(answer->pairs) + " frames", Style::dim);
+  }
+  if (!pair.has_problem) return;
+  const problem_t& problem = pair.problem;
+  if (problem.left_out > 0) line.item(between + count(problem.left_out) + " outliers", Style::warning);
+  if (problem.rejected > 0) line.item(between + count(problem.rejected) + " rejected", Style::dim);
+  line.item(between + (problem.mode == 1 ? "planar" : "3-D"), Style::dim);
+  std::string offset = number(problem.time_offset * 1e3, 1, charset);
+  if (problem.time_offset_stddev >= 0)
+    offset += " " + std::string(s.plus_minus) + number(problem.time_offset_stddev * 1e3, 1, charset);
+  line.item(between + "offset " + offset + " ms", Style::dim);
+  line.item(between + stride_text(problem), Style::dim);
+}
+
+/// "egocal  3 of 4 good  1 contradictory  4 proven optimal  1 gone": a pair that is so may be below the last
+/// row.
+void draw_overview_header(HeaderLine& line, const Model& model) {
+  const auto pairs = static_cast<std::ptrdiff_t>(model.pairs().size());
+  const auto number_of = [&](const auto& is_so) {
+    return std::count_if(model.pairs().begin(), model.pairs().end(), is_so);
+  };
+  const auto good = number_of(is_good);
+  const auto certified = number_of([](const PairState& p) { return p.answer() && p.answer()->status == 0; });
+  const auto old = number_of([](const PairState& p) { return p.old > 0; });
+  const auto paused = number_of([&](const PairState& p) { return pair_is_paused(model, p); });
+  const auto contradictory = number_of(
+      [](const PairState& p) { return p.verdict && p.verdict->diagnosis.verdict == Verdict::contradictory; });
+  const auto gone =
+      std::count_if(model.processes().begin(), model.processes().end(),
+                    [](const ProcessState& p) { return !p.alive && p.state != bus::State::ended; });
+  line.must("egocal", Style::title, 2);
+  line.must(std::to_string(good) + " of " + std::to_string(pairs) + " good",
+            good == pairs && good > 0 ? Style::good : Style::normal, 2);
+  line.say_away();
+  if (contradictory > 0) line.item(std::to_string(contradictory) + " contradictory", Style::bad, 2);
+  if (old > 0) line.item(std::to_string(old) + " old", Style::warning, 2);
+  if (line.width() >= 50)
+    line.must(std::to_string(certified) + " proven optimal",
+              certified == pairs && certified > 0 && old == 0 ? Style::good : Style::normal, 2);
+  if (gone > 0) line.must(std::to_string(gone) + " gone", Style::bad, 2);
+  if (paused > 0)
+    line.must(paused == pairs ? "PAUSED" : std::to_string(paused) + " PAUSED", Style::warning, 2);
+}
+
 void draw_header(const Pane& pane, const Model& model, const ViewState& view) {
   if (pane.height() < 1) return;
-  const Symbols& s = symbols(view.charset);
-  const PairState* pair = selected_pair(model, view);
-  int x = 1;
-  std::string right = clock_time(model.now().wall_us, view.utc_offset_s);
-  if (view.frozen) right = "VIEW PAUSED  " + right;
-  // items from left to right as far as there is room before the clock
-  const int end = pane.width() - (pane.width() >= 40 || view.frozen ? width_of(right) + 3 : 0);
-  constexpr const char* no_network = "NO NETWORK";
-  // before the clock: nothing else here is of the present
-  const bool away = !view.network_error.empty();
-  const auto say_away = [&] {
-    if (away && x + width_of(no_network) <= pane.width()) x = pane.text(x, 0, no_network, Style::bad) + 2;
-  };
-  const auto item = [&](const std::string& text, Style style) {
-    if (x + width_of(text) > end) return false;
-    x = pane.text(x, 0, text, style);
-    return true;
-  };
+  HeaderLine line(pane, view, model.now().wall_us);
+  const PairState* const pair = selected_pair(model, view);
   if (view.screen == Screen::detail && pair) {
-    x = pane.text(x, 0, pair_title(*pair, view.charset, pane.width() >= 60 ? 24 : 12), Style::title) + 2;
-    const bool paused = pair_is_paused(model, *pair);
-    say_away();
-    if (paused) item("PAUSED ", Style::warning);
-    const Label verdict = verdict_of(*pair, view.charset);
-    item(verdict.text, verdict.style);
-    const std::string between = std::string(" ") + s.dot + " ";
-    const calibration_t* answer = pair->answer();
-    if (answer && x + 4 + width_of(clean(answer->solver, 16)) <= end) {
-      item(" by ", Style::dim);
-      item(clean(answer->solver, 16), solver_style(pair->counted_solver()->role));
-    }
-    if (answer) {
-      item(between + count(answer->pairs) + " frames", Style::dim);
-    }
-    if (pair->has_problem) {
-      const problem_t& problem = pair->problem;
-      if (problem.left_out > 0) item(between + count(problem.left_out) + " outliers", Style::warning);
-      if (problem.rejected > 0) item(between + count(problem.rejected) + " rejected", Style::dim);
-      item(between + (problem.mode == 1 ? "planar" : "3-D"), Style::dim);
-      std::string offset = number(problem.time_offset * 1e3, 1, view.charset);
-      if (problem.time_offset_stddev >= 0)
-        offset += " " + std::string(s.plus_minus) + number(problem.time_offset_stddev * 1e3, 1, view.charset);
-      item(between + "offset " + offset + " ms", Style::dim);
-      item(between + stride_text(problem), Style::dim);
-    }
+    draw_pair_header(line, *pair, pair_is_paused(model, *pair), view.charset);
+    line.draw_clock();
   } else {
-    x = pane.text(x, 0, "egocal", Style::title) + 2;
-    std::size_t good = 0, certified = 0, gone = 0, paused = 0;
-    for (const PairState& p : model.pairs()) paused += pair_is_paused(model, p);
-    for (const PairState& p : model.pairs()) certified += p.answer() && p.answer()->status == 0;
-    for (const PairState& p : model.pairs()) good += is_good(p);
-    const auto old = std::count_if(model.pairs().begin(), model.pairs().end(),
-                                   [](const PairState& p) { return p.old > 0; });
-    for (const ProcessState& p : model.processes()) gone += !p.alive && p.state != bus::State::ended;
-    x = pane.text(x, 0, std::to_string(good) + " of " + std::to_string(model.pairs().size()) + " good",
-                  good == model.pairs().size() && good ? Style::good : Style::normal) +
-        2;
-    // a pair that is so may be below the last row
-    const auto contradictory =
-        std::count_if(model.pairs().begin(), model.pairs().end(), [](const PairState& p) {
-          return p.verdict && p.verdict->diagnosis.verdict == Verdict::contradictory;
-        });
-    say_away();
-    if (contradictory > 0 && item(std::to_string(contradictory) + " contradictory", Style::bad)) x += 2;
-    if (old > 0 && item(std::to_string(old) + " old", Style::warning)) x += 2;
-    if (pane.width() >= 50)
-      x = pane.text(x, 0, std::to_string(certified) + " proven optimal",
-                    certified == model.pairs().size() && certified && !old ? Style::good : Style::normal) +
-          2;
-    if (gone) x = pane.text(x, 0, std::to_string(gone) + " gone", Style::bad) + 2;
-    if (paused)
-      x = pane.text(x, 0, paused == model.pairs().size() ? "PAUSED" : std::to_string(paused) + " PAUSED",
-                    Style::warning) +
-          2;
-    if (pane.width() >= 70) right = clean(view.source, 40) + "  " + right;
+    draw_overview_header(line, model);
+    line.draw_clock(pane.width() >= 70 ? clean(view.source, 40) + "  " : "");
   }
-  const int at = pane.width() - width_of(right) - 1;
-  if (at > x) pane.text(at, 0, right, view.frozen ? Style::warning : Style::dim);
 }
 
 void draw_keys(const Pane& pane, const ViewState& view) {
   if (pane.height() < 1) return;
-  if (!view.notice.empty()) {
-    pane.text(1, 0, clean(view.notice, 200), Style::warning);
-    return;
-  }
   struct Hint {
     const char* key;
     const char* does;
@@ -124,6 +149,7 @@ void draw_keys(const Pane& pane, const ViewState& view) {
       break;
   }
   int x = 1;
+  if (!view.notice.empty()) x = pane.text(x, 0, clean(view.notice, 200), Style::warning) + 3;
   for (const Hint& hint : hints) {
     const int w = width_of(hint.key) + 1 + width_of(hint.does);
     if (x + w > pane.width()) break;
@@ -253,11 +279,10 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
   if (pair.old > 0) extrinsic.usable = false;
   extrinsic.stddev.emplace();
   std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());
-  Observability shown;
-  for (std::size_t i = 0; i < 6; ++i) shown.observable[i] = answer->observable[i] != 0;
-  shown.hint = answer->hint;
-  const bool planar = answer->method == "planar" || (pair.has_problem && pair.problem.mode == 1);
-  extrinsic.backing = bus::backing_of(shown, planar, pair.has_problem && pair.problem.has_prior != 0);
+  bus::CheckedAnswer heard;
+  for (std::size_t i = 0; i < 6; ++i) heard.answer.observability.observable[i] = answer->observable[i] != 0;
+  if (pair.has_problem) heard.problem = bus::to_problem(pair.problem).value;
+  extrinsic.backing = bus::backing_of(heard, answer->method, false);
   if (pair.scale)
     extrinsic.scale = NamedScale{pair.scale->sensor, pair.scale->solution.scale, pair.scale->solution.stddev,
                                  pair.scale->verified && pair.scale->solution.certified};

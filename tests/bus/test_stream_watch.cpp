@@ -69,6 +69,14 @@ TEST_F(Watch, ASilentSensorComesWithWhatIsHeardInstead) {
   EXPECT_EQ(paused[0].severity, StreamLine::Severity::good);
   EXPECT_THAT(paused[1].text, HasSubstr("nothing received")) << "it never came, whatever the player does";
   EXPECT_EQ(paused[1].severity, StreamLine::Severity::bad);
+
+  const StreamWatch new_watch({{"lidar", "ODOMETRY_LIDAR", OdometryType::odometry, {}},
+                               {"camera", "ODOMETRY_CAMERA", OdometryType::odometry, {}}});
+  for (const StreamLine& line : stream_lines(new_watch, 20'000'000, "the player is paused")) {
+    EXPECT_THAT(line.text, HasSubstr("nothing received: the player is paused"))
+        << "one that came in the pause";
+    EXPECT_EQ(line.severity, StreamLine::Severity::good);
+  }
 }
 
 TEST_F(Watch, WhyAPairHasNoNewMotion) {

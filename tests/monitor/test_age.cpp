@@ -143,5 +143,39 @@ TEST_F(AnswerAge, ASecondMonitorIsNoRestart) {
   for (const Event& event : model.events()) EXPECT_THAT(event.text, HasSubstr("process is there"));
 }
 
+TEST_F(AnswerAge, AfterPairingHasEndedTheLastAnswerStays) {
+  status_t pairing = test::status_of("egocal-pairing", "pairing", 0);
+  model.on_status(pairing, at(0));
+  drive(0, 5, true);
+  pairing.state = "ended";
+  model.on_status(pairing, at(5));
+  for (int second = 6; second < 60; ++second) model.tick(at(second));
+  for (const Screen screen : {Screen::overview, Screen::detail}) {
+    EXPECT_THAT(shown(screen), HasSubstr("good"));
+    EXPECT_THAT(shown(screen), Not(HasSubstr("old answer")));
+    EXPECT_THAT(shown(screen), HasSubstr("ENDED"));
+  }
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("pairing has ended, this is its last answer"));
+
+  // another one that hangs
+  pairing.name = "egocal-pairing-2";
+  pairing.state = "running";
+  model.on_status(pairing, at(60));
+  model.tick(at(61));
+  expect_old("pairing is silent");
+}
+
+TEST_F(AnswerAge, ProcessesThatHaveEndedHaveNoRates) {
+  status_t player;
+  for (int second = 0; second < 5; ++second) {
+    player = test::status_of("egocal-player", "player", 600 * second);
+    model.on_status(player, at(second));
+  }
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("600/s"));
+  player.state = "ended";
+  model.on_status(player, at(5));
+  EXPECT_THAT(shown(Screen::overview), Not(HasSubstr("600/s")));
+}
+
 }  // namespace
 }  // namespace egocal::monitor::test_age

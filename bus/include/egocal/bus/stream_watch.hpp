@@ -98,7 +98,8 @@ std::string cure_of(const std::string& reason, OdometryType type, Bytes bytes);
 std::string cure_of_rejection(const std::string& reason);
 
 /// A line for each sensor, and one for each kind of refusal below it. why_silent: a reason for which streams
-/// that were received before may be silent ("the player is paused"): no fault of a sensor. Empty: none.
+/// may be silent ("the player is paused"): no fault of a sensor, unless it was never received and others
+/// were. Empty: none.
 std::vector<StreamLine> stream_lines(const StreamWatch& watch, std::int64_t mono_us,
                                      const std::string& why_silent = {});
 

@@ -159,6 +159,7 @@ struct PairState {
   std::optional<std::int64_t> reset_asked;  ///< the session that a command asked to forget
   /// The monitor has no network, or nothing of pairing has come since: the silence is not pairing's.
   bool no_network = false;
+  bool ended = false;  ///< pairing reported its end, and no other pairing process is there
 
   const calibration_t* answer() const {
     return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;
@@ -267,6 +268,7 @@ class Model {
   void watch_interruptions(Now now);
   void count_messages(ProcessState& process, const status_t& message, bool is_new, Now now);
   bool is_own(const ProcessState& process) const;
+  bool pairing_has_ended() const;
 
   ModelOptions options_;
   std::vector<PairState> pairs_;
@@ -286,8 +288,8 @@ class Model {
 /// Whether a pair's calibration was paused by a user: by the commands received for it, or because
 /// pairing reports it of all its pairs (a monitor that started later has received no command).
 bool pair_is_paused(const Model& model, const PairState& pair);
-/// There are answers, and the pairing process whose problems they answer sends nothing: it hangs or is gone.
-/// It repeats its problems once a second.
+/// There are answers, and the pairing process whose problems they answer sends nothing, though it has not
+/// reported its end: it hangs or is gone. It repeats its problems once a second.
 bool pairing_is_silent(const PairState& pair);
 /// The answer is verified and proven, its verdict is good, and both are of the present.
 bool is_good(const PairState& pair);
