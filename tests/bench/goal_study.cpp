@@ -4,7 +4,7 @@
 // Simulated drives with a goal: whether "reached" is true when it is said, how late it is said, and how good
 // the time still needed is at half time. The goal of each kind of drive is what its drives reach at a third
 // of their length: the root mean square errors of all of them there. The rest is for those that are late. The
-// table of docs/trust.md.
+// table of docs/trust_measured.md.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 // Whether parts of one real drive agree as well as their standard deviations say: the answer of each part
 // against the mean of the others, per direction. What all parts share, such as a camera whose calibration
-// bends every curve, does not show. The table of docs/trust.md.
+// bends every curve, does not show. The table of docs/trust_measured.md.
 #include <array>
 #include <cmath>
 #include <cstdio>

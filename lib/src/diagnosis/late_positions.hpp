@@ -10,7 +10,7 @@
 
 namespace egocal::detail {
 
-/// Study: docs/trust.md, "Measured".
+/// Study: docs/trust_measured.md, "Mistakes".
 struct LatePositionsOptions {
   /// Speeds are those over at least this time [s]: over less they are the noise of single poses.
   double least_span = 0.1;

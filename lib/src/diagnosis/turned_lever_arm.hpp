@@ -10,7 +10,7 @@
 
 namespace egocal::detail {
 
-/// Study: docs/trust.md, "Measured".
+/// Study: docs/trust_measured.md, "Mistakes".
 struct TurnedLeverArmOptions {
   double least = 0.05;  ///< lever arms below this are not named [m]: what they change is within a tolerance
 };

@@ -10,7 +10,7 @@
 
 namespace egocal::detail {
 
-/// Study: docs/trust.md, "Measured".
+/// Study: docs/trust_measured.md, "Mistakes".
 struct TurningScaleOptions {
   /// Parts by which both sensors turn unlike, least and most that are looked at: gyroscopes err by up to some
   /// per cent, and motions that noise and interpolation shorten by less than half a per cent.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Every number that the diagnosis decides by. "Study" is tests/bench/mistake_study.cpp: mistakes of users on
-// real and simulated drives, and the same drives without any; docs/trust.md has its tables.
+// real and simulated drives, and the same drives without any; docs/trust_measured.md has its tables.
 #pragma once
 
 #include <cstddef>
@@ -62,9 +62,10 @@ struct ScaleSearchOptions {
 /// Whether the scale of b differs from one by its own estimate. Where a machine mostly turns in place, few
 /// blocks of the drive hold the scale; the others fit any, and a test that counts blocks does not see it.
 struct ScaleCheckOptions {
-  /// Of the logarithm of the scale from 0. Study (an independent simulator, docs/trust.md): the largest of
-  /// 2,588 drives whose scale is right has 3.5; of 126 excavators whose scale is wrong by 5 % and more, and
-  /// shows, all but one have more than 5. Real lidars and cameras reach 4.2 (KITTI), which `least` allows.
+  /// Of the logarithm of the scale from 0. Study (an independent simulator, docs/trust_measured.md): the
+  /// largest of 2,588 drives whose scale is right has 3.5; of 126 excavators whose scale is wrong by 5 % and
+  /// more, and shows, all but one have more than 5. Real lidars and cameras reach 4.2 (KITTI), which `least`
+  /// allows.
   double sigmas = 5;
   /// Least logarithm of a scale that is named or makes an answer doubtful: odometries of real sensors differ
   /// by up to 1 % (KITTI 0.4 %, EuRoC 0.8 %), and interpolation leaves less than 0.1 % (docs/scale.md).
@@ -144,7 +145,7 @@ struct MountCheckOptions {
 
 /// Standard deviations as they are compared with a goal, when it is reached, and the time left. Study:
 /// tests/bench/goal_study.cpp and its --more kinds, checked on other drives (--first-seed 3001);
-/// docs/trust.md has its tables.
+/// docs/trust_measured.md has its tables.
 struct GoalSpreadOptions {
   /// Fewer blocks have no common factor of all directions: it would be known to a quarter only.
   std::size_t least_blocks = 8;
@@ -208,7 +209,8 @@ struct UndersamplingOptions {
   double matters = 1;      ///< of these, in standard deviations of the answer: more is a finding
 };
 
-/// Whether the clocks differ by so little that no single block of the drive shows it. Study: docs/trust.md.
+/// Whether the clocks differ by so little that no single block of the drive shows it. Study:
+/// docs/trust_measured.md.
 struct ClockCheckOptions {
   /// Of the offset from 0. Clean drives of the study stay below 3.8, real ones below 4.9 but for an arm whose
   /// clocks do differ.
