@@ -6,11 +6,11 @@
 
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "answers/answers.hpp"
 #include "commands/commands.hpp"
@@ -21,6 +21,7 @@
 #include "egocal/io/whole_file.hpp"
 #include "offline/log_channels.hpp"
 #include "supervision/bus_watch.hpp"
+#include "supervision/interruptions.hpp"
 #include "supervision/output_file.hpp"
 #include "supervision/passing_state.hpp"
 #include "supervision/rig_copy.hpp"
@@ -43,63 +44,6 @@ constexpr std::chrono::milliseconds listen_before_start{1200};
 void report(const std::string& line) {
   say("egocal up: " + line);
 }
-
-/// A signal ends this command as a user means it, at any time: with what was calibrated so far, of which
-/// there is nothing at first. An output that nobody reads ends nothing.
-class Interruptions {
- public:
-  /// player: a log is to be played, which is a failure where nothing is calibrated.
-  explicit Interruptions(bool player) {
-    self_ = getpid();
-    sigemptyset(&signals_);
-    for (std::size_t i = 0; i < std::size(before_); ++i) {
-      sigaddset(&signals_, numbers[i]);
-      sigaction(numbers[i], nullptr, &before_[i]);
-      if (before_[i].sa_handler != SIG_IGN)
-        handle(numbers[i], player ? end_before_the_log : end_before_the_start);
-    }
-    handle(SIGPIPE, SIG_IGN);
-  }
-  ~Interruptions() { release(); }
-  Interruptions(const Interruptions&) = delete;
-  Interruptions& operator=(const Interruptions&) = delete;
-
-  /// From now on they wait for the supervisor.
-  void hold() {
-    sigprocmask(SIG_BLOCK, &signals_, &mask_);
-    held_ = true;
-  }
-  /// From now on they end this process, as any other one.
-  void release() {
-    if (!held_) return;
-    held_ = false;
-    for (std::size_t i = 0; i < std::size(before_); ++i) sigaction(numbers[i], &before_[i], nullptr);
-    sigprocmask(SIG_SETMASK, &mask_, nullptr);
-  }
-
- private:
-  static constexpr int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-  static void handle(int number, void (*handler)(int)) {
-    struct sigaction action {};
-    action.sa_handler = handler;
-    sigemptyset(&action.sa_mask);
-    sigaction(number, &action, nullptr);
-  }
-  // in a signal handler: only what is safe there
-  static void end_before_the_start(int) { _exit(0); }
-  static void end_before_the_log(int) {
-    if (getpid() != self_) _exit(0);  // the process that listens is ended by us
-    constexpr char text[] = "egocal up: ended before the log was played: nothing was calibrated\n";
-    if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(1);
-    _exit(1);
-  }
-
-  static inline volatile std::sig_atomic_t self_ = 0;  ///< this process, for handlers
-
-  sigset_t signals_{}, mask_{};
-  struct sigaction before_[std::size(numbers)]{};
-  bool held_ = false;
-};
 
 /// The reader of a pipe has gone, or the device takes nothing.
 bool output_is_gone() {
@@ -181,12 +125,8 @@ bool write_reports(const Options& options, const bus::Rig& rig, const std::strin
   return usable;
 }
 
-void run(const Options& options, Interruptions& interruptions) {
-  if (options.report && options.log.empty())
-    throw cli::UsageError("--report: goes with --log, whose drive it shows");
-  const RigCopy copy(options.rig);
-  const bus::Rig& rig = copy.rig();
-  const std::string url = options.url.empty() ? rig.lcm_url : options.url;
+/// What can be known before any process is started.
+void check_before_start(const Options& options, const bus::Rig& rig, const std::string& url) {
   if (!options.log.empty()) require_a_pair(options.log, rig);
   if (!options.state.empty()) check_place_of_state(options.state);
   const std::optional<std::string> other = pairing_heard(url, listen_before_start);
@@ -194,35 +134,24 @@ void run(const Options& options, Interruptions& interruptions) {
     throw Error(*other + " is running on " + url +
                 ": the two would disturb each other; end the other one, take another --lcm-url, or --join");
   if (!options.state.empty()) check_state(options.state);
-  const std::filesystem::path directory = programs_directory();
-  SupervisorOptions supervisor;
-  supervisor.output_dir = output_directory(options);
-  supervisor.quiet = options.monitor;
+}
 
+/// state: of pairing; empty: it keeps none.
+std::vector<Program> programs_of(const Options& options, const std::string& rig, const std::string& state) {
+  const std::filesystem::path directory = programs_directory();
   const auto program = [&](const char* name, const std::vector<std::string>& more) {
     Program result;
     result.name = name;
-    result.command = {(directory / name).string(), "--rig", copy.name_for_programs()};
+    result.command = {(directory / name).string(), "--rig", rig};
     if (!options.url.empty()) result.command.insert(result.command.end(), {"--lcm-url", options.url});
     result.command.insert(result.command.end(), more.begin(), more.end());
     return result;
   };
-  BusWatchOptions watched;
-  watched.news.live = options.log.empty();
-  BusWatch watch(rig, url, options.log, watched);
-  interruptions.hold();  // what is left behind from here on is to be removed
-  // what a killed pairing process had accumulated is for the one that takes its place; for another day only
-  // if asked for
   std::vector<std::string> pairing, diagnosis;
-  std::optional<PassingState> passing;
-  if (!options.state.empty()) {
-    pairing = {"--state", options.state};
-  } else if (!supervisor.output_dir.empty()) {
-    report_left_behind(supervisor.output_dir);
-    passing.emplace(supervisor.output_dir);
-    pairing = {"--state", passing->file()};
+  if (!state.empty()) {
+    pairing = {"--state", state};
+    diagnosis = {"--state", PassingState::of_diagnosis(state)};
   }
-  if (!pairing.empty()) diagnosis = {"--state", PassingState::of_diagnosis(pairing.back())};
   std::vector<Program> programs = {
       program("egocal-pairing", pairing), program("egocal-fast", {"--method", options.fast}),
       program("egocal-global", {"--method", options.global}), program("egocal-diagnosis", diagnosis)};
@@ -235,24 +164,13 @@ void run(const Options& options, Interruptions& interruptions) {
     programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
     programs.back().ends_all = true;
   }
-  supervisor.silence = [&watch](pid_t pid) { return watch.silence(pid); };
-  supervisor.lines = watch.lines();
-  supervisor.lines_again = [&watch] { return watch.listen_again(); };
-  if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };
-  bool monitor_ended = false;
-  supervisor.foreground_ended = [&monitor_ended] { monitor_ended = true; };
-  const int code = supervise(programs, supervisor);
-  interruptions.release();
-  if (code == 0 && passing) passing->discard();
-  if (code != 0) {
-    if (passing && std::filesystem::exists(passing->file()))
-      report("the statistics are kept in " + passing->file() + "; --state FILE continues with them");
-    throw cli::Exit{1};
-  }
-  if (options.follow && monitor_ended && output_is_gone())
-    throw Error(
-        "standard output is gone: the monitor's lines could not be written, and with it all have ended");
-  if (options.log.empty()) return;
+  return programs;
+}
+
+/// Prints what was calibrated by the end of the log. Throws where that is nothing, or where no answer can be
+/// used.
+void conclude(const Options& options, const bus::Rig& rig, BusWatch& watch, const std::string& output_dir,
+              bool monitor_ended) {
   const Outcome outcome = [&] {
     try {
       return watch.outcome();
@@ -265,12 +183,53 @@ void run(const Options& options, Interruptions& interruptions) {
     throw Error("nothing was calibrated: the monitor was ended, and with it all others");
   if (!outcome.answered)
     throw Error("nothing was calibrated: " + (outcome.text.empty() ? "no solver answered" : outcome.text) +
-                "; see " + (supervisor.output_dir.empty() ? "above" : supervisor.output_dir));
+                "; see " + (output_dir.empty() ? "above" : output_dir));
   fmt::print("{}", outcome.text);
   const bool pages_usable =
-      !options.report ||
-      write_reports(options, rig, supervisor.output_dir.empty() ? "." : supervisor.output_dir);
+      !options.report || write_reports(options, rig, output_dir.empty() ? "." : output_dir);
   if (outcome.unusable || !pages_usable) throw cli::Exit{not_to_be_used};
+}
+
+void run(const Options& options, Interruptions& interruptions) {
+  if (options.report && options.log.empty())
+    throw cli::UsageError("--report: goes with --log, whose drive it shows");
+  const RigCopy copy(options.rig);
+  const bus::Rig& rig = copy.rig();
+  const std::string url = options.url.empty() ? rig.lcm_url : options.url;
+  check_before_start(options, rig, url);
+  SupervisorOptions supervisor;
+  supervisor.output_dir = output_directory(options);
+  supervisor.quiet = options.monitor;
+  BusWatchOptions watched;
+  watched.news.live = options.log.empty();
+  BusWatch watch(rig, url, options.log, watched);
+  interruptions.hold();  // what is left behind from here on is to be removed
+  // what a killed pairing process had accumulated is for the one that takes its place; for another day only
+  // if asked for
+  std::optional<PassingState> passing;
+  if (options.state.empty() && !supervisor.output_dir.empty()) {
+    report_left_behind(supervisor.output_dir);
+    passing.emplace(supervisor.output_dir);
+  }
+  supervisor.silence = [&watch](pid_t pid) { return watch.silence(pid); };
+  supervisor.lines = watch.lines();
+  supervisor.lines_again = [&watch] { return watch.listen_again(); };
+  if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };
+  bool monitor_ended = false;
+  supervisor.foreground_ended = [&monitor_ended] { monitor_ended = true; };
+  const int code = supervise(
+      programs_of(options, copy.name_for_programs(), passing ? passing->file() : options.state), supervisor);
+  interruptions.release();
+  if (code == 0 && passing) passing->discard();
+  if (code != 0) {
+    if (passing && std::filesystem::exists(passing->file()))
+      report("the statistics are kept in " + passing->file() + "; --state FILE continues with them");
+    throw cli::Exit{1};
+  }
+  if (options.follow && monitor_ended && output_is_gone())
+    throw Error(
+        "standard output is gone: the monitor's lines could not be written, and with it all have ended");
+  if (!options.log.empty()) conclude(options, rig, watch, supervisor.output_dir, monitor_ended);
 }
 
 void run_up(const Options& options) {
