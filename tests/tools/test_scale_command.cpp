@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // `egocal solve` where a camera has no scale.
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -44,6 +46,89 @@ TEST_F(ScaleCommand, TheScaleOfACameraIsFound) {
     EXPECT_EQ(refused.code, 2) << wrong;
     EXPECT_TRUE(refused.out.empty()) << wrong;
   }
+}
+
+/// The camera as B and --scale auto: the answer was in the camera's unit under "[m]", good, without a word.
+TEST_F(ScaleCommand, WhoseUnitTheAnswerIsInIsSaid) {
+  const std::string drive = folder.path("mono");
+  ASSERT_EQ(run("simulate --terrain rough --noise 0.01 --poses 600 --scale camera=2.7 --out " + drive).code,
+            0);
+  const std::string files = " " + drive + "/lidar.tum " + drive + "/camera.tum";
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  };
+  const Result result = run("solve --scale auto" + files);
+  has(result.out,
+      "\nunit          lengths are in the unit of b, also where m or cm is written: metres only if b");
+  has(result.out, "  translation x y z [unit of b] ");
+  EXPECT_EQ(result.out.find("x y z [m]"), std::string::npos) << result.out;
+  has(result.out, " times the lengths of a are those of b; certified");
+  has(result.error,
+      "if a does and b is the camera without scale: --scale-b auto, otherwise --scale-a auto\n");
+  const Result written = run("solve --scale auto --format yaml" + files);
+  has(written.out, "\n# lengths in the unit of b, radians");
+  has(written.out, "; the translation is in the unit of b, metres only if b measures metres\n");
+  EXPECT_EQ(written.out.find("are metres"), std::string::npos) << written.out;
+  has(written.error, "are those of b, and the translation is in their unit");
+  const json scale = run("solve --json --scale auto" + files).object()["scale"];
+  EXPECT_EQ(scale["of"], "a");
+  EXPECT_EQ(scale["unit_of"], "b");
+  EXPECT_FALSE(scale["metres"]);
+  has(run("align --scale auto" + files).out, "[unit of b], quaternion");
+  // who names the side has thought of it: the unit is said all the same
+  for (const std::string option : {"--scale-a auto", "--scale-b auto"}) {
+    const Result named = run("solve " + option + files);
+    EXPECT_EQ(named.error, "") << option;
+    has(named.out, option == "--scale-a auto" ? "x y z [unit of b]" : "x y z [unit of a]");
+  }
+  EXPECT_EQ(run("solve --scale 2 --scale-a 2" + files).code, 2);
+}
+
+TEST_F(ScaleCommand, AScaleNextToOneLeavesMetres) {
+  const std::string drive = folder.path("wheels");
+  ASSERT_EQ(run("simulate --terrain rough --noise 0.01 --poses 600 --scale camera=1.02 --out " + drive).code,
+            0);
+  const Result result = run("solve --scale auto " + drive + "/lidar.tum " + drive + "/camera.tum");
+  EXPECT_NE(result.out.find("x y z [m]"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("\nunit "), std::string::npos) << result.out;
+  EXPECT_EQ(result.error, "");
+}
+
+/// A COLMAP model has no scale for certain: as the stream that is not scaled it was good, and in no metres.
+TEST_F(ScaleCommand, AModelWithoutScaleDoesNotGiveMetres) {
+  const std::string drive = folder.path("mono");
+  ASSERT_EQ(run("simulate --terrain free --noise 0.01 --poses 300 --scale camera=2.7 --out " + drive).code,
+            0);
+  std::ifstream camera(drive + "/camera.tum");
+  std::string images =
+      "# Image list with two lines of data per image:\n# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, "
+      "NAME\n";
+  int image = 0;
+  for (std::string line; std::getline(camera, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream numbers(line);
+    double t[3], q[4];
+    std::string time;
+    numbers >> time >> t[0] >> t[1] >> t[2] >> q[1] >> q[2] >> q[3] >> q[0];
+    const Eigen::Quaterniond R(q[0], -q[1], -q[2], -q[3]);
+    const Eigen::Vector3d inverted = -(R * Eigen::Vector3d(t[0], t[1], t[2]));
+    std::ostringstream row;
+    row.precision(17);
+    row << ++image << " " << R.w() << " " << R.x() << " " << R.y() << " " << R.z() << " " << inverted.x()
+        << " " << inverted.y() << " " << inverted.z() << " 1 image_" << time << ".png\n\n";
+    images += row.str();
+  }
+  const std::string model = " " + folder.file("images.txt", images), lidar = " " + drive + "/lidar.tum";
+  const Result wrong = run("solve --scale-a auto" + lidar + model);
+  EXPECT_NE(
+      wrong.error.find("in the unit of b, whose format has no scale: these are not metres; if a measures "
+                       "metres: --scale-b auto\n"),
+      std::string::npos)
+      << wrong.error;
+  EXPECT_NE(wrong.out.find("x y z [unit of b]"), std::string::npos) << wrong.out;
+  const Result right = run("solve --scale-b auto" + lidar + model);
+  EXPECT_EQ(right.error.find("metres"), std::string::npos) << right.error;
+  EXPECT_NE(right.out.find("x y z [m]"), std::string::npos) << right.out;
 }
 
 TEST_F(ScaleCommand, AScaleThatDriftsIsFollowed) {

@@ -16,10 +16,10 @@ namespace egocal {
 
 namespace {
 
-/// The poses of one stream, in the order of the file.
+/// The poses of one stream, in the order of the file. A colon may be part of its name.
 void read_stream(Recording& recording, const std::string& topic, TrajectoryReading& reading) {
   std::vector<signed char> wanted;  // by stream; -1: not looked at yet
-  recording.read(topic.substr(0, topic.find(':')), [&](std::size_t stream, const StampedPose& pose) {
+  recording.read(topic, [&](std::size_t stream, const StampedPose& pose) {
     if (stream >= wanted.size()) wanted.resize(stream + 1, -1);
     if (wanted[stream] < 0) {
       const RecordedStream& from = recording.streams()[stream];
@@ -89,6 +89,7 @@ std::string full_name(const std::vector<RecordedStream>& streams, const std::str
       return stream.name == name || stream.topic == name;
     });
   };
+  if (!known(topic) && known("/" + topic)) return "/" + topic;
   const std::string head = topic.substr(0, topic.find(':'));
   return !topic.empty() && !known(head) && known("/" + head) ? "/" + topic : topic;
 }
@@ -171,11 +172,15 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
       if (name != topic) read_stream(recording, name, reading);
     }
   }
-  if (reading.trajectory.empty() && !looked && name.find(':') != std::string::npos)
+  const auto is_asked = [&](const RecordedStream& stream) { return stream.topic == name; };
+  const std::vector<RecordedStream>& streams = recording.streams();
+  const bool topic_with_colon = std::any_of(streams.begin(), streams.end(), is_asked);
+  if (reading.trajectory.empty() && !looked && !topic_with_colon && name.find(':') != std::string::npos)
     read_chain(recording, name, reading);
   reading.losses = recording.losses();
   if (reading.trajectory.empty()) throw no_pose(recording, name);
   reading.format = recording.format();
+  reading.has_scale = recording.has_scale();
   reading.stream = name;
   put_in_order(reading);
   for (const RecordedStream& stream : recording.streams())

@@ -52,6 +52,7 @@ struct TrajectoryReading {
   std::vector<std::string> notes;  ///< assumptions and repairs in words, one sentence each
   /// What the recording says in two ways of which one was taken; they are among the notes.
   std::vector<std::string> contradictions;
+  bool has_scale = true;  ///< false: the format has lengths of no unit (COLMAP)
 };
 
 /// Reads the trajectory `name`: FILE, or FILE:TOPIC where the file holds several. Formats are recognised by

@@ -12,12 +12,13 @@
 
 namespace egocal {
 
-/// A sensor whose lengths are not metres.
+/// A sensor whose lengths have another unit than those of the other one, which is that of the translation.
 struct NamedScale {
   std::string sensor;
-  double value = 1;        ///< its lengths, multiplied by this, are metres
+  double value = 1;        ///< its lengths, multiplied by this, are those of the other sensor
   double stddev = 0;       ///< infinite: unknown
   bool certified = false;  ///< no other scale fits better, proven
+  bool metres = true;      ///< false: whether the other sensor measures metres is not known
 };
 
 /// What the number of a direction rests on.

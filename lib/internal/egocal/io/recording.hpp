@@ -40,6 +40,8 @@ class Recording {
 
   /// "TUM", "MCAP", ...
   virtual std::string format() const = 0;
+  /// Whether lengths are meant to be metres.
+  virtual bool has_scale() const { return true; }
   /// One pass over the whole file: every pose in the order of the file. Damaged places are skipped and
   /// counted. `topic`, where not empty, limits the work to streams of that name or topic. Throws Error where
   /// the file cannot be read at all.

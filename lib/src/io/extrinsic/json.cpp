@@ -58,7 +58,8 @@ std::string json_text(const ExtrinsicWords& words) {
     text += "  \"scale\": {\"sensor\": \"" + frame_name(scale.sensor) +
             "\", \"value\": " + exact(scale.value) +
             ", \"stddev\": " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : "null") +
-            ", \"certified\": " + (scale.certified ? "true" : "false") + "},\n";
+            ", \"certified\": " + (scale.certified ? "true" : "false") +
+            ", \"metres\": " + (scale.metres ? "true" : "false") + "},\n";
   }
   return text + "  \"pairs\": " + std::to_string(words.extrinsic.pairs) + "\n}\n";
 }

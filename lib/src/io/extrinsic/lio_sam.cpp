@@ -10,8 +10,8 @@ std::string lio_sam_text(const ExtrinsicWords& words) {
          ".\n# extrinsicRot turns vectors of the imu into the lidar's axes, extrinsicTrans is the imu's "
          "place in the "
          "lidar's frame:\n# " +
-         words.direction + ". Metres; quaternion w x y z: [" + joined(wxyz(words.T.rotation), ", ") +
-         "].\n# " + words.verdict +
+         words.direction + ", " + words.lengths + "; quaternion w x y z: [" +
+         joined(wxyz(words.T.rotation), ", ") + "].\n# " + words.verdict +
          "\n# extrinsicRPY is the same rotation where the imu's orientation refers to its own axes.\n" +
          "extrinsicTrans: [" + joined(words.T.translation, ", ") + "]\nextrinsicRot: [" + R +
          "]\nextrinsicRPY: [" + R + "]\n";

@@ -17,8 +17,8 @@ std::string matrix(const char* name, int rows, int columns, const Vector& values
 std::string opencv_text(const ExtrinsicWords& words) {
   const Pose inverted = inverse(words.T);
   return "%YAML:1.0\n---\n# R and T as stereoRectify and solvePnP take them: p_" + words.b + " = R * p_" +
-         words.a + " + T, the inverse of the pose of " + words.b + " in " + words.a +
-         ".\n# metres; R as quaternion w x y z: [" + joined(wxyz(inverted.rotation), ", ") + "]\n# " +
+         words.a + " + T, the inverse of the pose of " + words.b + " in " + words.a + ".\n# " +
+         words.lengths + "; R as quaternion w x y z: [" + joined(wxyz(inverted.rotation), ", ") + "]\n# " +
          words.verdict_of_inverse + "\n" + matrix("R", 3, 3, rotation_rows(inverted.rotation)) +
          matrix("T", 3, 1, inverted.translation);
 }

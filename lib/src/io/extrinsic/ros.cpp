@@ -8,7 +8,7 @@ std::string ros_text(const ExtrinsicWords& words) {
   const Eigen::Quaterniond& q = words.T.rotation;
   const Eigen::Vector3d& t = words.T.translation;
   std::string text = "# " + words.direction + "\n# " + words.verdict + "\n# parent " + words.a + ", child " +
-                     words.b + ", metres, quaternion by name\n";
+                     words.b + ", " + words.lengths + ", quaternion by name\n";
   text += "ros2 run tf2_ros static_transform_publisher --x " + exact(t.x()) + " --y " + exact(t.y()) +
           " --z " + exact(t.z()) + " --qx " + exact(q.x()) + " --qy " + exact(q.y()) + " --qz " +
           exact(q.z()) + " --qw " + exact(q.w()) + " --frame-id " + words.a + " --child-frame-id " + words.b +

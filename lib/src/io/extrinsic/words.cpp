@@ -51,6 +51,17 @@ std::string not_shown(const NamedExtrinsic& extrinsic, bool mixed) {
   return text;
 }
 
+/// Whose lengths are not multiplied.
+const std::string& unscaled_frame(const NamedExtrinsic& named) {
+  return named.scale->sensor == named.parent ? named.child : named.parent;
+}
+
+std::string lengths_in_words(const NamedExtrinsic& named) {
+  return !named.scale || named.scale->metres
+             ? "metres"
+             : "lengths in the unit of " + detail::frame_name(unscaled_frame(named));
+}
+
 std::string verdict_in_words(const NamedExtrinsic& named, bool mixed) {
   std::string text;
   if (!named.usable)
@@ -67,6 +78,11 @@ std::string verdict_in_words(const NamedExtrinsic& named, bool mixed) {
                        detail::exact(named.scale->value) +
                        (named.scale->certified ? "" : ", which is not certified") +
                        (std::isfinite(named.scale->stddev) ? "" : ", which is NOT OBSERVABLE"));
+  if (named.scale && !named.scale->metres) {
+    const std::string unit = detail::frame_name(unscaled_frame(named));
+    add_part(text,
+             "the translation is in the unit of " + unit + ", metres only if " + unit + " measures metres");
+  }
   return text;
 }
 
@@ -89,6 +105,7 @@ ExtrinsicWords::ExtrinsicWords(const NamedExtrinsic& named)
                 (named.parent == named.child ? std::string()
                                              : ", of '" + named.parent + "' and '" + named.child + "'"));
   direction = "pose of " + b + " in " + a + ": p_" + a + " = R * p_" + b + " + t";
+  lengths = lengths_in_words(named);
   const bool turned = !named.backing_frame.empty() && named.backing_frame != named.parent;
   verdict = verdict_in_words(named, turned);
   verdict_of_inverse = verdict_in_words(named, true);

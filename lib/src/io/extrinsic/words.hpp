@@ -20,6 +20,7 @@ struct ExtrinsicWords {
   const Pose& T;          ///< T_parent_child
   std::string a, b;       ///< parent, child
   std::string direction;  ///< "pose of b in a: p_a = R * p_b + t"
+  std::string lengths;    ///< "metres", or "lengths in the unit of b"
   /// The verdict with its reason, then what is not shown, then the rest: "verdict good: ...; certified
   /// globally optimal, from 1234 motion pairs". Optimal is not the same as right, so that is never said
   /// alone.

@@ -14,9 +14,8 @@ std::string comment(std::string text) {
 
 std::string described(const ExtrinsicWords& words, const std::string& indent = "") {
   return indent +
-         comment("parent " + words.a + ", child " + words.b +
-                 ": pose of the child in the parent, metres, radians; quaternion w x y z: " +
-                 joined(wxyz(words.T.rotation), " ")) +
+         comment("parent " + words.a + ", child " + words.b + ": pose of the child in the parent, " +
+                 words.lengths + ", radians; quaternion w x y z: " + joined(wxyz(words.T.rotation), " ")) +
          indent + comment(words.verdict);
 }
 

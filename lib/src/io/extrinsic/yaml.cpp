@@ -8,8 +8,8 @@ namespace egocal::detail {
 
 std::string yaml_text(const ExtrinsicWords& words) {
   const Pose& T = words.T;
-  std::string text =
-      "# " + words.direction + "\n# " + words.verdict + "\n# metres, radians, quaternion order w x y z\n";
+  std::string text = "# " + words.direction + "\n# " + words.verdict + "\n# " + words.lengths +
+                     ", radians, quaternion order w x y z\n";
   text += "parent: " + yaml_word(words.a) + "\nchild: " + yaml_word(words.b) + "\n";
   text += "translation: [" + joined(T.translation, ", ") + "]\n";
   text += "rotation_wxyz: [" + joined(wxyz(T.rotation), ", ") + "]\n";
@@ -34,7 +34,8 @@ std::string yaml_text(const ExtrinsicWords& words) {
   text += std::string("certified: ") + (words.extrinsic.certified ? "true" : "false") + "\n";
   if (words.extrinsic.scale) {
     const NamedScale& scale = *words.extrinsic.scale;
-    text += "scale:  # lengths of this sensor, multiplied by the value, are metres\n";
+    text += "scale:  # lengths of this sensor, multiplied by the value, are those of the other one" +
+            std::string(scale.metres ? ", metres" : "; the translation is in the unit of those") + "\n";
     text += "  sensor: " + yaml_word(frame_name(scale.sensor)) + "\n  value: " + exact(scale.value) + "\n";
     text += "  stddev: " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : std::string(".inf")) + "\n";
     text += std::string("  certified: ") + (scale.certified ? "true" : "false") + "\n";

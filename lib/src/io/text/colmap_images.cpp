@@ -87,8 +87,10 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
   streams_[0].type = format();
   streams_[0].poses = true;
   losses_ = {};
-  notes_ = {"the poses are world-to-camera and are inverted",
-            "the scale of a COLMAP model is arbitrary: egocal solve --scale auto finds it"};
+  notes_ = {
+      "the poses are world-to-camera and are inverted",
+      "the scale of a COLMAP model is arbitrary: egocal solve finds it, --scale-a auto where this is A, "
+      "--scale-b auto where it is B"};
 
   std::vector<Image> images;
   double largest = 0;

@@ -25,6 +25,7 @@ class ColmapImages : public Recording {
   ColmapImages(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 
   std::string format() const override { return "COLMAP images"; }
+  bool has_scale() const override { return false; }
   void read(const std::string& topic, const TakePose& take) override;
   std::vector<std::string> unused(const ReadOptions& options) const override;
 
