@@ -3,8 +3,8 @@
 
 // Whether the advised manoeuvre shortens the way to a goal: each simulated drive goes on from one time as
 // before, and once more with what `goal.next` advises, until the goal is reported as reached. The goal is
-// what drives of the kind reach at twice that time. The table of docs/trust_measured.md. Fails where less than 80 % of
-// the manoeuvres that are advised halve the time.
+// what drives of the kind reach at twice that time. The table of docs/trust_measured.md. Fails where less
+// than 80 % of the manoeuvres that are advised halve the time.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

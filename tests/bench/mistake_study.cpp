@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Mistakes that users make, on real and on simulated drives: what the verdict is, and whether a finding names
-// the cause. The tables of docs/trust_measured.md. Fails where an answer that is off by more than a degree or 60 cm is
-// called good without a finding that names the cause, where fewer than 90 % of the causes are named, or where
-// more than 1 % of the clean drives are doubtful.
+// the cause. The tables of docs/trust_measured.md. Fails where an answer that is off by more than a degree or
+// 60 cm is called good without a finding that names the cause, where fewer than 90 % of the causes are named,
+// or where more than 1 % of the clean drives are doubtful.
 #include <algorithm>
 #include <array>
 #include <chrono>

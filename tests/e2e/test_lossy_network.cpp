@@ -22,7 +22,7 @@
 #include "support/lossy_relay.hpp"
 #include "support/paths.hpp"
 
-namespace egocal {
+namespace egocal::test_lossy_network {
 namespace {
 
 using namespace std::chrono_literals;
@@ -213,4 +213,4 @@ TEST_F(LossyNetwork, TheAnswerIsCertifiedAndHardlyWorse) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_lossy_network

@@ -16,7 +16,7 @@
 #include "support/child_process.hpp"
 #include "support/paths.hpp"
 
-namespace egocal {
+namespace egocal::test_namesakes {
 namespace {
 
 using namespace std::chrono_literals;
@@ -120,4 +120,4 @@ TEST_F(Namesakes, APausedOneThatIsRestoredIsPausedFromItsFirstStatusOn) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_namesakes

@@ -13,7 +13,7 @@
 
 #include "processes.hpp"
 
-namespace egocal {
+namespace egocal::test_network {
 namespace {
 
 using namespace std::chrono_literals;
@@ -277,4 +277,4 @@ TEST_F(Network, IsNotBlamedWhereTooFewFilesMayBeOpen) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_network

@@ -3,7 +3,7 @@
 // Odometry goes through the real processes and ends in the answer that the library gives offline.
 #include "processes.hpp"
 
-namespace egocal {
+namespace egocal::test_processes {
 namespace {
 
 using namespace std::chrono_literals;
@@ -439,4 +439,4 @@ TEST_F(Processes, AnAnswerTakesAFewTimesAsLongAsARelayedMessage) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_processes

@@ -7,7 +7,7 @@
 #include "processes.hpp"
 #include "support/mistakes.hpp"
 
-namespace egocal {
+namespace egocal::test_scale {
 namespace {
 
 using namespace std::chrono_literals;
@@ -81,4 +81,4 @@ TEST_F(LiveScale, IsFoundWithTheExtrinsic) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_scale

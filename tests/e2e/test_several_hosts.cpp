@@ -18,7 +18,7 @@
 #include "support/paths.hpp"
 #include "support/several_hosts.hpp"
 
-namespace egocal {
+namespace egocal::test_several_hosts {
 namespace {
 
 using namespace std::chrono_literals;
@@ -141,4 +141,4 @@ TEST_F(SeveralHosts, WithTheDefaultUrlNothingLeavesAHost) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_several_hosts

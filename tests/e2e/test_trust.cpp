@@ -6,7 +6,7 @@
 
 #include "processes.hpp"
 
-namespace egocal {
+namespace egocal::test_trust {
 namespace {
 
 using namespace std::chrono_literals;
@@ -197,4 +197,4 @@ TEST_F(Trust, AFloodOnAnyChannelStopsNothingElseAndTakesNoMemory) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_trust

@@ -7,7 +7,7 @@
 #include "processes.hpp"
 #include "support/mistakes.hpp"
 
-namespace egocal {
+namespace egocal::test_verdict {
 namespace {
 
 using namespace std::chrono_literals;
@@ -86,4 +86,4 @@ TEST_F(LiveVerdict, ListenSaysWhatIsHeardAndWhatIsMissed) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_verdict

@@ -9,6 +9,10 @@
 #include <filesystem>
 #include <string>
 
+#ifdef EGOCAL_TESTS_IN_NETWORK
+#include "support/network_namespace.hpp"
+#endif
+
 namespace {
 
 std::string filter_of(const std::string& file) {
@@ -42,6 +46,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: expected files of tests\n", argv[0]);
     return 1;
   }
+#ifdef EGOCAL_TESTS_IN_NETWORK
+  if (!GTEST_FLAG_GET(list_tests) && !egocal::test::enter_network_namespace()) return 1;
+#endif
   GTEST_FLAG_SET(filter, filter);
   return RUN_ALL_TESTS();
 }

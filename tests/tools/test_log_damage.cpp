@@ -16,7 +16,7 @@
 #include "support/damaged_log.hpp"
 #include "support/paths.hpp"
 
-namespace egocal {
+namespace egocal::test_log_damage {
 namespace {
 
 using namespace std::chrono_literals;
@@ -182,4 +182,4 @@ TEST_F(LogDamage, LcmLogplayerPlaysARepairedLogToItsEnd) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_log_damage

@@ -27,7 +27,7 @@
 #include "support/child_process.hpp"
 #include "support/paths.hpp"
 
-namespace egocal {
+namespace egocal::test_supervision {
 namespace {
 
 using namespace std::chrono_literals;
@@ -437,4 +437,4 @@ TEST_F(Supervision, WithTheMonitorOnTheScreenNothingElseIsWrittenThere) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_supervision

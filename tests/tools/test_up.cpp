@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What `egocal up` says of a drive that it played.
 #include "egocal/bus/log_file.hpp"
+#include "json_keys.hpp"
 #include "up.hpp"
 
-namespace egocal {
+namespace egocal::test_up {
 namespace {
 
 using namespace std::chrono_literals;
@@ -171,5 +172,47 @@ TEST_F(Up, FailsWhereNothingWasCalibrated) {
   EXPECT_THAT(read(path("said")), HasSubstr("nothing was calibrated"));
 }
 
+/// The keys of the live programs were in no page.
+TEST_F(Up, WhatListenAndTheMonitorPrintAsJsonIsDescribed) {
+  const std::string url = "udpm://239.255.76.67:7779?ttl=0", listened = path("listened"),
+                    watched = path("watched"), bin = paths::bin_dir();
+  ChildProcess egocal = up({"--log", log, "--speed", "4", "--lcm-url", url});
+  ChildProcess monitor({bin + "/egocal-monitor", "--rig", rig, "--lcm-url", url, "--json", "--duration", "9"},
+                       watched);
+  ChildProcess listen({bin + "/egocal", "listen", rig, "--lcm-url", url, "--json", "--seconds", "2"},
+                      listened);
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  listen.wait(20s);
+  monitor.wait(20s);
+  // a window of two seconds had never ended by then
+  EXPECT_THAT(nlohmann::json::parse(read(listened))["sensors"][0]["heard"]["rate_hz"].dump(),
+              ::testing::Ne("null"));
+  test::Keys keys;
+  test::collect(nlohmann::json::parse(read(listened)), "", keys);
+  // of channels that are not in the rig file, and of what is wrong
+  for (const char* key : {"channel", "type", "messages", "rate_hz", "silent_s", "faults"})
+    keys.insert(std::string("others[].") + key);
+  for (const char* key : {"reason", "count", "cure"})
+    keys.insert(std::string("sensors[].heard.faults[].") + key);
+  keys.erase("others");
+  keys.erase("sensors[].heard.faults");
+  keys.insert("sensors[].heard");  // where nothing was received
+  test::compare_with_page("listen", keys);
+  keys.clear();
+  std::istringstream lines(read(watched));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("{")) test::collect(nlohmann::json::parse(line), "", keys);
+  EXPECT_TRUE(keys.contains("pairs[].answer.translation")) << read(watched);
+  EXPECT_TRUE(keys.contains("pairs[].fit.rotation_deg_median"));
+  // a session with three pairs, mistakes, a goal, an unknown scale and one before it
+  for (const char* key :
+       {"sensors", "rotation_deg", "translation_m", "rotation_limit_deg", "translation_limit_m", "open"})
+    keys.insert(std::string("loops[].") + key);
+  for (const char* key : {"pairs[].findings[].code", "pairs[].goal.reached", "pairs[].scale.value",
+                          "pairs[].previous_session.session"})
+    keys.insert(key);
+  test::compare_with_page("egocal-monitor", keys);
+}
+
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_up

@@ -12,7 +12,7 @@
 #include "egocal/bus/loop.hpp"
 #include "up.hpp"
 
-namespace egocal {
+namespace egocal::test_up_processes {
 namespace {
 
 using namespace std::chrono_literals;
@@ -263,4 +263,4 @@ TEST_F(Up, WhatWasAccumulatedIsKeptWhenItDidNotEndAsItShould) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_up_processes

@@ -7,7 +7,7 @@
 #include "egocal/bus/log_file.hpp"
 #include "up.hpp"
 
-namespace egocal {
+namespace egocal::test_up_start {
 namespace {
 
 using namespace std::chrono_literals;
@@ -142,4 +142,4 @@ TEST_F(Up, ASecondOneOnTheSameBusRefusesUnlessItIsToJoin) {
 }
 
 }  // namespace
-}  // namespace egocal
+}  // namespace egocal::test_up_start
