@@ -14,6 +14,7 @@
 #include "egocal/uncertainty/leave_out.hpp"
 #include "egocal/uncertainty/observability.hpp"
 #include "uncertainty/frame_a.hpp"
+#include "uncertainty/jackknife.hpp"
 #include "uncertainty/takes_off.hpp"
 #include "uncertainty/tangent_form.hpp"
 
@@ -186,6 +187,30 @@ TEST(Jackknife, FourAtATimeAreOneAfterTheOther) {
       for (std::size_t row = 0; row < 6; ++row)
         EXPECT_EQ(sums[row][k], std::max(0.0, expected[static_cast<Eigen::Index>(row)]));
     }
+  }
+}
+
+/// Mean of `drives` drives.
+double correlation_of(double memory, int blocks, int drives) {
+  double mean = 0;
+  Random random(11);
+  for (int drive = 0; drive < drives; ++drive) {
+    detail::Jackknife jackknife(blocks);
+    Vector6d difference = Vector6d::Zero();
+    for (int k = -20; k < blocks; ++k) {
+      for (int i = 0; i < 5; ++i)  // the last direction never changes
+        difference[i] = memory * difference[i] + std::pow(10.0, -i) * random.normal();
+      if (k >= 0) jackknife.leave_out(1, difference, Vector6d::Ones());
+    }
+    mean += jackknife.correlation_of_neighbours(2) / drives;
+  }
+  return mean;
+}
+
+TEST(Jackknife, SeesWhetherNeighboursShareTheirErrors) {
+  for (const double memory : {-0.5, 0.0, 0.5, 0.7}) {
+    EXPECT_NEAR(correlation_of(memory, 2000, 1), memory, 0.03);
+    EXPECT_NEAR(correlation_of(memory, 24, 100), memory, 0.05);
   }
 }
 

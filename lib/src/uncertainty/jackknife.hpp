@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "solvers/tangent.hpp"
 #include "statistics/distributions.hpp"
@@ -27,6 +28,7 @@ class Jackknife {
     weights_ += 1 / (h - 1);
     information_ += information;
     information_squares_ += information.cwiseAbs2();
+    neighbours_.add(difference);
   }
   /// Mean of (pseudo - mean)^2 / (h - 1).
   Vector6d spread() const {
@@ -37,6 +39,21 @@ class Jackknife {
     const double student = student_factor(count_ - 1);
     return student * student * spread();
   }
+  /// Lag-one correlation of what omitting a block changes, the mean over the directions that change at all.
+  /// Of m equal blocks, as seen from their own mean, a correlation of r is found as r - (1 + 3 r) / m in the
+  /// mean (Kendall 1954), which is undone.
+  double correlation_of_neighbours(double least_equal_blocks) const {
+    constexpr double least_left = 0.5;  // of r: with six blocks half of it is found
+    double sum = 0, directions = 0;
+    for (int i = 0; i < 6; ++i) {
+      const std::optional<double> found = neighbours_.correlation(i);
+      if (!found) continue;
+      const double m = equal_blocks(i, least_equal_blocks);
+      sum += (*found + 1 / m) / std::max(least_left, 1 - 3 / m);
+      directions += 1;
+    }
+    return directions > 0 ? sum / directions : 0;
+  }
   /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
   /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
   /// for about m degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the
@@ -44,9 +61,7 @@ class Jackknife {
   Vector6d concentration(double least_equal_blocks) const {
     Vector6d factor;
     for (int i = 0; i < 6; ++i) {
-      const double squares = information_squares_[i];
-      const double all = squares > 0 ? information_[i] * information_[i] / squares : count_;
-      const double m = std::clamp(all, least_equal_blocks, count_);
+      const double m = equal_blocks(i, least_equal_blocks);
       factor[i] = student_factor(m - m / count_) / student_factor(count_ - 1) *
                   std::sqrt((m - 1) / m * count_ / (count_ - 1));
     }
@@ -54,10 +69,41 @@ class Jackknife {
   }
 
  private:
+  /// How many equal blocks are as concentrated in a direction.
+  double equal_blocks(int direction, double least) const {
+    const double squares = information_squares_[direction], sum = information_[direction];
+    return std::clamp(squares > 0 ? sum * sum / squares : count_, least, count_);
+  }
+
+  /// Sums of differences and of products of neighbouring ones.
+  struct Neighbours {
+    double count = 0;
+    Vector6d first = Vector6d::Zero(), last = Vector6d::Zero();
+    Vector6d sum = Vector6d::Zero(), squares = Vector6d::Zero(), products = Vector6d::Zero();
+
+    void add(const Vector6d& difference) {
+      if (count == 0) first = difference;
+      products += last.cwiseProduct(difference);
+      sum += difference;
+      squares += difference.cwiseAbs2();
+      last = difference;
+      count += 1;
+    }
+    /// Empty where nothing changes, or a block cannot be omitted.
+    std::optional<double> correlation(int direction) const {
+      const double total = sum[direction], mean = total / count;
+      const double variance = squares[direction] - mean * total;
+      if (!(variance > 0) || !std::isfinite(variance)) return std::nullopt;
+      const double of_pairs = 2 * total - first[direction] - last[direction];
+      return (products[direction] - mean * of_pairs + (count - 1) * mean * mean) / variance;
+    }
+  };
+
   double pairs_;
   double count_ = 0, weights_ = 0;
   Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
   Vector6d information_ = Vector6d::Zero(), information_squares_ = Vector6d::Zero();
+  Neighbours neighbours_;
 };
 
 }  // namespace egocal::detail

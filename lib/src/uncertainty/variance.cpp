@@ -195,12 +195,42 @@ double scatter_of_long_parts(const Jackknife& of_four, const Vector6d& spread) {
   return count > 0 ? std::max(1.0, sum / count) : 1;
 }
 
+/// By how many times the variance of a sum of many blocks exceeds that of as many single ones, where errors
+/// fade from block to block as the lag-one correlation says (an autoregression of order one).
+double of_memory(const Jackknife& single, const ObservabilityOptions& options) {
+  const double correlation =
+      std::clamp(single.correlation_of_neighbours(options.least_equal_blocks), 0.0, options.most_correlation);
+  return (1 + correlation) / (1 - correlation);
+}
+
+/// Motions between two blocks are in both, so the curvatures of all blocks are together more than the whole.
+/// Each is divided by how many times. What is omitted is then a block's share of what is known, with all of
+/// its effect; with twice its share the answer without four blocks of long motions would rest on nothing.
+void count_once(Blocks& blocks, const TangentForm& all, int shown) {
+  Matrix6d factors = all.curvature;
+  if (!factorise(factors, shown)) return;
+  TangentForm of_blocks;
+  for (std::size_t i = 0; i < blocks.forms.size(); ++i)
+    add(blocks.forms[i], 0, std::min(four, blocks.pairs.size() - four * i), of_blocks);
+  double times = 0;  // the mean over the directions
+  for (int i = 0; i < shown; ++i) {
+    Vector6d column = of_blocks.curvature.col(i);
+    solve_factorised(factors, column, shown);
+    times += column[i] / shown;
+  }
+  if (!(times > 1)) return;
+  for (FourForms& forms : blocks.forms)
+    for (auto& entries : forms.curvature)
+      for (double& entry : entries) entry /= times;
+}
+
 }  // namespace
 
 Vector6d detail::spatial_variance(const Problem& problem, double pairs, const ShownDirections& directions,
                                   ErrorCorrelation errors, const ObservabilityOptions& options) {
   TangentForm sum;
-  const Blocks blocks = blocks_around(problem, directions, sum);
+  Blocks blocks = blocks_around(problem, directions, sum);
+  if (blocks.pairs.size() < problem.blocks.size()) count_once(blocks, sum, directions.shown);
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
   Vector6d variance = single.variance();
   if (looks_at_double_blocks(problem, errors, options)) {
@@ -209,6 +239,7 @@ Vector6d detail::spatial_variance(const Problem& problem, double pairs, const Sh
     variance = variance.cwiseMax(of_twos.variance());
     variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
                                       single.spread().cwiseMax(of_twos.spread()));
+    variance = variance.cwiseMax(of_memory(single, options) * single.variance());
   }
   return single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(variance);
 }

@@ -47,6 +47,9 @@ struct ObservabilityOptions {
   std::size_t least_blocks = 6;
   /// Double blocks are compared from this many of them: their spread alone scatters by a quarter then.
   std::size_t least_double_blocks = 8;
+  /// Of neighbouring blocks: errors that last for longer than nine blocks cannot be told from systematic ones
+  /// in 32.
+  double most_correlation = 0.8;
   /// Blocks that are as concentrated as fewer equal ones than this have no spread; Student's factor would
   /// grow without bound.
   double least_equal_blocks = 2;
