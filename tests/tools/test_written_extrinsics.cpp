@@ -71,6 +71,9 @@ TEST_F(WrittenExtrinsics, AVerdictThatIsNotGoodAndAMissedGoalAreOnStandardError)
   EXPECT_EQ(contradictory.code, 3);
   EXPECT_THAT(contradictory.err, AllOf(StartsWith("egocal: contradictory: "), HasSubstr("Do not use")));
   EXPECT_THAT(read(path("wrong.yaml")), HasSubstr("\n# DO NOT USE, the motions contradict each other; "));
+  // a choice of outliers that is proven was all that some read
+  EXPECT_THAT(egocal("solve " + wrong).out, AllOf(HasSubstr("with this one the answer is contradictory"),
+                                                  Not(HasSubstr("outliers      proven"))));
 }
 
 // A number was printed, and only a "-" beside it
