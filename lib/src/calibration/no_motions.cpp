@@ -29,7 +29,7 @@ std::string times_in_words(const Trajectory& a, const Trajectory& b) {
     char text[128];
     std::snprintf(text, sizeof text,
                   "; %s lasts %.3g times as long: multiply its times if they are in another unit",
-                  ratio > 1 ? "b" : "a", std::max(ratio, 1 / ratio));
+                  ratio > 1 ? "{b}" : "{a}", std::max(ratio, 1 / ratio));
     return text;
   }
   if (a.front().time_us <= b.back().time_us && b.front().time_us <= a.back().time_us) return "";
@@ -44,10 +44,11 @@ std::string gaps_in_words(const Trajectory& a, const Trajectory& b, const Pairin
   const double step_a = to_seconds(median_period_us(a)), step_b = to_seconds(median_period_us(b));
   if (!(std::min(step_a, step_b) > max_gap)) return "";
   char text[192];
-  std::snprintf(text, sizeof text,
-                "; the median time between poses is %.3g s in a and %.3g s in b, but nothing is interpolated "
-                "over more than %.3g s: {solve}--max-gap SECONDS allows more",
-                step_a, step_b, max_gap);
+  std::snprintf(
+      text, sizeof text,
+      "; the median time between poses is %.3g s in {a} and %.3g s in {b}, but nothing is interpolated "
+      "over more than %.3g s: {solve}--max-gap SECONDS allows more",
+      step_a, step_b, max_gap);
   return text;
 }
 
@@ -59,7 +60,7 @@ std::string repeats_in_words(const Trajectory& a, const Trajectory& b, const Pai
     return x.pose.real == y.pose.real && x.pose.dual == y.pose.dual;
   };
   std::string text;
-  for (const auto& [name, stream] : {std::pair("a", &a), std::pair("b", &b)}) {
+  for (const auto& [name, stream] : {std::pair("{a}", &a), std::pair("{b}", &b)}) {
     std::size_t differ = 1, newest = 0;
     for (std::size_t i = 1; i < stream->size(); ++i) {
       if (repeats((*stream)[i - 1], (*stream)[i])) continue;
@@ -90,7 +91,7 @@ std::string repeats_in_words(const Trajectory& a, const Trajectory& b, const Pai
 
 std::string no_motions_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts,
                                 double max_gap) {
-  return "no motion pairs; a: " + span_in_words(a) + ", b: " + span_in_words(b) + "; " +
+  return "no motion pairs; {a}: " + span_in_words(a) + ", {b}: " + span_in_words(b) + "; " +
          rejections_in_words(counts) + times_in_words(a, b) + gaps_in_words(a, b, counts, max_gap) +
          repeats_in_words(a, b, counts);
 }

@@ -9,7 +9,8 @@
 
 namespace egocal::detail {
 
-/// Why two streams have no motion in common, with what may cure it; {solve} is marked (finding_words.hpp).
+/// Why two streams have no motion in common, with what may cure it; {a}, {b} and {solve} are marked
+/// (finding_words.hpp).
 std::string no_motions_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts,
                                 double max_gap);
 
