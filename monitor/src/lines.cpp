@@ -226,6 +226,7 @@ json pair_json(const Model& model, const PairState& pair) {
   p["paused"] = pair_is_paused(model, pair);
   p["answer_old"] = pair.old > 0;
   p["pairing_silent"] = pairing_is_silent(pair);
+  p["ended"] = pair.ended;
   p["no_motion_s"] = real(pair.standing);
   p["only_fast_since"] = pair.only_fast_since ? real(*pair.only_fast_since) : json(nullptr);
   verdict_into(p, pair);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "panels.hpp"
-#include "egocal/bus/process.hpp"
 
 #include <algorithm>
 #include <vector>
 
 #include "answer_text.hpp"
+#include "egocal/bus/process.hpp"
 
 namespace egocal::monitor {
 

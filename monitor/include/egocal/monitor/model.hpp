@@ -159,7 +159,7 @@ struct PairState {
   std::optional<std::int64_t> reset_asked;  ///< the session that a command asked to forget
   /// The monitor has no network, or nothing of pairing has come since: the silence is not pairing's.
   bool no_network = false;
-  bool ended = false;  ///< pairing reported its end, and no other pairing process is there
+  bool ended = false;  ///< every pairing process that was heard has reported its end
 
   const calibration_t* answer() const {
     return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;
