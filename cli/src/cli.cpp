@@ -91,14 +91,18 @@ std::optional<int> write_description(const CLI::App& app, const std::vector<std:
   return 0;
 }
 
+/// reason: of the system; empty: it has given none.
+std::string output_error(const std::string& reason) {
+  return "standard output: cannot be written" + (reason.empty() ? "" : ": " + reason);
+}
+
 /// What was printed has arrived. Throws std::runtime_error otherwise: a full disk, a closed output.
 void finish_output() {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
   const int reason = errno;
   std::clearerr(stdout);
-  throw std::runtime_error("standard output: cannot be written" +
-                           (reason == 0 ? "" : ": " + std::generic_category().message(reason)));
+  throw std::runtime_error(output_error(reason == 0 ? "" : std::generic_category().message(reason)));
 }
 
 void print_error(const std::string& name, const std::string& message) {
@@ -279,6 +283,12 @@ std::optional<int> Program::parse(int argc, char** argv) {
   } catch (const UsageError& error) {
     print_error(name, error.what());
     return 2;
+  } catch (const std::system_error& error) {
+    // fmt says "cannot write to file" of it
+    const bool of_output = std::ferror(stdout) != 0;
+    std::clearerr(stdout);
+    print_error(name, of_output ? output_error(error.code().message()) : error.what());
+    return 1;
   } catch (const std::exception& error) {
     print_error(name, error.what());
     return 1;

@@ -124,7 +124,9 @@ TEST_F(Io, BadTrajectoriesGetOneClearLine) {
   expect_error(good + "2 0 0 1.0x 0 0 0 1\n", "got '1.0x'");
   expect_error(good + "2 -inf 0 0 0 0 0 1\n", ":2: field 2 (tx): expected a finite number");
   expect_error(good + "2 0 inf 0 0 0 0 1\n", ":2: field 3 (ty)");
-  expect_error(good + "2 0 0 0 0 0 0 0\n", ":2: quaternion: is zero");
+  expect_error(
+      "2 0 0 0 0 0 0 0\n",
+      "holds no pose that can be read; 1 without a usable pose skipped (first: line 1: quaternion: is zero)");
   expect_error(good + "2 0 0 0 0 0 0 2\n", ":2: quaternion: expected length 1");
   expect_error(good + "2 0 0 0 0 0 1\n", ":2: expected 8 fields");
   expect_error(good + "x 0 0 0 0 0 0 1\n", ":2: time: expected a number, got 'x'");

@@ -208,10 +208,83 @@ TEST(Bags, MessagesWithoutAStampTakeTheTimeOfRecording) {
   TrajectoryReading reading = read_trajectory_file(folder.file("a.mcap", testing::mcap_file(messages, {})));
   expect_equal(reading.trajectory, {trajectory.begin() + 1, trajectory.end()}, "one");
   EXPECT_EQ(reading.losses.refused, 1u);
+  // the first of them was refused, and so was the bag by --strict: "others of the topic do"
   for (std::size_t i = 0; i < messages.size(); ++i) messages[i].data = unstamped(i);
-  reading = read_trajectory_file(folder.file("b.mcap", testing::mcap_file(messages, {})));
-  expect_equal(reading.trajectory, {trajectory.begin() + 1, trajectory.end()}, "all");
-  EXPECT_THAT(reading.notes, ::testing::Contains(HasSubstr("no time stamp in their header")));
+  ReadOptions strict;
+  strict.strict = true;
+  reading = read_trajectory_file(folder.file("b.mcap", testing::mcap_file(messages, {})), strict);
+  expect_equal(reading.trajectory, trajectory, "all");
+  EXPECT_FALSE(reading.losses.any());
+  EXPECT_THAT(reading.notes,
+              ::testing::Contains(HasSubstr("30 messages have no time stamp in their header")));
+  messages.resize(1);
+  reading = read_trajectory_file(folder.file("c.mcap", testing::mcap_file(messages, {})));
+  expect_equal(reading.trajectory, {trajectory.front()}, "the only one");
+}
+
+std::string refusal_of(const std::string& name) {
+  try {
+    read_trajectory(name);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << name << " was read";
+  return "";
+}
+
+/// "is of type tf2_msgs/TFMessage, which egocal reads no poses from" was said of what it reads poses from.
+TEST(Bags, OfSeveralTransformsOneIsAskedFor) {
+  const testing::ScratchFolder folder;
+  std::vector<WrittenMessage> messages;
+  for (const auto& [topic, child] :
+       {std::pair{"/tf", "base"}, std::pair{"/tf", "camera"}, std::pair{"/tf_static", "mast"}})
+    for (const StampedPose& pose : some_trajectory(3)) {
+      MessageEncoder to(MessageEncoder::Kind::cdr);
+      messages.push_back({topic, "tf2_msgs/TFMessage", pose.time_us,
+                          to.u32(1).header(pose.time_us, "odom").text(child).pose(pose.pose).done()});
+    }
+  const std::string file = folder.file("tf.mcap", testing::mcap_file(messages, {}));
+  EXPECT_THAT(refusal_of(file + ":/tf"),
+              HasSubstr("/tf: holds 2 transforms that move: choose one with /tf:PARENT/CHILD; topics with "
+                        "poses: /tf:odom/base (3), /tf:odom/camera (3)"));
+  EXPECT_THAT(refusal_of(file + ":/tf_static"), HasSubstr("static transforms alone: nothing moves"));
+}
+
+/// A colon was taken for the end of a tf topic's name, and letters beyond ASCII were printed as ??.
+TEST(Bags, TopicsMayHaveColonsAndAnyLetters) {
+  const testing::ScratchFolder folder;
+  const Trajectory trajectory = some_trajectory(20);
+  std::vector<WrittenMessage> messages;
+  for (const char* topic : {"/vo:odom", "/lidar \xc3\xbc", "/broken \xc3"})
+    for (WrittenMessage& message :
+         testing::as_messages(trajectory, topic, types[0], MessageEncoder::Kind::cdr))
+      messages.push_back(std::move(message));
+  const std::string file = folder.file("names.mcap", testing::mcap_file(messages, {}));
+  for (const char* topic : {":/vo:odom", ":vo:odom", ":/lidar \xc3\xbc"})
+    expect_equal(read_trajectory(file + topic), trajectory, topic);
+  EXPECT_THAT(refusal_of(file + ":/none"),
+              HasSubstr("topics with poses: /vo:odom (nav_msgs/Odometry, 20), /lidar \xc3\xbc "
+                        "(nav_msgs/Odometry, 20), /broken ? (nav_msgs/Odometry, 20)"));
+}
+
+/// "no pose under this name; topics with poses: /odom (nav_msgs/Odometry, 0)".
+TEST(Bags, ATopicWithoutMessagesIsSaidToHaveNone) {
+  const testing::ScratchFolder folder;
+  const std::string magic("\x89MCAP0\r\n", 8);
+  const std::string file = folder.file(
+      "empty.mcap",
+      magic + testing::mcap_record(1, testing::with_length("ros2") + testing::with_length("")) +
+          testing::mcap_record(3, testing::little(1, 2) + testing::with_length("nav_msgs/msg/Odometry") +
+                                      testing::with_length("ros2msg") + testing::with_length("")) +
+          testing::mcap_record(4, testing::little(0, 2) + testing::little(1, 2) +
+                                      testing::with_length("/odom") + testing::with_length("cdr") +
+                                      testing::little(0, 4)) +
+          testing::mcap_record(15, testing::little(0, 4)) + testing::mcap_record(2, std::string(20, '\0')) +
+          magic);
+  for (const char* topic : {":/odom", ":odom"})
+    EXPECT_THAT(refusal_of(file + topic),
+                HasSubstr("/odom: this topic has no messages; there is no topic with "
+                          "poses, 1 that may hold them have no messages, 0 others"));
 }
 
 TEST(Bags, OrderIsRestoredAndCounted) {

@@ -90,6 +90,32 @@ TEST_F(TextRows, RowsWithoutNumbersAreCountedAndSkipped) {
   EXPECT_THAT(refusal(rows(' ', "txyz0001", {""}) + "5 nanx 0 0 0 0 0 1\n"), HasSubstr("expected a number"));
 }
 
+/// What some trackers write where they are lost. It refused the whole file, and in a bag one message alone.
+TEST_F(TextRows, AZeroQuaternionCostsItsRow) {
+  const std::string tum = rows(' ', "txyz0001", {""}), lost = "9 1 2 3 0 0 0 0\n";
+  for (const std::string& content :
+       {tum + lost, lost + tum,
+        "t,x,y,z,qx,qy,qz,qw\n" + rows(',', "txyz0001", {""}) + "9,1,2,3,0,0,0,0\n"}) {
+    const TrajectoryReading reading = read(content);
+    expect_poses(reading, 4, content);
+    EXPECT_EQ(reading.losses.refused, 1u) << content;
+    EXPECT_THAT(reading.losses.first_refused, HasSubstr(": quaternion: is zero")) << content;
+  }
+  ReadOptions strict;
+  strict.strict = true;
+  EXPECT_THAT(refusal(tum + lost, strict), HasSubstr("line 5: quaternion: is zero"));
+}
+
+/// The quaternion of a TUM file was read as an angle, without a word.
+TEST_F(TextRows, FieldsBehindTheLastNameAreSaidToBeUnread) {
+  ReadOptions options;
+  options.columns = "t,x,y,z,yaw[deg]";
+  EXPECT_THAT(read(rows(' ', "txyz0001", {""}), options).notes,
+              Contains(HasSubstr("--columns names 5 of 8 fields in a row")));
+  options.columns += ",-,-,-";
+  EXPECT_THAT(read(rows(' ', "txyz0001", {""}), options).notes, IsEmpty());
+}
+
 TEST_F(TextRows, ACommentMayEndARow) {
   expect_poses(read(rows(' ', "txyz0001-", {"# lost", "#", "# 1 2 3"})), 4, "TUM");
   expect_poses(read("t,x,y,z,qx,qy,qz,qw\n" + rows(',', "txyz0001", {""}) + "4,5,50,500,0,0,0,1 # last\n"), 5,

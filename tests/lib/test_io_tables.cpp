@@ -65,6 +65,25 @@ TEST_F(Tables, HeadersInManyStylesMeanTheSame) {
   expect_two_poses(rows);  // without a header: seconds, w last, as hand-eye tools write it
 }
 
+/// With its own header EuRoC's csv was a "table" whose nanoseconds were remarked upon.
+TEST_F(Tables, EurocIsEurocWithItsHeader) {
+  const std::string rows =
+      "1000000000000000000,1,2,3,0.7071068,0,0,0.7071068,9\n1000000000100000000,4,5,6,0.7071068,0,0,0."
+      "7071068,9"
+      "\n";
+  for (const std::string header : {"",
+                                   "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x "
+                                   "[], q_RS_y [], q_RS_z [], v\n",
+                                   "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], "
+                                   "q_RS_x [], q_RS_y [], q_RS_z [], "
+                                   "v\n"}) {
+    expect_two_poses(header + rows);
+    EXPECT_EQ(read(header + rows).format, "EuRoC csv") << header;
+    EXPECT_THAT(read(header + rows).notes, IsEmpty()) << header;
+  }
+  EXPECT_EQ(read("#t,x,y,z,qw,qx,qy,qz\n1,1,2,3,1,0,0,0\n2,1,2,3,1,0,0,0\n").format, "table");
+}
+
 TEST_F(Tables, OtherOrdersSeparatorsAndUnits) {
   expect_two_poses(
       "qw;qx;qy;qz;x[mm];y[mm];z[mm];t[ns]\n"
@@ -396,7 +415,7 @@ TEST_F(Tables, ImagesOfColmapAreInvertedAndOrderedByTheirNames) {
   ASSERT_EQ(frames.trajectory.size(), 2u);
   EXPECT_EQ(frames.trajectory[0].time_us, 550'000);
   EXPECT_EQ(to_pose(frames.trajectory[0].pose).translation, Eigen::Vector3d(-1, -2, -4));
-  EXPECT_THAT(frames.notes, ::testing::Contains(HasSubstr("--scale auto")));
+  EXPECT_THAT(frames.notes, ::testing::Contains(HasSubstr("--scale-a auto where this is A")));
 }
 
 TEST_F(Tables, DamagedImagesOfColmap) {
@@ -406,6 +425,7 @@ TEST_F(Tables, DamagedImagesOfColmap) {
   expect_error(colmap + image + "2 1 0 0 x 1 2 3 1 000013.jpg\n\n", ":7: QZ");
   expect_error(colmap + image + "2 1 0 0\n\n", "expected 10 fields");
   EXPECT_EQ(read(colmap + image + "2 1 0 0").trajectory.size(), 1u);  // cut off
+  EXPECT_FALSE(read(colmap + image).has_scale);
 }
 
 }  // namespace egocal::test_io_tables

@@ -239,5 +239,30 @@ TEST_F(Commands, CheckNamesTheOptionsThatItDoesNotUse) {
   EXPECT_THAT(egocal("check " + path("d/lidar.tum") + " " + path("d/camera.tum") + " --rate 5").err,
               HasSubstr("lidar.tum: --rate is not used: the poses have times"));
 }
+// Listed in the help, and refused each time
+TEST_F(Commands, AlignHasOnlyTheOptionsThatItTakes) {
+  const std::string help = egocal("align --help").out;
+  for (const char* option : {"--pairs", "--samples", "--append", "--eye-to-hand", "--eye-in-hand"}) {
+    EXPECT_THAT(help, ::testing::Not(HasSubstr(option)));
+    expect_refusal(egocal(std::string("align ") + option), 2, option);
+  }
+  EXPECT_THAT(help, HasSubstr("--scale-b"));
+}
+
+// The numbers of solve were not on the page, and its pictures were of other motions
+TEST_F(Commands, AReportStatesTheFitThatSolvePrints) {
+  ASSERT_EQ(egocal("simulate --poses 300 --noise 0.01 --out " + path("drive")).code, 0);
+  const std::string pair = " " + path("drive/lidar.tum") + " " + path("drive/camera.tum");
+  const std::string solve = egocal("solve" + pair).out;
+  const std::size_t begin = solve.find("\nfit           ") + 15;
+  const std::string fit = solve.substr(begin, solve.find('\n', begin) - begin);
+  ASSERT_EQ(egocal("report" + pair + " --out " + path("page.html")).code, 0);
+  const std::string page = read(path("page.html"));
+  EXPECT_THAT(page, HasSubstr("<p>Fit: " + fit + ".</p>"));
+  const std::size_t motion = fit.find("a motion of ") + 12;
+  const std::string seconds = fit.substr(motion, fit.find(';') - motion);
+  EXPECT_THAT(page, HasSubstr("Rotation residuals of motions of " + seconds));
+}
+
 }  // namespace
 }  // namespace egocal::test_commands_values

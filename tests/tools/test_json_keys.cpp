@@ -10,8 +10,8 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
+#include "json_keys.hpp"
 #include "support/file_content.hpp"
 #include "support/paths.hpp"
 #include "support/scratch_folder.hpp"
@@ -20,54 +20,9 @@ namespace egocal::test_json_keys {
 namespace {
 
 using nlohmann::json;
+using test::collect;
+using test::Keys;
 using testing::content_of;
-using Keys = std::set<std::string>;
-
-/// The texts between backquotes.
-std::vector<std::string> quoted_in(const std::string& line) {
-  std::vector<std::string> texts;
-  for (std::size_t at = line.find('`'); at != std::string::npos;) {
-    const std::size_t end = line.find('`', at + 1);
-    if (end == std::string::npos) break;
-    texts.push_back(line.substr(at + 1, end - at - 1));
-    at = line.find('`', end + 1);
-  }
-  return texts;
-}
-
-/// Keys by command: a heading names its commands before the colon, a row of a table its keys in the first
-/// cell.
-std::map<std::string, Keys> documented() {
-  std::istringstream page(content_of(paths::source_dir() + "/docs/json.md"));
-  std::map<std::string, Keys> keys;
-  std::vector<std::string> commands;
-  for (std::string line; std::getline(page, line);) {
-    if (line.rfind("## ", 0) == 0) commands = quoted_in(line.substr(0, line.find(':')));
-    if (line.rfind("| `", 0) != 0) continue;
-    for (const std::string& key : quoted_in(line.substr(0, line.find('|', 1))))
-      for (const std::string& command : commands) keys[command].insert(key);
-  }
-  return keys;
-}
-
-/// "fit.tenths[].begin_s" for every value; lists of plain values have the name of the list.
-void collect(const json& value, const std::string& path, Keys& keys) {
-  if (value.is_object() && !value.empty()) {
-    for (const auto& [key, below] : value.items())
-      collect(below, path.empty() ? key : path + "." + key, keys);
-  } else if (value.is_array() && !value.empty() && value[0].is_object()) {
-    for (const json& element : value) collect(element, path + "[]", keys);
-  } else if (!value.is_array() || value.empty() || !path.ends_with("[]")) {
-    keys.insert(path);
-  }
-}
-
-bool covers(const std::string& documented_key, const std::string& key) {
-  if (documented_key == key || documented_key.rfind(key + "[].", 0) == 0) return true;  // the latter: empty
-  if (!documented_key.ends_with(".*")) return false;
-  const std::string parent = documented_key.substr(0, documented_key.size() - 2);
-  return key == parent || key.rfind(parent + ".", 0) == 0;
-}
 
 class JsonKeys : public ::testing::Test {
  protected:
@@ -93,22 +48,7 @@ class JsonKeys : public ::testing::Test {
   std::string files(const std::string& name) const {
     return folder.path(name) + "/lidar.tum " + folder.path(name) + "/camera.tum";
   }
-  void compare(const std::string& command) {
-    const Keys known = documented()[command];
-    EXPECT_FALSE(known.empty()) << command;
-    for (const std::string& key : printed[command]) {
-      bool found = false;
-      for (const std::string& entry : known) found = found || covers(entry, key);
-      EXPECT_TRUE(found) << "egocal " << command << " --json prints '" << key
-                         << "', docs/json.md does not list it";
-    }
-    for (const std::string& entry : known) {
-      bool found = false;
-      for (const std::string& key : printed[command]) found = found || covers(entry, key);
-      EXPECT_TRUE(found) << "docs/json.md lists '" << entry << "', egocal " << command
-                         << " --json never printed it";
-    }
-  }
+  void compare(const std::string& command) { test::compare_with_page(command, printed[command]); }
 
   testing::ScratchFolder folder;
   std::map<std::string, Keys> printed;
@@ -190,6 +130,31 @@ TEST_F(JsonKeys, OfTheOtherCommandsAreThoseOfThePage) {
   run("log info", folder.path("drive.log"));
   printed["info"].insert("streams[].static");  // no program of ours writes static transforms
   for (const char* command : {"info", "align", "compare", "log info"}) compare(command);
+}
+
+/// What is written for other programs, of two sensors and of a tree.
+TEST_F(JsonKeys, OfAWrittenExtrinsicAreThoseOfThePage) {
+  simulate("scaled", "--poses 600 --terrain free --scale camera=4");
+  const auto written = [&](const std::string& arguments) {
+    const std::string out = folder.path("out");
+    EXPECT_EQ(std::system((paths::bin_dir() + "/egocal solve " + arguments + " --format json >" + out +
+                           " 2>" + folder.path("err"))
+                              .c_str()),
+              0);
+    return json::parse(content_of(out));
+  };
+  const json one = written(files("scaled") + " --scale-b auto");
+  collect(one, "", printed["--format json"]);
+  compare("--format json");
+  EXPECT_FALSE(one["scale"]["metres"]);
+  simulate("rig",
+           "--poses 400 --terrain free --noise 0.01 --sensor lidar=1,0,1.8,1,0,0,0 --sensor "
+           "camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5 --sensor radar=2,0,0.5,1,0,0,0");
+  const json tree = written(files("rig") + " " + folder.path("rig") + "/radar.tum");
+  EXPECT_EQ(tree.size(), 2u);
+  EXPECT_EQ(tree["root"], "lidar");
+  EXPECT_EQ(tree["edges"].size(), 2u);
+  EXPECT_TRUE(tree["edges"][0].contains("T_parent_child"));
 }
 
 TEST_F(JsonKeys, OfCheckAreThoseOfThePage) {

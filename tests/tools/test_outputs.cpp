@@ -65,6 +65,9 @@ TEST_F(Commands, OutputThatCannotBeWrittenIsAFailure) {
     expect_refusal(with_output(arguments, "", " >/dev/full"), 1,
                    "standard output: cannot be written: No space");
     expect_refusal(with_output(arguments, "", " >&-"), 1, "standard output: cannot be written");
+    // longer than what is held back: "cannot write to file"
+    expect_refusal(with_output(arguments + " --json", "", " >/dev/full"), 1,
+                   "standard output: cannot be written: No space");
   }
   // a limit on the size of files
   expect_refusal(with_output("report" + pair + " --out " + report, "ulimit -f 8; ", " >/dev/null"), 1,

@@ -116,6 +116,16 @@ TEST_F(Recordings, TimesThatAreThoseOfRecordingAreSaidOfALogToo) {
   EXPECT_THAT(run.err, ::testing::AllOf(HasSubstr("LIDAR" + note), HasSubstr("CAMERA" + note)));
 }
 
+/// It was cut after 60 letters, and could not be given back.
+TEST_F(Recordings, InfoPrintsTheWholeNameOfAStream) {
+  const std::string topic = "/a_vehicle/with_many_parts/" + std::string(80, 'x') + "/odometry";
+  folder.file("long.mcap",
+              testing::mcap_file(
+                  testing::as_messages(drive[0], topic, "nav_msgs/Odometry", MessageEncoder::Kind::cdr), {}));
+  EXPECT_THAT(egocal("info " + folder.path("long.mcap")).out,
+              HasSubstr("\n" + topic + "  nav_msgs/Odometry"));
+}
+
 TEST_F(Recordings, ColumnsAndRateGoWithEveryCommand) {
   const std::string a = folder.path("lidar.tum"), b = folder.path("camera.tum");
   const json usual = parsed("solve --json " + a + " " + b);

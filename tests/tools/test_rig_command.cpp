@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // `egocal solve` with three sensors and more, and several drives, on simulated drives.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -100,6 +101,23 @@ std::string part_of(const testing::ScratchFolder& folder, const std::string& fil
   return folder.path(name);
 }
 
+/// 3 as documented: a stream that makes a pair doubtful is in every extrinsic of the consistent set. Two
+/// sensors that are doubtful end with 0.
+TEST_F(RigOfFiles, AFindingThatMakesAPairDoubtfulEndsWithThree) {
+  const std::vector<std::string> files = words_of(rig("drive"));
+  const std::string copy = part_of(folder, files[0], "copy.tum", 0, 1e9);
+  const Result result = run("solve --json " + files[0] + " " + files[1] + " " + copy);
+  EXPECT_EQ(result.code, 3) << result.error;
+  EXPECT_EQ(result.object()["findings"][0]["code"], "same_stream");
+  EXPECT_TRUE(result.object()["blamed"].is_null());
+  const Result two = run("solve --json " + files[0] + " " + copy);
+  EXPECT_EQ(two.code, 0);
+  EXPECT_EQ(two.object()["verdict"], "doubtful");
+  std::string help = run("--help").out;
+  std::replace(help.begin(), help.end(), '\n', ' ');
+  EXPECT_NE(help.find("a finding makes a pair doubtful"), std::string::npos) << help;
+}
+
 TEST_F(RigOfFiles, APairsAnswerIsThatOfItsTwoStreamsAlone) {
   // the third sensor was on for three seconds: all three share next to nothing
   const std::vector<std::string> files = words_of(rig("drive"));
@@ -156,6 +174,8 @@ TEST_F(RigOfFiles, TwoSensorsThatShareNoTimeLeaveTheOthers) {
   ASSERT_EQ(object["unsolved"].size(), 1u);
   EXPECT_EQ(object["unsolved"][0]["a"], "first");
   EXPECT_EQ(object["unsolved"][0]["b"], "last");
+  EXPECT_NE(object["unsolved"][0]["reason"].get<std::string>().find("first: "), std::string::npos)
+      << "sensors by name, not a and b: " << object["unsolved"][0]["reason"];
   EXPECT_EQ(object["joint"]["tree"].size(), 2u);
   // without the one that connects them
   const Result apart = run("solve " + first + " " + last + " " + last);

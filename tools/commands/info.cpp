@@ -124,10 +124,17 @@ void print_json(const Options& options, const Contents& contents, const std::str
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
+/// A text of the file, with dots where it is cut.
+std::string shown(const std::string& text, std::size_t longest) {
+  return bus::printable(text, longest) + (text.size() > longest ? "..." : "");
+}
+
 void print_row(const Row& row) {
   const auto& [stream, summary] = row;
-  const std::string name = stream.name.empty() ? "(the only stream)" : bus::printable(stream.name, 60);
-  fmt::print("\n{}  {}, {}{}\n", name, bus::printable(stream.type, 60), counted(stream.messages, "message"),
+  // the name is what the next command is given
+  constexpr std::size_t longest_name = 1000, longest_word = 100;  // limits of what people read [bytes]
+  const std::string name = stream.name.empty() ? "(the only stream)" : shown(stream.name, longest_name);
+  fmt::print("\n{}  {}, {}{}\n", name, shown(stream.type, longest_word), counted(stream.messages, "message"),
              stream.fixed ? ", static" : "");
   if (!stream.poses || stream.fixed) return;
   if (summary.poses == 0) {
@@ -135,8 +142,8 @@ void print_row(const Row& row) {
     return;
   }
   if (!stream.child.empty())
-    fmt::print("  pose of         {} in {}\n", bus::printable(stream.child, 60),
-               bus::printable(stream.parent, 60));
+    fmt::print("  pose of         {} in {}\n", shown(stream.child, longest_word),
+               shown(stream.parent, longest_word));
   fmt::print("  poses           {} at {:.1f} Hz\n", summary.poses, summary.rate);
   fmt::print("  time            {:.3f} to {:.3f} s, {:.3f} s\n", to_seconds(summary.first_us),
              to_seconds(summary.last_us), to_seconds(summary.last_us - summary.first_us));

@@ -68,7 +68,11 @@ bool all_well(const bus::StreamWatch& watch, std::int64_t now_us) {
 void run(const Options& options) {
   const bus::Rig rig = options.rig.empty() ? bus::Rig{} : bus::read_rig(options.rig);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
-  bus::StreamWatch watch(rig.sensors);
+  bus::StreamWatchOptions watching;
+  // a window ends with the first message behind it, which must come before the end
+  watching.rate_window_us =
+      std::min(watching.rate_window_us, static_cast<std::int64_t>(options.seconds / 2 * second_us));
+  bus::StreamWatch watch(rig.sensors, watching);
   loop.subscribe_prefix(
       "", [&](const bus::Arrival& arrival) { watch.hear(arrival.channel, arrival.bytes, arrival.mono_us); },
       queue_capacity);
@@ -95,7 +99,7 @@ void add_listen(cli::App program) {
       "what the sensors send: channel, type, rate, silence, faults with their cures; exit code 1 "
       "where a sensor is silent or sends what cannot be used");
   command.add_option("RIG", options->rig, "rig file; without it every channel that is received is listed");
-  command.add_option("--seconds", options->seconds, "how long [s]; rates need two")
+  command.add_option("--seconds", options->seconds, "how long [s]; a rate needs two messages in half of it")
       .check(cli::Check::not_negative())
       .show_default();
   command.add_flag("--json", options->json, "machine-readable");

@@ -9,6 +9,7 @@
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
 #include "egocal/io/whole_file.hpp"
+#include "offline/scale_report.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -32,7 +33,8 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
   if (!request.source.pairs.empty()) input.name_a = input.name_b = request.source.pairs;
   input.a = std::move(result.trajectory_a);
   input.b = std::move(result.trajectory_b);
-  input.pairs = std::move(result.pairs);
+  input.pairs = std::move(result.fit_pairs);
+  input.unit = unit_of_lengths(result);
   input.options = request.calibration;
   input.options.pairing.time_offset = result.calibration.time_offset_applied;
   // the streams of the result are as they were solved

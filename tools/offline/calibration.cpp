@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <system_error>
@@ -196,6 +197,27 @@ std::vector<MotionPair> pairs_of(const Motions& motions, const CalibrationOption
   return pair_motions(paired.options, motions.a, paired.b).pairs;
 }
 
+/// Median distance of two poses [s].
+double period_of(const Trajectory& trajectory) {
+  std::vector<double> steps;
+  steps.reserve(trajectory.size());
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    steps.push_back(to_seconds(trajectory[i].time_us - trajectory[i - 1].time_us));
+  return median_of(std::move(steps));
+}
+
+/// Motions as long as those that the fit is stated of, wrong ones included. motions: as_solved().
+std::vector<MotionPair> pairs_of_fit(const Motions& motions, const CalibrationOptions& options,
+                                     const Calibration& calibration) {
+  if (!motions.pairs.empty()) return motions.pairs;
+  Paired paired = as_paired(motions, options, calibration);
+  const double period = std::max(period_of(motions.a), period_of(motions.b));
+  const double steps = period > 0 ? std::round(calibration.fit.motion_seconds / period) : 1;
+  paired.options.stride = static_cast<int>(std::clamp(steps, limits::stride.least, limits::stride.most));
+  paired.options.robust = false;
+  return pair_motions(paired.options, motions.a, paired.b).pairs;
+}
+
 /// Puts the answer of one of the paper's baselines in the place of ours. They minimise other things: our
 /// certificate shows what their answer is worth.
 void answer_by_baseline(const std::string& method, const std::vector<MotionPair>& pairs,
@@ -285,6 +307,7 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   if (request.keep_motions || !method) {
     motions = as_solved(std::move(motions), options, result);
     result.pairs = pairs_of(motions, options, result.calibration);
+    if (request.keep_motions) result.fit_pairs = pairs_of_fit(motions, options, result.calibration);
     result.trajectory_a = std::move(motions.a);
     result.trajectory_b = std::move(motions.b);
   }

@@ -64,6 +64,8 @@ struct SolveResult {
   /// Only with keep_motions: with inversions, orders and the scale applied, on the clock of the files.
   Trajectory trajectory_a, trajectory_b;  ///< empty for a file of pairs
   std::vector<MotionPair> pairs;          ///< of the stride and the weights in force
+  std::vector<MotionPair>
+      fit_pairs;  ///< of motions as long as those that the fit is stated of; none rejected
 };
 
 /// From the source to the answer. Throws Error where nothing can be read or paired, UsageError where options

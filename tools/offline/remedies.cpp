@@ -58,7 +58,7 @@ void word_inverted_both(Finding& finding, const Inverted& given) {
     words.cure =
         given.a ? "leave out --invert-a and give --invert-b" : "leave out --invert-b and give --invert-a";
   }
-  if (!finding.certain) words.cure = before + words.cure + ".";
+  if (!finding.certain) words.cure = before + words.cure;
   say(finding, std::move(words));
 }
 
@@ -129,14 +129,14 @@ void word_for_options_of_samples(const CalibrationOptions& options, const std::s
               "Without --eye-to-hand the squared residuals are {:.3g} times smaller: the camera is on "
               "the hand, or the poses of {{a}} are base-to-hand",
               finding.improvement),
-          "Leave out --eye-to-hand.", finding.words.evidence);
+          "leave out --eye-to-hand", finding.words.evidence);
     if (eye_to_hand) return;
     word_scale_of(finding, options, scale_option, calibration);
     if (!given.a && !given.b) return;
     for (const char which : {'a', 'b'}) {
       if (finding.code != std::string("inverted_") + which) continue;
       FindingWords words = finding.words;
-      words.cure = cure_of_inverted(which, given) + ".";
+      words.cure = cure_of_inverted(which, given);
       say(finding, std::move(words));
     }
   });

@@ -54,7 +54,13 @@ std::string outliers_text(const Calibration& calibration) {
     text += fmt::format("outliers      {} {} these\n", counted(count, "more pair"),
                         count == 1 ? "contradicts" : "contradict");
   if (calibration.outliers && calibration.outliers->choice == OutlierChoice::proven)
-    text += "outliers      proven: no other choice of them has an extrinsic that fits better\n";
+    // that it is the best choice makes no bad fit good, and "proven" reads like it
+    text +=
+        calibration.verdict < Verdict::doubtful
+            ? "outliers      proven: no other choice of them has an extrinsic that fits better\n"
+            : fmt::format(
+                  "outliers      no other choice of them fits better, and with this one the answer is {}\n",
+                  to_string(calibration.verdict));
   else if (calibration.outliers)
     text += fmt::format("outliers      not proven: {} of the drive could change sides\n",
                         counted(calibration.outliers->undecided, "part"));

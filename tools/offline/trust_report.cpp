@@ -38,6 +38,17 @@ nlohmann::ordered_json trust_json(const Calibration& calibration) {
   return json;
 }
 
+std::string fit_in_words(const Fit& fit) {
+  if (fit.tenths.empty()) return "";
+  return fmt::format(
+      "{} deg, {} cm ({} % of the distance) a motion{}; 95 % below {} deg, {} cm; lengths b / a {:.4g}",
+      rounded(fit.rotation_median * degrees), rounded(100 * fit.translation_median),
+      fit.translation_relative_median < 0.995 ? fmt::format("{:.2g}", 100 * fit.translation_relative_median)
+                                              : rounded(100 * fit.translation_relative_median),
+      fit.motion_seconds > 0 ? fmt::format(" of {:.2g} s", fit.motion_seconds) : "",
+      rounded(fit.rotation_95 * degrees), rounded(100 * fit.translation_95), fit.length_ratio);
+}
+
 std::string trust_text(const Calibration& calibration) {
   std::string text =
       fmt::format("verdict       {}: {}\n", verdict_word(calibration.verdict), calibration.reason);
@@ -45,17 +56,8 @@ std::string trust_text(const Calibration& calibration) {
     text +=
         fmt::format("{}{}\n              cure: {}\n", finding.certain ? "finding       " : "possible      ",
                     finding.message, finding.remedy);
-  const Fit& fit = calibration.fit;
-  if (!fit.tenths.empty())
-    text += fmt::format(
-        "fit           {} deg, {} cm ({} % of the distance) a motion{}; 95 % below {} deg, {} cm; lengths b "
-        "/ "
-        "a {:.4g}\n",
-        rounded(fit.rotation_median * degrees), rounded(100 * fit.translation_median),
-        fit.translation_relative_median < 0.995 ? fmt::format("{:.2g}", 100 * fit.translation_relative_median)
-                                                : rounded(100 * fit.translation_relative_median),
-        fit.motion_seconds > 0 ? fmt::format(" of {:.2g} s", fit.motion_seconds) : "",
-        rounded(fit.rotation_95 * degrees), rounded(100 * fit.translation_95), fit.length_ratio);
+  if (const std::string fit = fit_in_words(calibration.fit); !fit.empty())
+    text += fmt::format("fit           {}\n", fit);
   if (calibration.goal) {
     const Goal& goal = *calibration.goal;
     text += goal.reached

@@ -12,5 +12,7 @@ namespace egocal::tools {
 /// verdict, reason, fit, findings and goal: what comes before every number.
 nlohmann::ordered_json trust_json(const Calibration& calibration);
 std::string trust_text(const Calibration& calibration);
+/// "0.07 deg, 1.5 cm (0.3 % of the distance) a motion of 1.8 s; ..."; empty: there is none.
+std::string fit_in_words(const Fit& fit);
 
 }  // namespace egocal::tools

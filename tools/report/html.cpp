@@ -15,6 +15,7 @@
 #include "figures/plot.hpp"
 #include "offline/named_extrinsic.hpp"
 #include "offline/report.hpp"
+#include "offline/trust_report.hpp"
 #include "report/series.hpp"
 
 namespace egocal::tools {
@@ -31,7 +32,8 @@ h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.1rem; margin: 1.6r
 table { border-collapse: collapse; } td, th { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top; }
 td.number { font-variant-numeric: tabular-nums; text-align: right; } code, pre { font-size: .9rem; }
 pre { overflow-x: auto; background: #f7f7f7; padding: .5rem; } .figures { display: flex; flex-wrap: wrap; gap: 1rem; }
-figure { margin: 0; } .note { color: #444; }
+figure { margin: 0; max-width: 100%; } svg { max-width: 100%; height: auto; } .note { color: #444; }
+@media (max-width: 45rem) { .wide, .wide tbody, .wide tr, .wide th, .wide td { display: block; } .wide td { padding: 0 0 .5rem; } }
 @media print { body { margin: 0; max-width: none; } h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
 </style>
 )";
@@ -52,14 +54,14 @@ std::string matrix_text(const Pose& T) {
   return text + fmt::format("{:12} {:12} {:12} {:12}\n", 0, 0, 0, 1);
 }
 
-std::string transform(const std::string& title, const Pose& given) {
+std::string transform(const std::string& title, const Pose& given, const std::string& unit) {
   const Pose T = with_positive_scalar(given);
   const Eigen::Vector3d& t = T.translation;
   const auto& q = T.rotation;
   const Eigen::Vector3d angles = roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees;
-  std::string table = "<table>\n";
-  table +=
-      row("translation x y z [m]", fmt::format("<code>{:.6f} {:.6f} {:.6f}</code>", t.x(), t.y(), t.z()));
+  std::string table = "<table class='wide'>\n";
+  table += row("translation x y z [" + unit + "]",
+               fmt::format("<code>{:.6f} {:.6f} {:.6f}</code>", t.x(), t.y(), t.z()));
   table += row("quaternion w x y z",
                fmt::format("<code>{:.9f} {:.9f} {:.9f} {:.9f}</code>", q.w(), q.x(), q.y(), q.z()));
   table += row("quaternion x y z w",
@@ -200,14 +202,19 @@ std::string figure(const Plot& plot) {
 
 std::string pictures(const ReportInput& input) {
   const Residuals residuals = residuals_of(input.pairs, input.calibration.T_a_b);
-  std::string out = "<div class='figures'>\n";
+  const double seconds = input.calibration.fit.motion_seconds;
+  const std::string motions = seconds > 0 ? fmt::format("motions of {:.2g} s", seconds) : "motions";
+  std::string out = "<p class='note'>Residuals are those of the " + motions +
+                    " that the fit is stated of; none is rejected.</p>\n<div class='figures'>\n";
   if (!input.a.empty()) out += figure(map_plot(map_of(input.a, input.b, input.calibration.T_a_b)));
-  out += figure(over_time("Rotation residual of each motion", "[deg]", residuals.time, residuals.rotation,
+  out += figure(over_time("Rotation residuals of " + motions, "[deg]", residuals.time, residuals.rotation,
                           Colour::blue));
-  out += figure(histogram_plot("Rotation residuals", "[deg]", residuals.rotation, Colour::blue));
-  out += figure(over_time("Translation residual of each motion", "[m]", residuals.time, residuals.translation,
+  out +=
+      figure(histogram_plot("Rotation residuals of " + motions, "[deg]", residuals.rotation, Colour::blue));
+  out += figure(over_time("Translation residuals of " + motions, "[m]", residuals.time, residuals.translation,
                           Colour::vermilion));
-  out += figure(histogram_plot("Translation residuals", "[m]", residuals.translation, Colour::vermilion));
+  out += figure(
+      histogram_plot("Translation residuals of " + motions, "[m]", residuals.translation, Colour::vermilion));
   if (!input.a.empty()) {
     constexpr int points = 40;  // of a drawn curve
     const Progress progress = progress_of(input.a, input.b, input.options, points);
@@ -219,7 +226,7 @@ std::string pictures(const ReportInput& input) {
 
 std::string settings(const ReportInput& input) {
   const Calibration& calibration = input.calibration;
-  std::string table = "<table>\n";
+  std::string table = "<table class='wide'>\n";
   table += row("sensor a", "<code>" + escaped(input.name_a) + "</code>");
   table += row("sensor b", "<code>" + escaped(input.name_b) + "</code>");
   table += row("mode", calibration.problem.mode == Mode::planar ? "planar" : "three-dimensional");
@@ -259,9 +266,14 @@ std::string report_html(const ReportInput& input) {
   const std::string word = input.verdict.substr(0, input.verdict.find(':'));
   out += "<p class='verdict " + escaped(word) + "'>" + escaped(input.verdict) + "</p>\n";
   for (const std::string& finding : input.findings) out += "<p>" + escaped(finding) + "</p>\n";
-  out += section("Transform",
-                 transform("T_a_b: pose of sensor b in sensor a, p_a = T_a_b p_b", calibration.T_a_b) +
-                     transform("T_b_a: its inverse", calibration.T_b_a));
+  if (const std::string fit = fit_in_words(calibration.fit); !fit.empty())
+    out += "<p>Fit: " + escaped(fit) + ".</p>\n";
+  if (input.unit != "m")
+    out += "<p>Lengths are in the " + escaped(input.unit) +
+           ", also where m or cm is written: metres only if that sensor measures metres.</p>\n";
+  out += section("Transform", transform("T_a_b: pose of sensor b in sensor a, p_a = T_a_b p_b",
+                                        calibration.T_a_b, input.unit) +
+                                  transform("T_b_a: its inverse", calibration.T_b_a, input.unit));
   if (input.truth) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*input.truth), to_dual_quaternion(calibration.T_a_b));

@@ -14,13 +14,14 @@ namespace egocal::tools {
 struct ReportInput {
   std::string name_a, name_b;     ///< files, topics or channels
   Trajectory a, b;                ///< empty for a file of motion pairs
-  std::vector<MotionPair> pairs;  ///< of the stride in force
+  std::vector<MotionPair> pairs;  ///< of motions as long as those that the fit is stated of
   CalibrationOptions options;
   Calibration calibration;
   std::string method;
   std::string verdict;                ///< headline: the word of the verdict, a colon, the reason
   std::vector<std::string> findings;  ///< what is wrong and its cure, one sentence each
   std::vector<std::string> warnings;  ///< about what was read
+  std::string unit = "m";             ///< of lengths: "m", or "unit of b"
   std::string command;                ///< the command line
   std::optional<Pose> truth;
 };

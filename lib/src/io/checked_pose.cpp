@@ -10,7 +10,7 @@ CheckedPose checked_pose(const Eigen::Vector3d& position, const Eigen::Vector4d&
   if (!position.allFinite() || !wxyz.allFinite()) return {{}, "expected finite numbers"};
   if (!plausible_distance(position.cwiseAbs().maxCoeff())) return {{}, "position: expected less than 1e9 m"};
   const double norm = wxyz.norm();
-  if (!(norm > 1e-6)) return {{}, "quaternion: is zero"};
+  if (!(norm > 1e-6)) return {{}, zero_quaternion};
   if (!plausible_norm(norm)) return {{}, "quaternion: expected length 1, got " + std::to_string(norm)};
   return {to_dual_quaternion({Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized(), position}),
           ""};

@@ -13,6 +13,9 @@ struct CheckedPose {
   std::string reason;  ///< why these numbers are no pose; empty where they are one
 };
 
+/// The reason of a pose that a program wrote where it had none.
+inline constexpr const char* zero_quaternion = "quaternion: is zero";
+
 /// Position [m] and quaternion (w x y z) within 1 % of unit length, as a unit dual quaternion.
 CheckedPose checked_pose(const Eigen::Vector3d& position, const Eigen::Vector4d& wxyz);
 

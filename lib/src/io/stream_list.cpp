@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "egocal/printable.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -24,13 +26,30 @@ constexpr OtherType other_types[] = {
     {"sensor_msgs/Image", "which is no pose: run an odometry on it and record that"},
     {"sensor_msgs/CompressedImage", "which is no pose: run an odometry on it and record that"}};
 
+constexpr std::size_t longest_type = 60;  // limit of what people read [bytes]
+
+/// Of a topic with transforms, each of which is a stream of its own. Empty: of any other topic.
+std::string why_no_transform(const std::vector<RecordedStream>& streams, const RecordedStream& topic) {
+  std::size_t moving = 0, fixed = 0;
+  for (const RecordedStream& stream : streams)
+    if (stream.topic == topic.topic && stream.name != stream.topic) ++(stream.fixed ? fixed : moving);
+  if (moving > 0)
+    return "holds " + std::to_string(moving) + " transforms that move: choose one with " +
+           printable(topic.topic) + ":PARENT/CHILD";
+  return fixed > 0 ? "holds static transforms alone: nothing moves" : "";
+}
+
 }  // namespace
 
 std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::string& name) {
   if (name.empty()) return {};
   for (const RecordedStream& stream : streams) {
-    if (stream.poses || stream.type.empty() || (stream.name != name && stream.name != "/" + name)) continue;
-    std::string text = "is of type " + printable(stream.type).substr(0, 60);
+    if (stream.type.empty() || (stream.name != name && stream.name != "/" + name)) continue;
+    if (stream.messages == 0) return "this topic has no messages";
+    if (stream.fixed) return "is a static transform: it never moves";
+    if (stream.poses) return "none of its messages holds a pose that can be used";
+    if (std::string text = why_no_transform(streams, stream); !text.empty()) return text;
+    std::string text = "is of type " + printable(stream.type, longest_type);
     for (const OtherType& other : other_types)
       if (stream.type == other.type) return text + ", " + std::string(other.problem);
     return text + ", which egocal reads no poses from";
@@ -38,21 +57,15 @@ std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::
   return {};
 }
 
-std::string printable(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    out += code < 0x20 || code > 0x7e ? '?' : c;
-    if (out.size() == 200) break;
-  }
-  return out;
-}
-
 std::string topics_in_words(const std::vector<RecordedStream>& streams) {
   constexpr std::size_t longest = 500;  // bytes of a message
   std::string text;
-  std::size_t poses = 0, left_away = 0, others = 0;
+  std::size_t poses = 0, left_away = 0, others = 0, without_messages = 0;
   for (const RecordedStream& stream : streams) {
+    if (stream.poses && stream.messages == 0) {
+      ++without_messages;
+      continue;
+    }
     if (!stream.poses || stream.fixed) {
       others += stream.name == stream.topic && !stream.poses ? 1 : 0;
       continue;
@@ -64,11 +77,14 @@ std::string topics_in_words(const std::vector<RecordedStream>& streams) {
     }
     const bool transform = stream.name != stream.topic;
     text += (text.empty() ? "" : ", ") + printable(stream.name) + " (" +
-            (transform ? "" : printable(stream.type).substr(0, 60) + ", ") + std::to_string(stream.messages) +
+            (transform ? "" : printable(stream.type, longest_type) + ", ") + std::to_string(stream.messages) +
             ")";
   }
   if (poses == 0)
-    return "there is no topic with poses, " + std::to_string(others) +
+    return "there is no topic with poses, " +
+           (without_messages > 0 ? std::to_string(without_messages) + " that may hold them have no messages, "
+                                 : std::string()) +
+           std::to_string(others) +
            " others (see egocal info FILE; expected nav_msgs/Odometry, geometry_msgs/PoseStamped, "
            "PoseWithCovarianceStamped, TransformStamped or tf2_msgs/TFMessage)";
   if (left_away > 0) text += " and " + std::to_string(left_away) + " more (see egocal info FILE)";

@@ -6,18 +6,21 @@
 #include <vector>
 
 #include "egocal/io/recording.hpp"
+#include "egocal/printable.hpp"
 
 namespace egocal::detail {
 
-/// A name from a file for one line on a terminal: no control characters, valid UTF-8, at most 200 bytes.
-std::string printable(const std::string& text);
+/// A name from a file for one line on a terminal.
+inline std::string printable(const std::string& text, std::size_t max_length = 200) {
+  return egocal::printable(text, max_length);
+}
 
 /// "topics with poses: /odom (nav_msgs/Odometry, 517), /tf:odom/base_link (12)", or that there are none and
 /// what there is instead. At most some 700 characters.
 std::string topics_in_words(const std::vector<RecordedStream>& streams);
 
-/// Of a topic that is there and has no poses: "is of type nav_msgs/Path, whose ...". Empty for any other
-/// name.
+/// Of a topic that is there and has no poses: "is of type nav_msgs/Path, whose ...", "holds 2 transforms that
+/// move: ...". Empty for any other name.
 std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::string& name);
 
 }  // namespace egocal::detail

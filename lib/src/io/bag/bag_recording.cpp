@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "egocal/limits.hpp"
 #include "io/checked_pose.hpp"
@@ -46,6 +47,7 @@ void BagRecording::read(const std::string& topic, const TakePose& take) {
     losses_.checksum = losses_.checksum || lost.checksum;
   }
   read_before_ = true;
+  for (std::size_t i = 0; i < stamps_.size(); ++i) take_undecided(i, take);
   for (std::size_t i = 0; i < frames_.size(); ++i) streams_[i].mixed = frames_[i].mixed();
   for (const auto& [stream, integrator] : integrators_)
     notes_.push_back(streams_[stream].name +
@@ -108,33 +110,65 @@ std::size_t BagRecording::transform_stream(const BagTopic& topic, const MessageP
   return streams_.size() - 1;
 }
 
-/// Of the header; the time of recording where no message of the stream has another. A simulation that begins
-/// at zero has one message that looks unstamped, at its beginning: the second one decides.
-std::optional<std::int64_t> BagRecording::time_of(const MessagePose& pose, const BagMessage& message,
-                                                  std::size_t stream) {
-  const auto rounded = [](std::int64_t ns) { return ns / 1000 + (ns % 1000 >= 500 ? 1 : 0); };
+void BagRecording::refuse(const std::string& topic, const std::string& reason) {
+  if (losses_.refused++ == 0) losses_.first_refused = topic + ": " + reason;
+}
+
+/// At the time of its header; at that of recording where no message of the stream has another. A simulation
+/// that begins at zero has one message that looks unstamped, at its beginning: the second one decides.
+void BagRecording::take_usable(const Usable& usable, std::size_t stream, const TakePose& take) {
   if (stream >= stamps_.size()) stamps_.resize(stream + 1);
   Stamps& stamps = stamps_[stream];
-  if (streams_[stream].fixed) return rounded(pose.time_ns != 0 ? pose.time_ns : message.log_time_ns);
-  ++(pose.time_ns != 0 ? stamps.stamped : stamps.unstamped);
-  if (pose.time_ns != 0) return rounded(pose.time_ns);
-  if (stamps.stamped > 0 || stamps.unstamped == 1) return std::nullopt;
+  const bool stamped = usable.stamp_ns != 0;
+  if (streams_[stream].fixed)
+    return take_at(stamped ? usable.stamp_ns : usable.log_time_ns, usable, stream, take);
+  ++(stamped ? stamps.stamped : stamps.unstamped);
+  constexpr const char* without = "it has no time stamp, others of the topic do";
+  if (stamped) {
+    if (stamps.undecided) refuse(streams_[stream].topic, without);
+    stamps.undecided.reset();
+    return take_at(usable.stamp_ns, usable, stream, take);
+  }
+  if (stamps.stamped > 0) return refuse(streams_[stream].topic, without);
+  if (stamps.unstamped == 1) {
+    stamps.undecided = usable;
+    return;
+  }
+  take_undecided(stream, take);
   ++unstamped_;
-  return rounded(message.log_time_ns);
+  take_at(usable.log_time_ns, usable, stream, take);
+}
+
+/// The first message of a stream that has no stamps at all.
+void BagRecording::take_undecided(std::size_t stream, const TakePose& take) {
+  const std::optional<Usable> first = std::exchange(stamps_[stream].undecided, std::nullopt);
+  if (!first) return;
+  ++unstamped_;
+  take_at(first->log_time_ns, *first, stream, take);
+}
+
+void BagRecording::take_at(std::int64_t time_ns, const Usable& usable, std::size_t stream,
+                           const TakePose& take) {
+  const std::int64_t time_us = time_ns / 1000 + (time_ns % 1000 >= 500 ? 1 : 0);
+  if (!plausible_relative_time(time_us))
+    refuse(streams_[stream].topic, "its time is out of range");
+  else if (!usable.velocity)
+    take(stream, {time_us, usable.pose});
+  else if (const auto integrated = integrators_[stream].add({time_us, usable.linear, usable.angular}))
+    take(stream, {time_us, *integrated});
+  else
+    refuse(streams_[stream].topic, "a velocity that is not finite, or not later than the one before");
 }
 
 void BagRecording::take_message(MessageReader& part, const BagMessage& message, std::size_t stream,
                                 const TakePose& take) {
   const BagTopic& topic = part.topics()[message.topic];
   const bool transforms = is_transforms_type(topic.type);
-  const auto refuse = [&](const std::string& reason) {
-    if (losses_.refused++ == 0) losses_.first_refused = topic.name + ": " + reason;
-  };
   const std::optional<ByteSpan> data = unpacker_.unpacked(topic.encoding, message.data);
-  if (!data) return refuse("the message is packed and damaged, or longer than 64 MiB");
+  if (!data) return refuse(topic.name, "the message is packed and damaged, or longer than 64 MiB");
   const bool decoded = decode_poses(topic.type, topic.encoding, *data, [&](const MessagePose& pose) {
     const std::size_t target = transforms ? transform_stream(topic, pose) : stream;
-    if (target == streams_.size()) return refuse("too many frames");
+    if (target == streams_.size()) return refuse(topic.name, "too many frames");
     if (transforms) {
       ++streams_[target].messages;
     } else {
@@ -146,20 +180,21 @@ void BagRecording::take_message(MessageReader& part, const BagMessage& message, 
       }
     }
     const CheckedPose checked = pose.velocity ? CheckedPose{} : checked_pose(pose.translation, pose.wxyz);
-    if (!checked.reason.empty()) return refuse(checked.reason);
-    if (const auto time_us = time_of(pose, message, target); !time_us)
-      refuse("it has no time stamp, others of the topic do");
-    else if (!plausible_relative_time(*time_us))
-      refuse("its time is out of range");
-    else if (!pose.velocity)
-      take(target, {*time_us, checked.pose});
-    else if (const auto integrated = integrators_[target].add({*time_us, pose.linear, pose.angular}))
-      take(target, {*time_us, *integrated});
-    else
-      refuse("a velocity that is not finite, or not later than the one before");
+    if (!checked.reason.empty()) return refuse(topic.name, checked.reason);
+    Usable usable;
+    usable.pose = checked.pose;
+    usable.velocity = pose.velocity;
+    if (pose.velocity) {
+      usable.linear = pose.linear;
+      usable.angular = pose.angular;
+    }
+    usable.stamp_ns = pose.time_ns;
+    usable.log_time_ns = message.log_time_ns;
+    take_usable(usable, target, take);
   });
   if (!decoded)
-    refuse("the message is damaged or not a " + topic.type + " in the encoding " + topic.encoding);
+    refuse(topic.name,
+           "the message is damaged or not a " + topic.type + " in the encoding " + topic.encoding);
 }
 
 }  // namespace egocal::detail

@@ -45,11 +45,23 @@ class BagRecording : public Recording {
   std::size_t transform_stream(const BagTopic& topic, const MessagePose& pose);
   void take_message(MessageReader& part, const BagMessage& message, std::size_t stream, const TakePose& take);
 
-  std::optional<std::int64_t> time_of(const MessagePose& pose, const BagMessage& message, std::size_t stream);
+  /// A pose that may be used.
+  struct Usable {
+    DualQuaternion pose;
+    bool velocity = false;  ///< only the two below are known
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+    std::int64_t stamp_ns = 0;  ///< of the header; 0: none
+    std::int64_t log_time_ns = 0;
+  };
+  void take_usable(const Usable& usable, std::size_t stream, const TakePose& take);
+  void take_at(std::int64_t time_ns, const Usable& usable, std::size_t stream, const TakePose& take);
+  void take_undecided(std::size_t stream, const TakePose& take);
+  void refuse(const std::string& topic, const std::string& reason);
 
   /// How many messages of a stream have a time in their header.
   struct Stamps {
     std::uint64_t stamped = 0, unstamped = 0;
+    std::optional<Usable> undecided{};  ///< the first message, which has none
   };
 
   std::string format_;

@@ -25,9 +25,9 @@ std::string FrameCounts::mixed() const {
   std::string text = "poses of several frames are mixed: ";
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const Frames& frames = frames_[i];
-    const std::string parent = printable(frames.parent.empty() ? "(no name)" : frames.parent).substr(0, 60);
+    const std::string parent = printable(frames.parent.empty() ? "(no name)" : frames.parent, 60);
     text += (i > 0 ? ", " : "") + parent +
-            (frames.child.empty() ? "" : " to " + printable(frames.child).substr(0, 60)) + " (" +
+            (frames.child.empty() ? "" : " to " + printable(frames.child, 60)) + " (" +
             std::to_string(frames.messages) + ")";
   }
   if (others_ > 0) text += ", others (" + std::to_string(others_) + ")";

@@ -16,6 +16,9 @@ namespace egocal::detail {
 
 namespace {
 
+/// Times above it are no seconds since 1970 [s]: 2100.
+constexpr double latest_seconds = 4.1e9;
+
 /// The header's names, of which those of a quantity become columns.
 std::vector<std::string_view> name_columns(TextLayout& layout, std::string_view header) {
   std::vector<std::string_view> names;
@@ -83,6 +86,24 @@ void note_unread(TextLayout& layout) {
       text += (text.empty() ? "" : ", ") + quoted(layout.names[k]);
   }
   if (!text.empty()) layout.notes.push_back("not read of --columns: " + text + " (- for what is not needed)");
+}
+
+/// Fields behind the last name of --columns may be what was meant: "t,x,y,z,yaw" takes a quaternion's x.
+void note_unnamed(TextLayout& layout, std::size_t fields) {
+  if (fields > layout.names.size())
+    layout.notes.push_back("--columns names " + std::to_string(layout.names.size()) + " of " +
+                           std::to_string(fields) +
+                           " fields in a row: those behind are not read (- for what is not needed)");
+}
+
+/// What EuRoC's files hold, whatever their header calls it.
+bool is_euroc(const TextLayout& layout, const std::vector<std::string_view>& row) {
+  using enum Quantity;
+  constexpr Quantity order[] = {time, x, y, z, qw, qx, qy, qz};
+  for (std::size_t i = 0; i < std::size(order); ++i)
+    if (!layout.columns.has(order[i]) || layout.columns[order[i]].index != i) return false;
+  double first = 0;
+  return layout.separator == ',' && parse_number(row[0], first) && std::abs(first) >= latest_seconds;
 }
 
 /// The columns of a format without a header.
@@ -165,6 +186,7 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
                const std::string& file) {
   const bool header = is_header(sniffed.data.front().text, layout.separator);
   if (header) layout.header_line = sniffed.data.front().number;
+  bool euroc = false;
   if (!options.columns.empty()) {
     TextLayout named;
     named.separator = ',';
@@ -175,6 +197,9 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
     layout.columns = named.columns;
     layout.names = named.names;
     note_unread(layout);
+    std::vector<std::string_view> row;
+    split(first_whole_row(sniffed, layout.separator).text, layout.separator, row);
+    note_unnamed(layout, row.size());
   } else if (header) {
     const std::vector<std::string_view> names = name_columns(layout, sniffed.data.front().text);
     if (!layout.columns.complete())
@@ -200,8 +225,10 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
     }
     if (!layout.columns.complete()) return false;
     note_rivals(layout);
+    euroc = is_euroc(layout, row);
   }
-  layout.format = "table";
+  layout.format = euroc ? "EuRoC csv" : "table";
+  layout.named = true;
   layout.fields = layout.columns.width();
   layout.more_fields = true;
   layout.times = layout.columns.has_time();
@@ -319,7 +346,7 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
       // with commas: EuRoC's nanoseconds go with w first, seconds with TUM's w last
       double first = 0;
       if (!row.empty()) parse_number(row[0], first);
-      const bool seconds = row.size() == 8 && std::abs(first) < 4.1e9;
+      const bool seconds = row.size() == 8 && std::abs(first) < latest_seconds;
       seconds ? set_tum(layout) : set_euroc(layout);
       if (seconds)
         layout.notes.push_back(

@@ -20,6 +20,7 @@ struct TextLayout {
   bool decimal_comma = false;  ///< 1,5 between semicolons, blanks or tabs
   long header_line = 0;        ///< that holds names and no data; 0: none
   ColumnMap columns;           ///< of formats with columns
+  bool named = false;          ///< the columns have names in the file or by --columns: fields may be empty
   bool matrix = false;         ///< rows of a 3 x 4 pose matrix, after a first column where first_column is 1
   std::size_t first_column = 0;
   std::size_t fields = 0;  ///< of a row: exactly this many, or at least where more_fields

@@ -182,8 +182,7 @@ std::optional<StampedPose> TextRecording::pose_of_row(const TextRows& rows) {
     return std::nullopt;
   };
   constexpr const char* empty_field = "an empty field";
-  if (layout_.format == "table" && n < layout_.fields && rows.width >= layout_.fields)
-    return skip(empty_field);
+  if (layout_.named && n < layout_.fields && rows.width >= layout_.fields) return skip(empty_field);
   if (layout_.more_fields ? n < layout_.fields : n != layout_.fields) {
     if (!rows.lines.terminated() && n < layout_.fields && rows.count > 1) {
       losses_.truncated = true;
@@ -214,7 +213,7 @@ std::optional<StampedPose> TextRecording::pose_of_row(const TextRows& rows) {
                                                    : ";") +
                        " name the columns with --columns t,x,y,z,qx,qy,qz,qw");
   }
-  if (layout_.format == "table")
+  if (layout_.named)
     for (const auto& column : layout_.columns.of)
       if (column && rows.fields[column->index].empty()) return skip(empty_field);
   if (rows.without_a_number()) return skip("a field without a number, such as nan");
@@ -228,7 +227,14 @@ std::optional<StampedPose> TextRecording::pose_of_row(const TextRows& rows) {
     pose.pose = *integrated;
     return pose;
   }
-  pose.pose = layout_.matrix ? pose_of_matrix(rows) : pose_of_columns(rows);
+  if (layout_.matrix) {
+    pose.pose = pose_of_matrix(rows);
+    return pose;
+  }
+  const CheckedPose checked = pose_of_columns(rows);
+  if (checked.reason == zero_quaternion) return skip(zero_quaternion);
+  if (!checked.reason.empty()) throw error_at(file_, rows.lines.number(), "", checked.reason);
+  pose.pose = checked.pose;
   return pose;
 }
 
@@ -258,8 +264,7 @@ double TextRecording::value(const TextRows& rows, std::size_t index) const {
         layout_.matrix ? (index >= layout_.first_column ? matrix[index - layout_.first_column] : "time")
                        : (index < layout_.names.size() ? layout_.names[index] : "");
     const std::string field = "field " + std::to_string(index + 1) + " (" + name.substr(0, 100) + ")";
-    if (rows.count == 1 && !layout_.matrix && layout_.format != "table" &&
-        !has_decimal_comma(rows.fields[index]))
+    if (rows.count == 1 && !layout_.matrix && !layout_.named && !has_decimal_comma(rows.fields[index]))
       throw error_at(file_, rows.lines.number(), field,
                      "expected a number, got " + quoted(rows.fields[index]) +
                          "; name the columns with --columns t,x,y,z,qx,qy,qz,qw (- for others)");
@@ -300,7 +305,7 @@ std::optional<DualQuaternion> TextRecording::pose_of_twist(const TextRows& rows,
   return integrator_.add(twist);
 }
 
-DualQuaternion TextRecording::pose_of_columns(const TextRows& rows) {
+CheckedPose TextRecording::pose_of_columns(const TextRows& rows) {
   using enum Quantity;
   const ColumnMap& columns = layout_.columns;
   const long line = rows.lines.number();
@@ -309,6 +314,7 @@ DualQuaternion TextRecording::pose_of_columns(const TextRows& rows) {
                     value(rows, z)};  // braces: the first bad field is reported
   if (columns.has_quaternion()) {
     q = {value(rows, qw), value(rows, qx), value(rows, qy), value(rows, qz)};
+    if (q.isZero()) return checked_pose(t, q);  // a lost pose is no origin either
   } else {
     // Mathematical angles, or those of a compass: axes forward, right, down in a frame of north, east, down.
     // With forward, left, up in east, north, up the sense of heading and pitch changes, that of roll does
@@ -333,9 +339,7 @@ DualQuaternion TextRecording::pose_of_columns(const TextRows& rows) {
     t = local.translation;
     q = {R.w(), R.x(), R.y(), R.z()};
   }
-  const CheckedPose pose = checked_pose(t, q);
-  if (!pose.reason.empty()) throw error_at(file_, line, "", pose.reason);
-  return pose.pose;
+  return checked_pose(t, q);
 }
 
 }  // namespace egocal::detail

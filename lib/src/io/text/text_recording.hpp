@@ -12,6 +12,7 @@
 #include "egocal/io/recording.hpp"
 #include "egocal/io/twist_integrator.hpp"
 #include "io/bytes/byte_source.hpp"
+#include "io/checked_pose.hpp"
 #include "io/text/angle_unit.hpp"
 #include "io/text/layout.hpp"
 
@@ -37,7 +38,7 @@ class TextRecording : public Recording {
   std::optional<StampedPose> pose_of_row(const TextRows& rows);
   std::int64_t time_of_row(const TextRows& rows) const;
   DualQuaternion pose_of_matrix(const TextRows& rows) const;
-  DualQuaternion pose_of_columns(const TextRows& rows);
+  CheckedPose pose_of_columns(const TextRows& rows);
   std::optional<DualQuaternion> pose_of_twist(const TextRows& rows, std::int64_t time_us);
   double value(const TextRows& rows, std::size_t index) const;
   /// In m, rad, m/s; in_si: of a unit that is not given.
