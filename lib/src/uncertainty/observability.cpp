@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -120,11 +121,80 @@ Surroundings look_around(const Problem& problem, const Matrix8d& Q_metres, const
   return around;
 }
 
-std::array<bool, 6> observable(const Surroundings& around, const ObservabilityOptions& options) {
+/// A rotation of the answer about a line that the motions do not show, in sensor a's frame; lengths in units
+/// of `length`.
+struct HiddenTurn {
+  Eigen::Vector3d axis;  ///< unit vector
+  Eigen::Vector3d arm;   ///< from the line to the origin of sensor b, across the axis
+  double rotation_part;  ///< of the unit hidden direction
+};
+
+/// Those among the hidden directions that differ from hidden translations by more than noise mixes into them.
+/// None where all rotations are seen.
+std::vector<HiddenTurn> hidden_turns(const Surroundings& around, const ObservabilityOptions& options) {
+  std::vector<HiddenTurn> turns;
+  const auto hidden = around.hidden_vectors();
+  const bool rotation_hidden = (hidden.bottomRows<3>().rowwise().norm().array() > options.leak).any();
+  if (!rotation_hidden) return turns;
+  const Eigen::Matrix3d parts = hidden.bottomRows<3>() * hidden.bottomRows<3>().transpose();
+  const detail::SymmetricEigen<3> eigen = detail::symmetric_eigen<3>(parts);
+  for (int k = 2; k >= 0; --k) {
+    const double part = std::sqrt(std::max(0.0, eigen.values[k]));
+    if (!(part > options.hinted_part)) break;
+    const Eigen::Vector3d axis = eigen.vectors.col(k);
+    const Eigen::Vector3d moment =
+        hidden.topRows<3>() * (hidden.bottomRows<3>().transpose() * axis) / (part * part);
+    turns.push_back({axis, moment.cross(axis), part});
+  }
+  return turns;
+}
+
+/// A turn that is hidden may be wrong by any angle, so a coordinate must hardly change anywhere along it. The
+/// tangent at the minimiser does not tell: where the arm points along x, it is along y alone.
+/// Settings of one drive are compared without this test, since they have the same unknown part.
+std::array<bool, 6> observable(const Surroundings& around, ErrorCorrelation errors,
+                               const ObservabilityOptions& options) {
   std::array<bool, 6> result{};
   for (int i = 0; i < 6; ++i)
     result[static_cast<std::size_t>(i)] = around.hidden_vectors().row(i).norm() <= options.leak;
+  if (errors == ErrorCorrelation::independent) return result;
+  const std::vector<HiddenTurn> turns = hidden_turns(around, options);
+  for (const HiddenTurn& turn : turns)
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double across = std::sqrt(std::max(0.0, 1 - turn.axis[i] * turn.axis[i]));
+      const double change = turn.arm.norm() * across;
+      result[k] = result[k] && turn.rotation_part * change <= options.leak &&
+                  change * around.length <= options.leak * options.unknown_translation;
+      // turns about two axes make any rotation
+      result[k + 3] = result[k + 3] && turns.size() == 1 && std::abs(turn.axis[i]) <= options.leak;
+    }
   return result;
+}
+
+/// Variances of the coordinates where the answer is somewhere along hidden turns. `variance`: of the
+/// directions that are seen, around the minimiser. A turn takes their errors to other coordinates across the
+/// axis. Without a prior no angle is more likely than others: then a rotation vector, seen from an answer
+/// that is off by the angle alpha, is (alpha / 2) / sin(alpha / 2) as large, whose square is 2 ln 2 in the
+/// mean. lengths: of a unit of the turns in that of the variance.
+Vector6d with_hidden_turns(const std::vector<HiddenTurn>& turns, Vector6d variance, double lengths,
+                           bool has_prior, const ObservabilityOptions& options) {
+  if (turns.empty()) return variance;
+  variance.head<3>().setConstant(variance.head<3>().maxCoeff());
+  variance.tail<3>().setConstant((has_prior ? 1 : 2 * std::numbers::ln2) * variance.tail<3>().maxCoeff());
+  for (const HiddenTurn& turn : turns) {
+    const Eigen::Vector3d arm = lengths * turn.arm, sideways = turn.axis.cross(arm);
+    const Eigen::Vector3d axis2 = turn.axis.cwiseAbs2();
+    if (has_prior) {  // a small angle, from an arm in any direction across the axis
+      const double angle2 = options.prior_rotation * options.prior_rotation;
+      variance.head<3>() += angle2 * arm.squaredNorm() * (Eigen::Vector3d::Ones() - axis2);
+      variance.tail<3>() += angle2 * axis2;
+    } else {  // arm (cos alpha - 1) + sideways sin alpha, and alpha axis
+      variance.head<3>() += 1.5 * arm.cwiseAbs2() + 0.5 * sideways.cwiseAbs2();
+      variance.tail<3>() += std::numbers::pi * std::numbers::pi / 3 * axis2;
+    }
+  }
+  return variance;
 }
 
 /// What errors along the hidden directions add to the variances of the coordinates that they lean into: the
@@ -187,7 +257,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
   const Surroundings around = look_around(problem, Q, T_a_b, errors, options);
   Observability result;
   result.stddev.fill(infinity);
-  result.observable = observable(around, options);
+  result.observable = observable(around, errors, options);
   result.hint = hint(around, options);
   if (around.hidden == 6 || problem.blocks.size() < options.least_blocks) return result;
 
@@ -198,8 +268,11 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
       detail::TangentSpace(around.q, around.length, tangent, problem.balance), basis, 6 - around.hidden};
   Vector6d variance = detail::spatial_variance(problem, around.pairs, directions, errors, options);
   // settings of one drive have the same unknown part
-  if (errors == ErrorCorrelation::correlated)
-    variance += variance_of_hidden(around, problem.prior.has_value(), options);
+  if (errors == ErrorCorrelation::correlated) {
+    const bool has_prior = problem.prior.has_value();
+    variance = with_hidden_turns(hidden_turns(around, options), variance, 1, has_prior, options);
+    variance += variance_of_hidden(around, has_prior, options);
+  }
   const Vector6d pull = pull_of_noise(around, translation_of(around.q), basis.leftCols(6 - around.hidden));
   for (int i = 0; i < 6; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -248,8 +321,8 @@ Surroundings look_around_in_plane(const Problem& problem, const Matrix8d& Q_metr
 /// A coordinate of sensor a's frame must also be one of the plane: x and y lie in it, yaw turns about its
 /// normal.
 std::array<bool, 6> observable_in_plane(const Problem& problem, const Surroundings& around,
-                                        const ObservabilityOptions& options) {
-  std::array<bool, 6> result = observable(around, options);
+                                        ErrorCorrelation errors, const ObservabilityOptions& options) {
+  std::array<bool, 6> result = observable(around, errors, options);
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double along = std::abs(problem.plane_a.normal[i]);
@@ -284,11 +357,12 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   result.stddev.fill(infinity);
   const Statistics all = sum_blocks(problem.blocks);
   const Surroundings around = look_around_in_plane(problem, Q, T_a_b, all.count, options);
-  result.observable = observable_in_plane(problem, around, options);
+  result.observable = observable_in_plane(problem, around, errors, options);
   result.hint = planar_hint(around, options);
   if (problem.blocks.size() < options.least_blocks) return result;
   Vector6d variance = detail::planar_variance(problem, all, T_a_b, errors, options);
   if (errors == ErrorCorrelation::correlated) {
+    variance = with_hidden_turns(hidden_turns(around, options), variance, around.length, false, options);
     Vector6d of_hidden = variance_of_hidden(around, false, options);
     of_hidden.head<3>() *= around.length * around.length;
     variance += of_hidden;
@@ -327,9 +401,10 @@ std::array<bool, 6> observable_directions(const Problem& problem, const Matrix8d
                                           const ObservabilityOptions& options) {
   if (!shows_anything(Q)) return {};
   if (problem.mode == Mode::spatial)
-    return observable(look_around(problem, Q, T_a_b, errors, options), options);
+    return observable(look_around(problem, Q, T_a_b, errors, options), errors, options);
   const std::uint64_t pairs = sum_blocks(problem.blocks).count;
-  return observable_in_plane(problem, look_around_in_plane(problem, Q, T_a_b, pairs, options), options);
+  return observable_in_plane(problem, look_around_in_plane(problem, Q, T_a_b, pairs, options), errors,
+                             options);
 }
 
 DirectionBasis hidden_directions(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
