@@ -29,8 +29,7 @@ int main(int argc, char** argv) {
   program.footer(
       "Exit codes: 0 success, 1 failure (one line on standard error), 2 wrong usage, 3 an answer was printed "
       "that should not be used: contradictory, or a goal not reached; of a rig also where a loop is open or "
-      "a "
-      "finding makes a pair doubtful.");
+      "a finding makes a pair doubtful.");
   egocal::tools::add_commands(program);
   return program.run(argc, argv);
 }

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "egocal/printable.hpp"
-
 namespace egocal::bus {
 
 namespace {
@@ -24,10 +22,6 @@ bool plausible_name(const std::string& name) {
 
 bool plausible_text(const std::string& text) {
   return text.size() <= max_text;
-}
-
-std::string printable(const std::string& text, std::size_t max_length) {
-  return egocal::printable(text, max_length);
 }
 
 }  // namespace egocal::bus

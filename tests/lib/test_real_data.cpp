@@ -190,6 +190,9 @@ TEST_F(RealData, AMoveThatNoiseMayHaveMadeIsPossible) {
   const Finding& moved = calibration.findings.front();
   EXPECT_EQ(moved.code, "mount_moved");
   EXPECT_FALSE(moved.certain);
+  // the cause, too: no mount moves with the right rotations
+  EXPECT_TRUE(std::any_of(calibration.findings.begin(), calibration.findings.end(),
+                          [](const Finding& one) { return one.code == "axes_both" && !one.certain; }));
 }
 
 std::vector<std::string> benchmark_runs() {

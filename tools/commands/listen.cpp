@@ -70,8 +70,8 @@ void run(const Options& options) {
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
   bus::StreamWatchOptions watching;
   // a window ends with the first message behind it, which must come before the end
-  watching.rate_window_us =
-      std::min(watching.rate_window_us, static_cast<std::int64_t>(options.seconds / 2 * second_us));
+  watching.rate_window_us = static_cast<std::int64_t>(
+      std::clamp(options.seconds / 2 * second_us, 1.0, static_cast<double>(watching.rate_window_us)));
   bus::StreamWatch watch(rig.sensors, watching);
   loop.subscribe_prefix(
       "", [&](const bus::Arrival& arrival) { watch.hear(arrival.channel, arrival.bytes, arrival.mono_us); },

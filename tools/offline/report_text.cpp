@@ -103,8 +103,7 @@ std::string certificate_text(const SolveResult& result) {
   const Certificate& certificate = result.calibration.certificate;
   std::string text = fmt::format(
       "\ncertificate   cost {:.6g}, lower bound {:.6g}, gap {:.3g} ({:.2f} of rounding); anything as good is "
-      "within {:.2g} "
-      "m, {:.2g} deg\n",
+      "within {:.2g} m, {:.2g} deg\n",
       certificate.cost, certificate.lower_bound, certificate.gap, certificate.scaled_gap,
       certificate.reach_translation, certificate.reach_rotation * degrees);
   if (any_from_nominal(result.calibration)) text += fmt::format("              {}\n", cost_with_nominal);

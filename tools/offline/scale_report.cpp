@@ -108,6 +108,7 @@ std::string scale_text(const SolveResult& result) {
 }
 
 bool in_metres(const SolveResult& result) {
+  if (!scaled_has_scale(result) && !unscaled_has_scale(result)) return false;
   if (!result.calibration.scale) return true;
   if (!unscaled_has_scale(result)) return false;
   // limit: two sensors that both mean metres do not differ by more
@@ -140,8 +141,7 @@ std::string scale_warning(const SolveRequest& request, const SolveResult& result
   if (request.scale_option != "--scale") return "";
   return fmt::format(
       "{}, and the scale that was found, {:.4g}, is far from 1: metres only if {} measures metres; if {} "
-      "does "
-      "and {} is the camera without scale: {}, otherwise --scale-a auto",
+      "does and {} is the camera without scale: {}, otherwise --scale-a auto",
       unit, result.calibration.scale->scale, unscaled_name(result), scaled_name(result),
       unscaled_name(result), other_side(result));
 }

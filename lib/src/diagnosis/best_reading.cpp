@@ -117,8 +117,8 @@ BestReading best_common_mistake(const Evidence& evidence, const DiagnosisOptions
     twin.reset();
   if (number_explains(compare(best.as_is.explained, best.scaled.explained), options) &&
       shows_scale(evidence, best, options))
-    return {best.scaled, twin, {}};
-  return {best.as_is, twin, {}};
+    return {best.scaled, twin, {}, {}};
+  return {best.as_is, twin, {}, {}};
 }
 
 /// Positions mirrored at the origin in one stream are those of the other one mirrored, for every rotation.
@@ -132,10 +132,12 @@ std::optional<Explanation> mirrored_twin(const Evidence& evidence, const Explana
   return found.scale != 1 ? with_scale(twin, options) : twin;
 }
 
+bool turns_a_little(const PoseReading& reading) {
+  return !is_permutation(reading.axes) && turn_of(reading.axes).norm() < TurnedAxesOptions().small;
+}
+
 double least_gain_of(const PoseReading& reading, const DiagnosisOptions& options) {
-  const TurnedAxesOptions turned;
-  const bool small = !is_permutation(reading.axes) && turn_of(reading.axes).norm() < turned.small;
-  return small ? turned.gain_of_small : options.least_gain;
+  return turns_a_little(reading) ? TurnedAxesOptions().gain_of_small : options.least_gain;
 }
 
 struct CommonAxes {
@@ -180,7 +182,7 @@ CommonAxes common_axes(const Evidence& evidence, const DiagnosisOptions& options
 /// have three more unknowns and must explain clearly more. Turned axes of one stream are up to the lever arm
 /// those of the other one turned likewise: where both fit better, both are named.
 BestReading best_axes(const Evidence& evidence, const BestReading& given, const DiagnosisOptions& options) {
-  std::optional<Explanation> exchanged, turned, turned_other;
+  std::optional<Explanation> exchanged, turned, turned_other, possible;
   const double length = evidence.given.explained.motions.translation;
   std::optional<Explained> of_best, of_given;  // the same for every reading
   const auto but_for_lever_arms = [&](const Explanation& here) {
@@ -208,8 +210,12 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
         if (!explains(two.scaled.explained, options) || !shows_scale(evidence, two, options)) continue;
         here = std::move(two.scaled);
       }
-      if (!better(compare(given.best.explained, here.explained), least_gain_of(reading, options), options) ||
-          !but_for_lever_arms(here))
+      const Comparison comparison = compare(given.best.explained, here.explained);
+      if (turns_a_little(reading) && !reading.conjugate && here.scale == 1 &&
+          better(comparison, TurnedAxesOptions().possible_gain_of_small, options) &&
+          fits_better(possible, here) && but_for_lever_arms(here))
+        possible = here;
+      if (!better(comparison, least_gain_of(reading, options), options) || !but_for_lever_arms(here))
         continue;
       std::optional<Explanation>& best = is_permutation(reading.axes) ? exchanged : turned_here;
       if (fits_better(best, here)) best = here;
@@ -223,9 +229,9 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   if (turned_other && compare(turned_other->explained, turned->explained).gain > options.alike)
     turned_other.reset();
   BestReading result = given;
-  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options), {}};
+  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options), {}, {}};
   if (turned && better(compare(result.best.explained, turned->explained), options.gain, options))
-    result = {*turned, turned_other, {}};
+    result = {*turned, turned_other, {}, {}};
   CommonAxes common = common_axes(evidence, options);
   if (std::optional<Explanation>& both = common.best) {
     const Comparison comparison = compare(result.best.explained, both->explained);
@@ -233,11 +239,12 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     const bool simpler = is_permutation(both->read_b.axes) && turned && result.best.code == turned->code &&
                          !is_permutation(result.best.read_a.axes * result.best.read_b.axes);
     if (better(comparison, options.gain, options))
-      result = {*std::move(both), {}, {}};
+      result = {*std::move(both), {}, {}, {}};
     else if (simpler && comparison.gain > -options.alike)
-      result = {*std::move(both), result.best, {}};
+      result = {*std::move(both), result.best, {}, {}};
   }
   result.inverse_rotations = std::move(common.possible);
+  result.turned_axes = std::move(possible);
   return result;
 }
 

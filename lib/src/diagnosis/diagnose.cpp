@@ -28,6 +28,7 @@
 #include "diagnosis/pace.hpp"
 #include "diagnosis/planes.hpp"
 #include "diagnosis/replacing.hpp"
+#include "diagnosis/stamps_in_bursts.hpp"
 #include "diagnosis/standing_still.hpp"
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/swaying_mount.hpp"
@@ -196,6 +197,9 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   // where a stream is wrong, parts of the drive with other speeds and headings have other extrinsics
   if (!moves.empty() && !wrong.empty() && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
     moves.clear();
+  if (answered.problem.mode != Mode::planar && !has(findings, "axes_both"))
+    if (std::optional<Finding> inverse = inverse_rotations_instead(evidence, moves, answered, options))
+      findings.push_back(*std::move(inverse));
   moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
   // a mount that moved looks like many things, and another reading of both streams like one that moved
   if (!moves.empty()) {
@@ -394,6 +398,9 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (pairing.mode != Mode::planar) name_late_rotations(evidence, pairing.max_gap, options, result.findings);
   for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b))
     if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
+  // what else was found may be of the stamps alone
+  const std::vector<Finding> bursts = stamps_in_bursts(foreseen.a, foreseen.b, result.fit);
+  result.findings.insert(result.findings.begin(), bursts.begin(), bursts.end());
   judge(result, answered, misfit, options);
   return result;
 }

@@ -209,6 +209,9 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
   if (const std::optional<Explanation>& inverse = reading.inverse_rotations)
     findings.push_back(worded_reading(finding_of(*inverse, compare(given, inverse->explained), false),
                                       inverse->read_a, inverse->read_b));
+  if (const std::optional<Explanation>& turned = reading.turned_axes; turned && findings.empty())
+    findings.push_back(worded_reading(finding_of(*turned, compare(given, turned->explained), false),
+                                      turned->read_a, turned->read_b));
   if (findings.empty())
     if (std::optional<Finding> both = both_inverted(evidence, options))
       findings.push_back(worded_reading(std::move(*both), {}, {}));

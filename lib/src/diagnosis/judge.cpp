@@ -68,9 +68,16 @@ double length_95(const std::array<double, 3>& stddev) {
   return std::sqrt(sum * std::pow(1 - part + confidence_one_sided * std::sqrt(part), 3));
 }
 
-/// Directions that must be known better before the answer as a whole keeps within the tolerance: the worst
-/// ones, until the rest would.
-std::string unknown_directions(const Answered& answered, const DiagnosisOptions& options) {
+/// What the answer as a whole keeps within, with a chance of 95 %.
+struct Known {
+  double rotation = 0, translation = 0;  ///< [rad, m]; infinite: some direction is not observable
+  /// Directions that must be known better before it keeps within the tolerance: the worst ones, until the
+  /// rest would.
+  std::string unknown{};
+};
+
+Known known_to(const Answered& answered, const DiagnosisOptions& options) {
+  Known result;
   const std::array<double, 6> unstable =
       spread_without_fifths(answered.problem, answered.T_a_b, options.stability);
   std::array<bool, 6> unknown{};
@@ -84,6 +91,8 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
                 ? with_further_parts(std::max(answered.observability.stddev[first + i], unstable[first + i]),
                                      answered, first + i)
                 : INFINITY;
+    const bool finite = std::all_of(stddev.begin(), stddev.end(), [](double s) { return std::isfinite(s); });
+    (first == 0 ? result.translation : result.rotation) = finite ? length_95(stddev) : INFINITY;
     for (std::size_t known = 3; known > 0; --known) {
       const auto worst = std::max_element(stddev.begin(), stddev.end());
       if (std::isfinite(*worst) && length_95(stddev) <= tolerance) break;
@@ -92,16 +101,29 @@ std::string unknown_directions(const Answered& answered, const DiagnosisOptions&
       *worst = 0;
     }
   }
-  std::string text;
   for (std::size_t i = 0; i < 6; ++i)
-    if (unknown[i]) text += (text.empty() ? "" : ", ") + std::string(direction_names[i]);
-  return text;
+    if (unknown[i]) result.unknown += (result.unknown.empty() ? "" : ", ") + std::string(direction_names[i]);
+  return result;
+}
+
+/// "Not known to 1 deg and 60 cm yet": the limits are of all directions together, so the standard deviations
+/// that are printed may all be smaller.
+std::string not_known_yet(const Known& known, const DiagnosisOptions& options) {
+  std::string together;
+  if (std::isfinite(known.rotation)) together += format("%.3g deg", known.rotation * degrees);
+  if (std::isfinite(known.translation))
+    together += (together.empty() ? "" : ", ") +
+                format(known.translation < 10 ? "%.3g cm" : "%.0f cm", 100 * known.translation);
+  if (!together.empty()) together = " (all directions together, 95 %: " + together + ")";
+  return format("Not known to %.3g deg and %.3g cm yet", options.tolerance_rotation * degrees,
+                100 * options.tolerance_translation) +
+         together + ": " + known.unknown + ".";
 }
 
 /// Not another reading: what is wrong with the poses themselves. Pairing rejects those that repeat.
 bool stream_fault(const Finding& finding) {
   return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
-         finding.code == "flat_b" ||
+         finding.code == "flat_b" || finding.code.starts_with("stamps_") ||
          ((finding.code == "same_stream" || finding.code == "time_unit") && finding.certain);
 }
 
@@ -198,17 +220,15 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
         break;
       }
   if (diagnosis.verdict >= Verdict::doubtful) return;
-  const std::string unknown = unknown_directions(answered, options);
+  const Known known = known_to(answered, options);
   const auto little = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
                                    [](const Finding& one) { return one.code == "too_little_motion"; });
   if (little != diagnosis.findings.end()) {
     diagnosis.verdict = Verdict::incomplete;
     diagnosis.reason = little->message + " " + little->remedy;
-  } else if (!unknown.empty()) {
+  } else if (!known.unknown.empty()) {
     diagnosis.verdict = Verdict::incomplete;
-    diagnosis.reason =
-        format("Not known to %.3g deg and %.3g cm yet: %s.", options.tolerance_rotation * degrees,
-               100 * options.tolerance_translation, unknown.c_str());
+    diagnosis.reason = not_known_yet(known, options);
     if (!diagnosis.goal && answered.seconds > 0) {
       const GoalOptions usable{options.tolerance_rotation / length_of_three,
                                options.tolerance_translation / length_of_three, options.platform};

@@ -10,6 +10,7 @@
 
 #include "diagnosis/correction.hpp"
 #include "diagnosis/mount_pairs.hpp"
+#include "diagnosis/step_across.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
@@ -167,6 +168,23 @@ void leave_out_corrections(Strides& strides, const Answered& answered, const Dia
   }
 }
 
+/// Removes moves of which the motions across their time show nothing; where noise hides it, or a mount would
+/// have slid for seconds, they are uncertain.
+void remove_those_not_shown(const Instants& instants, const PoseReading& reading, double begin,
+                            const MotionSampleOptions& motions, std::vector<Move>& moves) {
+  std::vector<Move> shown;
+  for (Move& move : moves) {
+    const StepShown across = step_across(instants, reading, move, begin, motions);
+    if (across == StepShown::no) continue;
+    if (across != StepShown::yes && move.false_alarm > StepOptions().evident) {
+      if (across == StepShown::not_at_once) continue;
+      move.certain = false;
+    }
+    shown.push_back(std::move(move));
+  }
+  moves = std::move(shown);
+}
+
 }  // namespace
 
 MovedMount moved_mount(const Instants& instants, const Answered& answered, const DiagnosisOptions& options,
@@ -176,6 +194,9 @@ MovedMount moved_mount(const Instants& instants, const Answered& answered, const
   if (result.moves.empty()) return {{}, lasting_chance(strides, answered, options, result.chance)};
   if (options.mount.shown_before > 0) keep_those_shown_before(strides, answered, options, result);
   leave_out_corrections(strides, answered, options, result);
+  if (!result.moves.empty())
+    remove_those_not_shown(instants, reading, to_seconds(begin_of(strides, result)), options.motions,
+                           result.moves);
   // what is left without a correction may still contradict
   const double left = result.moves.empty() ? lasting_chance(strides, answered, options, result.chance) : 1;
   // as large as odometry errs, where the answer is known at all

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/axes.hpp"
+#include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/standing_still.hpp"
@@ -217,6 +218,26 @@ std::vector<PoseReading> readings_of_both(const std::vector<Finding>& findings) 
     readings.insert(readings.end(), inverse.begin(), inverse.end());
   }
   return readings;
+}
+
+std::optional<Finding> inverse_rotations_instead(const Evidence& evidence, const std::vector<Finding>& moves,
+                                                 const Answered& answered, const DiagnosisOptions& options) {
+  if (moves.empty()) return std::nullopt;
+  const CommonAxesOptions least;
+  const Explained parts = in_parts(evidence.given.explained, moves, options);
+  const Explained& given = evidence.given.explained;
+  for (const PoseReading& reading : inverse_rotation_readings()) {
+    Explanation here = explained(evidence, "axes_both", reading, reading, options);
+    if (here.explained.motions.all.empty() || !explains(here.explained, options)) continue;
+    const Comparison comparison = compare(given, here.explained);
+    if (!better(comparison, least.gain_beside_move, least.possible_sigmas) ||
+        loss_in_metres(given, here.explained) > -least.gain_beside_move_in_metres ||
+        !(compare(parts, here.explained).gain > -options.gain) ||
+        !moved_mount(evidence.instants, answered, options, reading).findings.empty())
+      continue;
+    return worded_reading(finding_of(here, comparison, false), here.read_a, here.read_b);
+  }
+  return std::nullopt;
 }
 
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,

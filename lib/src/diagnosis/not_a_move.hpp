@@ -25,6 +25,12 @@ double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves
 /// Readings of both streams alike that the findings call possible: world-to-sensor, or inverse rotations.
 std::vector<PoseReading> readings_of_both(const std::vector<Finding>& findings);
 
+/// Finding axes_both, uncertain: inverse rotations of both streams, under which no mount moves, and the
+/// motions fit better than as given (CommonAxesOptions::gain_beside_move) and about as well as with the
+/// moves.
+std::optional<Finding> inverse_rotations_instead(const Evidence& evidence, const std::vector<Finding>& moves,
+                                                 const Answered& answered, const DiagnosisOptions& options);
+
 /// Findings mount_moved as they are; or scale_change instead; or none, where a scale that wanders as those of
 /// odometries do explains the motions as well; or uncertain, where no mount moves under one of these readings
 /// of both streams, and one extrinsic explains the motions about as well as one for each part between the

@@ -6,6 +6,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/io/recording.hpp"
+#include "egocal/printable.hpp"
 #include "io/bag/bag_folder.hpp"
 #include "io/bag/bag_recording.hpp"
 #include "io/bag/mcap_reader.hpp"
@@ -53,7 +54,7 @@ std::unique_ptr<detail::MessageReader> open_bag(std::unique_ptr<ByteSource>& sou
 }
 
 std::string in_words_of_strangers(const std::vector<std::string>& names) {
-  const std::string first = detail::printable(names.front());
+  const std::string first = printable(names.front());
   if (names.size() == 1) return first + " is in the folder and not in metadata.yaml: it is not read";
   return std::to_string(names.size()) +
          " bags in the folder are not in metadata.yaml and are not read (first: " + first + ")";
@@ -66,7 +67,7 @@ std::unique_ptr<Recording> open_folder(const std::string& folder) {
   detail::KnownOfBag known;
   std::string format;
   for (const detail::BagFolder::Part& part : bag.parts) {
-    std::string problem = detail::printable(part.name) + ": is named by metadata.yaml and not there";
+    std::string problem = printable(part.name) + ": is named by metadata.yaml and not there";
     if (!part.path.empty()) try {
         auto source = std::make_unique<ByteSource>(part.path);
         problem = part.path + (source->peek(1).empty() ? ": is empty" : ": does not begin like a bag");

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "egocal/microseconds.hpp"
+#include "egocal/printable.hpp"
 #include "io/stream_list.hpp"
 
 namespace egocal::detail {

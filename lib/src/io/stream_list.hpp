@@ -6,14 +6,8 @@
 #include <vector>
 
 #include "egocal/io/recording.hpp"
-#include "egocal/printable.hpp"
 
 namespace egocal::detail {
-
-/// A name from a file for one line on a terminal.
-inline std::string printable(const std::string& text, std::size_t max_length = 200) {
-  return egocal::printable(text, max_length);
-}
 
 /// "topics with poses: /odom (nav_msgs/Odometry, 517), /tf:odom/base_link (12)", or that there are none and
 /// what there is instead. At most some 700 characters.

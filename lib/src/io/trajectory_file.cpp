@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/trajectory_file.hpp"
+#include "egocal/printable.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -36,7 +37,7 @@ void read_chain(Recording& recording, const std::string& topic, TrajectoryReadin
   const auto frames = detail::split_frames(streams, topic.substr(tf.size() + 1));
   const auto links = frames ? detail::find_chain(streams, tf, frames->first, frames->second) : std::nullopt;
   if (!links)
-    throw error_at(recording.file(), 0, detail::printable(topic),
+    throw error_at(recording.file(), 0, printable(topic),
                    "no transforms lead from one frame to the other; " + detail::topics_in_words(streams));
   std::vector<TrajectoryReading> parts(links->size());
   std::vector<detail::StaticTransform> values(links->size());
@@ -67,7 +68,7 @@ void read_chain(Recording& recording, const std::string& topic, TrajectoryReadin
   std::size_t dropped = 0;
   reading.trajectory = detail::resolve_chain(*links, fixed, poses, dropped);
   if (reading.trajectory.empty())
-    throw error_at(recording.file(), 0, detail::printable(topic),
+    throw error_at(recording.file(), 0, printable(topic),
                    dropped > 0 ? "the transforms of this chain never overlap in time"
                                : "all transforms of this chain are static: nothing moves");
   if (dropped > 0)
@@ -99,7 +100,7 @@ Error no_pose(const Recording& recording, const std::string& name) {
   const std::vector<RecordedStream>& streams = recording.streams();
   const bool nameless = streams.size() == 1 && streams.front().name.empty();
   const std::string without = detail::why_no_poses(streams, name);
-  return error_at(recording.file(), 0, detail::printable(name),
+  return error_at(recording.file(), 0, printable(name),
                   (name.empty()       ? "holds no pose that can be read"
                    : !without.empty() ? without
                                       : "no pose under this name") +
@@ -162,8 +163,8 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
     looked = true;
     if (several)
       throw error_at(recording.file(), 0, "",
-                     "holds several streams, choose one with " + detail::printable(recording.file()) +
-                         ":TOPIC; " + detail::topics_in_words(recording.streams()));
+                     "holds several streams, choose one with " + printable(recording.file()) + ":TOPIC; " +
+                         detail::topics_in_words(recording.streams()));
     if (first != SIZE_MAX) name = recording.streams()[first].name;
   } else {
     read_stream(recording, name, reading);
@@ -185,7 +186,7 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
   put_in_order(reading);
   for (const RecordedStream& stream : recording.streams())
     if (stream.name == name && !stream.mixed.empty())
-      reading.contradictions.push_back(detail::printable(name) + ": " + stream.mixed);
+      reading.contradictions.push_back(printable(name) + ": " + stream.mixed);
   reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
   reading.notes.insert(reading.notes.end(), reading.contradictions.begin(), reading.contradictions.end());
   if (reading.out_of_order > 0)

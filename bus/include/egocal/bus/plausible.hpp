@@ -7,6 +7,7 @@
 #include <string>
 
 #include "egocal/limits.hpp"
+#include "egocal/printable.hpp"
 
 namespace egocal::bus {
 
@@ -18,8 +19,6 @@ bool plausible_name(const std::string& name);
 /// Texts of messages: at most 1000 bytes.
 bool plausible_text(const std::string& text);
 
-/// A text from outside for one line: cut to length [bytes], control characters replaced by spaces, and what
-/// is not UTF-8 by question marks.
-std::string printable(const std::string& text, std::size_t max_length = 200);
+using egocal::printable;
 
 }  // namespace egocal::bus

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/bag/frame_counts.hpp"
 
+#include "egocal/printable.hpp"
 #include "io/stream_list.hpp"
 
 namespace egocal::detail {

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses that are inverted or in other axes are named, with the option that cures it.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+#include "../support/bounded_drive.hpp"
+#include "../support/findings.hpp"
+#include "../support/mistakes.hpp"
+#include "egocal/calibrate.hpp"
+
+namespace egocal::test_other_readings {
+namespace {
+
+using testing::drive;
+using testing::find;
+
+TEST(OtherReadings, TheRemedyOfAReadingCures) {
+  testing::Streams streams = drive(Terrain::free);
+  const Pose right = calibrate(streams.a, streams.b).T_a_b;
+  streams.a = testing::scalar_first(streams.a);
+  streams.b = testing::inverted(streams.b);
+  CalibrationOptions options;
+  options.read_a.quaternion_order = QuaternionOrder::wxyz;
+  options.read_b.invert = true;
+  const Calibration cured = calibrate(streams.a, streams.b, options);
+  EXPECT_EQ(cured.verdict, Verdict::good) << cured.reason;
+  EXPECT_LT((cured.T_a_b.translation - right.translation).norm(), 1e-6);
+}
+
+/// Turned axes of one stream are those of the other one up to the lever arm: one of them is named.
+TEST(OtherReadings, PositionsInAnotherWorldFrameAreNamed) {
+  testing::Streams streams = drive(Terrain::free);
+  const Eigen::Matrix3d turn = rotation_exp({0.2, -0.1, 0.6}).toRotationMatrix();
+  streams.b = testing::with_position_columns(streams.b, turn);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  EXPECT_TRUE(find(calibration, "axes_a") || find(calibration, "axes_b")) << calibration.reason;
+}
+
+TEST(OtherReadings, AnInvertedStreamContradictsWhicheverOfTheTwoItIs) {
+  testing::Streams streams = testing::bounded_drive();
+  EXPECT_EQ(calibrate(streams.a, streams.b).verdict, Verdict::good);
+  streams.a = testing::inverted(streams.a);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_NE(find(calibration, "inverted_a"), nullptr) << calibration.reason;
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+}
+
+TEST(OtherReadings, PositionsMirroredAtTheOriginMayBeThoseOfEitherStream) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.b = testing::lengthened(streams.b, -1);
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+  for (const char* code : {"axes_a", "axes_b"}) {
+    const Finding* finding = find(calibration, code);
+    ASSERT_NE(finding, nullptr) << code;
+    EXPECT_NE(finding->message.find("x from -x, y from -y, z from -z"), std::string::npos);
+  }
+}
+
+TEST(OtherReadings, ALeftHandedStreamIsNotGood) {
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free}) {
+    testing::Streams streams = drive(terrain);
+    streams.b = testing::mirrored(streams.b);
+    EXPECT_NE(calibrate(streams.a, streams.b).verdict, Verdict::good);
+  }
+}
+
+/// With the coordinates of a map: a thousand kilometres from the origin.
+Trajectory on_a_map(Trajectory trajectory) {
+  const DualQuaternion shift = to_dual_quaternion(Pose{Eigen::Quaterniond::Identity(), {5e5, 5.4e6, 300}});
+  for (StampedPose& pose : trajectory) pose.pose = canonical_sign(shift * pose.pose);
+  return trajectory;
+}
+
+TEST(OtherReadings, CoordinatesOfAMapAreNeitherFrozenNorMissing) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.a = on_a_map(streams.a);
+  streams.b = testing::inverted(on_a_map(streams.b));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  for (const char* code : {"frozen_a", "frozen_b", "missing_a", "missing_b"})
+    EXPECT_EQ(find(calibration, code), nullptr) << code;
+  EXPECT_NE(find(calibration, "inverted_b"), nullptr) << calibration.reason;
+}
+
+TEST(OtherReadings, BothInvertedOnAMapIsNotCalledAWrongUnitOfTime) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.a = testing::inverted(on_a_map(streams.a));
+  streams.b = testing::inverted(on_a_map(streams.b));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(find(calibration, "time_unit"), nullptr);
+  const Finding* finding = find(calibration, "inverted_both");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_TRUE(finding->certain);
+}
+
+TEST(OtherReadings, BothInvertedIsNotMentionedWhereMetresSayOtherwise) {
+  testing::Streams streams = drive(Terrain::free);
+  streams.a = on_a_map(streams.a);
+  streams.b = on_a_map(streams.b);
+  EXPECT_EQ(find(calibrate(streams.a, streams.b), "inverted_both"), nullptr);
+}
+
+/// An odometry that jumps has one mounting under the right reading only, whichever way the body goes. In a
+/// long drive as well, of which not every motion is looked at.
+class OdometryThatJumps : public ::testing::TestWithParam<int> {};
+
+TEST_P(OdometryThatJumps, IsCertainlyInvertedIfBothAre) {
+  testing::Streams streams = testing::noisy_drive(Terrain::free, 0, GetParam());
+  for (const double part : {0.2, 0.4, 0.5, 0.7, 0.9}) {
+    const auto from = static_cast<std::size_t>(part * static_cast<double>(streams.b.size()));
+    const DualQuaternion jump =
+        to_dual_quaternion({rotation_exp({0.2, -0.1 - part, 0.3}), {3, -1, 2 * part}});
+    for (std::size_t i = from; i < streams.b.size(); ++i) streams.b[i].pose = jump * streams.b[i].pose;
+  }
+  const Calibration right = calibrate(streams.a, streams.b);
+  const Finding* finding = find(right, "inverted_both");
+  EXPECT_TRUE(finding == nullptr || !finding->certain);
+  const Calibration wrong = calibrate(testing::inverted(streams.a), testing::inverted(streams.b));
+  finding = find(wrong, "inverted_both");
+  ASSERT_NE(finding, nullptr) << wrong.reason;
+  EXPECT_TRUE(finding->certain);
+  EXPECT_EQ(wrong.verdict, Verdict::contradictory);
+}
+
+INSTANTIATE_TEST_SUITE_P(Poses, OdometryThatJumps, ::testing::Values(601, 6001));
+
+}  // namespace
+}  // namespace egocal::test_other_readings
