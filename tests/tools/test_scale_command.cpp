@@ -129,7 +129,7 @@ TEST_F(ScaleCommand, AModelWithoutScaleDoesNotGiveMetres) {
   const Result right = run("solve --scale-b auto" + lidar + model);
   EXPECT_EQ(right.error.find("metres"), std::string::npos) << right.error;
   EXPECT_NE(right.out.find("x y z [m]"), std::string::npos) << right.out;
-  // two of them have one unit, which nobody knows
+  // two of them share one unit, which is unknown
   const Result both = run("solve" + model + model);
   EXPECT_NE(both.out.find("x y z [unit of "), std::string::npos) << both.out;
   EXPECT_EQ(run("align --json" + model + model).object()["metres"], false);

@@ -2,18 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/report.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "offline/named_extrinsic.hpp"
 
 namespace egocal::tools {
 
-bool from_nominal(const Calibration& calibration, std::size_t direction) {
-  return backing_of(calibration)[direction] == Backing::nominal;
-}
-
 bool any_from_nominal(const Calibration& calibration) {
-  for (std::size_t i = 0; i < 6; ++i)
-    if (from_nominal(calibration, i)) return true;
-  return false;
+  const std::array<Backing, 6> backing = backing_of(calibration);
+  return std::find(backing.begin(), backing.end(), Backing::nominal) != backing.end();
 }
 
 Pose with_positive_scalar(Pose T) {

@@ -9,9 +9,7 @@
 
 namespace egocal::tools {
 
-/// Whether the nominal value gives what the motions do not show of this direction (x y z roll pitch yaw).
-bool from_nominal(const Calibration& calibration, std::size_t direction);
-/// The same of any direction.
+/// Whether the nominal value gives what the motions do not show of some direction.
 bool any_from_nominal(const Calibration& calibration);
 /// What the cost then is, one sentence.
 inline constexpr const char* cost_with_nominal =

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "degrees.hpp"
@@ -29,9 +30,10 @@ nlohmann::ordered_json matrix_json(const Pose& T) {
 }
 
 nlohmann::ordered_json nominal_json(const Calibration& calibration) {
+  const std::array<Backing, 6> backing = backing_of(calibration);
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < 6; ++i)
-    if (from_nominal(calibration, i)) names.push_back(direction_names[i]);
+    if (backing[i] == Backing::nominal) names.push_back(direction_names[i]);
   return names;
 }
 

@@ -7,7 +7,7 @@
 namespace egocal::tools {
 
 /// A signal ends `egocal up` as a user means it, at any time: with what was calibrated so far, of which
-/// there is nothing at first. An output that nobody reads ends nothing. One at a time, on the main thread.
+/// there is nothing at first. A closed output does not end it. One at a time, on the main thread.
 class Interruptions {
  public:
   /// player: a log is to be played, which is a failure where nothing is calibrated.

@@ -117,8 +117,8 @@ BestReading best_common_mistake(const Evidence& evidence, const DiagnosisOptions
     twin.reset();
   if (number_explains(compare(best.as_is.explained, best.scaled.explained), options) &&
       shows_scale(evidence, best, options))
-    return {best.scaled, twin, {}, {}};
-  return {best.as_is, twin, {}, {}};
+    return {best.scaled, twin};
+  return {best.as_is, twin};
 }
 
 /// Positions mirrored at the origin in one stream are those of the other one mirrored, for every rotation.
@@ -229,9 +229,9 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
   if (turned_other && compare(turned_other->explained, turned->explained).gain > options.alike)
     turned_other.reset();
   BestReading result = given;
-  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options), {}, {}};
+  if (exchanged) result = {*exchanged, mirrored_twin(evidence, *exchanged, options)};
   if (turned && better(compare(result.best.explained, turned->explained), options.gain, options))
-    result = {*turned, turned_other, {}, {}};
+    result = {*turned, turned_other};
   CommonAxes common = common_axes(evidence, options);
   if (std::optional<Explanation>& both = common.best) {
     const Comparison comparison = compare(result.best.explained, both->explained);
@@ -239,9 +239,9 @@ BestReading best_axes(const Evidence& evidence, const BestReading& given, const 
     const bool simpler = is_permutation(both->read_b.axes) && turned && result.best.code == turned->code &&
                          !is_permutation(result.best.read_a.axes * result.best.read_b.axes);
     if (better(comparison, options.gain, options))
-      result = {*std::move(both), {}, {}, {}};
+      result = {*std::move(both)};
     else if (simpler && comparison.gain > -options.alike)
-      result = {*std::move(both), result.best, {}, {}};
+      result = {*std::move(both), result.best};
   }
   result.inverse_rotations = std::move(common.possible);
   result.turned_axes = std::move(possible);

@@ -11,12 +11,12 @@ namespace egocal::detail {
 
 struct BestReading {
   Explanation best;
-  std::optional<Explanation> twin;  ///< fits as well
+  std::optional<Explanation> twin{};  ///< fits as well
   /// Rotations of both files that are those of the inverse poses, where the motions show it but do not prove
   /// it (CommonAxesOptions); whatever the best reading is.
-  std::optional<Explanation> inverse_rotations;
+  std::optional<Explanation> inverse_rotations{};
   /// Axes of one file that are turned by a few degrees, likewise (TurnedAxesOptions).
-  std::optional<Explanation> turned_axes;
+  std::optional<Explanation> turned_axes{};
 };
 
 /// As given unless another reading is clearly better; with a scale of b where that is shown besides.

@@ -7,7 +7,6 @@
 
 #include "egocal/microseconds.hpp"
 #include "egocal/printable.hpp"
-#include "io/stream_list.hpp"
 
 namespace egocal::detail {
 

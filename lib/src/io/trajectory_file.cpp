@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/trajectory_file.hpp"
-#include "egocal/printable.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -9,6 +8,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/microseconds.hpp"
+#include "egocal/printable.hpp"
 #include "io/static_transform.hpp"
 #include "io/stream_list.hpp"
 #include "io/transform_chain.hpp"

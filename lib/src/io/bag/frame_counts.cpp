@@ -3,7 +3,6 @@
 #include "io/bag/frame_counts.hpp"
 
 #include "egocal/printable.hpp"
-#include "io/stream_list.hpp"
 
 namespace egocal::detail {
 
