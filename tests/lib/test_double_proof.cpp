@@ -15,7 +15,7 @@
 #include "certificate/assess.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::test_double_proof {
 namespace {

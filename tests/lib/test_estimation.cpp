@@ -10,9 +10,9 @@
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
 #include "diagnosis/stability.hpp"
-#include "egocal/estimation/stride_sums.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
+#include "egocal/pairing/stride_sums.hpp"
 #include "problem/motion_square.hpp"
 
 namespace egocal::test_estimation {

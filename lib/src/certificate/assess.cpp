@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 

@@ -7,7 +7,7 @@
 
 #include "diagnosis/motions.hpp"
 #include "egocal/diagnosis/options.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 

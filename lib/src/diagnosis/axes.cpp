@@ -13,7 +13,7 @@
 #include "diagnosis/robust_fit.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {

@@ -11,7 +11,7 @@
 #include "diagnosis/stillest_point.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
-#include "egocal/samples/calibrate_samples.hpp"
+#include "egocal/pairing/match_samples.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"

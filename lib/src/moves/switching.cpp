@@ -12,7 +12,7 @@
 #include "egocal/microseconds.hpp"
 #include "moves/division.hpp"
 #include "moves/moving_pairs.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 

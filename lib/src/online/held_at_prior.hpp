@@ -12,8 +12,12 @@ struct HoldOptions {
   /// How many times the curvature of what holds is that of the motions: noise then pulls the answer from the
   /// prior by less than 1e-5 of the difference, and rounding costs five of the sixteen digits of a proof.
   double stiffness = 1e5;
-  /// A hidden direction with more than this part of its square in translation is held as one. Others keep at
-  /// least as much rotation.
+  /// A hidden direction with more than this part of its square in translation is held as one, others as turns
+  /// about a line. The motions of what turns about a line are as long as its arm makes them, and they set the
+  /// unit of length: at most four fifths of a turn are translation. Of a translation that is all but what
+  /// noise mixes into it. So this is 1 - 0.3^2, from where ObservabilityOptions::hinted_part counts a turn.
+  /// 0.8 to 0.99 have the same answers; with 0.5 turns with long arms were held as translations, and roll and
+  /// pitch were off by up to 45 standard deviations. Study: docs/method.md, "Hidden turns".
   double mostly_translation = 0.5;
   /// An answer that is closer to the prior is there: rounding [m, rad].
   double there = 1e-9;

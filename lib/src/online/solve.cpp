@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "certificate/verify.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
@@ -13,6 +12,7 @@
 #include "online/solve_and_verify.hpp"
 #include "solvers/proven_dual.hpp"
 #include "uncertainty/frame_a.hpp"
+#include "verification/verify.hpp"
 
 namespace egocal {
 

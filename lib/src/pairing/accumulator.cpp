@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "egocal/microseconds.hpp"
-#include "estimation/motions_to_one.hpp"
+#include "motions/motions_between.hpp"
+#include "motions/motions_to_one.hpp"
 #include "pairing/choice_schedule.hpp"
-#include "pairing/motions_between.hpp"
 #include "robust/disagreements.hpp"
 
 namespace egocal {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "egocal/estimation/stride_sums.hpp"
+#include "egocal/pairing/stride_sums.hpp"
 
 namespace egocal::detail {
 

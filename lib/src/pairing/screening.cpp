@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pairing/motions_between.hpp"
+#include "motions/motions_between.hpp"
 
 namespace egocal {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "egocal/rig/rig.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 

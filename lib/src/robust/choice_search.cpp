@@ -8,7 +8,7 @@
 
 #include "certificate/assess.hpp"
 #include "egocal/solvers/global.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 

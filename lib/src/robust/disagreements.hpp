@@ -5,7 +5,7 @@
 #include <array>
 
 #include "egocal/robust/consensus.hpp"
-#include "estimation/motions_to_one.hpp"
+#include "motions/motions_to_one.hpp"
 
 namespace egocal::detail {
 

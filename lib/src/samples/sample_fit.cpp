@@ -7,8 +7,8 @@
 
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
+#include "problem/tangent.hpp"
 #include "samples/shared_poses.hpp"
-#include "solvers/tangent.hpp"
 
 namespace egocal::detail {
 

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "certificate/verify.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/solvers/global.hpp"
 #include "scale/joint_jackknife.hpp"
 #include "solvers/minimiser.hpp"
 #include "solvers/proven_dual.hpp"
+#include "verification/verify.hpp"
 
 namespace egocal {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "egocal/solvers/global.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal::detail {

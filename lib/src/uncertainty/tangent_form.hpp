@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "egocal/problem/cost.hpp"
-#include "solvers/tangent.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 

@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/problem/problem.hpp"
 #include "egocal/solvers/global.hpp"
+#include "egocal/uncertainty/directions.hpp"
 
 namespace egocal {
 
@@ -18,14 +17,6 @@ namespace egocal {
 enum class Method { dual, sdp, sqp, slsqp };
 std::string_view to_string(Method method);
 std::optional<Method> method_from_name(std::string_view name);  ///< also "global" (dual) and "fast" (sqp)
-
-/// Per direction x y z roll pitch yaw of sensor a's frame.
-struct Observability {
-  std::array<bool, 6> observable{};
-  std::array<double, 6> stddev{};  ///< [m, rad]; infinite where not observable
-  std::string hint;                ///< which motion would help most; empty where nothing is missing
-};
-EGOCAL_SAME_LAYOUT(Observability)
 
 /// Fit (cost), optimality (certificate) and uncertainty (observability) are three different things.
 struct Answer {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "egocal/estimation/attenuation.hpp"
-#include "egocal/estimation/stride_sums.hpp"
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "egocal/pairing/options.hpp"
 #include "egocal/pairing/outcome.hpp"
 #include "egocal/pairing/selection.hpp"
+#include "egocal/pairing/stride_sums.hpp"
 #include "egocal/problem/problem.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "egocal/motions/instant.hpp"
 #include "egocal/pairing/congruence.hpp"
-#include "egocal/pairing/instant.hpp"
 #include "egocal/pairing/options.hpp"
 #include "egocal/pairing/outcome.hpp"
 

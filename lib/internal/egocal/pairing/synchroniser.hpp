@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "egocal/pairing/options.hpp"
 #include "egocal/pairing/outcome.hpp"
 #include "egocal/pairing/trajectory.hpp"

@@ -4,7 +4,8 @@
 
 #include <array>
 
-#include "egocal/online/answer.hpp"
+#include "egocal/problem/problem.hpp"
+#include "egocal/uncertainty/directions.hpp"
 
 namespace egocal {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "egocal/geometry/pose.hpp"
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {

@@ -8,7 +8,7 @@
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/microseconds.hpp"
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "egocal/solvers/global.hpp"
 #include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"

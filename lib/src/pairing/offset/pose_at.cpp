@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "pairing/smooth_interpolation.hpp"
 
 namespace egocal::detail {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "egocal/microseconds.hpp"
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "pairing/offset/pose_at.hpp"

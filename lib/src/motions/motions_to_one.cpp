@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "estimation/motions_to_one.hpp"
+#include "motions/motions_to_one.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -55,7 +55,7 @@ namespace narrow {
     for (int k = 0; k < lane_count; ++k) to[lane][at + k] = (*rows[k])[lane];
 }
 
-#include "estimation/motions_to_one_lanes.hpp"
+#include "motions/motions_to_one_lanes.hpp"
 
 }  // namespace narrow
 
@@ -86,7 +86,7 @@ namespace wide {
   _mm256_storeu_pd(to[3] + at, _mm256_permute2f128_pd(high_01, high_23, 0x31));
 }
 
-#include "estimation/motions_to_one_lanes.hpp"
+#include "motions/motions_to_one_lanes.hpp"
 
 }  // namespace wide
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 
 namespace egocal::detail {
 

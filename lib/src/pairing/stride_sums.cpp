@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "egocal/estimation/stride_sums.hpp"
+#include "egocal/pairing/stride_sums.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "egocal/robust/consensus.hpp"
-#include "estimation/motions_to_one.hpp"
+#include "motions/motions_between.hpp"
+#include "motions/motions_to_one.hpp"
 #include "pairing/choice_schedule.hpp"
-#include "pairing/motions_between.hpp"
 #include "problem/motion_square.hpp"
 
 namespace egocal {

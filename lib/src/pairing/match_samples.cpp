@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include "egocal/pairing/match_samples.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <optional>
+#include <string>
 
 #include "egocal/error.hpp"
-#include "egocal/samples/calibrate_samples.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "problem/motion_square.hpp"
 
 namespace egocal::detail {

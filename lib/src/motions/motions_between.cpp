@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairing/motions_between.hpp"
+#include "motions/motions_between.hpp"
 
 namespace egocal {
 

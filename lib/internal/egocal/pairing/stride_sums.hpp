@@ -11,7 +11,7 @@
 #include "egocal/estimation/stride_blocks.hpp"
 #include "egocal/estimation/weighted_blocks.hpp"
 #include "egocal/estimation/weighting.hpp"
-#include "egocal/pairing/instant.hpp"
+#include "egocal/motions/instant.hpp"
 #include "egocal/pairing/options.hpp"
 #include "egocal/robust/consensus.hpp"
 
