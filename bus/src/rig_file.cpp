@@ -91,7 +91,8 @@ void read_sensors_of_pair(const TomlTable& in, const Rig& rig, PairConfig& pair)
   if (unscaled_a && unscaled_b)
     in.fail("b", "both sensors have scale = \"auto\": one of the two must measure metres");
   // the motions of such a pair have a length of their own
-  if ((unscaled_a || unscaled_b) && in.has("stride"))
+  const bool chosen = in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto");
+  if ((unscaled_a || unscaled_b) && chosen)
     in.fail("stride", "cannot be chosen where a sensor has scale = \"auto\"");
 }
 

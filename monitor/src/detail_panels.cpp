@@ -128,7 +128,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
                                   spread_rows ? s.plus_minus + std::string(" t") : "error t",
                                   spread_rows ? s.plus_minus + std::string(" R") : "error R"};
   if (transforms) labels.insert(labels.end(), std::begin(direction_names), std::end(direction_names));
-  for (const char* label : {"cost", "solve", "verify", "total", "frames", "age"}) labels.emplace_back(label);
+  for (const char* label : {"cost", "solve", "verify", "total", "motions", "age"}) labels.emplace_back(label);
   for (std::size_t i = 0; i < labels.size(); ++i)
     pane.text(2, 2 + static_cast<int>(i), pad_right(labels[i], label_width - 3), Style::dim);
 

@@ -78,7 +78,7 @@ std::vector<PlacedColumn> layout_pair_table(int width) {
                              {PairColumn::proof, 7, 4},          {PairColumn::error_translation, 9, 2},
                              {PairColumn::error_rotation, 8, 3}, {PairColumn::translation, 29, 8},
                              {PairColumn::rotation, 29, 9},      {PairColumn::gap, 8, 10},
-                             {PairColumn::frames, 6, 5},         {PairColumn::solver, 10, 6},
+                             {PairColumn::motions, 7, 5},        {PairColumn::solver, 10, 6},
                              {PairColumn::solve, 7, 11},         {PairColumn::verify, 7, 12},
                              {PairColumn::latency, 7, 13},       {PairColumn::age, 6, 7}};
   std::array<bool, std::size(wishes)> chosen{};

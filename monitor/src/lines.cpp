@@ -132,7 +132,7 @@ std::string pair_lines(const Model& model, Charset charset) {
     if (const std::string advice = advice_of(pair).text; !advice.empty()) text += ": " + clean(advice, 400);
     if (text.ends_with('.')) text.pop_back();
     text += "; " + proof_of(*answer).text + " by " + clean(answer->solver, 40) + " (" +
-            clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " frames, ";
+            clean(answer->method, 20) + "), " + std::to_string(answer->pairs) + " motions, ";
     if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " outliers, ";
     if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
     if (pair_is_paused(model, pair)) text += "paused, ";

@@ -14,10 +14,10 @@ namespace {
 /// At the right edge of a card's first row: as much as there is room for behind x.
 void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool paused) {
   const calibration_t* answer = pair.answer();
-  const std::string frames = count(answer             ? answer->pairs
-                                   : pair.has_problem ? pair.problem.matched
-                                                      : 0) +
-                             " frames";
+  const std::string motions = count(answer             ? answer->pairs
+                                    : pair.has_problem ? pair.problem.matched
+                                                       : 0) +
+                              " motions";
   const std::string mode = paused                    ? "PAUSED  "
                            : pair.ended              ? "ENDED  "
                            : pairing_is_silent(pair) ? "PAIRING IS SILENT  "
@@ -32,7 +32,7 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
                                             pair.standing)),
                                5)
              : "";
-  const std::string* parts[] = {&mode, &frames, &left_out, &rejected, &old};
+  const std::string* parts[] = {&mode, &motions, &left_out, &rejected, &old};
   for (const unsigned chosen : {0b11111u, 0b10111u, 0b10011u, 0b10010u, 0b00010u, 0b10000u}) {
     std::string text;
     for (std::size_t i = 0; i < std::size(parts); ++i)

@@ -60,8 +60,8 @@ const char* heading_of(PairColumn column, ErrorKind error, Charset charset) {
       return error.spread ? "spread t" : error.nominal ? "off" : "error t";
     case PairColumn::error_rotation:
       return error.spread ? "spread R" : error.nominal ? "nominal" : "error R";
-    case PairColumn::frames:
-      return "frames";
+    case PairColumn::motions:
+      return "motions";
     case PairColumn::solver:
       return "by";
     case PairColumn::translation:
@@ -145,7 +145,7 @@ std::optional<Cell> cell_of(const PairState& pair, const PlacedColumn& placed, b
     const Label verdict = verdict_of(pair, charset);
     return Cell{verdict.text, verdict.style};
   }
-  if (column == PairColumn::frames)
+  if (column == PairColumn::motions)
     return Cell{count(answer ? answer->pairs : pair.has_problem ? pair.problem.matched : 0)};
   if (!answer) return std::nullopt;
   return cell_of_answer(pair, *answer, column, now, charset);

@@ -53,7 +53,7 @@ class HeaderLine {
   int x_ = 1, end_ = 0;
 };
 
-/// "lidar -> camera  good by global · 412 frames · 3 outliers · 3-D · offset 0.0 ms · many strides".
+/// "lidar -> camera  good by global · 412 motions · 3 outliers · 3-D · offset 0.0 ms · many strides".
 void draw_pair_header(HeaderLine& line, const PairState& pair, bool paused, Charset charset) {
   const Symbols& s = symbols(charset);
   line.must(pair_title(pair, charset, line.width() >= 60 ? 24 : 12), Style::title, 2);
@@ -69,7 +69,7 @@ void draw_pair_header(HeaderLine& line, const PairState& pair, bool paused, Char
       line.item(by, Style::dim);
       line.item(solver, solver_style(pair.counted_solver()->role));
     }
-    line.item(between + count(answer->pairs) + " frames", Style::dim);
+    line.item(between + count(answer->pairs) + " motions", Style::dim);
   }
   if (!pair.has_problem) return;
   const problem_t& problem = pair.problem;

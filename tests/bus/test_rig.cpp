@@ -113,6 +113,7 @@ TEST(Rig, AScaleCanBeLookedFor) {
   EXPECT_EQ(unscaled_side(rig, rig.pairs[0]), Side::b);
   const Rig known = parse_rig(sensors + pair, "my.toml");
   EXPECT_FALSE(unscaled_side(known, known.pairs[0]));
+  EXPECT_NO_THROW(parse_rig(lidar + camera + pair + "stride = \"auto\"\n", "my.toml"));
   for (const std::string& text :
        {lidar + "scale = \"auto\"\n" + camera + pair, lidar + camera + pair + "stride = 3\n",
         lidar + "scale = \"maybe\"\n" + pair})

@@ -65,6 +65,26 @@ TEST_F(Tables, HeadersInManyStylesMeanTheSame) {
   expect_two_poses(rows);  // without a header: seconds, w last, as hand-eye tools write it
 }
 
+/// A time under a name that is not known was passed over without a word, and 10 Hz were assumed.
+TEST_F(Tables, AColumnThatIncreasesMayHoldTheTimes) {
+  const std::string rows = "1000.0,1,2,3,0,0,0,1\n1000.1,4,5,6,0,0,0,1\n1000.3,4,5,6,0,0,0,1\n";
+  const TrajectoryReading reading = read("Zeit,x,y,z,qx,qy,qz,qw\n" + rows);
+  ASSERT_EQ(reading.notes.size(), 2u);
+  EXPECT_THAT(reading.notes[0], HasSubstr("column 1 (Zeit) increases as times do"));
+  EXPECT_THAT(reading.notes[1], HasSubstr("10 Hz assumed"));
+  // numbers of rows do as well
+  EXPECT_EQ(read("id,x,y,z,qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n2,4,5,6,0,0,0,1\n3,4,5,6,0,0,0,1\n").notes.size(),
+            1u);
+  EXPECT_THAT(read("t,x,y,z,qx,qy,qz,qw\n" + rows).notes, IsEmpty());
+}
+
+/// In a table such a row was skipped, in TUM's format it refused the file.
+TEST_F(Tables, ARowWithoutATimeIsSkipped) {
+  const TrajectoryReading reading = read("1000.0 1 2 3 0 0 0 1\nnan 4 5 6 0 0 0 1\n1000.1 4 5 6 0 0 0 1\n");
+  EXPECT_EQ(reading.trajectory.size(), 2u);
+  EXPECT_EQ(reading.losses.refused, 1);
+}
+
 /// With its own header EuRoC's csv was a "table" whose nanoseconds were remarked upon.
 TEST_F(Tables, EurocIsEurocWithItsHeader) {
   const std::string rows =

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Lengths in another unit or scale and times in another unit or of another clock are named, with their value.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -160,6 +161,20 @@ TEST(UnitsAndClocks, TheRemedyOfAUnitNamesTheStreamThatItIsOf) {
   const Calibration of_a = calibrate(testing::lengthened(streams.a, 1000), streams.b);
   ASSERT_NE(finding = find(of_a, "units"), nullptr);
   EXPECT_EQ(finding->remedy, "--scale 0.001");
+}
+
+/// Kilometres are rare, but a sensor that goes some millimetres a second is as rare: the larger numbers of a
+/// were called wrong for certain, and the answer that the cure gave was in kilometres and `good`.
+TEST(UnitsAndClocks, AStreamMayAlsoBeInKilometres) {
+  const testing::Streams streams = drive(Terrain::free);  // 8 m/s
+  const Calibration of_b = calibrate(streams.a, testing::lengthened(streams.b, 0.001));
+  const Finding* finding = find(of_b, "units");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_THAT(finding->message, ::testing::HasSubstr("a or of b are not in metres"));
+  EXPECT_THAT(finding->remedy, ::testing::HasSubstr("--scale-b 1000"));
+  const Calibration of_a = calibrate(testing::lengthened(streams.a, 0.001), streams.b);
+  ASSERT_NE(finding = find(of_a, "units"), nullptr);
+  EXPECT_THAT(finding->remedy, ::testing::HasSubstr("--scale 1000"));
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(Lines, SayWhatTheScreenSays) {
   drive.run(40);
   const std::string line = pair_lines(drive.model, Charset::ascii);
   for (const char* part :
-       {"lidar -> camera: not judged yet; optimal (proven) by egocal-fast (sqp), 40 frames, 3 outliers, 17 "
+       {"lidar -> camera: not judged yet; optimal (proven) by egocal-fast (sqp), 40 motions, 3 outliers, 17 "
         "rejected, x y z ",
         "+-", " cm, roll pitch yaw ", ", error ", ", gap ", " of 1, solve 5.2 us verify 1.9 us"})
     EXPECT_THAT(line, HasSubstr(part));

@@ -229,7 +229,7 @@ TEST(WithoutATerminal, LinesAndObjectsForPipes) {
   const std::string log = " --log " + recording;
   const Output once = output_of(environment("xterm") + program + log + " --once 2>&1");
   EXPECT_EQ(once.status, 0);
-  EXPECT_THAT(once.text, HasSubstr("optimal (proven) by egocal-fast (sqp), 200 frames"));
+  EXPECT_THAT(once.text, HasSubstr("optimal (proven) by egocal-fast (sqp), 200 motions"));
   EXPECT_THAT(once.text, HasSubstr("egocal-fast: running, pid 4711 on car"));
   EXPECT_THAT(once.text, Not(HasSubstr("\x1b")));
   const Output json = output_of(environment("xterm") + program + log + " --once --json 2>&1");

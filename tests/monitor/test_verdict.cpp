@@ -236,7 +236,7 @@ TEST_F(VerdictShown, InLines) {
   judge(without_scale());
   EXPECT_THAT(pair_lines(model, Charset::ascii),
               HasSubstr("lidar -> camera: ! contradictory: The lengths of b are 0.37 times those of a. Cure: "
-                        "--scale-b auto; optimal (proven) by egocal-fast (sqp), 101 frames"));
+                        "--scale-b auto; optimal (proven) by egocal-fast (sqp), 101 motions"));
 }
 
 TEST_F(VerdictShown, InJson) {

@@ -54,7 +54,7 @@ class View : public ::testing::Test {
 TEST_F(View, APairsCardSaysAllOfIt) {
   const std::string text = shown(Screen::overview, 110, 30);
   for (const char* part :
-       {"lidar → camera", "optimal (proven)", "egocal-", "3-D", "101 frames", "translation", "roll", "±",
+       {"lidar → camera", "optimal (proven)", "egocal-", "3-D", "101 motions", "translation", "roll", "±",
         "cm", "error", "of 1", "solve", "verify", "end to end", "q quit", "? help"})
     EXPECT_THAT(text, HasSubstr(part));
 }

@@ -171,7 +171,32 @@ TEST_F(Commands, BadTrajectoriesAreRefused) {
   for (int i = 0; i < 50; ++i)
     milliseconds += std::to_string(100 * i) + "," + std::to_string(i) + ",0,0,0,0,0,1\n";
   expect_refusal(egocal("solve " + good + " " + file("ms.tum", milliseconds)), 1,
-                 "b lasts 1e+03 times as long: multiply its times if they are in another unit");
+                 "b lasts 1000 times as long: multiply its times if they are in another unit");
+}
+
+/// Where there was no answer, there were no warnings either, though they may say why.
+TEST_F(Commands, WarningsArePrintedWithoutAnAnswerToo) {
+  const std::string good =
+      file("good.tum", tum(50, [](int i) { return std::to_string(i) + " 0 0 0 0 0 1"; }));
+  std::string unnamed = "Zeit,x,y,z,qx,qy,qz,qw\n";
+  for (int i = 0; i < 50; ++i) unnamed += std::to_string(1000 + 0.1 * i) + ",1,2,3,0,0,0,1\n";
+  const std::string other = file("other.csv", unnamed);
+  for (const std::string command : {"solve ", "check ", "align "}) {
+    const Outcome run = egocal(command + good + " " + other);
+    EXPECT_EQ(run.code, 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("warning: " + other + ": column 1 (Zeit) increases as times do"));
+    EXPECT_THAT(run.err, HasSubstr("10 Hz assumed"));
+    EXPECT_THAT(run.err, HasSubstr("no motion pairs"));
+  }
+  EXPECT_THAT(egocal("solve " + good + " " + other + " " + good).err, HasSubstr("10 Hz assumed"));
+}
+
+TEST_F(Commands, InfoIsAsStrictAsTheOthers) {
+  const std::string doubled = file("doubled.tum", good_line + good_line + "1000.1 1 0 0 0 0 0 1\n"),
+                    lost = file("lost.tum", good_line + "1000.1 nan 0 0 0 0 0 1\n1000.2 1 0 0 0 0 0 1\n");
+  expect_refusal(egocal("info --strict " + doubled), 1, "expected increasing times");
+  expect_refusal(egocal("info --strict " + lost), 1, "without a usable pose");
+  EXPECT_EQ(egocal("info " + lost).code, 0);
 }
 
 TEST_F(Commands, AClockThatIsRightToTensOfMicrosecondsIsRight) {

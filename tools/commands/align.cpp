@@ -20,7 +20,7 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct AlignOptions {
   RequestOptions request;
   std::string out;
   bool json = false;
@@ -77,7 +77,7 @@ std::string as_text(const SolveResult& result, const Alignment& alignment) {
   return text;
 }
 
-void run(const Options& options, const std::string& command_line) {
+void run_align(const AlignOptions& options, const std::string& command_line) {
   SolveRequest request = understood(options.request);
   request.keep_motions = true;
   const SolveResult result = calibrate_offline(request);
@@ -102,13 +102,13 @@ void run(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_align(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AlignOptions>();
   cli::App command = program.add_subcommand(
       "align", "lays trajectory B over A: extrinsic, transform between the worlds, B in A's frames");
   add_request_options(command, options->request, Sources::two_trajectories);
   command.add_output("--out", options->out, "B as a trajectory of sensor a in the world of a, as TUM");
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options, command] { run(*options, command.command_line()); });
+  command.callback([options, command] { run_align(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

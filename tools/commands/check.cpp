@@ -18,30 +18,31 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct CheckOptions {
   MotionSource source;
   ReadingOptions reading;
   bool json = false;
 };
 
 /// "-": a tenth without motions has no residual, one at rest none as a part of the distance.
-std::string number(double value, int decimals) {
+std::string with_decimals(double value, int decimals) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
 }
 
 std::string tenths_text(const Fit& fit) {
   std::string text = "\n    from      to   rotation  translation  of the distance\n";
   for (const FitTenth& tenth : fit.tenths)
-    text +=
-        fmt::format("{:7.1f} {:7.1f} s {:>8} deg {:>8} cm {:>12} %\n", tenth.begin, tenth.end,
-                    number(tenth.rotation_median * 57.29577951308232, 3),
-                    number(100 * tenth.translation_median, 2), number(100 * tenth.translation_relative, 2));
+    text += fmt::format("{:7.1f} {:7.1f} s {:>8} deg {:>8} cm {:>12} %\n", tenth.begin, tenth.end,
+                        with_decimals(tenth.rotation_median * 57.29577951308232, 3),
+                        with_decimals(100 * tenth.translation_median, 2),
+                        with_decimals(100 * tenth.translation_relative, 2));
   return text;
 }
 
-void run(const Options& options, const std::string& command_line) {
+void run_check(const CheckOptions& options, const std::string& command_line) {
   if (!options.source.log.empty()) refuse_reading_options(options.reading, "--log");
   SolveRequest request;
+  request.unanswered = print_warnings;
   request.source = options.source;
   request.source.reading_a = options.reading.of_a();
   request.source.reading_b = options.reading.of_b();
@@ -64,7 +65,7 @@ void run(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_check(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   cli::App command = program.add_subcommand(
       "check", "do two trajectories belong together? Tries other readings, scale, clock and a moved mount");
   command.add_option("A", options->source.a, "trajectory of sensor a; with --log its channel").required();
@@ -72,7 +73,7 @@ void add_check(cli::App program) {
   command.add_option("--log", options->source.log, "LCM log; A and B are names of its channels");
   add_reading_options(command, options->reading);
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options, command] { run(*options, command.command_line()); });
+  command.callback([options, command] { run_check(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

@@ -17,13 +17,13 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct CompareOptions {
   Source source;
   int repeats = 10;
   bool json = false, csv = false, latex = false;
 };
 
-nlohmann::ordered_json row_json(const ComparisonRow& row) {
+nlohmann::ordered_json comparison_json(const ComparisonRow& row) {
   const Pose T = to_pose(row.T_a_b);
   nlohmann::ordered_json json;
   json["method"] = row.method;
@@ -39,7 +39,7 @@ nlohmann::ordered_json row_json(const ComparisonRow& row) {
   return json;
 }
 
-void run(const Options& options, const std::string& command_line) {
+void run_compare(const CompareOptions& options, const std::string& command_line) {
   const DataSet data = load_warning(options.source);
   const std::vector<ComparisonRow> rows = compare(data, options.repeats);
   if (options.json) {
@@ -51,7 +51,7 @@ void run(const Options& options, const std::string& command_line) {
     json["notes"] = data.notes;
     json["pairs"] = data.pairs.size();
     json["methods"] = nlohmann::ordered_json::array();
-    for (const ComparisonRow& row : rows) json["methods"].push_back(row_json(row));
+    for (const ComparisonRow& row : rows) json["methods"].push_back(comparison_json(row));
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return;
   }
@@ -66,7 +66,7 @@ void run(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_compare(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   cli::App command =
       program.add_subcommand("compare", "every method on one data set: the paper's Tables I and II");
   add_source_options(command, options->source);
@@ -76,7 +76,7 @@ void add_compare(cli::App program) {
   const cli::Option json = command.add_flag("--json", options->json, "one JSON object on standard output");
   const cli::Option csv = command.add_flag("--csv", options->csv, "the table as CSV").excludes(json);
   command.add_flag("--latex", options->latex, "the table as LaTeX").excludes(json).excludes(csv);
-  command.callback([options, command] { run(*options, command.command_line()); });
+  command.callback([options, command] { run_compare(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

@@ -20,7 +20,7 @@ namespace egocal::tools {
 namespace {
 
 /// A progress bar on standard error, on a terminal.
-class Progress {
+class ProgressBar {
  public:
   void operator()(double part) {
     const int percent = static_cast<int>(100 * part);
@@ -76,7 +76,7 @@ void add_noise(cli::App experiment) {
   command.add_option("--seed", options->noise.seed, "of the random numbers").show_default();
   command.add_output("--out", options->out, "folder for the CSV and the SVG pictures").show_default();
   command.callback([options] {
-    const std::vector<NoisePoint> points = noise_experiment(options->noise, Progress{});
+    const std::vector<NoisePoint> points = noise_experiment(options->noise, ProgressBar{});
     finish(points, options->out, "noise");
     fmt::print("\nexponents of n, mean of all runs where n > 100:\n\n{}", markdown(slopes(points)));
   });
@@ -116,7 +116,7 @@ void add_online(cli::App experiment) {
     online.fast = method_from_name(options->fast).value_or(Method::sqp);
     online.global = method_from_name(options->global).value_or(Method::dual);
     const Mode mode = data.plane_a ? Mode::planar : Mode::spatial;
-    finish(online_experiment(data, mode, options->frames, online, Progress{}), options->out, "online");
+    finish(online_experiment(data, mode, options->frames, online, ProgressBar{}), options->out, "online");
   });
 }
 
@@ -156,7 +156,7 @@ void add_paper(cli::App experiment) {
       .show_default()
       .check(cli::Check::range(1, 1000));
   command.callback([options] {
-    Progress progress;
+    ProgressBar progress;
     fmt::print("{}\n", reproduce_paper(*options, [&](const std::string&, double part) { progress(part); }));
   });
 }

@@ -29,7 +29,7 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string log, rig, url, pair, format = "yaml", out;
   double timeout = 5;
   bool all = false;
@@ -60,7 +60,7 @@ struct Found {
   std::set<PairName> with_nominal{};  ///< as the rig file says, for answers whose problem is not received
 };
 
-Found recorded(const Options& options) {
+Found recorded(const ExportOptions& options) {
   Found found{{}, recorded_answers(options.log)};
   for (const auto& [pair, best] : found.answers.all()) found.pairs.push_back(pair);
   if (found.pairs.empty()) throw Error("export: there is no answer in " + options.log);
@@ -70,7 +70,7 @@ Found recorded(const Options& options) {
 
 /// Solvers send their newest answer, and pairing its problem, again every second. What is certified for a
 /// problem on the bus cannot be outdone but by newer problems; anything less is waited with until the end.
-Found heard(const Options& options) {
+Found heard(const ExportOptions& options) {
   const bus::Rig rig = bus::read_rig(options.rig);
   std::vector<PairName> pairs;
   for (const bus::PairConfig& pair : rig.pairs) pairs.emplace_back(pair.a, pair.b);
@@ -158,7 +158,7 @@ NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
 }
 
 /// One extrinsic, or all of a rig as a tree.
-std::string text_of(const std::vector<NamedExtrinsic>& extrinsics, const Options& options) {
+std::string text_of(const std::vector<NamedExtrinsic>& extrinsics, const ExportOptions& options) {
   const ExtrinsicFormat format = *extrinsic_format_from_name(options.format);
   if (!options.all) return extrinsic_text(extrinsics.front(), format);
   if (extrinsics.empty()) throw Error("export: there is no answer for any pair");
@@ -169,7 +169,7 @@ std::string text_of(const std::vector<NamedExtrinsic>& extrinsics, const Options
   return extrinsic_tree_text(tree, format);
 }
 
-void run(const Options& options) {
+void run_export(const ExportOptions& options) {
   if (options.log.empty() == options.rig.empty()) throw UsageError("export: expected either --log or --rig");
   const bool live = options.log.empty();
   const Found found = live ? heard(options) : recorded(options);
@@ -198,7 +198,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_export(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportOptions>();
   cli::App command = program.add_subcommand("export", "export the current answer (YAML, ROS, URDF, ...)");
   const cli::Option rig =
       command.add_option("--rig", options->rig, "rig file: takes the answer from the running processes");
@@ -217,7 +217,7 @@ void add_export(cli::App program) {
       .check(cli::Check::not_negative())
       .show_default()
       .needs(rig);
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_export(*options); });
 }
 
 }  // namespace egocal::tools

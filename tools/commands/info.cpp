@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct InfoOptions {
   std::string name;
   ReadOptions reading;
   bool json = false;
@@ -42,8 +42,18 @@ struct Contents {
   std::vector<std::string> notes;
 };
 
+/// As the commands that use the poses do.
+void refuse_repairs_of(const std::string& name, const Contents& contents) {
+  if (contents.losses.any()) throw error_at(name, 0, "", losses_in_words(contents.losses));
+  for (const Row& row : contents.rows)
+    if (row.summary.out_of_order > 0)
+      throw error_at(name, 0, row.stream.name,
+                     counted(row.summary.out_of_order, "time") +
+                         " not later than the one before it, expected increasing times");
+}
+
 /// One pass over the file; of a chain of transforms the resolved poses.
-Contents read_contents(const Options& options) {
+Contents read_contents(const InfoOptions& options) {
   const RecordingName name = parse_recording_name(options.name);
   const std::unique_ptr<Recording> recording = open_any_recording(name.file, options.reading);
   Contents contents;
@@ -76,6 +86,7 @@ Contents read_contents(const Options& options) {
   for (const std::string& unused : recording->unused(options.reading)) contents.notes.push_back(unused);
   contents.format = recording->format();
   contents.losses = recording->losses();
+  if (options.reading.strict) refuse_repairs_of(options.name, contents);
   return contents;
 }
 
@@ -103,7 +114,7 @@ ordered_json row_json(const Row& row) {
   return object;
 }
 
-void print_json(const Options& options, const Contents& contents, const std::string& command_line) {
+void print_json(const InfoOptions& options, const Contents& contents, const std::string& command_line) {
   ordered_json object = provenance_json(command_line);
   object["file"] = bus::printable(options.name);
   object["format"] = contents.format;
@@ -157,7 +168,7 @@ void print_row(const Row& row) {
     fmt::print("  order           {} times do not increase\n", summary.out_of_order);
 }
 
-void run(const Options& options, const std::string& command_line) {
+void run_info(const InfoOptions& options, const std::string& command_line) {
   const Contents contents = read_contents(options);
   if (options.json) return print_json(options, contents, command_line);
   fmt::print("{}: {}, {}\n", bus::printable(options.name), contents.format,
@@ -170,12 +181,12 @@ void run(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_info(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   cli::App command = program.add_subcommand("info", "what a recording holds: streams, poses, gaps, jumps");
   command.add_option("FILE", options->name, "any recording: FILE, or FILE:TOPIC for one stream").required();
   add_reading_options(command, options->reading);
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options, command] { run(*options, command.command_line()); });
+  command.callback([options, command] { run_info(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

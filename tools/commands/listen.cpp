@@ -17,7 +17,7 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct ListenOptions {
   std::string rig, url;
   double seconds = 3;
   bool json = false;
@@ -65,7 +65,7 @@ bool all_well(const bus::StreamWatch& watch, std::int64_t now_us) {
   return true;
 }
 
-void run(const Options& options) {
+void run_listen(const ListenOptions& options) {
   const bus::Rig rig = options.rig.empty() ? bus::Rig{} : bus::read_rig(options.rig);
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
   bus::StreamWatchOptions watching;
@@ -93,7 +93,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_listen(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ListenOptions>();
   cli::App command = program.add_subcommand(
       "listen",
       "what the sensors send: channel, type, rate, silence, faults with their cures; exit code 1 "
@@ -104,7 +104,7 @@ void add_listen(cli::App program) {
       .show_default();
   command.add_flag("--json", options->json, "machine-readable");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_listen(*options); });
 }
 
 }  // namespace egocal::tools

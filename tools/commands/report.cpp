@@ -16,7 +16,7 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct ReportOptions {
   RequestOptions request;
   std::string out;
 };
@@ -51,7 +51,7 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
   return input;
 }
 
-void run(const Options& options, const std::string& command) {
+void run_report(const ReportOptions& options, const std::string& command) {
   const ReportInput input = write_report(understood(options.request), options.out, command);
   print_warnings(input.warnings);
   fmt::print("{}\n{}\n", input.verdict, options.out);
@@ -70,12 +70,12 @@ ReportInput write_report(SolveRequest request, const std::string& out, const std
 }
 
 void add_report(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   cli::App command = program.add_subcommand(
       "report", "the answer of solve as one HTML page with pictures: print it, or hand it on");
   add_request_options(command, options->request);
   command.add_output("--out", options->out, "the page, written whole or not at all").required();
-  command.callback([options, command] { run(*options, command.command_line()); });
+  command.callback([options, command] { run_report(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "arguments.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -88,6 +89,7 @@ void add_options_of_other_sources(cli::App command, RequestOptions& options) {
 
 SolveRequest understood(const RequestOptions& options) {
   SolveRequest result;
+  result.unanswered = print_warnings;
   result.source = options.source;
   result.source.reading_a = options.reading.of_a();
   result.source.reading_b = options.reading.of_b();

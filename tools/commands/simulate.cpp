@@ -26,7 +26,7 @@ namespace egocal::tools {
 namespace {
 
 /// As typed.
-struct Options {
+struct SimulateOptions {
   std::string out, rig_out, terrain = "rough", type = "odometry";
   std::vector<std::string> sensors = {"lidar=1.0,0.0,1.8,1,0,0,0", "camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5"};
   SimulationOptions simulation;
@@ -167,9 +167,9 @@ std::vector<MountedSensor> understood(const std::vector<std::string>& texts) {
 }
 
 /// The rig file takes its name when the drive is written, and is known to be writable before.
-class RigOutput {
+class WrittenRig {
  public:
-  RigOutput(const std::string& file, const std::string& text) : file_(file), text_(text) {
+  WrittenRig(const std::string& file, const std::string& text) : file_(file), text_(text) {
     std::error_code none;
     const bool written_as_it_is = !can_be_replaced(file) && !std::filesystem::is_directory(file, none);
     if (file.empty() || written_as_it_is) return;
@@ -210,7 +210,7 @@ class NewDirectory {
 };
 
 /// The rig file must not take the name of a file of the drive.
-void refuse_same_name(const Options& options, const std::vector<MountedSensor>& sensors) {
+void refuse_same_name(const SimulateOptions& options, const std::vector<MountedSensor>& sensors) {
   namespace fs = std::filesystem;
   std::error_code none;
   const fs::path rig = fs::weakly_canonical(options.rig_out, none);
@@ -221,7 +221,7 @@ void refuse_same_name(const Options& options, const std::vector<MountedSensor>& 
         throw UsageError("--rig-out: " + options.rig_out + " is a file of --out: expected another name");
 }
 
-void run(Options options, const cli::App& command) {
+void run_simulate(SimulateOptions options, const cli::App& command) {
   if (command.given("--roughness") && options.terrain != "rough")
     throw UsageError("--roughness: goes with --terrain rough");
   if (command.given("--speed-variation") && options.terrain == "free")
@@ -249,7 +249,7 @@ void run(Options options, const cli::App& command) {
   if (directory && !options.rig_out.empty()) refuse_same_name(options, sensors);
   const std::vector<Trajectory> trajectories = simulate(simulation);
   const NewDirectory made(directory ? options.out : std::string());
-  RigOutput rig(options.rig_out, rig_text(sensors, options.type));
+  WrittenRig rig(options.rig_out, rig_text(sensors, options.type));
   if (extension == ".mcap")
     write_mcap(options.out, sensors, trajectories, simulation);
   else if (extension == ".log")
@@ -262,7 +262,7 @@ void run(Options options, const cli::App& command) {
 }  // namespace
 
 void add_simulate(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   SimulationOptions& simulation = options->simulation;
   cli::App command =
       program.add_subcommand("simulate", "a drive with known truth, as an LCM log, MCAP or TUM files");
@@ -300,7 +300,7 @@ void add_simulate(cli::App program) {
                   "of the messages: odometry (egocal.odometry_t) or pose (bot_core.pose_t)")
       .check(cli::Check::one_of({"odometry", "pose"}))
       .show_default();
-  command.callback([options, command] { run(*options, command); });
+  command.callback([options, command] { run_simulate(*options, command); });
 }
 
 }  // namespace egocal::tools

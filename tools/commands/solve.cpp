@@ -23,7 +23,7 @@ namespace egocal::tools {
 namespace {
 
 /// As typed; empty means not given.
-struct Options {
+struct SolveOptions {
   RequestOptions request;
   RigOptionsTyped rig;
   bool json = false;
@@ -31,7 +31,7 @@ struct Options {
 };
 
 /// The answer as a file for another program; what its reader must know goes to standard error as well.
-void write_extrinsic(const Options& options, const SolveResult& result) {
+void write_extrinsic(const SolveOptions& options, const SolveResult& result) {
   const Calibration& calibration = result.calibration;
   NamedExtrinsic extrinsic = named_extrinsic(options.frame_a, options.frame_b, calibration);
   if (const std::optional<ScaleSolution>& scale = calibration.scale)
@@ -51,8 +51,8 @@ void write_extrinsic(const Options& options, const SolveResult& result) {
 }
 
 /// Everything that docs/json.md lists.
-std::string json_text(const Options& options, const SolveRequest& request, const SolveResult& result,
-                      const std::string& command_line) {
+std::string solution_json(const SolveOptions& options, const SolveRequest& request, const SolveResult& result,
+                          const std::string& command_line) {
   nlohmann::ordered_json json = report_json(result, request.truth);
   json["frames"] = {{"parent", options.frame_a}, {"child", options.frame_b}};
   json["notes"] = result.warnings;
@@ -62,10 +62,10 @@ std::string json_text(const Options& options, const SolveRequest& request, const
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void run(const Options& options, const std::string& command_line) {
+void run_solve(const SolveOptions& options, const std::string& command_line) {
   if (options.json && !options.format.empty() && options.out.empty())
     throw cli::UsageError("--format: takes the place of --json on standard output; give its file by --out");
-  const bool named = options.frame_a != Options().frame_a || options.frame_b != Options().frame_b;
+  const bool named = options.frame_a != SolveOptions().frame_a || options.frame_b != SolveOptions().frame_b;
   if (named && is_rig(options.rig))
     throw cli::UsageError("--frame-a, --frame-b: go with two sensors; those of a rig have names");
   if (named && !options.json && options.format.empty() && options.out.empty())
@@ -89,7 +89,7 @@ void run(const Options& options, const std::string& command_line) {
   const bool written = !options.format.empty() || !options.out.empty();
   if (written) write_extrinsic(options, result);
   if (!written || !options.out.empty())
-    fmt::print("{}\n", options.json ? json_text(options, request, result, command_line)
+    fmt::print("{}\n", options.json ? solution_json(options, request, result, command_line)
                                     : report_text(result, request.truth));
   if (calibration.verdict == Verdict::contradictory || (calibration.goal && !calibration.goal->reached))
     throw cli::Exit{3};
@@ -98,7 +98,7 @@ void run(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_solve(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SolveOptions>();
   cli::App command = program.add_subcommand(
       "solve", "two trajectories in, the extrinsic of b in a out, with proof; or a whole rig");
   add_request_options(command, options->request);
@@ -110,7 +110,7 @@ void add_solve(cli::App program) {
   command.add_option("--frame-a", options->frame_a, "name of sensor a's frame in it").show_default();
   command.add_option("--frame-b", options->frame_b, "name of sensor b's frame in it").show_default();
   command.add_flag("--json", options->json, "one JSON object on standard output");
-  command.callback([options, command] { run(*options, command.command_line()); });
+  command.callback([options, command] { run_solve(*options, command.command_line()); });
 }
 
 }  // namespace egocal::tools

@@ -71,6 +71,7 @@ RigRequest rig_request(const RequestOptions& typed, const RigOptionsTyped& rig) 
   request.append = typed.append;
   request.log = typed.source.log;
   request.reading = typed.reading.both;
+  request.unanswered = print_warnings;
   if (rig.rig.empty()) {
     request.sources = {typed.source.a, typed.source.b};
     request.sources.insert(request.sources.end(), rig.more.begin(), rig.more.end());

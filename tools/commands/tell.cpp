@@ -18,12 +18,12 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct TellOptions {
   std::string to, verb, value, rig, url;
 };
 
 /// What goes into the message: the verb, with its number where it has one.
-std::string words(const Options& options) {
+std::string words(const TellOptions& options) {
   const bool with_number = options.verb == "seek" || options.verb == "speed";
   if (!with_number && !options.value.empty())
     throw UsageError("tell: " + options.verb + " takes no number, got '" + bus::printable(options.value, 40) +
@@ -36,7 +36,7 @@ std::string words(const Options& options) {
 }
 
 /// Why the process that was addressed does nothing on this verb, and who would.
-std::string refusal(const Options& options, const std::string& role) {
+std::string refusal(const TellOptions& options, const std::string& role) {
   std::string who;
   for (const bus::Role known :
        {bus::Role::player, bus::Role::pairing, bus::Role::fast, bus::Role::global, bus::Role::diagnosis})
@@ -48,7 +48,7 @@ std::string refusal(const Options& options, const std::string& role) {
          (verbs.empty() ? "no command" : verbs);
 }
 
-void run(const Options& options) {
+void run_tell(const TellOptions& options) {
   using namespace std::chrono_literals;
   const std::string verb = words(options);
   if (options.to != "*" && !bus::plausible_name(options.to))
@@ -82,7 +82,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_tell(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TellOptions>();
   cli::App command =
       program.add_subcommand("tell", "sends a command to a running process: pause, step, seek, reset");
   command.add_option("NAME", options->to, "of the process, e.g. egocal-player; * for all").required();
@@ -92,7 +92,7 @@ void add_tell(cli::App program) {
   command.add_option("VALUE", options->value, "of seek: so far into the log [s]; of speed: times real time");
   command.add_option("--rig", options->rig, "rig file, for its LCM URL");
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's");
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_tell(*options); });
 }
 
 }  // namespace egocal::tools

@@ -33,7 +33,7 @@ namespace egocal::tools {
 
 namespace {
 
-struct Options {
+struct UpOptions {
   std::string rig, log, url, output_dir, state, speed = "1", fast = "sqp", global = "dual";
   bool monitor = false, follow = false, join = false, report = false;
 };
@@ -77,7 +77,7 @@ void check_state(const std::string& file) {
   require_usable_state(PassingState::of_diagnosis(file), "egocal-diagnosis");
 }
 
-std::string output_directory(const Options& options) {
+std::string output_directory(const UpOptions& options) {
   if (options.output_dir == "-") return {};
   std::string directory = options.output_dir.empty() ? default_output_directory() + "/" +
                                                            std::filesystem::path(options.rig).stem().string()
@@ -101,7 +101,7 @@ void report_left_behind(const std::string& directory) {
 /// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
 /// offline is named; the answer of the processes remains. False: a page says that its answer should not be
 /// used. A page knows all poses, the diagnosis 1200 of the slower stream, so their verdicts may differ.
-bool write_reports(const Options& options, const bus::Rig& rig, const std::string& directory) {
+bool write_reports(const UpOptions& options, const bus::Rig& rig, const std::string& directory) {
   bool usable = true;
   for (const bus::PairConfig& pair : rig.pairs) {
     const std::string file = fmt::format("{}/report-{}-{}.html", directory, pair.a, pair.b);
@@ -126,7 +126,7 @@ bool write_reports(const Options& options, const bus::Rig& rig, const std::strin
 }
 
 /// What can be known before any process is started.
-void check_before_start(const Options& options, const bus::Rig& rig, const std::string& url) {
+void check_before_start(const UpOptions& options, const bus::Rig& rig, const std::string& url) {
   if (!options.log.empty()) require_a_pair(options.log, rig);
   if (!options.state.empty()) check_place_of_state(options.state);
   const std::optional<std::string> other = pairing_heard(url, listen_before_start);
@@ -137,7 +137,7 @@ void check_before_start(const Options& options, const bus::Rig& rig, const std::
 }
 
 /// state: of pairing; empty: it keeps none.
-std::vector<Program> programs_of(const Options& options, const std::string& rig, const std::string& state) {
+std::vector<Program> programs_of(const UpOptions& options, const std::string& rig, const std::string& state) {
   const std::filesystem::path directory = programs_directory();
   const auto program = [&](const char* name, const std::vector<std::string>& more) {
     Program result;
@@ -169,7 +169,7 @@ std::vector<Program> programs_of(const Options& options, const std::string& rig,
 
 /// Prints what was calibrated by the end of the log. Throws where that is nothing, or where no answer can be
 /// used.
-void conclude(const Options& options, const bus::Rig& rig, BusWatch& watch, const std::string& output_dir,
+void conclude(const UpOptions& options, const bus::Rig& rig, BusWatch& watch, const std::string& output_dir,
               bool monitor_ended) {
   const Outcome outcome = [&] {
     try {
@@ -190,7 +190,7 @@ void conclude(const Options& options, const bus::Rig& rig, BusWatch& watch, cons
   if (outcome.unusable || !pages_usable) throw cli::Exit{not_to_be_used};
 }
 
-void run(const Options& options, Interruptions& interruptions) {
+void run(const UpOptions& options, Interruptions& interruptions) {
   if (options.report && options.log.empty())
     throw cli::UsageError("--report: goes with --log, whose drive it shows");
   const RigCopy copy(options.rig);
@@ -232,7 +232,7 @@ void run(const Options& options, Interruptions& interruptions) {
   if (!options.log.empty()) conclude(options, rig, watch, supervisor.output_dir, monitor_ended);
 }
 
-void run_up(const Options& options) {
+void run_up(const UpOptions& options) {
   Interruptions interruptions(!options.log.empty());
   try {
     run(options, interruptions);
@@ -245,7 +245,7 @@ void run_up(const Options& options) {
 }  // namespace
 
 void add_up(cli::App program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<UpOptions>();
   cli::App command = program.add_subcommand("up", "all processes of a rig, kept alive and ended together");
   command.add_option("RIG", options->rig, "rig file").required();
   const cli::Option log =

@@ -264,9 +264,7 @@ void follow_scale(Motions& motions, CalibrationOptions options, SolveResult& res
   result.course = course;
 }
 
-}  // namespace
-
-SolveResult calibrate_offline(const SolveRequest& request) {
+void answer(const SolveRequest& request, SolveResult& result) {
   const std::optional<Method> method = method_from_name(request.method);
   if (!method && request.calibration.pairing.mode == Mode::planar)
     throw UsageError("--method " + request.method + ": has no planar mode");
@@ -274,7 +272,6 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   options.method = method.value_or(Method::dual);
   Motions motions = read_motions(request.source);
   const Drives drives = append_drives(request, motions);
-  SolveResult result;
   result.warnings = motions.warnings;
   result.scale_side = options.scale_side;
   result.a_has_scale = motions.a_has_scale;
@@ -284,7 +281,7 @@ SolveResult calibrate_offline(const SolveRequest& request) {
     word_for_options_of_samples(options, request.scale_option, request.samples->eye_to_hand,
                                 result.calibration);
     result.solve_us = time_of_method(Method::dual, result.calibration.problem);
-    return result;
+    return;
   }
   if (look_like_samples(motions.a, motions.b))
     result.warnings.push_back("these look like still poses of an arm rather than streams: try " +
@@ -314,11 +311,23 @@ SolveResult calibrate_offline(const SolveRequest& request) {
   if (!method) {
     result.method = request.method;
     answer_by_baseline(request.method, result.pairs, result);
-    return result;
+    return;
   }
   const bool closed_form = options.pairing.mode == Mode::planar && *method != Method::slsqp;
   result.method = closed_form ? "planar" : std::string(to_string(*method));
   result.solve_us = time_of_method(*method, result.calibration.problem);
+}
+
+}  // namespace
+
+SolveResult calibrate_offline(const SolveRequest& request) {
+  SolveResult result;
+  try {
+    answer(request, result);
+  } catch (const Error&) {
+    if (request.unanswered) request.unanswered(result.warnings);
+    throw;
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct SolveRequest {
   std::string scale_option;               ///< as it was typed: "--scale" names no side; empty: not given
   /// Before options of `egocal solve` in what is said to the user; empty: they are options of this command.
   std::string solve;
+  /// Called with the warnings where there is no answer that could hold them: they may say why.
+  std::function<void(const std::vector<std::string>&)> unanswered;
 };
 
 /// Times of one stream, for people who wonder why nothing matched.

@@ -161,11 +161,8 @@ void put_outcomes(std::vector<PairOutcome> outcomes, const RigSettings& settings
                               ": this pair has no answer of its own: " + pair.reason);
 }
 
-}  // namespace
-
-RigReport calibrate_rig(const RigRequest& request) {
+void answer(const RigRequest& request, RigReport& report) {
   const RigSettings settings = rig_settings(request);
-  RigReport report;
   report.names = settings.names;
   report.sources = settings.sources;
   std::vector<Trajectory> trajectories = read(request, settings, report);
@@ -182,6 +179,18 @@ RigReport calibrate_rig(const RigRequest& request) {
   const CommonMotions motions = solve_jointly(trajectories, settings, report);
   choose_tree(report);
   find_in_rig(motions, trajectories, request, settings, report);
+}
+
+}  // namespace
+
+RigReport calibrate_rig(const RigRequest& request) {
+  RigReport report;
+  try {
+    answer(request, report);
+  } catch (const Error&) {
+    if (request.unanswered) request.unanswered(report.warnings);
+    throw;
+  }
   return report;
 }
 

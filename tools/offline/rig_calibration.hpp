@@ -24,6 +24,8 @@ struct RigRequest {
   std::vector<std::string> append;          ///< further drives, one file per sensor, in turn
   CalibrationOptions calibration;           ///< common to all pairs
   std::function<void(double)> progress;     ///< called with the part that is done, 0 to 1; one call at a time
+  /// Called with the warnings where there is no answer that could hold them: they may say why.
+  std::function<void(const std::vector<std::string>&)> unanswered;
 };
 
 /// Something that is wrong with one sensor, or with one of a pair.

@@ -28,7 +28,7 @@ std::string times_in_words(const Trajectory& a, const Trajectory& b) {
   if (lasts(a) > 0 && lasts(b) > 0 && !(ratio < other_unit && ratio > 1 / other_unit)) {
     char text[128];
     std::snprintf(text, sizeof text,
-                  "; %s lasts %.3g times as long: multiply its times if they are in another unit",
+                  "; %s lasts %.0f times as long: multiply its times if they are in another unit",
                   ratio > 1 ? "{b}" : "{a}", std::max(ratio, 1 / ratio));
     return text;
   }

@@ -15,29 +15,41 @@
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/estimate_scale.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
+/// Typical speed of a, as given [m/s]; 0 where it is not known.
+double speed_of_a(const Evidence& evidence) {
+  const double duration = evidence.stride * evidence.instants.period;
+  std::vector<double> lengths;
+  for (const Motion& motion : evidence.given.explained.motions.all) lengths.push_back(motion.t_a.norm());
+  return duration > 0 ? median(std::move(lengths)) / duration : 0;
+}
+
 Finding scale_finding(const Explanation& explanation, const Comparison& comparison, bool certain,
-                      const DiagnosisOptions& options) {
+                      const Evidence& evidence, const DiagnosisOptions& options) {
   const double power = std::round(std::log10(explanation.scale) / 3);
   const bool units = power != 0 && std::abs(std::log(explanation.scale / std::pow(1000, power))) <
                                        options.scale.unit_tolerance;
   Finding finding = finding_of(explanation, comparison, certain);
   finding.code = units ? "units" : "scale";
   finding.value = units ? std::pow(1000, power) : explanation.scale;
-  finding = worded_scale(std::move(finding));
+  // in the unit of the shorter one, the longer stream goes as the shorter one does
+  const double speed = speed_of_a(evidence), of_longer = power > 0 ? speed / explanation.scale : speed;
+  finding = worded_scale(std::move(finding), of_longer > 0 && of_longer < options.scale.slowest);
   // the answer is in the units of a: those of the longer stream are the wrong ones
   if (units && power > 0) finding.T_a_b->translation /= *finding.value;
   return finding;
 }
 
 /// sigmas: by how many of its standard deviations the scale differs from one.
-Finding shown_by_few(const Explanation& scaled, const Comparison& comparison, double sigmas,
+Finding shown_by_few(const Evidence& evidence, const Comparison& comparison, double sigmas,
                      const DiagnosisOptions& options) {
-  Finding finding = scale_finding(scaled, comparison, true, options);
+  const Explanation& scaled = evidence.scaled;
+  Finding finding = scale_finding(scaled, comparison, true, evidence, options);
   if (finding.code == "scale" && comparison.gain < options.gain)
     say(finding, format("The lengths of {b} times %.4g fit those of {a}", scaled.scale), finding.words.cure,
         format(": few motions show it, but by %.0f standard deviations.", sigmas));
@@ -192,7 +204,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
   if (best.scale != 1) {
     Explanation explanation = best;
     explanation.explained.fit.T = final.fit.T;
-    findings.push_back(scale_finding(explanation, overall, certain, options));
+    findings.push_back(scale_finding(explanation, overall, certain, evidence, options));
   }
   if (!clocks.empty()) {
     const Explanation& clock = clocks.back();
@@ -230,7 +242,7 @@ std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOpti
   const std::optional<double> stddev = stddev_of_log_scale(
       evidence.given.explained.motions, {scaled.scale, scaled.explained}, independent, options.scale_check);
   if (!stddev || size < options.scale_check.sigmas * *stddev) return std::nullopt;
-  return shown_by_few(scaled, comparison, size / *stddev, options);
+  return shown_by_few(evidence, comparison, size / *stddev, options);
 }
 
 std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
@@ -246,7 +258,7 @@ std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const Pair
   if (!(std::abs(of_drive) >= check.least) || !(std::abs(of_drive) >= check.sigmas_of_drive * stddev) ||
       !(std::abs(of_drive - size) <= check.agree * std::abs(size)))
     return std::nullopt;
-  return shown_by_few(evidence.scaled, compare(evidence.given.explained, evidence.scaled.explained),
+  return shown_by_few(evidence, compare(evidence.given.explained, evidence.scaled.explained),
                       std::abs(of_drive) / stddev, options);
 }
 

@@ -93,7 +93,7 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
           "{solve}--invert-a --invert-b", ".");
     else
       say(finding, "If the poses of both streams are world-to-sensor",
-          "Make sure that the poses are sensor-to-world; otherwise {solve}--invert-a --invert-b.",
+          "Make sure that the poses are sensor-to-world; otherwise {solve}--invert-a --invert-b",
           ", the answer is another one; the motions cannot tell.");
   } else if (code == "quaternion_order_a" || code == "quaternion_order_b") {
     const char which = code.back();
@@ -114,12 +114,20 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
   return finding;
 }
 
-Finding worded_scale(Finding finding) {
+Finding worded_scale(Finding finding, bool either) {
   const double scale = finding.value.value_or(1);
   if (finding.code == "units") {
-    say(finding, format("The lengths of %s are not in metres", mark(scale < 1 ? 'b' : 'a')),
-        scale < 1 ? format("{solve}--scale-b %g", scale) : format("{solve}--scale %g", 1 / scale),
-        format(": those of {b} times %g fit those of {a}.", scale));
+    const std::string of_a = format("{solve}--scale %g", 1 / scale),
+                      of_b = format("{solve}--scale-b %g", scale);
+    const char longer = scale < 1 ? 'b' : 'a', shorter = scale < 1 ? 'a' : 'b';
+    std::string cure = scale < 1 ? of_b : of_a;
+    if (either)
+      cure += format(", or %s if it is the lengths of %s that are wrong.", (scale < 1 ? of_a : of_b).c_str(),
+                     mark(shorter));
+    say(finding,
+        either ? std::string("The lengths of {a} or of {b} are not in metres")
+               : format("The lengths of %s are not in metres", mark(longer)),
+        std::move(cure), format(": those of {b} times %g fit those of {a}.", scale));
   } else {
     say(finding, format("The lengths of {b} times %.4g fit those of {a}", scale),
         "{solve}--scale-b auto, or --scale auto if it is the lengths of {a} that are wrong.",
@@ -134,7 +142,7 @@ Finding worded_clock(Finding finding, const ClockModel& clock) {
         format("The clocks drift apart: {b}'s stamps need %+.4f s in the middle of the drive and "
                "%+.0f us more each second",
                clock.offset, 1e6 * clock.rate),
-        "Synchronise the clocks; for a short drive {solve}--time-offset auto.",
+        "Synchronise the clocks; for a short drive {solve}--time-offset auto",
         format("; %s.", fits(finding).c_str()));
   } else {
     say(finding, format("The clocks differ: %+.4f s added to the stamps of {b} fits", clock.offset),

@@ -9,7 +9,8 @@
 namespace egocal::detail {
 
 Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseReading& read_b);
-Finding worded_scale(Finding finding);
+/// either: of "units", whichever stream may be in the wrong one.
+Finding worded_scale(Finding finding, bool either = false);
 Finding worded_clock(Finding finding, const ClockModel& clock);
 
 /// The mark of a stream ('a' or 'b') in a sentence of a finding (finding_words.hpp).

@@ -57,6 +57,10 @@ struct ScaleSearchOptions {
   int refinements = 24;  ///< steps of the golden section after it: to 3e-6 of the scale
   double unit_tolerance =
       0.1;  ///< logarithm of what a scale may differ from a power of 1000 to be called a unit
+  /// Of two units the one with the larger numbers is wrong: millimetres are common. Where that would leave a
+  /// typical speed below this, both are named, as the other one may be in kilometres [m/s]. Sensors that are
+  /// carried or driven go faster, most arms do.
+  double slowest = 0.02;
 };
 
 /// Whether the scale of b differs from one by its own estimate. Where a machine mostly turns in place, few

@@ -265,6 +265,28 @@ std::vector<double> sniffed_times(const TextLayout& layout, const Sniffed& sniff
   return times;
 }
 
+/// A column without a known name whose values increase from row to row may hold the times. Numbers of rows do
+/// as well, by one.
+void note_likely_times(TextLayout& layout, const Sniffed& sniffed) {
+  if (layout.header_line == 0) return;
+  for (std::size_t k = 0; k < layout.names.size(); ++k) {
+    const auto reads = [&](const std::optional<ColumnMap::Column>& column) {
+      return column && column->index == k;
+    };
+    if (std::any_of(layout.columns.of.begin(), layout.columns.of.end(), reads)) continue;
+    const std::vector<double> values = sniffed_times(layout, sniffed, k);
+    bool increases = values.size() > 2 && values.size() + 1 == sniffed.data.size(), counts = true;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      increases = increases && values[i] > values[i - 1];
+      counts = counts && values[i] == values[i - 1] + 1;
+    }
+    if (!increases || counts) continue;
+    layout.notes.push_back("column " + std::to_string(k + 1) + " (" + layout.names[k].substr(0, 100) +
+                           ") increases as times do; where it holds them, call it t: --columns t,x,y,z,...");
+    return;
+  }
+}
+
 struct TimeUnitName {
   TimeUnit unit;
   const char* name;
@@ -354,6 +376,7 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
     }
   }
   if (layout.times) set_time_unit(layout, sniffed);
+  if (!layout.times && layout.named) note_likely_times(layout, sniffed);
   return layout;
 }
 

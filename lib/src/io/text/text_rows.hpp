@@ -87,7 +87,7 @@ struct TextRows {
   /// Whether the row has no number in one of the fields that are read: tracking was lost.
   bool without_a_number() const {
     const auto missing = [&](std::size_t i) { return i < fields.size() && is_missing_number(fields[i]); };
-    if (!numbers.empty()) return false;
+    if (!numbers.empty()) return missing(stamp);  // the other fields are numbers
     if (layout.matrix) {
       for (std::size_t i = 0; i < fields.size(); ++i)
         if (missing(i)) return true;

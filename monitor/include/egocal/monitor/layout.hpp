@@ -29,7 +29,7 @@ enum class PairColumn {
   proof,
   error_translation,
   error_rotation,
-  frames,
+  motions,
   solver,
   translation,
   rotation,
