@@ -1,12 +1,13 @@
 # The test programs of a folder as a few: in builds from scratch (EGOCAL_FOLDERS) what their files include and instantiate alike
 # is compiled and linked once, in half of the time. Each test remains one of ctest's with a process of its own, which runs the
-# tests of its file. The program of one file can still be built by its name.
+# tests of its file. The program of one file can still be built by its name. By clang only those for its sanitizers are joined
+# (EGOCAL_SANITIZED_TESTS), as a build of it compiles no others.
 set(EGOCAL_JOINED_TESTS 15)  # of one program: enough to share, few enough for both cores and 1.5 GB of a compiler's memory
 
 # egocal_join_test(command name [IN_NETWORK]): what runs the tests of program `name`: a joined program where the build has them,
 # else itself. Those in a network namespace of their own have programs of their own.
 function(egocal_join_test command name)
-  if(NOT EGOCAL_FOLDERS OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(NOT EGOCAL_FOLDERS OR NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR name IN_LIST EGOCAL_SANITIZED_TESTS))
     set(${command} ${name} PARENT_SCOPE)
     return()
   endif()
@@ -81,7 +82,7 @@ function(egocal_add_joined_tests group)
     set_target_properties(${joined} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
                                                RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
     # a fixture of an anonymous namespace, which GCC allows in the file that it is given
-    target_compile_options(${joined} PRIVATE -Wno-subobject-linkage)
+    target_compile_options(${joined} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     target_include_directories(${joined} PRIVATE ${INCLUDE_DIRECTORIES})
     target_link_libraries(${joined} PRIVATE ${LINK_LIBRARIES})
     if(MANUALLY_ADDED_DEPENDENCIES)
@@ -90,6 +91,11 @@ function(egocal_add_joined_tests group)
     if(group STREQUAL "tests")
       add_dependencies(egocal_unit_tests ${joined})
     endif()
+    foreach(name ${some})
+      if(name IN_LIST EGOCAL_SANITIZED_TESTS)
+        add_dependencies(egocal_sanitized_tests ${joined})
+      endif()
+    endforeach()
     math(EXPR place "${place} + 1")
   endwhile()
 endfunction()

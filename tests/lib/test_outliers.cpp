@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <span>
 
 #include "../support/corruption.hpp"
 #include "../support/paths.hpp"
@@ -22,6 +23,10 @@ using testing::corrupted;
 using testing::Corruption;
 using testing::corruptions;
 using testing::Streams;
+
+/// All but the poses that are missing, with which they are compared.
+constexpr std::span wrong = std::span(corruptions).subspan<1>();
+static_assert(corruptions[0] == Corruption::missing);
 
 ExtrinsicError error_of(const Streams& data, const Trajectory& a, const Trajectory& b) {
   const Answer answer = solve(pair_motions(data.options, a, b).drive.problem(), Method::dual);
@@ -60,7 +65,7 @@ TEST(Outliers, AFifthOfThePosesWrongAtMostDoublesTheError) {
       const auto errors = errors_of(simulated(terrain, seed), Corruption::missing, seed);
       return std::array{errors[0].rotation, errors[1].rotation};
     });
-    for (const Corruption corruption : corruptions) {
+    for (const Corruption corruption : wrong) {
       const auto [median, worst] = median_and_worst([&](std::uint64_t seed) {
         const auto errors = errors_of(simulated(terrain, seed), corruption, seed);
         return std::array{errors[0].rotation, errors[1].rotation};
@@ -84,7 +89,7 @@ class RealOutliers : public ::testing::Test {
     const double degrees = 2 * std::max({clean.rotation, missing[0].rotation, missing[1].rotation});
     const double centimetres =
         2 * std::max({clean.translation, missing[0].translation, missing[1].translation});
-    for (const Corruption corruption : corruptions)
+    for (const Corruption corruption : wrong)
       for (const ExtrinsicError& error : errors_of(data, corruption, 7)) {
         EXPECT_LE(error.rotation, degrees) << to_string(corruption);
         EXPECT_LE(error.translation, centimetres) << to_string(corruption);

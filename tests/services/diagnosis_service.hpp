@@ -54,8 +54,10 @@ class DiagnosisService : public ::testing::Test {
   void start() {
     heartbeat = std::make_unique<bus::Heartbeat>(
         loop, bus::Identity{"egocal-diagnosis", bus::Role::diagnosis, "1", 1}, 3s);
-    service = std::make_unique<Diagnosing>(loop, *heartbeat, rig);
+    service = std::make_unique<Diagnosing>(loop, *heartbeat, rig, nullptr, options);
   }
+  /// For long drives of which only the end is looked at; the problems must be as seldom.
+  void diagnose_every_ten_seconds() { options.pose_step = 10; }
   void pass(std::chrono::nanoseconds time) { test::run_for(clock, {&observer, &loop}, time); }
 
   /// One pose of each stream, to the service and to the test's own pairing.
@@ -69,13 +71,13 @@ class DiagnosisService : public ::testing::Test {
     pass(100ms);
   }
 
-  /// Plays poses [begin, end) in real time, with the problem that pairing makes of them once a second.
-  void play(const testing::Streams& streams, std::size_t begin, std::size_t end) {
+  /// Plays poses [begin, end) in real time, with the problem that pairing makes of them after every so many.
+  void play(const testing::Streams& streams, std::size_t begin, std::size_t end, std::size_t every = 40) {
     MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
     const std::int64_t session = streams.a[begin].time_us;
     for (std::size_t i = begin; i < end; ++i) {
       send_poses(streams, i, pairing);
-      if ((i % 40 != 39 && i + 1 != end) || problems == 0) continue;
+      if ((i % every != every - 1 && i + 1 != end) || problems == 0) continue;
       publish(pairing, session, streams.a[i].time_us, problems);
     }
     pass(2s);
@@ -118,6 +120,7 @@ class DiagnosisService : public ::testing::Test {
   bus::Loop observer{network.transport(), clock, {.handle_signals = false, .host = "car"}};
   bus::Loop loop{network.transport(), clock, {.handle_signals = false, .host = "car"}};
   bus::Rig rig;
+  DiagnosingOptions options;
   std::unique_ptr<bus::Heartbeat> heartbeat;
   std::unique_ptr<Diagnosing> service;
   std::vector<verdict_t> verdicts;

@@ -67,16 +67,18 @@ class AfterAMove : public DiagnosisService {
 };
 
 TEST_F(AfterAMove, ItIsReported) {
+  diagnose_every_ten_seconds();
   start();
-  play(streams, 0, 800);
+  play(streams, 0, 800, 100);
   expect_move();
   EXPECT_TRUE(commands.empty());
 }
 
 TEST_F(AfterAMove, TheCalibrationStartsAgainWhereTheRigSaysSo) {
   rig.pairs[0].on_move = bus::OnMove::restart;
+  diagnose_every_ten_seconds();
   start();
-  play(streams, 0, 800);
+  play(streams, 0, 800, 100);
   expect_move();
   ASSERT_EQ(commands.size(), 1u) << "once a session";
   EXPECT_EQ(commands[0].verb, "reset");
@@ -86,10 +88,11 @@ TEST_F(AfterAMove, TheCalibrationStartsAgainWhereTheRigSaysSo) {
 
 // scale = "auto" finds one scale a session (docs/scale.md): it is no cure of one that changes.
 TEST_F(DiagnosisService, AScaleThatChangesIsNotCuredByTheRigFile) {
+  diagnose_every_ten_seconds();
   start();
   testing::Streams streams = drive(800);
   streams.b = testing::longer_from_the_middle(streams.b, 1.3);
-  play(streams, 0, 800);
+  play(streams, 0, 800, 100);
   ASSERT_FALSE(verdicts.empty());
   const std::vector<finding_t>& findings = verdicts.back().findings;
   const auto changed = std::find_if(findings.begin(), findings.end(),
@@ -116,17 +119,18 @@ TEST(Remedies, OfAMoveNameAScaleThatIsLookedFor) {
 
 /// A reset does not end a creep: the cure is the one that egocal check names.
 TEST_F(DiagnosisService, TheCureOfACreepIsThatOfARecording) {
+  diagnose_every_ten_seconds();
   start();
-  SimulationOptions options;
-  options.terrain = Terrain::free;
-  options.poses = 1500;
-  options.relative_noise = 0.01;
-  options.faults.resize(2);
-  options.faults[1].mount_changes = {{0, 150, {rotation_exp({0, 0.1, 0}), {0, 0, 0}}}};
-  testing::Streams streams = testing::simulated_drive(options);
+  SimulationOptions creeping;
+  creeping.terrain = Terrain::free;
+  creeping.poses = 1500;
+  creeping.relative_noise = 0.01;
+  creeping.faults.resize(2);
+  creeping.faults[1].mount_changes = {{0, 150, {rotation_exp({0, 0.1, 0}), {0, 0, 0}}}};
+  testing::Streams streams = testing::simulated_drive(creeping);
   for (Trajectory* trajectory : {&streams.a, &streams.b})
     for (StampedPose& pose : *trajectory) pose.time_us += 1'600'000'000'000'000;
-  play(streams, 0, 1500);
+  play(streams, 0, 1500, 100);
   ASSERT_FALSE(verdicts.empty());
   const std::vector<finding_t>& findings = verdicts.back().findings;
   const auto moved = std::find_if(findings.begin(), findings.end(),
