@@ -75,5 +75,25 @@ TEST(AtRest, DoesNotMakeARightAnswerDoubtful) {
     }
 }
 
+/// An odometry without noise stays where it is to the last digit; its heading creeps. Its positions are not
+/// missing because the other one is noisy.
+TEST(AtRest, NothingIsMissingFromAVehicleThatStands) {
+  testing::Random random(5);
+  testing::Streams streams;
+  const Pose at_b{rotation_exp({0.3, -0.2, 1}), {4, 5, 6}};
+  for (std::int64_t i = 0; i < 200; ++i) {
+    const double creep = 2e-5 * static_cast<double>(i);
+    streams.a.push_back(
+        {i * period_us, to_dual_quaternion(Pose{rotation_exp({0, 0, creep}), {-8.39, -11.4, 42.8}})});
+    streams.b.push_back(
+        {i * period_us,
+         to_dual_quaternion(at_b) * testing::displacement(random.normal3(0.004), random.normal3(0.014))});
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+  EXPECT_NE(testing::find(calibration, "too_little_motion"), nullptr);
+  EXPECT_EQ(testing::find(calibration, "missing_a"), nullptr);
+}
+
 }  // namespace
 }  // namespace egocal::test_at_rest

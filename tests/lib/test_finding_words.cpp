@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+#include <string>
+
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 
@@ -66,6 +69,24 @@ TEST(FindingWords, AFindingAboutAStreamNamesItByTheReadersTerm) {
     ++named;
   }
   EXPECT_EQ(named, 5);
+}
+
+/// An option is copied to the command line, with a full stop if there is one.
+TEST(FindingWords, NoRemedyHasAFullStopBehindAnOption) {
+  const std::regex stopped("--[-a-z]+( (auto|[A-Z]+|[0-9.e-]+))?\\.( |$)");
+  EXPECT_TRUE(std::regex_search("otherwise --invert-b.", stopped));
+  int options = 0;
+  for (const testing::Mistake& mistake : testing::mistakes()) {
+    if (mistake.name != "both inverted" && mistake.name != "scale 1.05" && mistake.name != "clock 0.1 % fast")
+      continue;
+    testing::Streams streams = testing::drive(Terrain::rough);
+    mistake.make(streams);
+    for (const Finding& finding : calibrate(streams.a, streams.b).findings) {
+      EXPECT_FALSE(std::regex_search(finding.remedy, stopped)) << finding.remedy;
+      if (finding.remedy.find("--") != std::string::npos) ++options;
+    }
+  }
+  EXPECT_GE(options, 2);
 }
 
 }  // namespace

@@ -271,6 +271,7 @@ void answer(const SolveRequest& request, SolveResult& result) {
   CalibrationOptions options = request.calibration;
   options.method = method.value_or(Method::dual);
   Motions motions = read_motions(request.source);
+  result.warnings = motions.warnings;  // where the further drives cannot be read, too
   const Drives drives = append_drives(request, motions);
   result.warnings = motions.warnings;
   result.scale_side = options.scale_side;

@@ -34,6 +34,9 @@ void word_scale(const Finding& found, bool of_b, const RigWords& words, RigFindi
                 "with scale = {:.4g} for {}.",
                 name, factor, factor, name)
           : fmt::format("In {}: scale = {:.4g} for {}.", words.rig, in_all, name);
+  if (found.code == "units")
+    finding.remedy +=
+        fmt::format(" Or {:.4g} for {}, where it is that one's lengths that are wrong.", 1 / factor, other);
 }
 
 void word_clock_offset(const Finding& found, bool of_b, const RigWords& words, RigFinding& finding) {
@@ -66,8 +69,8 @@ std::string cure(const Finding& found, const RigWords& words) {
     return "Calibrate " + words.name_a + " and " + words.name_b +
            " by themselves: solve A B --scale-b auto finds the factors, --scale auto where " + words.name_b +
            " is in metres.";
-  if (code == "clock_drift") return "Synchronise the clocks; for a short drive --time-offset auto.";
-  if (code == "samples") return "Calibrate two of them at a time: solve A B --samples.";
+  if (code == "clock_drift") return "Synchronise the clocks; for a short drive --time-offset auto";
+  if (code == "samples") return "Calibrate two of them at a time: solve A B --samples";
   if (code.starts_with("plane_") && !words.rig.empty())
     return "Correct the plane of " + whose + " in " + words.rig + ".";
   return remedy_in_terms(found, terms_of(words));

@@ -124,7 +124,7 @@ Finding rival_clock_offset(const TimeOffset& offset, const DualQuaternion& T_a_b
   finding.value = offset.rival.value();
   finding.T_a_b = to_pose(T_a_b);
   say(finding, rival_offsets_in_words(std::abs(*offset.rival - offset.seconds)),
-      "Add some motion that does not repeat, or give {solve}--time-offset SECONDS.");
+      "Add some motion that does not repeat, or give {solve}--time-offset SECONDS");
   return finding;
 }
 

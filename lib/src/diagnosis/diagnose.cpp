@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/askew_rotations.hpp"
 #include "diagnosis/back_and_forth.hpp"
 #include "diagnosis/clock_check.hpp"
 #include "diagnosis/contradicting_parts.hpp"
@@ -266,6 +267,18 @@ void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing,
   findings.push_back(*std::move(scale));
 }
 
+/// What no part of the drive shows by itself, where nothing else explains the streams.
+void name_askew_rotations(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
+                          std::vector<Finding>& findings) {
+  if (answered.problem.mode == Mode::planar) return;
+  for (const Finding& finding : findings)
+    if ((finding.certain && !finding.code.starts_with("undersampled_")) || finding.code == "mount_moved" ||
+        finding.code == "scale_change" || finding.code == "samples")
+      return;
+  if (std::optional<Finding> askew = askew_rotations(evidence.instants, evidence.stride, answered, options))
+    findings.push_back(*std::move(askew));
+}
+
 bool of_clock(const Finding& finding) {
   return finding.code.starts_with("clock_");
 }
@@ -320,7 +333,12 @@ Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions&
   foreseen.findings = check_streams(a, b, foreseen.evidence.instants);
   if (pairing.mode == Mode::planar)  // level positions are what planar mode is for
     std::erase_if(foreseen.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
-  if (foreseen.findings.empty() && standing_still(foreseen.evidence.instants))
+  const bool still = standing_still(foreseen.evidence.instants);
+  if (still)  // a pose that never changes is that of an odometry without noise
+    std::erase_if(foreseen.findings, [](const Finding& one) {
+      return one.code.starts_with("missing_") || one.code.starts_with("flat_") || of_frozen_stream(one);
+    });
+  if (foreseen.findings.empty() && still)
     foreseen.findings = {too_little_motion(foreseen.evidence.given.explained.motions.all.size(), options)};
   // what is wrong with the streams themselves looks like other mistakes
   if (foreseen.findings.empty())
@@ -396,6 +414,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
   if (pairing.mode != Mode::planar) name_late_rotations(evidence, pairing.max_gap, options, result.findings);
+  name_askew_rotations(evidence, answered, options, result.findings);
   for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b))
     if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
   // what else was found may be of the stamps alone

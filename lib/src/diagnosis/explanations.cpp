@@ -10,23 +10,25 @@
 #include "diagnosis/both_streams.hpp"
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/large_move.hpp"
+#include "diagnosis/robust_fit.hpp"
 #include "diagnosis/scale.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/estimate_scale.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
-/// Typical speed of a, as given [m/s]; 0 where it is not known.
+/// Typical speed of a, as given [m/s]; 0 where it is not known. Half of the way is travelled faster: it may
+/// stand most of the time.
 double speed_of_a(const Evidence& evidence) {
   const double duration = evidence.stride * evidence.instants.period;
-  std::vector<double> lengths;
-  for (const Motion& motion : evidence.given.explained.motions.all) lengths.push_back(motion.t_a.norm());
-  return duration > 0 ? median(std::move(lengths)) / duration : 0;
+  std::vector<std::pair<double, double>> lengths;
+  for (const Motion& motion : evidence.given.explained.motions.all)
+    lengths.emplace_back(motion.t_a.norm(), motion.t_a.norm());
+  return duration > 0 && !lengths.empty() ? weighted_median(std::move(lengths)) / duration : 0;
 }
 
 Finding scale_finding(const Explanation& explanation, const Comparison& comparison, bool certain,

@@ -69,7 +69,7 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
       std::abs(axis_b.dot(a.normal)) > options.aligned) {
     for (const char which : {'a', 'b'})
       findings.push_back(plane_finding(which, "The ground planes of {a} and {b} are exchanged.",
-                                       "Exchange {solve}--plane-a and --plane-b."));
+                                       "Exchange {solve}--plane-a and --plane-b"));
   } else {
     for (const auto& [which, fits, axis] : {std::tuple{'a', a_fits, axis_a}, std::tuple{'b', b_fits, axis_b}})
       if (!fits)
@@ -77,7 +77,7 @@ std::vector<Finding> check_planes(const Motions& motions, const GroundPlane& a, 
             which,
             format("Sensor %s turns about (%.2f, %.2f, %.2f), which is not the normal of its ground plane.",
                    mark(which), axis.x(), axis.y(), axis.z()),
-            format("Check the normal of {solve}--plane-%c.", which)));
+            format("Check the normal of {solve}--plane-%c", which)));
   }
   // both turn left at the same time: one normal is upside down otherwise
   if (a_fits && b_fits && turning.common < 0 && findings.empty())

@@ -144,7 +144,7 @@ Finding worded(Finding finding, const Alternative& other) {
                                    : ". Those of {a} inverted fit as well.";
   if (of_a)
     words.scope = "{solve}--eye-to-hand for a camera beside the arm, --eye-in-hand for one on the hand, or ";
-  words.cure = of_a ? "--invert-a." : "{solve}--invert-b.";
+  words.cure = of_a ? "--invert-a" : "{solve}--invert-b";
   say(finding, std::move(words));
   return finding;
 }

@@ -376,7 +376,7 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
     }
   }
   if (layout.times) set_time_unit(layout, sniffed);
-  if (!layout.times && layout.named) note_likely_times(layout, sniffed);
+  if (!layout.times && layout.named && options.columns.empty()) note_likely_times(layout, sniffed);
   return layout;
 }
 

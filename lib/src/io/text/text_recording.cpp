@@ -164,7 +164,9 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
     char rate[32];
     std::snprintf(rate, sizeof rate, "%g", rate_);
     notes_.push_back(std::string("the poses have no times: ") + rate + " Hz " +
-                     (options_.rate > 0 ? "as given" : "assumed (--rate, or --times FILE)"));
+                     (options_.rate > 0 ? "as given"
+                      : layout_.named   ? "assumed (--rate)"
+                                        : "assumed (--rate, or --times FILE)"));
   }
 }
 
