@@ -125,6 +125,53 @@ TEST(Jackknife, WhatFewBlocksHoldIsLessCertain) {
   }
 }
 
+/// Every motion lies in two of twelve blocks, and all turns in the same two: each of them holds nearly all
+/// that is known of the translation.
+Problem touching_with_one_turn(std::uint64_t seed) {
+  Random random(seed);
+  const DualQuaternion T = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
+  std::vector<Statistics> between;
+  for (int k = 0; k < 13; ++k) {
+    Statistics& statistics = between.emplace_back();
+    for (int i = 0; i < 10; ++i) {
+      const Eigen::Vector3d turn = random.normal3(k == 6 ? 0.2 : 2e-3), shift = {1, 0, 0};
+      const DualQuaternion a = displacement(turn, shift), b = conjugate(T) * a * T;
+      const DualQuaternion noise = displacement(random.normal3(1e-6), random.normal3(0.01));
+      statistics.add(a * noise, b);
+    }
+  }
+  Problem problem;
+  problem.balance = {1, 0.1};
+  Statistics shared;
+  for (std::size_t k = 0; k < 12; ++k) {
+    problem.blocks.push_back(between[k]);
+    problem.blocks.back() += between[k + 1];
+    if (k > 0) shared += between[k];
+  }
+  shared.dual_rows *= -1;
+  shared.weight *= -1;
+  shared.count = 0;
+  problem.blocks.push_back(shared);
+  return problem;
+}
+
+/// Half of what a block holds must not stay behind where it is all that is known: the answer would not move.
+TEST(Jackknife, ATouchingBlockThatHoldsAllIsOmittedAsAWhole) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Problem problem = touching_with_one_turn(seed);
+    const Matrix8d Q = cost_matrix(problem);
+    const DualQuaternion q = solve(problem, Method::dual).T_a_b;
+    const Observability known = assess_observability(problem, Q, q, ErrorCorrelation::independent);
+    Vector6d largest = Vector6d::Zero();
+    for (const Vector6d& difference : leave_out_differences(problem, Q, q))
+      largest = largest.cwiseMax(difference.cwiseAbs());
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_TRUE(std::isfinite(known.stddev[i])) << seed << " direction " << i;
+      EXPECT_GT(known.stddev[i], 0.15 * largest[static_cast<Eigen::Index>(i)]) << seed << " direction " << i;
+    }
+  }
+}
+
 /// Where there is no noise the spreads of all settings are rounding, and the logarithm of rounding is a draw:
 /// it must not decide, and single steps judge outliers best.
 TEST(Jackknife, WithoutNoiseSingleStepsWithEqualWeightsAreChosen) {

@@ -396,12 +396,24 @@ TEST(Observability, NothingThatAHiddenTurnMovesIsCalledKnownInThePlane) {
     }
 }
 
+/// A turn with a long arm is mostly translation in the coordinates of the answer, and is held at the nominal
+/// value as a turn all the same.
+TEST(Observability, ANominalValueHoldsTurnsWithLongArms) {
+  for (const double radius : {0.0, 0.2, 1.0})
+    for (const double tilt : {0.02, 0.04}) {
+      const Circles circles{radius, 2, tilt, Mode::spatial, true};
+      const Claims claims = claims_of_circles(circles, 3);
+      EXPECT_EQ(claims.missed, 0) << text_of(circles);
+      EXPECT_GE(claims.rotations, 30) << text_of(circles);
+    }
+}
+
 /// b is so close to the centre that no turn moves it by much: its place is known, to what the turn moves it.
 TEST(Observability, APlaceAtTheCentreOfTurnsIsKnown) {
   for (const bool has_prior : {false, true}) {
     const Circles circles{0, 0.01, 0, Mode::spatial, has_prior};
     const Claims claims = claims_of_circles(circles, 3);
-    EXPECT_EQ(claims.missed, 0);
+    EXPECT_LE(claims.missed, 1);  // of 80: three sigmas are exceeded in 0.3 % by chance
     EXPECT_GE(claims.translations, 30);
     EXPECT_EQ(claims.rotations, 40);
   }

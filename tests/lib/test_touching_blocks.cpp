@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Standard deviations of short drives with noise on poses. Long motions are best there, and most of them lie
-// in two blocks.
+// Standard deviations of short drives: with noise on poses, where long motions are best and most of them lie
+// in two blocks, and with noise that lasts for several steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,23 +45,57 @@ testing::Streams noisy_poses(SimulationOptions options, double part) {
   return streams;
 }
 
+/// Noise of this part of a step on the motions of both sensors, which fades by e in four steps. In planar
+/// mode in the plane alone.
+testing::Streams wandering_motions(SimulationOptions options, double part, Mode mode) {
+  testing::Streams streams = testing::simulated_drive(options);
+  testing::Random random(2000 + options.seed);
+  const double kept = std::exp(-0.25), fresh = std::sqrt(1 - kept * kept);
+  const auto up = [](const Pose& mounted) {
+    return Eigen::Vector3d(mounted.rotation.conjugate() * Eigen::Vector3d::UnitZ());
+  };
+  if (mode == Mode::planar) {
+    streams.options.mode = mode;
+    streams.options.plane_a = {up(testing::T_vehicle_a), -testing::T_vehicle_a.translation.z()};
+    streams.options.plane_b = {up(testing::T_vehicle_b), -testing::T_vehicle_b.translation.z()};
+  }
+  for (Trajectory* trajectory : {&streams.a, &streams.b}) {
+    const auto [turn, shift] = size_of_steps(*trajectory);
+    const Eigen::Vector3d normal = up(trajectory == &streams.a ? testing::T_vehicle_a : testing::T_vehicle_b);
+    Eigen::Vector3d rotation = random.normal3(), translation = random.normal3();
+    DualQuaternion before = trajectory->front().pose, pose = before;
+    for (std::size_t i = 1; i < trajectory->size(); ++i) {
+      rotation = kept * rotation + random.normal3(fresh);
+      translation = kept * translation + random.normal3(fresh);
+      Eigen::Vector3d turned = part * turn * rotation, shifted = part * shift * translation;
+      if (mode == Mode::planar) {
+        turned = normal * normal.dot(turned);
+        shifted -= normal * normal.dot(shifted);
+      }
+      StampedPose& here = (*trajectory)[i];
+      pose = pose * conjugate(before) * here.pose * testing::displacement(turned, shifted);
+      before = here.pose;
+      here.pose = pose;
+    }
+  }
+  return streams;
+}
+
 struct Spreads {
   double stddev_to_error = 0;  ///< root mean squares
   double covered = 0;          ///< part within 1.96 standard deviations
   double largest = 0;          ///< standard deviation, in medians of its direction
 };
 
-Spreads spreads_of(Terrain terrain, double noise_on_motions, double noise_on_poses) {
+/// drive: makes the streams of a seed.
+template <typename Drive>
+Spreads spreads_of(std::uint64_t drives, const Drive& drive) {
   std::array<std::vector<double>, 6> stddevs;
   double squares = 0, covered = 0, count = 0;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    SimulationOptions options;
-    options.terrain = terrain;
-    options.poses = 101;
-    options.relative_noise = noise_on_motions;
-    options.seed = seed;
-    const testing::Streams streams = noisy_poses(options, noise_on_poses);
-    const Answer answer = solve(pair_motions({}, streams.a, streams.b).drive.problem(), Method::dual);
+  for (std::uint64_t seed = 1; seed <= drives; ++seed) {
+    const testing::Streams streams = drive(seed);
+    const Answer answer =
+        solve(pair_motions(streams.options, streams.a, streams.b).drive.problem(), Method::dual);
     const auto error = detail::frame_a_difference(streams.T, answer.T_a_b);
     for (std::size_t i = 0; i < 6; ++i) {
       if (!answer.observability.observable[i]) continue;
@@ -75,24 +109,56 @@ Spreads spreads_of(Terrain terrain, double noise_on_motions, double noise_on_pos
   }
   Spreads spreads{std::sqrt(count / squares), covered / count, 0};
   for (std::vector<double>& of_direction : stddevs) {
+    if (of_direction.empty()) continue;
     std::sort(of_direction.begin(), of_direction.end());
     spreads.largest = std::max(spreads.largest, of_direction.back() / of_direction[of_direction.size() / 2]);
   }
   return spreads;
 }
 
+SimulationOptions short_drive(Terrain terrain, int poses, double noise_on_motions, std::uint64_t seed) {
+  SimulationOptions options;
+  options.terrain = terrain;
+  options.poses = poses;
+  options.relative_noise = noise_on_motions;
+  options.seed = seed;
+  return options;
+}
+
 TEST(TouchingBlocks, NoiseOnPosesHasItsSpread) {
-  const Spreads spreads = spreads_of(Terrain::free, 0, 0.05);
+  const Spreads spreads = spreads_of(
+      16, [](std::uint64_t seed) { return noisy_poses(short_drive(Terrain::free, 101, 0, seed), 0.05); });
   EXPECT_GT(spreads.stddev_to_error, 0.9);
   EXPECT_LT(spreads.stddev_to_error, 1.3);
   EXPECT_GE(spreads.covered, 0.92);
 }
 
 TEST(TouchingBlocks, NoDriveHasASpreadOutOfProportion) {
-  const Spreads spreads = spreads_of(Terrain::free, 0.01, 0.03);
+  const Spreads spreads = spreads_of(
+      16, [](std::uint64_t seed) { return noisy_poses(short_drive(Terrain::free, 101, 0.01, seed), 0.03); });
   EXPECT_LT(spreads.stddev_to_error, 1.8);
   EXPECT_GE(spreads.covered, 0.92);
   EXPECT_LT(spreads.largest, 4);
+}
+
+/// Drives of 30 and 50 motions have fifteen and twelve blocks, too few to join them: the correlation of
+/// neighbours alone shows such noise.
+TEST(NoiseThatLasts, IsSeenInShortDrives) {
+  for (const int poses : {31, 51}) {
+    const Spreads spreads = spreads_of(100, [&](std::uint64_t seed) {
+      return wandering_motions(short_drive(Terrain::free, poses, 0, seed), 0.03, Mode::spatial);
+    });
+    EXPECT_GE(spreads.covered, 0.9) << poses;
+    EXPECT_LT(spreads.stddev_to_error, 1.4) << poses;
+  }
+}
+
+TEST(NoiseThatLasts, IsSeenInThePlane) {
+  const Spreads spreads = spreads_of(40, [&](std::uint64_t seed) {
+    return wandering_motions(short_drive(Terrain::flat, 101, 0, seed), 0.03, Mode::planar);
+  });
+  EXPECT_GE(spreads.covered, 0.92);
+  EXPECT_LT(spreads.stddev_to_error, 1.5);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct HoldOptions {
   /// noise mixes into it. So this is 1 - 0.3^2, from where ObservabilityOptions::hinted_part counts a turn.
   /// 0.8 to 0.99 have the same answers; with 0.5 turns with long arms were held as translations, and roll and
   /// pitch were off by up to 45 standard deviations. Study: docs/method.md, "Hidden turns".
-  double mostly_translation = 0.5;
+  double mostly_translation = 0.91;
   /// An answer that is closer to the prior is there: rounding [m, rad].
   double there = 1e-9;
   /// Rotations about several axes do not commute, so each is brought to the prior in turn, this many times.

@@ -99,7 +99,7 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   if (instant.number >= state_.next_choice + choice_delay()) {
     choose();
     const std::uint64_t without_delay = instant.number - choice_delay();
-    state_.next_choice = without_delay + without_delay / tuning_.choice_part;
+    state_.next_choice = detail::choice_after(without_delay, tuning_.choice_part);
     chosen_anew = true;
   }
   if (defers_) {

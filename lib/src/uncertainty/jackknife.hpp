@@ -30,6 +30,7 @@ class Jackknife {
     information_squares_ += information.cwiseAbs2();
     neighbours_.add(difference);
   }
+  double count() const { return count_; }
   /// Mean of (pseudo - mean)^2 / (h - 1).
   Vector6d spread() const {
     return (squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_) / count_;

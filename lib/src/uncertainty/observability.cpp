@@ -266,7 +266,7 @@ Observability spatial_observability(const Problem& problem, const Matrix8d& Q, c
   const Matrix86d tangent = all ? around.tangent : Matrix86d(around.tangent.lazyProduct(basis));
   const detail::ShownDirections directions{
       detail::TangentSpace(around.q, around.length, tangent, problem.balance), basis, 6 - around.hidden};
-  Vector6d variance = detail::spatial_variance(problem, around.pairs, directions, errors, options);
+  Vector6d variance = detail::variance_by_blocks(problem, around.pairs, directions, errors, options);
   // settings of one drive have the same unknown part
   if (errors == ErrorCorrelation::correlated) {
     const bool has_prior = problem.prior.has_value();
@@ -351,6 +351,21 @@ Vector6d pull_in_plane(const Problem& problem, const DualQuaternion& T_a_b, cons
   return pull;
 }
 
+/// Around T_p, whose frame has its origin below sensor a: the axes are a's.
+detail::ShownDirections shown_in_plane(const Problem& problem, const DualQuaternion& T_a_b,
+                                       const Surroundings& around) {
+  const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
+  const DualQuaternion T_p = detail::in_units_of(around.length, planar_from_extrinsic(T_a_b, G_a, G_b));
+  const Eigen::Matrix3d axes = to_pose(G_a).rotation.toRotationMatrix();
+  const int shown = 3 - around.hidden;
+  Matrix6d basis = Matrix6d::Zero(), in_plane = Matrix6d::Zero();
+  basis.leftCols(shown) = around.vectors.middleCols(around.hidden, shown);
+  in_plane.topRows<3>() = axes.transpose() * basis.topRows<3>();
+  in_plane.bottomRows<3>() = axes.transpose() * basis.bottomRows<3>();
+  const Matrix86d tangent = detail::frame_a_basis(T_p).lazyProduct(in_plane);
+  return {detail::TangentSpace(T_p, around.length, tangent, problem.balance), basis, shown};
+}
+
 Observability planar_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
                                    ErrorCorrelation errors, const ObservabilityOptions& options) {
   Observability result;
@@ -359,8 +374,10 @@ Observability planar_observability(const Problem& problem, const Matrix8d& Q, co
   const Surroundings around = look_around_in_plane(problem, Q, T_a_b, all.count, options);
   result.observable = observable_in_plane(problem, around, errors, options);
   result.hint = planar_hint(around, options);
-  if (problem.blocks.size() < options.least_blocks) return result;
-  Vector6d variance = detail::planar_variance(problem, all, T_a_b, errors, options);
+  if (around.hidden == 3 || problem.blocks.size() < options.least_blocks) return result;
+  const detail::ShownDirections directions = shown_in_plane(problem, T_a_b, around);
+  Vector6d variance = detail::variance_by_blocks(problem, around.pairs, directions, errors, options);
+  variance.head<3>() *= around.length * around.length;
   if (errors == ErrorCorrelation::correlated) {
     variance = with_hidden_turns(hidden_turns(around, options), variance, around.length, false, options);
     Vector6d of_hidden = variance_of_hidden(around, false, options);

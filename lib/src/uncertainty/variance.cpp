@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
-#include "egocal/solvers/global.hpp"
-#include "problem/without_part.hpp"
-#include "uncertainty/frame_a.hpp"
 #include "uncertainty/jackknife.hpp"
 #include "uncertainty/takes_off.hpp"
 
@@ -29,6 +27,8 @@ struct Blocks {
   std::vector<double> pairs;  ///< of each
   std::vector<FourForms> forms;
   std::vector<Fours<6>> information;  ///< see Jackknife::leave_out
+  Vector6d information_of_all =
+      Vector6d::Zero();  ///< in the same units; less than their sum where they touch
 };
 
 /// The sums of neighbours among the first `count` of four, to two places from `first` on. One that has none
@@ -60,23 +60,6 @@ Blocks doubled(const Blocks& blocks) {
   return result;
 }
 
-std::vector<Statistics> doubled(const std::vector<Statistics>& blocks) {
-  std::vector<Statistics> result;
-  result.reserve((blocks.size() + 1) / 2);
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    if (i % 2 == 0)
-      result.push_back(blocks[i]);
-    else
-      result.back() += blocks[i];
-  return result;
-}
-
-/// Where neighbours share their errors (noise that wanders) single blocks say too little.
-bool looks_at_double_blocks(const Problem& problem, ErrorCorrelation errors,
-                            const ObservabilityOptions& options) {
-  return errors == ErrorCorrelation::correlated && problem.blocks.size() >= 2 * options.least_double_blocks;
-}
-
 /// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
 /// transposed: forms of the blocks with the other triangle, where that is not the same.
 void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, const TangentForm& all,
@@ -91,6 +74,7 @@ void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, c
     solve_factorised(factors, column, directions.shown);
     inverse.col(i) = column;
   }
+  blocks.information_of_all = directions.basis.lazyProduct(inverse).diagonal();
   // x'Hx as the sum over a triangle of H, its entries beside the diagonal twice
   TriangleProducts products;
   for (int j = 0, k = 0; j < 6; ++j)
@@ -181,31 +165,50 @@ Blocks blocks_around(const Problem& problem, const ShownDirections& directions, 
   return blocks;
 }
 
-/// How much more parts of four blocks scatter than single and double ones say, all directions together: one
-/// direction of five or six parts would be mostly chance. Errors that depend on the place, as those of real
-/// odometries do, last for longer than a block. One where they do not.
-double scatter_of_long_parts(const Jackknife& of_four, const Vector6d& spread) {
-  const Vector6d of_parts = of_four.spread();
+/// How many times the variance of joined blocks exceeds that of single ones, all directions together: one
+/// direction of a dozen parts would be mostly chance, and the largest of six even more. Errors that depend on
+/// the place, as those of real odometries do, last for longer than a block. The mean is one of logarithms, in
+/// which no direction outweighs the others; that of a chi-square of n degrees of freedom over n is -1 / n.
+double scatter_of_joined(const Jackknife& joined, const Jackknife& single) {
+  const Vector6d of_joined = joined.spread(), of_single = single.spread();
   double sum = 0, count = 0;
   for (int i = 0; i < 6; ++i) {
-    if (!(spread[i] > 0)) continue;
-    sum += of_parts[i] / spread[i];
+    // joined blocks that hold all that is known have no spread; Jackknife::concentration() counts them
+    if (!(of_single[i] > 0) || !std::isfinite(of_joined[i])) continue;
+    sum += std::log(of_joined[i] / of_single[i]);
     count += 1;
   }
-  return count > 0 ? std::max(1.0, sum / count) : 1;
+  return count > 0 ? std::exp(sum / count + 1 / (joined.count() - 1) - 1 / (single.count() - 1)) : 1;
 }
 
 /// By how many times the variance of a sum of many blocks exceeds that of as many single ones, where errors
-/// fade from block to block as the lag-one correlation says (an autoregression of order one).
+/// fade from block to block as the lag-one correlation says (an autoregression of order one). Such blocks
+/// show the variance itself with fewer degrees of freedom, as (1 - r^2) / (1 + r^2) times as many would
+/// (Bartlett 1946).
 double of_memory(const Jackknife& single, const ObservabilityOptions& options) {
-  const double correlation =
+  constexpr double least_freedom = 2;  // below, student_factor() is too small
+  const double r =
       std::clamp(single.correlation_of_neighbours(options.least_equal_blocks), 0.0, options.most_correlation);
-  return (1 + correlation) / (1 - correlation);
+  const double freedom = single.count() - 1;
+  const double fewer = std::max(least_freedom, freedom * (1 - r * r) / (1 + r * r));
+  const double student = student_factor(std::min(fewer, freedom)) / student_factor(freedom);
+  return (1 + r) / (1 - r) * student * student;
+}
+
+/// The largest part of what is known of a direction that is in a block.
+double largest_share(const Blocks& blocks, std::size_t block) {
+  const Vector6d own = column(blocks.information[block / four], block % four);
+  double share = 0;
+  for (int i = 0; i < 6; ++i)
+    if (own[i] > 0) share = std::max(share, own[i] / blocks.information_of_all[i]);
+  return std::min(share, 1.0);
 }
 
 /// Motions between two blocks are in both, so the curvatures of all blocks are together more than the whole.
 /// Each is divided by how many times. What is omitted is then a block's share of what is known, with all of
 /// its effect; with twice its share the answer without four blocks of long motions would rest on nothing.
+/// But a block that holds all that is known of a direction is omitted as a whole: half of it would leave the
+/// answer where it is, as if it were certain.
 void count_once(Blocks& blocks, const TangentForm& all, int shown) {
   Matrix6d factors = all.curvature;
   if (!factorise(factors, shown)) return;
@@ -214,58 +217,48 @@ void count_once(Blocks& blocks, const TangentForm& all, int shown) {
     add(blocks.forms[i], 0, std::min(four, blocks.pairs.size() - four * i), of_blocks);
   double times = 0;  // the mean over the directions
   for (int i = 0; i < shown; ++i) {
-    Vector6d column = of_blocks.curvature.col(i);
-    solve_factorised(factors, column, shown);
-    times += column[i] / shown;
+    Vector6d along = of_blocks.curvature.col(i);
+    solve_factorised(factors, along, shown);
+    times += along[i] / shown;
   }
   if (!(times > 1)) return;
-  for (FourForms& forms : blocks.forms)
-    for (auto& entries : forms.curvature)
-      for (double& entry : entries) entry /= times;
+  for (std::size_t k = 0; k < blocks.pairs.size(); ++k) {
+    const double divisor = times - (times - 1) * largest_share(blocks, k);
+    for (auto& entries : blocks.forms[k / four].curvature) entries[k % four] /= divisor;
+  }
+}
+
+/// A coordinate that no shown direction has a part of is rounding: it must not count in what is a mean, or a
+/// largest one, over the coordinates.
+ShownDirections without_rounding(ShownDirections directions) {
+  constexpr double least_part = 1e-6;  // far above rounding; less is not observable
+  for (int i = 0; i < 6; ++i)
+    if (!(directions.basis.row(i).head(directions.shown).norm() > least_part))
+      directions.basis.row(i).setZero();
+  return directions;
 }
 
 }  // namespace
 
-Vector6d detail::spatial_variance(const Problem& problem, double pairs, const ShownDirections& directions,
-                                  ErrorCorrelation errors, const ObservabilityOptions& options) {
+Vector6d detail::variance_by_blocks(const Problem& problem, double pairs,
+                                    const ShownDirections& all_directions, ErrorCorrelation errors,
+                                    const ObservabilityOptions& options) {
+  const ShownDirections directions = without_rounding(all_directions);
   TangentForm sum;
   Blocks blocks = blocks_around(problem, directions, sum);
   if (blocks.pairs.size() < problem.blocks.size()) count_once(blocks, sum, directions.shown);
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
-  Vector6d variance = single.variance();
-  if (looks_at_double_blocks(problem, errors, options)) {
-    const Blocks twos = doubled(blocks);
-    const Jackknife of_twos = jackknife_of(twos, sum, pairs, directions);
-    variance = variance.cwiseMax(of_twos.variance());
-    variance *= scatter_of_long_parts(jackknife_of(doubled(twos), sum, pairs, directions),
-                                      single.spread().cwiseMax(of_twos.spread()));
-    variance = variance.cwiseMax(of_memory(single, options) * single.variance());
-  }
-  return single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(variance);
-}
-
-Vector6d detail::planar_variance(const Problem& problem, const Statistics& all, const DualQuaternion& T_a_b,
-                                 ErrorCorrelation errors, const ObservabilityOptions& options) {
-  const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);
-  const Pose with_all = to_pose(T_a_b);
-  const auto jackknife_of = [&](const std::vector<Statistics>& blocks) {
-    Jackknife jackknife(std::max(1.0, static_cast<double>(all.count)));
-    for (const Statistics& block : blocks) {
-      const Solution without = solve_planar(cost_matrix(without_part(all, block), problem.balance));
-      jackknife.leave_out(static_cast<double>(block.count),
-                          frame_a_difference(with_all, extrinsic_from_planar(without.q, G_a, G_b)),
-                          Vector6d::Zero());
+  double shared = 1;  // how many times the variance is that of blocks without common errors
+  if (errors == ErrorCorrelation::correlated) {
+    shared = of_memory(single, options);
+    if (blocks.pairs.size() >= 2 * options.least_double_blocks) {
+      const Blocks of_two = doubled(blocks), of_four = doubled(of_two);
+      for (const Blocks* joined : {&of_two, &of_four})
+        shared = std::max(shared, scatter_of_joined(jackknife_of(*joined, sum, pairs, directions), single));
     }
-    return jackknife;
-  };
-  std::vector<Statistics> blocks;
-  for (const Statistics& block : problem.blocks)
-    if (!takes_off(block)) blocks.push_back(block);
-  const Jackknife single = jackknife_of(blocks);
-  Vector6d variance = single.variance();
-  if (looks_at_double_blocks(problem, errors, options))
-    variance = variance.cwiseMax(jackknife_of(doubled(blocks)).variance());
-  return variance;
+  }
+  return shared *
+         single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(single.variance());
 }
 
 }  // namespace egocal

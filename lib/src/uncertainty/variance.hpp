@@ -15,15 +15,11 @@ struct ShownDirections {
   int shown;
 };
 
-/// Of the coordinates in sensor a's frame, by the jack-knife over the blocks of a problem: per direction the
-/// larger of the variances with single and with double blocks, times what longer parts say. pairs: in all
-/// blocks. Lengths in units of the space.
-Vector6d spatial_variance(const Problem& problem, double pairs, const ShownDirections& directions,
-                          ErrorCorrelation errors, const ObservabilityOptions& options);
-
-/// The same in the plane, with single and double blocks, each minimum solved for [m^2, rad^2]. all: the sum
-/// of the blocks.
-Vector6d planar_variance(const Problem& problem, const Statistics& all, const DualQuaternion& T_a_b,
-                         ErrorCorrelation errors, const ObservabilityOptions& options);
+/// Of the coordinates in sensor a's frame, by the jack-knife over the blocks of a problem. Errors that
+/// neighbouring blocks may share make it as many times larger as the most of three signs of them says, each
+/// in the mean over all directions: the correlation of neighbours, and the spreads without two and without
+/// four of them. pairs: in all blocks. Lengths in units of the space.
+Vector6d variance_by_blocks(const Problem& problem, double pairs, const ShownDirections& directions,
+                            ErrorCorrelation errors, const ObservabilityOptions& options);
 
 }  // namespace egocal::detail

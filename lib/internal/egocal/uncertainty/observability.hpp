@@ -9,8 +9,9 @@
 
 namespace egocal {
 
-/// Whether the errors of neighbouring blocks may be related. If so, double blocks are omitted as well as
-/// single ones, and the larger spread counts: safer to report, noisier to compare settings by.
+/// Whether the errors of neighbouring blocks may be related. If so, their correlation and the spreads without
+/// two and without four of them count as well (docs/method.md): safer to report, noisier to compare settings
+/// by.
 enum class ErrorCorrelation { correlated, independent };
 
 /// When a direction counts as observable.
@@ -63,9 +64,9 @@ struct ObservabilityOptions {
 /// noise of the motions alone makes: noisy rotations about one axis look like rotations about several.
 /// Standard deviation: the block jack-knife, honest in spite of correlated motions. It is a variance: a
 /// systematic error of one sensor stays. To it is added the attenuation that noisy rotations cause
-/// (docs/method.md, "Uncertainty"). Errors that are compared as independent ones (settings of one drive) are
-/// not asked whether the sensors share them. Planar mode: z, roll and pitch come from the planes; they are
-/// not observable.
+/// (docs/method.md, "What cannot be known"). Errors that are compared as independent ones (settings of one
+/// drive) are not asked whether the sensors share them. Planar mode: z, roll and pitch come from the planes;
+/// they are not observable.
 Observability assess_observability(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
                                    ErrorCorrelation errors = ErrorCorrelation::correlated,
                                    const ObservabilityOptions& options = {});

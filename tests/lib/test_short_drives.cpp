@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives of a few dozen poses are weighted as long ones are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "../support/random_motion.hpp"
+#include "../support/simulated_drive.hpp"
+#include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
+#include "pairing/choice_schedule.hpp"
+
+namespace egocal::test_short_drives {
+namespace {
+
+/// A truck on an uneven, nearly straight road, with the same noise on all poses: it turns by a degree or two
+/// from pose to pose, and its positions are known to some centimetres.
+testing::Streams truck(std::uint64_t seed, int poses) {
+  testing::Random random(seed);
+  const DualQuaternion T_a = testing::displacement({0.1, -0.2, 0.3}, {1, 0.2, 1.5}),
+                       T_b = testing::displacement({-1.2, 0.3, -1.6}, {0.5, -0.4, 2});
+  testing::Streams streams;
+  streams.T = conjugate(T_a) * T_b;
+  DualQuaternion pose_a, pose_b;
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
+  for (int i = 0; i < poses; ++i) {
+    const auto noisy = [&](const DualQuaternion& pose) {
+      return canonical_sign(pose * testing::displacement(random.normal3(0.0007), random.normal3(0.05)));
+    };
+    const auto time_us = std::int64_t{100'000} * i;
+    streams.a.push_back({time_us, noisy(pose_a)});
+    streams.b.push_back({time_us, noisy(pose_b)});
+    const Eigen::Vector3d next = 0.7 * tilt + random.normal3(0.018);
+    const DualQuaternion step =
+        testing::displacement({next[0] - tilt[0], next[1] - tilt[1], 0.5 * next[2]}, {1.5, 0, 0});
+    tilt = next;
+    pose_a = pose_a * (conjugate(T_a) * step * T_a);
+    pose_b = pose_b * (conjugate(T_b) * step * T_b);
+  }
+  return streams;
+}
+
+/// With equal weights the noise of positions chose the roll: tens of degrees off, and doubtful.
+TEST(ShortDrives, AreWeightedFromSixteenPosesOn) {
+  for (const int poses : {20, 40, 60}) {
+    std::vector<double> rotations;
+    for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+      const testing::Streams streams = truck(seed, poses);
+      const Calibration calibration = calibrate(streams.a, streams.b);
+      EXPECT_TRUE(calibration.verdict == Verdict::good || calibration.verdict == Verdict::incomplete)
+          << poses << " poses, seed " << seed << ": " << calibration.reason;
+      rotations.push_back(extrinsic_error(streams.T, to_dual_quaternion(calibration.T_a_b)).rotation);
+    }
+    std::sort(rotations.begin(), rotations.end());
+    constexpr double degree = 0.017453292519943295;
+    EXPECT_LT(rotations[rotations.size() / 2], degree) << poses;
+    EXPECT_LT(rotations.back(), 6 * degree) << poses;
+  }
+}
+
+/// Whatever the first choice, those of longer drives are the same ones.
+TEST(ShortDrives, HaveChoicesOfTheirOwn) {
+  for (const std::uint64_t part : {4, 8})
+    for (const std::uint64_t first : {2, 8, 16, 17, 40, 63}) {
+      std::uint64_t choice = first;
+      while (choice < detail::common_choice) choice = detail::choice_after(choice, part);
+      EXPECT_EQ(choice, detail::common_choice) << first;
+      EXPECT_EQ(detail::choice_after(choice, part), choice + choice / part);
+    }
+}
+
+}  // namespace
+}  // namespace egocal::test_short_drives
