@@ -66,8 +66,8 @@ void fields(auto& archive, services::Is<ScreeningOptions> auto& value) {
 }
 
 void fields(auto& archive, services::Is<AccumulatorOptions> auto& value) {
-  auto& [longest_motion, stretch, most_rotation, balances, first_choice, choice_phase] = value;
-  archive(longest_motion, stretch, most_rotation, balances, first_choice, choice_phase);
+  auto& [longest_motion, stretch, most_rotation, balances, first_choice, early_choice, choice_phase] = value;
+  archive(longest_motion, stretch, most_rotation, balances, first_choice, early_choice, choice_phase);
 }
 
 void fields(auto& archive, services::Is<PairingOptions> auto& value) {

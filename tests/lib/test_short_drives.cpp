@@ -12,7 +12,7 @@
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
-#include "pairing/choice_schedule.hpp"
+#include "egocal/pairing/motion_pairing.hpp"
 
 namespace egocal::test_short_drives {
 namespace {
@@ -62,15 +62,25 @@ TEST(ShortDrives, AreWeightedFromSixteenPosesOn) {
   }
 }
 
-/// Whatever the first choice, those of longer drives are the same ones.
-TEST(ShortDrives, HaveChoicesOfTheirOwn) {
-  for (const std::uint64_t part : {4, 8})
-    for (const std::uint64_t first : {2, 8, 16, 17, 40, 63}) {
-      std::uint64_t choice = first;
-      while (choice < detail::common_choice) choice = detail::choice_after(choice, part);
-      EXPECT_EQ(choice, detail::common_choice) << first;
-      EXPECT_EQ(detail::choice_after(choice, part), choice + choice / part);
+/// Nothing later depends on when a short drive was asked for its answer, or continued from its state.
+TEST(ShortDrives, LeaveNoTraceInLongerOnes) {
+  const testing::Streams streams = truck(3, 90);
+  MotionPairing asked{PairingOptions{}}, silent{PairingOptions{}};
+  silent.read_at_end();
+  for (std::size_t i = 0; i < streams.a.size(); ++i) {
+    for (MotionPairing* pairing : {&asked, &silent}) {
+      pairing->push(Side::a, streams.a[i]);
+      pairing->push(Side::b, streams.b[i]);
     }
+    if (i == 40) {
+      const MotionPairing restored(PairingOptions{}, asked.state());
+      EXPECT_EQ(cost_matrix(restored.problem()), cost_matrix(asked.problem()));
+      asked = restored;
+    }
+  }
+  asked.finish();
+  silent.finish();
+  EXPECT_EQ(cost_matrix(asked.problem()), cost_matrix(silent.problem()));
 }
 
 }  // namespace

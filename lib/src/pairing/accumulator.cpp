@@ -99,7 +99,7 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   if (instant.number >= state_.next_choice + choice_delay()) {
     choose();
     const std::uint64_t without_delay = instant.number - choice_delay();
-    state_.next_choice = detail::choice_after(without_delay, tuning_.choice_part);
+    state_.next_choice = without_delay + without_delay / tuning_.choice_part;
     chosen_anew = true;
   }
   if (defers_) {
@@ -278,6 +278,29 @@ void Accumulator::choose() {
                 selected->tried, selected->spread.rotation * 180 / std::numbers::pi,
                 100 * selected->spread.translation);
   state_.choice.reason = text;
+}
+
+/// What add() spreads over several instants.
+void Accumulator::choose_all() {
+  if (options_.robust) {
+    const Problem problem = empty_problem();
+    for (AccumulatorState::PerStride& entry : state_.strides)
+      entry.statistics.look(problem, entry.stride, tuning_.robust);
+  }
+  choose();
+  if (sums_)
+    sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
+  state_.attenuation = find_attenuation(plain_problem());
+}
+
+std::optional<Accumulator> Accumulator::with_early_choice() const {
+  const std::uint64_t instants = state_.instants.empty() ? 0 : state_.instants.back().number;
+  const bool has_chosen = state_.next_choice != options_.accumulator.first_choice;
+  if ((options_.stride && options_.balance) || has_chosen || instants < options_.accumulator.early_choice)
+    return std::nullopt;
+  Accumulator early(*this);
+  early.choose_all();
+  return early;
 }
 
 Problem Accumulator::empty_problem() const {

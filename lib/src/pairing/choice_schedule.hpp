@@ -10,16 +10,6 @@
 
 namespace egocal::detail {
 
-/// Whatever the first choice, one is at this number of instants: those of longer drives do not depend on what
-/// short ones need. The studies of docs/accuracy.md were made with them.
-inline constexpr std::uint64_t common_choice = 64;
-
-/// When the choice after one at `now` is due: after 1 / part more.
-inline std::uint64_t choice_after(std::uint64_t now, std::uint64_t part) {
-  const std::uint64_t next = now + std::max<std::uint64_t>(1, now / part);
-  return now < common_choice ? std::min(next, common_choice) : next;
-}
-
 /// By how many instants a choice is delayed that would be due at `next`, where another one follows after next
 /// / part more. phase: AccumulatorOptions::choice_phase.
 inline std::uint64_t choice_delay(std::uint64_t next, std::uint64_t part, double phase) {
@@ -43,7 +33,7 @@ class SumsSchedule {
   std::uint64_t after_choice(std::uint64_t instants, std::uint64_t next) const {
     const std::uint64_t without_delay = instants - std::min(instants, delay(next));
     const std::uint64_t due = std::min(without_delay, next);
-    return choice_after(due, part(due));
+    return due + std::max<std::uint64_t>(1, due / part(due));
   }
 
  private:

@@ -35,7 +35,8 @@ MotionPairing::MotionPairing(PairingOptions options, PairingState state)
       clock_(options_, std::move(state.clock)),
       synchroniser_(options_, std::move(state.synchroniser)),
       screening_(options_.screening, std::move(state.screening)),
-      accumulator_(options_, std::move(state.accumulator)) {}
+      accumulator_(options_, std::move(state.accumulator)),
+      early_(accumulator_.with_early_choice()) {}
 
 std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given) {
   ++(side == Side::a ? poses_a_ : poses_b_);
@@ -49,7 +50,7 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
   if (!options_.track_time_offset) {
     if (side == Side::b) pose.time_us += std::llround(options_.time_offset * 1e6);
     take(synchroniser_.push(side, pose), pairs);
-    if (settles_) accumulator_.settle();
+    if (settles_) settle();
     return pairs;
   }
   const std::uint64_t given_up = clock_.state().given_up;
@@ -61,7 +62,7 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
     segment_ = one.segment;
     take(synchroniser_.push(one.side, one.pose), pairs);
   }
-  if (settles_) accumulator_.settle();
+  if (settles_) settle();
   return pairs;
 }
 
@@ -70,8 +71,15 @@ std::vector<MotionPair> MotionPairing::finish() {
   take(synchroniser_.finish(), pairs);
   screening_.finish();
   accumulator_.add_to_sums(accumulator_.take_deferred());
-  accumulator_.settle();
+  settle();
   return pairs;
+}
+
+/// Before answers are asked for.
+void MotionPairing::settle() {
+  accumulator_.settle();
+  if (early_ && early_->newest_us() == accumulator_.newest_us()) return;
+  early_ = accumulator_.with_early_choice();
 }
 
 void MotionPairing::take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs) {
@@ -101,9 +109,9 @@ PairingCounts MotionPairing::counts() const {
   counts.poses_a = poses_a_;
   counts.poses_b = poses_b_;
   counts.synchronised = synchroniser_.state().synchronised;
-  counts.matched = accumulator_.inlier_pairs();
-  counts.outliers = accumulator_.outlier_pairs();
-  counts.jumps = accumulator_.jumps();
+  counts.matched = current().inlier_pairs();
+  counts.outliers = current().outlier_pairs();
+  counts.jumps = current().jumps();
   for (const Rejections* stage : {&rejections_, &synchroniser_.state().rejections,
                                   &screening_.state().rejections, &accumulator_.rejections()})
     for (std::size_t i = 0; i < counts.rejected.size(); ++i) counts.rejected[i] += stage->by_reason[i];

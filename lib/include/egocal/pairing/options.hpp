@@ -137,10 +137,12 @@ struct AccumulatorOptions {
   /// enough (docs/method.md, "Fast machines").
   std::vector<double> balances{1, 0.1, 0.01, 0.001};
   /// Number of synchronised instants at which stride and balance are chosen first. Each further choice comes
-  /// after a quarter more: the cost of choosing stays a constant part of the work. With the equal weights
-  /// that are in force before, drives of 20 to 60 poses are off by three times as much; from fewer than 16,
-  /// one answer in a hundred is called good and is off (docs/accuracy.md, "Short drives").
-  std::uint64_t first_choice = 16;
+  /// after a quarter more: the cost of choosing stays a constant part of the work.
+  std::uint64_t first_choice = 64;
+  /// Before that, answers are of a choice that is made for them, from this many instants on, and that nothing
+  /// later depends on. With equal weights drives of 20 to 60 poses are off by three times as much; from fewer
+  /// than 16, one answer in a hundred is called good and is off (docs/accuracy.md, "Short drives").
+  std::uint64_t early_choice = 16;
   /// In [0, 1): several pairs of one rig choose at different times. Each choice comes later by this share of
   /// the instants to the next one.
   double choice_phase = 0;

@@ -87,6 +87,11 @@ class Accumulator {
   /// All of them in order, before anything else is asked: the same bits as without defer_sums().
   void add_to_sums(const std::vector<SumsStep>& steps);
 
+  /// Before the first choice, but from AccumulatorOptions::early_choice on: what would be known if one were
+  /// made now. Empty at other times. This accumulator goes on without it, so that no later answer depends on
+  /// when it was asked.
+  std::optional<Accumulator> with_early_choice() const;
+
   /// What is known so far, at the choice in force.
   Problem problem() const;
   /// The same from the motions of the best single stride alone, in disjoint blocks.
@@ -110,6 +115,7 @@ class Accumulator {
                                    Rejections& rejections);
   std::uint64_t choice_delay() const;
   void choose();
+  void choose_all();
   void defer(const Instant& instant, bool doubtful, bool chosen_anew);
 
   PairingOptions options_;

@@ -59,10 +59,10 @@ class MotionPairing {
   std::vector<MotionPair> finish();
 
   /// What is known so far.
-  Problem problem() const { return accumulator_.problem(); }
+  Problem problem() const { return current().problem(); }
   /// The same from the motions of the best single stride alone, in disjoint blocks.
-  Problem single_stride_problem() const { return accumulator_.single_stride_problem(); }
-  Choice choice() const { return accumulator_.choice(); }
+  Problem single_stride_problem() const { return current().single_stride_problem(); }
+  Choice choice() const { return current().choice(); }
   PairingCounts counts() const;
   const PairingOptions& options() const { return options_; }
   PairingState state() const;
@@ -75,6 +75,8 @@ class MotionPairing {
 
  private:
   void take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs);
+  void settle();
+  const Accumulator& current() const { return early_ ? *early_ : accumulator_; }
 
   PairingOptions options_;
   std::uint64_t poses_a_ = 0, poses_b_ = 0;
@@ -84,7 +86,8 @@ class MotionPairing {
   Synchroniser synchroniser_;
   Screening screening_;
   Accumulator accumulator_;
-  bool settles_ = true;  ///< after every pose
+  std::optional<Accumulator> early_;  ///< of short drives; made again from the accumulator
+  bool settles_ = true;               ///< after every pose
 };
 
 /// Both trajectories through a MotionPairing, in the order of time.
