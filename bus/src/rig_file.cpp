@@ -77,6 +77,11 @@ GoalOptions read_goal(const TomlTable& in, const std::string& key) {
           table->number("translation_m", goal_translation, "m"), std::nullopt};
 }
 
+/// A number, or what is none: "auto" is the default.
+bool gives_stride(const TomlTable& in) {
+  return in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto");
+}
+
 /// a and b: two of the rig's sensors, one of which at most has a scale that is to be found.
 void read_sensors_of_pair(const TomlTable& in, const Rig& rig, PairConfig& pair) {
   for (const std::string key : {"a", "b"}) {
@@ -91,14 +96,13 @@ void read_sensors_of_pair(const TomlTable& in, const Rig& rig, PairConfig& pair)
   if (unscaled_a && unscaled_b)
     in.fail("b", "both sensors have scale = \"auto\": one of the two must measure metres");
   // the motions of such a pair have a length of their own
-  const bool chosen = in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto");
-  if ((unscaled_a || unscaled_b) && chosen)
+  if ((unscaled_a || unscaled_b) && gives_stride(in))
     in.fail("stride", "cannot be chosen where a sensor has scale = \"auto\"");
 }
 
 /// stride, weights and time_offset: how the motions are made and weighted.
 void read_motion_options(const TomlTable& in, PairConfig& pair) {
-  if (in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto")) {
+  if (gives_stride(in)) {
     const toml::node& node = in.require("stride");
     if (!node.is_integer() || !limits::stride.contains(static_cast<double>(node.as_integer()->get())))
       in.fail("stride", "expected \"auto\" or a whole number from 1 to 10000");

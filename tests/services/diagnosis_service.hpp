@@ -71,7 +71,7 @@ class DiagnosisService : public ::testing::Test {
     pass(100ms);
   }
 
-  /// Plays poses [begin, end) in real time, with the problem that pairing makes of them after every so many.
+  /// Plays poses [begin, end) in real time, with the problem of pairing after each `every` poses.
   void play(const testing::Streams& streams, std::size_t begin, std::size_t end, std::size_t every = 40) {
     MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
     const std::int64_t session = streams.a[begin].time_us;

@@ -22,6 +22,7 @@
 #include "egocal/microseconds.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
+#include "offline/answer_or_warn.hpp"
 #include "offline/append.hpp"
 #include "offline/beside.hpp"
 #include "offline/log_trajectory.hpp"
@@ -264,7 +265,7 @@ void follow_scale(Motions& motions, CalibrationOptions options, SolveResult& res
   result.course = course;
 }
 
-void answer(const SolveRequest& request, SolveResult& result) {
+void answer_sensors(const SolveRequest& request, SolveResult& result) {
   const std::optional<Method> method = method_from_name(request.method);
   if (!method && request.calibration.pairing.mode == Mode::planar)
     throw UsageError("--method " + request.method + ": has no planar mode");
@@ -322,14 +323,7 @@ void answer(const SolveRequest& request, SolveResult& result) {
 }  // namespace
 
 SolveResult calibrate_offline(const SolveRequest& request) {
-  SolveResult result;
-  try {
-    answer(request, result);
-  } catch (const Error&) {
-    if (request.unanswered) request.unanswered(result.warnings);
-    throw;
-  }
-  return result;
+  return answer_or_warn(request, answer_sensors);
 }
 
 }  // namespace egocal::tools

@@ -11,6 +11,7 @@
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/scale/scale_statistics.hpp"
+#include "offline/answer_or_warn.hpp"
 #include "offline/append.hpp"
 #include "offline/beside.hpp"
 #include "offline/log_trajectory.hpp"
@@ -161,7 +162,7 @@ void put_outcomes(std::vector<PairOutcome> outcomes, const RigSettings& settings
                               ": this pair has no answer of its own: " + pair.reason);
 }
 
-void answer(const RigRequest& request, RigReport& report) {
+void answer_rig(const RigRequest& request, RigReport& report) {
   const RigSettings settings = rig_settings(request);
   report.names = settings.names;
   report.sources = settings.sources;
@@ -184,14 +185,7 @@ void answer(const RigRequest& request, RigReport& report) {
 }  // namespace
 
 RigReport calibrate_rig(const RigRequest& request) {
-  RigReport report;
-  try {
-    answer(request, report);
-  } catch (const Error&) {
-    if (request.unanswered) request.unanswered(report.warnings);
-    throw;
-  }
-  return report;
+  return answer_or_warn(request, answer_rig);
 }
 
 }  // namespace egocal::tools

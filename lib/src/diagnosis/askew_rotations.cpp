@@ -27,6 +27,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr double tiny = 1e-300;  // against a division by zero: what is not shown, streams without noise
+
 /// Normal equations of n unknowns.
 template <int n>
 struct Normal {
@@ -44,7 +46,7 @@ struct Normal {
   /// What the motions do not show stays zero. Vectors in threes, each in its own unit; `scalars` from the
   /// first one of three that are not a vector.
   Eigen::Matrix<double, n, 1> solved(int scalars = -1) const {
-    constexpr double part = 1e-7, tiny = 1e-300;  // far above rounding, far below what a drive shows
+    constexpr double part = 1e-7;  // far above rounding, far below what a drive shows
     Eigen::Matrix<double, n, n> kept = A;
     for (int i = 0; i < n; i += 3) {
       auto diagonal = kept.diagonal().template segment<3>(i).array();
@@ -97,7 +99,6 @@ std::vector<Weights> weights_of(const std::vector<LeftOver>& residuals, double i
     rotations.push_back(left.rotation.squaredNorm());
     translations.push_back(left.translation.squaredNorm());
   }
-  constexpr double tiny = 1e-300;  // against a division by zero: streams without noise
   const double rotation = median(rotations) + tiny, translation = median(translations) + tiny;
   const auto weight = [inlier](double square, double typical) {
     return std::pow(1 + square / (inlier * typical), -2);

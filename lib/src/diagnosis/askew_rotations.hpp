@@ -17,7 +17,7 @@ namespace egocal::detail {
 /// Study: docs/trust_measured.md, "Mistakes".
 struct AskewOptions {
   std::size_t motions = 240;  ///< of each length, evenly spread: a limit on time
-  int shorter = 3;            ///< the second length of the motions is so many times less; more, of steps
+  int shorter = 3;            ///< motions are a third as long the second time; three steps where they are one
   /// Parts of the drive whose own estimates show what is chance; fewer than `least_parts` show nothing.
   std::size_t parts = 24, least_parts = 8;
   double motions_a_part = 6, parts_a_motion = 0.5;  ///< at least, at most: parts are to be independent

@@ -39,11 +39,12 @@ Finding scale_finding(const Explanation& explanation, const Comparison& comparis
   Finding finding = finding_of(explanation, comparison, certain);
   finding.code = units ? "units" : "scale";
   finding.value = units ? std::pow(1000, power) : explanation.scale;
+  if (!units) return worded_scale(std::move(finding));
   // in the unit of the shorter one, the longer stream goes as the shorter one does
   const double speed = speed_of_a(evidence), of_longer = power > 0 ? speed / explanation.scale : speed;
   finding = worded_scale(std::move(finding), of_longer > 0 && of_longer < options.scale.slowest);
   // the answer is in the units of a: those of the longer stream are the wrong ones
-  if (units && power > 0) finding.T_a_b->translation /= *finding.value;
+  if (power > 0) finding.T_a_b->translation /= *finding.value;
   return finding;
 }
 

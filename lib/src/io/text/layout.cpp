@@ -74,16 +74,19 @@ void note_rivals(TextLayout& layout) {
       ", not " + layout.names[*layout.columns.other_time] + "; --columns names others");
 }
 
+/// Whether a quantity is in the column at `index`.
+bool is_read(const TextLayout& layout, std::size_t index) {
+  return std::any_of(
+      layout.columns.of.begin(), layout.columns.of.end(),
+      [&](const std::optional<ColumnMap::Column>& column) { return column && column->index == index; });
+}
+
 /// A name of --columns that is no quantity may be a mistyped one.
 void note_unread(TextLayout& layout) {
   std::string text;
   for (std::size_t k = 0; k < layout.names.size(); ++k) {
-    const auto reads = [&](const std::optional<ColumnMap::Column>& column) {
-      return column && column->index == k;
-    };
     if (layout.names[k].empty() || layout.names[k] == "-") continue;
-    if (std::none_of(layout.columns.of.begin(), layout.columns.of.end(), reads))
-      text += (text.empty() ? "" : ", ") + quoted(layout.names[k]);
+    if (!is_read(layout, k)) text += (text.empty() ? "" : ", ") + quoted(layout.names[k]);
   }
   if (!text.empty()) layout.notes.push_back("not read of --columns: " + text + " (- for what is not needed)");
 }
@@ -270,10 +273,7 @@ std::vector<double> sniffed_times(const TextLayout& layout, const Sniffed& sniff
 void note_likely_times(TextLayout& layout, const Sniffed& sniffed) {
   if (layout.header_line == 0) return;
   for (std::size_t k = 0; k < layout.names.size(); ++k) {
-    const auto reads = [&](const std::optional<ColumnMap::Column>& column) {
-      return column && column->index == k;
-    };
-    if (std::any_of(layout.columns.of.begin(), layout.columns.of.end(), reads)) continue;
+    if (is_read(layout, k)) continue;
     const std::vector<double> values = sniffed_times(layout, sniffed, k);
     bool increases = values.size() > 2 && values.size() + 1 == sniffed.data.size(), counts = true;
     for (std::size_t i = 1; i < values.size(); ++i) {
