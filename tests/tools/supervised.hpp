@@ -94,7 +94,12 @@ class Supervision : public ::testing::Test {
       kill(pid, SIGKILL);
       waitpid(pid, nullptr, 0);
     }
-    std::filesystem::remove_all(folder);
+    // what a killed supervisor had started writes for a moment longer
+    until([&] {
+      std::error_code still_written;
+      std::filesystem::remove_all(folder, still_written);
+      return !still_written;
+    });
   }
   std::string path(const std::string& name) const { return folder / name; }
 

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Processes of `egocal up` that are killed, stopped or told, and what they keep.
+#include <fcntl.h>
 #include <sys/resource.h>
 
+#include <cstdio>
 #include <functional>
 #include <map>
 
@@ -74,8 +76,10 @@ TEST_F(Up, StartsItsOwnListenerAgain) {
 TEST_F(Up, APairingThatDiesWhenTheOutputFolderIsGoneCalibratesOn) {
   ChildProcess egocal = up({"--log", log, "--speed", "5"});
   ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
-  std::filesystem::remove_all(path("out"));
-  std::ofstream(path("out")) << "in its place\n";
+  // exchanged in one step: a pairing that saves its state makes the folder again
+  std::ofstream(path("in its place")) << "a file\n";
+  ASSERT_EQ(renameat2(AT_FDCWD, path("out").c_str(), AT_FDCWD, path("in its place").c_str(), RENAME_EXCHANGE),
+            0);
   const pid_t killed = child(egocal.pid(), "egocal-pairing");
   kill(killed, SIGKILL);
   EXPECT_TRUE(until([&] {
