@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 
 #include "baselines/usable.hpp"
 #include "egocal/baselines/baselines.hpp"
+#include "linear_algebra/normal_equations.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/lmi.hpp"
 
@@ -16,7 +16,8 @@ namespace {
 using Matrix10d = Eigen::Matrix<double, 10, 10>;
 using Vector10d = Eigen::Matrix<double, 10, 1>;
 using Matrix13d = Eigen::Matrix<double, 13, 13>;
-constexpr int homogeneous = 9;  // index of the number 1 behind the nine entries of R
+constexpr int homogeneous = 9;        // index of the number 1 behind the nine entries of R
+constexpr double rank_limit = 1e-13;  // of eigenvalues of the translations, to the largest: rounding
 
 int entry(int row, int column) {
   return 3 * column + row;
@@ -77,7 +78,7 @@ Matrix13d cost_of(const std::vector<MotionPair>& pairs) {
     }
     M.block<3, 1>(9, homogeneous) = a.translation;
     M.block<3, 3>(9, 10) = R_a - Eigen::Matrix3d::Identity();
-    sum += pair.eta * M.transpose() * M;
+    detail::add_square(sum, pair.eta, M);
     weight += pair.eta;
   }
   return sum / weight;
@@ -108,10 +109,13 @@ BaselineAnswer solve_matrix(std::span<const MotionPair> pairs) {
   const Matrix13d full = cost_of(usable);
   const Eigen::Matrix3d H = full.bottomRightCorner<3, 3>();
   const Eigen::Matrix<double, 3, 10> K = full.bottomLeftCorner<3, 10>();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> translation(3, 3);
-  translation.setThreshold(1e-13);
-  translation.compute(H);
-  const Eigen::Matrix<double, 3, 10> t_of_x = -translation.solve(K);
+  // the shortest translation where H does not determine it
+  const detail::SymmetricEigen<3> of_H = detail::symmetric_eigen<3>(H);
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i)
+    if (of_H.values[i] > rank_limit * of_H.values[2])
+      inverse += of_H.vectors.col(i) * of_H.vectors.col(i).transpose() / of_H.values[i];
+  const Eigen::Matrix<double, 3, 10> t_of_x = -(inverse * K);
   Matrix10d C = full.topLeftCorner<10, 10>() + K.transpose() * t_of_x;
   C = 0.5 * (C + C.transpose()).eval();
   const double size = C.trace();
@@ -160,7 +164,7 @@ BaselineAnswer solve_matrix(std::span<const MotionPair> pairs) {
   answer.T_a_b = to_dual_quaternion(T);
   answer.gap = std::max(0.0, best - lmi.b.dot(result.point.y)) * size;
   answer.certified = answer.gap <= 1e-8 * size;
-  answer.valid = translation.rank() == 3;
+  answer.valid = of_H.values[0] > rank_limit * of_H.values[2];
   if (!answer.valid) {
     answer.note = "the motions turn about fewer than two axes: part of the translation is unknown";
   } else if (!answer.certified) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/askew_rotations.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/cross_matrix.hpp"
+#include "linear_algebra/normal_equations.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/median.hpp"
@@ -36,8 +36,8 @@ struct Normal {
   Eigen::Matrix<double, n, 1> b = Eigen::Matrix<double, n, 1>::Zero();
 
   void add(double weight, const Eigen::Matrix<double, 3, n>& rows, const Vector3d& residual) {
-    A.noalias() += weight * (rows.transpose() * rows);
-    b.noalias() -= weight * (rows.transpose() * residual);
+    add_square(A, weight, rows);
+    add_product(b, -weight, rows, residual);
   }
   void add(const Normal& other, double sign) {
     A += sign * other.A;
@@ -56,7 +56,7 @@ struct Normal {
         diagonal += part * diagonal.sum();
       diagonal += tiny;
     }
-    return kept.ldlt().solve(b);
+    return solve_symmetric(kept, b);
   }
 };
 

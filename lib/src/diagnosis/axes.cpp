@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/axes.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include "diagnosis/reading.hpp"
 #include "diagnosis/robust_fit.hpp"
 #include "linear_algebra/cross_matrix.hpp"
+#include "linear_algebra/normal_equations.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "problem/tangent.hpp"
 #include "statistics/median.hpp"
@@ -153,12 +153,12 @@ Matrix3d linear_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFit
     Vector12d g = Vector12d::Zero();
     for (const Step& step : steps) {
       const Rows rows = rows_of(step, R);
-      A += step.weight * rows.transpose() * rows;
-      g -= step.weight * rows.transpose() * step.t_s;
+      add_square(A, step.weight, rows);
+      add_product(g, -step.weight, rows, step.t_s);
     }
     // what the drive does not show stays zero, and is completed below
     A.diagonal().array() += 1e-6 * A.trace() / 12 + 1e-300;
-    x = A.ldlt().solve(g);
+    x = solve_symmetric(A, g);
     std::vector<double> squares;
     squares.reserve(steps.size());
     for (const Step& step : steps) squares.push_back((rows_of(step, R) * x + step.t_s).squaredNorm());
@@ -171,7 +171,7 @@ Matrix3d linear_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFit
 /// solution up to a factor, of both t and W. It is the one that explains most of what W makes of the
 /// positions.
 Matrix3d common_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFitOptions& options) {
-  Eigen::VectorXd x = Vector12d::Zero();
+  Vector12d x = Vector12d::Zero();
   const auto rows_of_both = [&R](const Step& step) {
     Rows rows;
     rows.leftCols<3>() = step.R_s - Matrix3d::Identity();
@@ -185,22 +185,28 @@ Matrix3d common_map(std::vector<Step>& steps, const Matrix3d& R, const RobustFit
     Matrix3d travelled = Matrix3d::Zero();
     for (const Step& step : steps) {
       const Rows rows = rows_of_both(step);
-      A += step.weight * rows.transpose() * rows;
+      add_square(A, step.weight, rows);
       travelled += step.weight * (step.d * step.d.transpose() + step.d_s * step.d_s.transpose());
     }
     // a direction that nothing travels along stays zero, and is completed below
     A.diagonal().array() += 1e-4 * travelled.trace() + 1e-300;
     travelled.diagonal().array() += 1e-6 * travelled.trace() + 1e-300;
     // without t, and with lengths that are those of what W makes of the positions
-    const Matrix3d whitened = travelled.llt().matrixL().solve(Matrix3d::Identity()).transpose();
-    Eigen::Matrix<double, 9, 9> whiten = Eigen::Matrix<double, 9, 9>::Zero();
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column)
-        whiten.block<3, 3>(3 * row, 3 * column) = whitened(row, column) * Matrix3d::Identity();
-    const Eigen::Matrix<double, 3, 9> lever = -A.topLeftCorner<3, 3>().ldlt().solve(A.topRightCorner<3, 9>());
-    const Eigen::MatrixXd rest =
-        whiten.transpose() * (A.bottomRightCorner<9, 9>() + A.bottomLeftCorner<9, 3>() * lever) * whiten;
-    x.tail<9>() = whiten * symmetric_eigen<Eigen::Dynamic>(rest).vectors.col(0);
+    const SymmetricEigen<Eigen::Dynamic> axes = symmetric_eigen<Eigen::Dynamic>(travelled);
+    const Eigen::MatrixXd whiten = axes.vectors * axes.values.cwiseSqrt().cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd lever = -solve_symmetric(A.topLeftCorner<3, 3>(), A.topRightCorner<3, 9>());
+    const Eigen::MatrixXd inner = A.bottomRightCorner<9, 9>() + A.bottomLeftCorner<9, 3>() * lever;
+    Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(9, 9);
+    for (int i = 0; i < 9; ++i)
+      for (int k = 0; k < 9; ++k)
+        rest.block<3, 3>(3 * (i / 3), 3 * (k / 3)) +=
+            whiten(i % 3, i / 3) * whiten(k % 3, k / 3) * inner.block<3, 3>(3 * (i % 3), 3 * (k % 3));
+    const Eigen::VectorXd whitened = symmetric_eigen<Eigen::Dynamic>(rest).vectors.col(0);
+    for (int column = 0; column < 3; ++column) {
+      x.segment<3>(3 + 3 * column).setZero();
+      for (int k = 0; k < 3; ++k)
+        x.segment<3>(3 + 3 * column) += whiten(column, k) * whitened.segment<3>(3 * k);
+    }
     x.head<3>() = lever * x.tail<9>();
     std::vector<double> squares;
     squares.reserve(steps.size());
@@ -243,17 +249,17 @@ Matrix3d refined(const std::vector<Step>& steps, const Matrix3d& R, Matrix3d W, 
       J.leftCols<3>() = step.R_s - Matrix3d::Identity();
       J.middleCols<3>(3) = of_w * cross_matrix(step.d) - of_s * cross_matrix(step.d_s);
       J.rightCols<1>() = -of_w * step.d;
-      A += step.weight * J.transpose() * J;
-      g -= step.weight * J.transpose() * residual;
+      add_square(A, step.weight, J);
+      add_product(g, -step.weight, J, residual);
     }
     A.diagonal().head<3>().array() += 1e-6 * A.diagonal().head<3>().sum() + 1e-300;
     A.diagonal().segment<3>(3).array() += 1e-6 * A.diagonal().segment<3>(3).sum() + 1e-300;
     A(6, 6) += 1e-6 * A(6, 6) + 1e-300;
     Vector7d x = Vector7d::Zero();  // t, the turn of W, and the logarithm of c
     if (wrong == WrongAxes::of_one)
-      x = A.ldlt().solve(g);
+      x = solve_symmetric(A, g);
     else
-      x.head<6>() = A.topLeftCorner<6, 6>().ldlt().solve(g.head<6>());
+      x.head<6>() = solve_symmetric(A.topLeftCorner<6, 6>(), g.head<6>());
     if (!x.allFinite()) break;
     W = W * rotation_exp(x.segment<3>(3)).toRotationMatrix();
     scale *= std::exp(x[6]);

@@ -3,12 +3,12 @@
 // Motions of which one stream is changed by a few numbers: what a mistake in it adds to each translation.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <cstddef>
 #include <vector>
 
 #include "diagnosis/robust_fit.hpp"
 #include "linear_algebra/cross_matrix.hpp"
+#include "linear_algebra/normal_equations.hpp"
 
 namespace egocal::detail {
 
@@ -43,11 +43,11 @@ Eigen::Matrix<double, n, 1> best_numbers(const Explained& given,
       rows.template rightCols<n>() = added[i];
     else
       rows.template rightCols<n>() = -(R * added[i]);
-    sum += weight * rows.transpose() * rows;
-    right -= weight * rows.transpose() * residual;
+    add_square(sum, weight, rows);
+    add_product(right, -weight, rows, residual);
   }
   sum.diagonal().array() += 1e-9 * sum.trace() / (6 + n) + 1e-300;  // what is not shown stays as it is
-  return sum.ldlt().solve(right).template tail<n>();
+  return solve_symmetric(sum, right).template bottomRows<n>();
 }
 
 }  // namespace egocal::detail

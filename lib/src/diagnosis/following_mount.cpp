@@ -6,11 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "diagnosis/swaying_mount.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "linear_algebra/normal_equations.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -140,11 +139,11 @@ std::optional<Following> following_by(const Instants& instants, const DualQuater
     FollowingRelation product = FollowingRelation::Zero();
     for (std::size_t i = 0; i < n; ++i) {
       if (within(i)) continue;
-      normal += rows[i].transpose() * rows[i];
-      product += rows[i].transpose() * changes[i].rotation;
+      add_square(normal, 1, rows[i]);
+      add_product(product, 1, rows[i], changes[i].rotation);
     }
     normal.diagonal().array() += options.penalty * normal.trace() / 36;
-    const FollowingRelation relation = normal.ldlt().solve(product);
+    const FollowingRelation relation = solve_symmetric(normal, product);
     for (std::size_t i = 0; i < n; ++i) {
       if (!within(i)) continue;
       const Eigen::Vector3d by_relation = rows[i] * relation;
