@@ -276,6 +276,21 @@ TEST(Samples, LengthsInMillimetresAreNamed) {
   EXPECT_NEAR(found.calibration.findings.front().value.value_or(0), 1e-3, 2e-5);
 }
 
+// The identity explains them without a residual, and would look like a perfect answer.
+TEST(Samples, OfOneListGivenTwiceAreNamed) {
+  for (const std::size_t n : {4u, 20u}) {
+    std::vector<PoseSample> twice = arm(n, 0.3, 2, n).samples;
+    for (PoseSample& sample : twice) sample.b = sample.a;
+    const Calibration found = calibrate_samples(twice).calibration;
+    EXPECT_EQ(found.verdict, Verdict::doubtful);
+    ASSERT_EQ(found.findings.size(), 1u);
+    EXPECT_EQ(found.findings.front().code, "same_stream");
+    twice.front().b = arm(1, 0, 0, 77).samples[0].a;  // a single other pose
+    for (const Finding& finding : calibrate_samples(twice).calibration.findings)
+      EXPECT_NE(finding.code, "same_stream");
+  }
+}
+
 TEST(Samples, WithoutEnoughOrWithoutNumbersAreRefused) {
   SimulatedSamples drawn = arm(2, 0, 0, 1);
   EXPECT_THROW(calibrate_samples(drawn.samples), Error);

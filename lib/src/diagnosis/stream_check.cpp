@@ -80,16 +80,6 @@ Finding frozen(char which, double part) {
   return finding;
 }
 
-Finding same_stream() {
-  Finding finding;
-  finding.code = "same_stream";
-  finding.certain = true;
-  finding.message = "Both streams are the same to rounding: one sensor was given twice.";
-  finding.remedy = "Give the poses of the other sensor.";
-  finding.T_a_b = Pose{};
-  return finding;
-}
-
 /// A stream whose positions lack a coordinate: one that never changes although the sensor tilts, which on a
 /// plane it would not.
 struct Flatness {
@@ -276,6 +266,16 @@ std::optional<double> limit_of_agreement(const std::vector<Window>& windows,
 }
 
 }  // namespace
+
+Finding same_stream() {
+  Finding finding;
+  finding.code = "same_stream";
+  finding.certain = true;
+  finding.message = "Both streams are the same to rounding: one sensor was given twice.";
+  finding.remedy = "Give the poses of the other sensor.";
+  finding.T_a_b = Pose{};
+  return finding;
+}
 
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
                                    const StreamCheckOptions& options) {

@@ -53,6 +53,9 @@ struct StreamCheckOptions {
   double over_noise = 3;
 };
 
+/// Certain: the poses of both sensors are the same.
+Finding same_stream();
+
 /// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream
 /// (uncertain where it was rounded), samples.
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,

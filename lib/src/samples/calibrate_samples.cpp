@@ -12,6 +12,7 @@
 #include "diagnosis/fit.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/robust_fit.hpp"
+#include "diagnosis/stream_check.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
@@ -142,6 +143,16 @@ Finding too_few_poses(std::size_t units) {
   return finding;
 }
 
+/// Whether the poses of both lists are the same to the digits that files keep.
+bool given_twice(const SampleSet& set, std::span<const PoseSample> samples) {
+  constexpr double digits = 1e-9;  // of lengths; quaternions of files have nine digits, too
+  return std::all_of(samples.begin(), samples.end(), [&](const PoseSample& sample) {
+    const Pose a = to_pose(sample.a), b = to_pose(sample.b);
+    return a.rotation.angularDistance(b.rotation) < digits &&
+           (a.translation - b.translation).norm() < digits * (set.length() + a.translation.norm());
+  });
+}
+
 bool another_reading(const Finding& finding) {
   return finding.code.starts_with("inverted_") || finding.code.starts_with("quaternion_order_");
 }
@@ -167,6 +178,8 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
   if (set.units() < least_units) {
     diagnosis.findings = {too_few_poses(set.units())};
     misfit = {};  // noise contradicts every answer
+  } else if (given_twice(set, samples)) {
+    diagnosis.findings = {same_stream()};
   } else if (options.diagnosis.enabled) {
     diagnosis.findings = find_other_readings(samples, agreeing, options);
   }
