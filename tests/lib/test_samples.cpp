@@ -291,6 +291,31 @@ TEST(Samples, OfOneListGivenTwiceAreNamed) {
   }
 }
 
+// A target that was printed to fit the page: the residuals are hardly larger than those of noise.
+TEST(Samples, ATargetOfAnotherSizeIsNamed) {
+  int named = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const SimulatedSamples drawn = arm(30, 0.3, 2, 500 + seed);
+    SampleOptions options;
+    EXPECT_THAT(calibrate_samples(drawn.samples, options).calibration.findings, ::testing::IsEmpty());
+    options.read_b.scale = 1.04;
+    const Calibration found = calibrate_samples(drawn.samples, options).calibration;
+    if (found.findings.empty()) continue;
+    ++named;
+    EXPECT_EQ(found.findings.front().code, "scale");
+    EXPECT_NEAR(found.findings.front().value.value_or(0), 1 / 1.04, 0.015);
+    EXPECT_THAT(found.findings.front().remedy, ::testing::HasSubstr("--scale-b 0.9"));
+  }
+  EXPECT_GE(named, 38);
+}
+
+// The lengths of b are too long by what noise adds to them, which many samples show.
+TEST(Samples, ThatAreNoisyAndManyHaveNoOtherScale) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed)
+    EXPECT_THAT(calibrate_samples(arm(2000, 1, 30, 900 + seed).samples).calibration.findings,
+                ::testing::IsEmpty());
+}
+
 TEST(Samples, WithoutEnoughOrWithoutNumbersAreRefused) {
   SimulatedSamples drawn = arm(2, 0, 0, 1);
   EXPECT_THROW(calibrate_samples(drawn.samples), Error);

@@ -176,6 +176,7 @@ struct FoundScale {
   double scale = 1;
   double improvement = 1;  ///< of the squared residuals of positions
   double by_chance = 1;
+  double beyond_noise = 0;  ///< how far from 1 it is, less what noise in the lengths themselves pulls at most
   Pose X;
 };
 
@@ -204,20 +205,47 @@ std::optional<FoundScale> find_scale(std::span<const PoseSample> samples, const 
   const Eigen::VectorXd x = with.solve(t);
   const Eigen::VectorXd t_at_one = t - J.col(6);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> without(J.leftCols(6));
+  const Eigen::VectorXd beside =
+      J.col(6) - J.leftCols(6) * without.solve(J.col(6));  // not explained by X and Y
   const double squares = (t - J * x).squaredNorm();
   const double squares_at_one = (t_at_one - J.leftCols(6) * without.solve(t_at_one)).squaredNorm();
   const double dof = static_cast<double>(3 * n - 7);
   if (!(squares > 0) || with.rank() < 7 || !(x[6] > 0)) return std::nullopt;
-  return FoundScale{x[6],
-                    squares_at_one / squares,
-                    f_exceeded((squares_at_one - squares) / (squares / dof), 1, dof),
-                    {R_X, x.head<3>()}};
+  const double pull = squares / (x[6] * x[6] * beside.squaredNorm());  // were all noise that of b
+  const double beyond_noise = std::max(0.0, std::abs(x[6] - 1) - pull);
+  const double f = beyond_noise * beyond_noise * beside.squaredNorm() / (squares / dof);
+  return FoundScale{x[6], squares_at_one / squares, f_exceeded(f, 1, dof), beyond_noise, {R_X, x.head<3>()}};
 }
 
 bool is_unit(double scale, const SampleReadingOptions& search) {
   const double decades = std::log10(scale);
   return std::abs(decades) > 0.5 &&
          std::abs(scale / std::pow(10.0, std::round(decades)) - 1) < search.unit_tolerance;
+}
+
+/// Certain where the residuals as given are far larger. A target of a size other than stated leaves them
+/// nearly as small, and so does a focal length: those a measurement of the target tells apart.
+std::optional<Finding> finding_of(const FoundScale& scale, const SampleReadingOptions& search) {
+  if (!(scale.by_chance < search.scale_by_chance)) return std::nullopt;
+  Finding finding;
+  finding.certain = scale.improvement > search.least_improvement;
+  if (!finding.certain && !(scale.beyond_noise > search.least_scale)) return std::nullopt;
+  finding.code = is_unit(scale.scale, search) ? "units" : "scale";
+  finding.improvement = scale.improvement;
+  finding.value = scale.scale;
+  finding.T_a_b = scale.X;
+  finding = worded_scale(std::move(finding));
+  FindingWords words = finding.words;
+  words.cure = format("{solve}--scale-b %.6g", scale.scale);
+  if (!finding.certain) {
+    words.evidence = format(
+        ": the squared residuals of the positions are %.3g times smaller then, which noise does not explain.",
+        scale.improvement);
+    words.scope = "Measure the target: an edge of another length than stated changes all positions. ";
+    words.cure += " undoes it";
+  }
+  say(finding, std::move(words));
+  return finding;
 }
 
 }  // namespace
@@ -250,18 +278,8 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
     fitting.emplace_back(std::move(finding), other);
   }
   if (!fitting.empty()) return best_of(fitting, search);
-  const std::optional<FoundScale> scale = find_scale(samples, given, search);
-  if (scale && scale->by_chance < search.scale_by_chance && scale->improvement > search.least_improvement) {
-    Finding finding;
-    finding.code = is_unit(scale->scale, search) ? "units" : "scale";
-    finding.certain = true;
-    finding.improvement = scale->improvement;
-    finding.value = scale->scale;
-    finding.T_a_b = scale->X;
-    finding = worded_scale(std::move(finding));
-    say(finding, finding.words.claim, format("{solve}--scale-b %.6g", scale->scale), finding.words.evidence);
-    findings.push_back(std::move(finding));
-  }
+  if (const std::optional<FoundScale> scale = find_scale(samples, given, search))
+    if (const std::optional<Finding> finding = finding_of(*scale, search)) findings.push_back(*finding);
   return findings;
 }
 

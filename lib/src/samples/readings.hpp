@@ -27,12 +27,15 @@ struct SampleReadingOptions {
   std::size_t most_at_first = 32;
   double most_worse_rotation = 10, least_at_first = 2;
   double scale_by_chance = 1e-6;  ///< probability of a scale other than 1 by chance, below which it is named
-  double unit_tolerance = 0.05;   ///< a power of ten to this part is a unit
-  int rounds_of_signs = 3;        ///< of the quaternions and the sum alternately: settled after two
+  /// A scale that makes them less smaller is still reported, as uncertain, where it is this far from 1: a
+  /// lens is calibrated to a few parts in a thousand, and a printer that fits to the page shrinks by 3 %.
+  double least_scale = 0.01;
+  double unit_tolerance = 0.05;  ///< a power of ten to this part is a unit
+  int rounds_of_signs = 3;       ///< of the quaternions and the sum alternately: settled after two
 };
 
 /// Readings of the poses under which they fit far better than as given: one list inverted, another order of
-/// the quaternion, another unit of length.
+/// the quaternion, another unit of length; or better than chance allows: another size of the target.
 std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, const AgreeingSamples& given,
                                          const SampleOptions& options,
                                          const SampleReadingOptions& search = {});
