@@ -35,6 +35,7 @@ struct RigFinding {
   std::string message, remedy;
   std::optional<double> time;   ///< mount_moved: since the first pose of the first sensor [s]
   std::optional<double> value;  ///< as Finding::value, of the sensor; of b of the pair where none is named
+  bool certain = true;          ///< as Finding::certain; an uncertain one blames no sensor
   std::size_t pair = 0;         ///< index of the pair that shows it best
   std::optional<RigMove> move;  ///< mount_moved
 };

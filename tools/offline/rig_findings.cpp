@@ -53,7 +53,7 @@ RigFinding moved(const RigReport& report, const RigMove& move, double begin) {
   return finding;
 }
 
-/// A finding of a pair that it is certain of, and which of its sensors it names.
+/// A finding of a pair, and which of its sensors it names.
 struct PairFinding {
   std::size_t pair = 0;
   std::optional<std::size_t> sensor;
@@ -62,12 +62,12 @@ struct PairFinding {
 
 using PairFindings = std::vector<PairFinding>;
 
-/// Findings by code, without the _a and _b that name a sensor already.
-std::map<std::string, PairFindings> findings_by_code(const RigReport& report) {
+/// The certain or the uncertain findings by code, without the _a and _b that name a sensor already.
+std::map<std::string, PairFindings> findings_by_code(const RigReport& report, bool certain) {
   std::map<std::string, PairFindings> result;
   for (std::size_t i = 0; i < report.pairs.size(); ++i)
     for (const Finding& finding : report.pairs[i].findings) {
-      if (!finding.certain) continue;
+      if (finding.certain != certain) continue;
       PairFinding found{i, std::nullopt, &finding};
       std::string code = finding.code;
       const RigPairAnswer& answer = report.solution.pairs[i];
@@ -119,6 +119,7 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
   finding.sensor = common_sensor(report, of_code);
   const PairFinding& best = best_of(of_code);
   finding.pair = best.pair;
+  finding.certain = best.finding->certain;
   const RigPairAnswer& answer = report.solution.pairs[best.pair];
   RigWords words;
   words.rig = request.rig;
@@ -208,7 +209,7 @@ bool is_open(const Loop& loop) {
 
 void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& trajectories,
                  const RigRequest& request, const RigSettings& settings, RigReport& report) {
-  const std::map<std::string, PairFindings> by_code = findings_by_code(report);
+  const std::map<std::string, PairFindings> by_code = findings_by_code(report, true);
   std::vector<RigFinding> bad, others;
   for (const auto& [code, of_code] : by_code) {
     if (code == "mount_moved") {
@@ -227,6 +228,9 @@ void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& tr
   report.contradictory = report.contradictory || open || !bad.empty();
   report.findings = std::move(bad);
   for (RigFinding& finding : others) report.findings.push_back(std::move(finding));
+  for (const auto& [code, of_code] : findings_by_code(report, false))
+    if (!by_code.contains(code))
+      report.findings.push_back(of_pairs(report, code, of_code, request, settings));
 }
 
 }  // namespace egocal::tools

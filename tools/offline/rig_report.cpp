@@ -39,6 +39,7 @@ Json name_of(const RigReport& report, const std::optional<std::size_t>& sensor) 
 Json finding_json(const RigReport& report, const RigFinding& finding) {
   Json json;
   json["code"] = finding.code;
+  json["certain"] = finding.certain;
   json["sensor"] = name_of(report, finding.sensor);
   json["message"] = finding.message;
   json["remedy"] = finding.remedy;
@@ -260,7 +261,9 @@ std::string rig_text(const RigReport& report) {
     width = std::max(width, label_of(report, pair.a, pair.b).size());
   std::string text;
   for (const RigFinding& finding : report.findings)
-    text += fmt::format("finding       {}\n              cure: {}\n", finding.message, finding.remedy);
+    text +=
+        fmt::format("{}{}\n              cure: {}\n", finding.certain ? "finding       " : "possible      ",
+                    finding.message, finding.remedy);
   if (report.blamed) text += fmt::format("blamed        {}\n", report.names[*report.blamed]);
   text +=
       unsolved_text(report) + loops_text(report) + "\n" + pairs_text(report, width) + set_text(report, width);
@@ -269,7 +272,7 @@ std::string rig_text(const RigReport& report) {
 }
 
 std::string contradiction(const RigReport& report) {
-  if (!report.findings.empty()) return report.findings.front().message;
+  if (!report.findings.empty() && report.findings.front().certain) return report.findings.front().message;
   for (const Calibration& calibration : report.pairs)
     if (calibration.verdict == Verdict::contradictory) return calibration.reason;
   return "A loop of three sensors does not close.";
