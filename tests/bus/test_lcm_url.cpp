@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "egocal/bus/lcm_url.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/error.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace egocal::bus::test_lcm_url {
 namespace {
@@ -46,11 +46,10 @@ TEST(LcmUrl, RefusesEverythingElseInOneLine) {
 }
 
 TEST(LcmUrl, FilesAreNeverTouched) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "egocal-url-victim";
-  std::ofstream(file) << "keep me";
-  EXPECT_THROW(Loop("file://" + file.string() + "?mode=w"), Error);
+  const testing::ScratchFolder folder;
+  const std::string file = folder.file("victim", "keep me");
+  EXPECT_THROW(Loop("file://" + file + "?mode=w"), Error);
   EXPECT_EQ(std::filesystem::file_size(file), 7U);
-  std::filesystem::remove(file);
 }
 
 }  // namespace

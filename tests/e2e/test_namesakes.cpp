@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <set>
 
 #include "egocal/bus/channels.hpp"
@@ -52,7 +53,11 @@ class Namesakes : public ::testing::Test {
   /// A live drive at 50 Hz.
   void drive(std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
-    while (std::chrono::steady_clock::now() < end && next < trajectories[0].size()) {
+    drives_until([&] { return std::chrono::steady_clock::now() >= end; });
+  }
+  bool drives_until(const std::function<bool()>& condition) {
+    while (!condition()) {
+      if (next >= trajectories[0].size()) return false;
       for (std::size_t k = 0; k < 2; ++k) {
         StampedPose pose = trajectories[k][next];
         pose.time_us += 1'700'000'000'000'000;
@@ -63,6 +68,7 @@ class Namesakes : public ::testing::Test {
       for (auto now = std::chrono::steady_clock::now(); now < until; now = std::chrono::steady_clock::now())
         loop.run_once(until - now);
     }
+    return true;
   }
   ChildProcess pairing(const std::string& state) const {
     return ChildProcess({paths::bin_dir() + "/egocal-pairing", "--rig", rig, "--state", folder / state},
@@ -79,12 +85,13 @@ class Namesakes : public ::testing::Test {
 
 TEST_F(Namesakes, TheYoungerOneSendsNothingFromItsFirstMessageOn) {
   ChildProcess elder = pairing("elder.state");
-  drive(3s);
+  ASSERT_TRUE(drives_until([&] { return problems > 50; }));
   ASSERT_EQ(sessions.size(), 1u);
   for (int i = 0; i < 3; ++i) {
     const std::size_t before = problems;
     ChildProcess younger = pairing("younger.state");
-    drive(2s);
+    ASSERT_TRUE(drives_until([&] { return !states[younger.pid()].empty(); }));
+    drive(1500ms);
     EXPECT_EQ(sessions.size(), 1u) << "another session was begun";
     EXPECT_EQ(states[younger.pid()], std::set<std::string>{"waiting"});
     EXPECT_GT(problems, before + 20);
@@ -103,17 +110,17 @@ TEST_F(Namesakes, TheYoungerOneSendsNothingFromItsFirstMessageOn) {
 
 TEST_F(Namesakes, APausedOneThatIsRestoredIsPausedFromItsFirstStatusOn) {
   ChildProcess first = pairing("state");
-  drive(1500ms);
+  ASSERT_TRUE(drives_until([&] { return problems > 10; }));
   command_t command{};
   command.utime = 1'700'000'000'000'000;
   command.to = "*";
   command.verb = "pause";
   loop.publish(bus::command_channel, command);
-  drive(500ms);
-  ASSERT_TRUE(states[first.pid()].contains("paused"));
+  ASSERT_TRUE(drives_until([&] { return states[first.pid()].contains("paused"); }));
   first.signal(SIGKILL);
   first.wait(10s);
   ChildProcess second = pairing("state");
+  ASSERT_TRUE(drives_until([&] { return !states[second.pid()].empty(); }));
   drive(1500ms);
   EXPECT_TRUE(states[second.pid()].contains("paused"));
   EXPECT_FALSE(states[second.pid()].contains("running"));

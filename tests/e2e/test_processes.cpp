@@ -25,7 +25,7 @@ TEST_F(Processes, AtFullSpeedTheyGiveTheOfflineAnswerAndLoseNothing) {
   RecordProperty("pairs_per_second", std::to_string(2999 / took.count()));
   std::printf("%.0f motion pairs a second\n", 2999 / took.count());
   const Problem expected = offline(trajectories);
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 2999; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 2999; }));
   expect_statistics(expected);
   ASSERT_TRUE(answered("egocal-fast"));
   ASSERT_TRUE(answered("egocal-global"));
@@ -51,10 +51,10 @@ TEST_F(Processes, LcmLogplayerReplaysALogOfBotCorePoses) {
   start("egocal-pairing");
   start("egocal-fast");
   start("egocal-global");
-  ChildProcess logplayer({"lcm-logplayer", "--speed=20", "--lcm-url=" + url, log});
+  ChildProcess logplayer({"lcm-logplayer", "--speed=10", "--lcm-url=" + url, log});
   const Problem expected = offline(trajectories);
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }, 20s));
-  EXPECT_EQ(logplayer.wait(5s), 0);
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }));
+  EXPECT_EQ(logplayer.wait(patience), 0);
   expect_statistics(expected);
   ASSERT_TRUE(answered("egocal-fast"));
   expect_answer("egocal-fast", expected);
@@ -80,8 +80,8 @@ TEST_F(Processes, EgocalPlayerLosesNothingAtAnySpeed) {
       start("egocal-global");
       ChildProcess replay({bin + "/egocal-player", log, "--lcm-url", url, "--speed", speed},
                           folder / "player.log");
-      ASSERT_TRUE(until([&] { return problem && problem->matched == 999; }, 20s)) << type << " at " << speed;
-      EXPECT_EQ(replay.wait(5s), 0);
+      ASSERT_TRUE(until([&] { return problem && problem->matched == 999; })) << type << " at " << speed;
+      EXPECT_EQ(replay.wait(patience), 0);
       expect_statistics(expected);
       ASSERT_TRUE(answered("egocal-fast"));
       expect_answer("egocal-fast", expected);
@@ -101,13 +101,13 @@ TEST_F(Processes, EgocalPlayerSendsAgainWhatAKilledPairingMissed) {
   start("egocal-pairing");
   ChildProcess replay({bin + "/egocal-player", log, "--lcm-url", url, "--speed", "100"},
                       folder / "player.log");
-  ASSERT_TRUE(until([&] { return problem && problem->matched > 300; }, 20s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched > 300; }));
   processes.erase("egocal-pairing");  // SIGKILL
   problem.reset();
   until([] { return false; }, 700ms);
   start("egocal-pairing");
-  ASSERT_TRUE(until([&] { return statuses["egocal-player"].state == "ended"; }, 30s));
-  EXPECT_EQ(replay.wait(5s), 0);
+  ASSERT_TRUE(until([&] { return statuses["egocal-player"].state == "ended"; }));
+  EXPECT_EQ(replay.wait(patience), 0);
   ASSERT_TRUE(problem.has_value());
   // The new process begins with what the old one had not acknowledged: one session, no hole. (Without a state
   // file its two streams may begin a few messages apart: what came before the player knew of it.)
@@ -116,7 +116,7 @@ TEST_F(Processes, EgocalPlayerSendsAgainWhatAKilledPairingMissed) {
                                   [&](const StampedPose& pose) { return pose.time_us == first; });
   ASSERT_NE(begin, trajectories[0].end());
   const auto most = std::distance(begin, trajectories[0].end()) - 1;
-  EXPECT_TRUE(until([&] { return problem->matched <= most && problem->matched > most - 32; }, 5s))
+  EXPECT_TRUE(until([&] { return problem->matched <= most && problem->matched > most - 32; }))
       << problem->matched << " of " << most;
   EXPECT_EQ(counter("egocal-pairing", "lost"), 0);
   EXPECT_GT(counter("egocal-player", "sent again"), 0);
@@ -128,15 +128,15 @@ TEST_F(Processes, AKilledPairingGoesOnFromItsStateFile) {
   start("egocal-fast");
   const auto all = events(drive(600));
   play({all.begin(), all.begin() + 500});
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 249; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 249; }));
   const std::int64_t session = problem->session;
   problem.reset();
   start("egocal-pairing", {"--state", state});  // after SIGKILL
   // what was known is sent without any new measurement
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 249 && problem->session == session; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 249 && problem->session == session; }));
   EXPECT_EQ(counter("egocal-pairing", "restored"), 1);
   play({all.begin() + 500, all.end()});
-  ASSERT_TRUE(until([&] { return problem->matched == 599; }, 5s));
+  ASSERT_TRUE(until([&] { return problem->matched == 599; }));
   expect_statistics(offline(drive(600)));
 }
 
@@ -153,24 +153,24 @@ TEST_F(Processes, AStateFileThatDoesNotFitIsRefusedWithOneLine) {
   EXPECT_EQ(ChildProcess({bin + "/egocal-pairing", "--rig", rig_file, "--lcm-url", url, "--name", "other",
                           "--state", state},
                          folder / "in-use.log")
-                .wait(5s),
+                .wait(patience),
             1);
   ASSERT_EQ(lines("in-use.log").size(), 1u);
   EXPECT_THAT(lines("in-use.log")[0], ::testing::HasSubstr("another process that is running"));
   processes.at("egocal-pairing").signal(SIGTERM);
-  EXPECT_EQ(processes.at("egocal-pairing").wait(5s), 0);
+  EXPECT_EQ(processes.at("egocal-pairing").wait(patience), 0);
   // of another rig
   write_rig("egocal.odometry_t", "[pairing]\nmax_gap = 0.7\n");
   start("egocal-pairing", {"--state", state}, "anew");
-  EXPECT_TRUE(until([&] { return !statuses["anew"].last_error.empty(); }, 5s));
+  EXPECT_TRUE(until([&] { return !statuses["anew"].last_error.empty(); }));
   EXPECT_THAT(statuses["anew"].last_error, ::testing::HasSubstr("another rig"));
   // the status is sent before the line is written
-  ASSERT_TRUE(until([&] { return lines("anew.log").size() == 1u; }, 5s));
+  ASSERT_TRUE(until([&] { return lines("anew.log").size() == 1u; }));
   EXPECT_THAT(lines("anew.log")[0], ::testing::HasSubstr("kept as " + state + ".refused"));
   // no state at all: a rig file
   EXPECT_EQ(ChildProcess({bin + "/egocal-pairing", "--rig", rig_file, "--lcm-url", url, "--state", rig_file},
                          folder / "not.log")
-                .wait(5s),
+                .wait(patience),
             1);
   ASSERT_EQ(lines("not.log").size(), 1u);
   EXPECT_THAT(lines("not.log")[0], ::testing::HasSubstr("not a state of egocal-pairing"));
@@ -192,14 +192,16 @@ TEST_F(Processes, KilledAndSwappedSolversLeaveTheAnswerAsItWas) {
   play(part(600, 900));
   answers.clear();
   // a fast solver of another kind, with no other change
+  int asked = 0;
+  loop->subscribe<problem_t>(bus::problem_channel("left", "right"),
+                             [&](const problem_t&, const bus::Arrival&) { ++asked; });
   start("egocal-fast", {"--method", "slsqp"}, "another-fast");
-  const auto restarted = std::chrono::steady_clock::now();
-  ASSERT_TRUE(
-      until([&] { return answers.contains("another-fast") && answers["another-fast"].status == 0; }, 3s));
-  EXPECT_LT(std::chrono::steady_clock::now() - restarted, 1200ms);
+  asked = 0;
+  ASSERT_TRUE(until([&] { return answers.contains("another-fast") && answers["another-fast"].status == 0; }));
+  EXPECT_LE(asked, 2) << "the problem is sent each second, and answered at once";
   play(part(900, all.size()));
   const Problem expected = offline(trajectories);
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 899; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 899; }));
   expect_statistics(expected);
   ASSERT_TRUE(answered("another-fast"));
   expect_answer("another-fast", expected, 1e-8);  // NLopt stops where the cost no longer changes
@@ -212,14 +214,14 @@ TEST_F(Processes, TheGlobalSolverStepsInWhenTheFastOneFallsSilent) {
   const auto trajectories = drive(600);
   const auto all = events(trajectories);
   play({all.begin(), all.begin() + 600});
-  EXPECT_TRUE(until([&] { return statuses["egocal-global"].state == "standby"; }, 3s));
+  EXPECT_TRUE(until([&] { return statuses["egocal-global"].state == "standby"; }));
   processes.at("egocal-fast").signal(SIGKILL);
   answers.clear();
   play({all.begin() + 600, all.end()});
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 599; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 599; }));
   ASSERT_TRUE(answered("egocal-global"));
   expect_answer("egocal-global", offline(trajectories));
-  EXPECT_TRUE(until([&] { return statuses["egocal-global"].state == "running"; }, 3s));
+  EXPECT_TRUE(until([&] { return statuses["egocal-global"].state == "running"; }));
 }
 
 TEST_F(Processes, TheFastSolverGoesOnWithoutTheGlobalOneAndSaysSo) {
@@ -227,11 +229,11 @@ TEST_F(Processes, TheFastSolverGoesOnWithoutTheGlobalOneAndSaysSo) {
   start("egocal-fast");
   const auto trajectories = drive(300);
   play(events(trajectories));
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }));
   ASSERT_TRUE(answered("egocal-fast"));
   expect_answer("egocal-fast", offline(trajectories));
   EXPECT_TRUE(until(
-      [&] { return statuses["egocal-fast"].last_error.find("no global solver") != std::string::npos; }, 5s));
+      [&] { return statuses["egocal-fast"].last_error.find("no global solver") != std::string::npos; }));
 }
 
 TEST_F(Processes, DamagedMessagesAreCountedAndHarmNothing) {
@@ -256,21 +258,18 @@ TEST_F(Processes, DamagedMessagesAreCountedAndHarmNothing) {
   loop->publish_bytes(bus::problem_channel("left", "right"), bytes);
   loop->publish_bytes(bus::status_channel, bytes);
   loop->publish_bytes(bus::command_channel, bytes);
-  ASSERT_TRUE(until([&] { return acknowledged() - before == 5; }, 5s));
+  ASSERT_TRUE(until([&] { return acknowledged() - before == 5; }));
   play({all.begin() + 300, all.end()});
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 299; }));
   expect_statistics(offline(trajectories));
   ASSERT_TRUE(answered("egocal-fast"));
   expect_answer("egocal-fast", offline(trajectories));
   EXPECT_EQ(counter("egocal-pairing", "rejected: not decodable on ODO_LEFT"), 3);
   EXPECT_EQ(counter("egocal-pairing", "rejected: position not finite"), 1);
   EXPECT_EQ(counter("egocal-pairing", "rejected: time or number jumps"), 1);
-  ASSERT_TRUE(until(
-      [&] {
-        return counter("egocal-fast",
-                       "rejected: not decodable on " + bus::problem_channel("left", "right")) == 1;
-      },
-      3s));
+  ASSERT_TRUE(until([&] {
+    return counter("egocal-fast", "rejected: not decodable on " + bus::problem_channel("left", "right")) == 1;
+  }));
 }
 
 TEST_F(Processes, ALogThatBeginsAgainBeginsANewSession) {
@@ -278,10 +277,10 @@ TEST_F(Processes, ALogThatBeginsAgainBeginsANewSession) {
   start("egocal-fast");
   const auto trajectories = drive(200);
   play(events(trajectories));
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 199; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 199; }));
   const std::int64_t first = problem->session;
   play(events(trajectories));
-  ASSERT_TRUE(until([&] { return problem->session > first && problem->matched == 199; }, 5s));
+  ASSERT_TRUE(until([&] { return problem->session > first && problem->matched == 199; }));
   expect_statistics(offline(trajectories));
 }
 
@@ -290,28 +289,27 @@ TEST_F(Processes, CommandsResetPauseAndResume) {
   const auto trajectories = drive(300);
   const auto all = events(trajectories);
   play({all.begin(), all.begin() + 300});
-  ASSERT_TRUE(until([&] { return problem && problem->matched == 149; }, 5s));
+  ASSERT_TRUE(until([&] { return problem && problem->matched == 149; }));
   const std::int64_t first = problem->session;
   command_t command{};
   command.to = "*";
   command.verb = "reset";
   command.session = first + 1;
   loop->publish(bus::command_channel, command);
-  ASSERT_TRUE(until(
-      [&] { return counter("egocal-pairing", "rejected: command for another session or pair") == 1; }, 3s));
+  ASSERT_TRUE(
+      until([&] { return counter("egocal-pairing", "rejected: command for another session or pair") == 1; }));
   command.session = first;
   loop->publish(bus::command_channel, command);
-  ASSERT_TRUE(until([&] { return counter("egocal-pairing", "commands") == 1; }, 3s));
+  ASSERT_TRUE(until([&] { return counter("egocal-pairing", "commands") == 1; }));
   play({all.begin() + 300, all.end()});
-  ASSERT_TRUE(
-      until([&] { return problem->session == all[300].pose.time_us && problem->matched == 149; }, 5s));
+  ASSERT_TRUE(until([&] { return problem->session == all[300].pose.time_us && problem->matched == 149; }));
   command.verb = "pause";
   command.session = 0;
   loop->publish(bus::command_channel, command);
-  ASSERT_TRUE(until([&] { return statuses["egocal-pairing"].state == "paused"; }, 3s));
+  ASSERT_TRUE(until([&] { return statuses["egocal-pairing"].state == "paused"; }));
   command.verb = "resume";
   loop->publish(bus::command_channel, command);
-  ASSERT_TRUE(until([&] { return statuses["egocal-pairing"].state == "running"; }, 3s));
+  ASSERT_TRUE(until([&] { return statuses["egocal-pairing"].state == "running"; }));
 }
 
 TEST_F(Processes, ASecondPairingOfTheSameNameWaitsAndTakesOver) {
@@ -320,16 +318,14 @@ TEST_F(Processes, ASecondPairingOfTheSameNameWaitsAndTakesOver) {
   processes.emplace("second", ChildProcess({bin + "/egocal-pairing", "--rig", rig_file, "--lcm-url", url},
                                            folder / "second.log"));
   // a pairing that starts is waiting, too, for a moment: the reason distinguishes them
-  ASSERT_TRUE(until(
-      [&] {
-        const status_t& status = statuses["egocal-pairing"];
-        return status.state == "waiting" &&
-               status.last_error.find("another process has this name") != std::string::npos;
-      },
-      3s));
+  ASSERT_TRUE(until([&] {
+    const status_t& status = statuses["egocal-pairing"];
+    return status.state == "waiting" &&
+           status.last_error.find("another process has this name") != std::string::npos;
+  }));
   processes.at("egocal-pairing").signal(SIGTERM);
-  EXPECT_EQ(processes.at("egocal-pairing").wait(3s), 0);
-  ASSERT_TRUE(until([&] { return statuses["egocal-pairing"].state == "running"; }, 4s));
+  EXPECT_EQ(processes.at("egocal-pairing").wait(patience), 0);
+  ASSERT_TRUE(until([&] { return statuses["egocal-pairing"].state == "running"; }));
 }
 
 TEST_F(Processes, TheyEndCleanlyAndSayWhatIsWrong) {
@@ -337,17 +333,17 @@ TEST_F(Processes, TheyEndCleanlyAndSayWhatIsWrong) {
     for (const int number : {SIGINT, SIGTERM}) {
       start(program);
       processes.at(program).signal(number);
-      EXPECT_EQ(processes.at(program).wait(3s), 0) << program;
-      ASSERT_TRUE(until([&] { return statuses[program].state == "ended"; }, 3s));
+      EXPECT_EQ(processes.at(program).wait(patience), 0) << program;
+      ASSERT_TRUE(until([&] { return statuses[program].state == "ended"; }));
     }
     const std::string output = folder / "output";
-    EXPECT_EQ(ChildProcess({bin + "/" + program, "--help"}).wait(3s), 0);
-    EXPECT_EQ(ChildProcess({bin + "/" + program, "--version"}).wait(3s), 0);
-    EXPECT_EQ(ChildProcess({bin + "/" + program}).wait(3s), 2);
-    EXPECT_EQ(ChildProcess({bin + "/" + program, "--rig", rig_file, "--rgi", "x"}).wait(3s), 2);
-    EXPECT_EQ(ChildProcess({bin + "/" + program, "--rig", "/nonexistent"}, output).wait(3s), 1);
+    EXPECT_EQ(ChildProcess({bin + "/" + program, "--help"}).wait(patience), 0);
+    EXPECT_EQ(ChildProcess({bin + "/" + program, "--version"}).wait(patience), 0);
+    EXPECT_EQ(ChildProcess({bin + "/" + program}).wait(patience), 2);
+    EXPECT_EQ(ChildProcess({bin + "/" + program, "--rig", rig_file, "--rgi", "x"}).wait(patience), 2);
+    EXPECT_EQ(ChildProcess({bin + "/" + program, "--rig", "/nonexistent"}, output).wait(patience), 1);
     EXPECT_EQ(ChildProcess({bin + "/" + program, "--rig", rig_file, "--lcm-url", "udpm://nowhere:1"}, output)
-                  .wait(3s),
+                  .wait(patience),
               1);
     std::ifstream in(output);
     std::string line;
@@ -400,8 +396,7 @@ TEST_F(Processes, AnAnswerTakesAFewTimesAsLongAsARelayedMessage) {
   start("egocal-fast");
   start("egocal-global");
   RelayedMessage peer(url, folder);
-  ASSERT_TRUE(until([&] { return peer.send(*loop, {}, 100ms).has_value(); }, 10s))
-      << "the relays do not start";
+  ASSERT_TRUE(until([&] { return peer.send(*loop, {}, 100ms).has_value(); })) << "the relays do not start";
 
   std::vector<std::int64_t> answered_us, relayed_us;
   std::optional<std::int64_t> arrived_us;

@@ -38,13 +38,11 @@ class LiveScale : public Processes {
                                [this](const verdict_t& message, const bus::Arrival&) { verdict = message; });
   }
   bool answered() {
-    return until(
-        [&] {
-          return question && answer && problem && question->scale > 0 && answer->seq == question->seq &&
-                 problem->seq == question->seq && answers.contains("egocal-fast") &&
-                 answers["egocal-fast"].seq == problem->seq;
-        },
-        20s);
+    return until([&] {
+      return question && answer && problem && question->scale > 0 && answer->seq == question->seq &&
+             problem->seq == question->seq && answers.contains("egocal-fast") &&
+             answers["egocal-fast"].seq == problem->seq;
+    });
   }
 
   bus::ScaleCheck check;
@@ -76,7 +74,7 @@ TEST_F(LiveScale, IsFoundWithTheExtrinsic) {
   const ExtrinsicError error = extrinsic_error(to_dual_quaternion(truth), *T.value);
   EXPECT_LT(error.rotation, 0.01);
   EXPECT_LT(error.translation, 0.05);
-  EXPECT_TRUE(until([&] { return verdict && verdict->seq == problem->seq; }, 15s));
+  EXPECT_TRUE(until([&] { return verdict && verdict->seq == problem->seq; }));
   EXPECT_TRUE(verdict && verdict->verdict != "contradictory") << verdict->reason;
 }
 

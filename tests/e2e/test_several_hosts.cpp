@@ -89,6 +89,18 @@ class SeveralHosts : public ::testing::Test {
     const ChildProcess pairing = start(hosts, solvers, {"egocal-pairing"}, "pairing.out", "1");
     const ChildProcess fast = start(hosts, solvers, {"egocal-fast"}, "fast.out", "1");
     const ChildProcess global = start(hosts, solvers, {"egocal-global"}, "global.out", "1");
+    // without a pairing for three seconds a player goes on alone
+    EXPECT_TRUE(until(
+        [&] {
+          const nlohmann::json json = monitor_says();
+          int running = 0;
+          if (!json.is_null())
+            for (const auto& process : json["processes"])
+              running +=
+                  process["role"] == "pairing" || process["role"] == "fast" || process["role"] == "global";
+          return running == 3;
+        },
+        30s));
     ChildProcess player =
         start(hosts, 0, {"egocal-player", folder / "drive.log", "--speed", "0"}, "player.out", "1");
     EXPECT_EQ(player.wait(40s), 0);

@@ -28,7 +28,7 @@ class LiveVerdict : public Processes {
                                });
   }
   bool judged() {
-    return until([&] { return verdict && problem && verdict->seq == problem->seq; }, 15s);
+    return until([&] { return verdict && problem && verdict->seq == problem->seq; });
   }
   std::string listened(const std::string& arguments, int expected) {
     const std::string out = folder / "listened";

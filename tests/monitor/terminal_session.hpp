@@ -91,8 +91,10 @@ inline std::string script(const std::string& env, const std::string& arguments) 
 }
 
 inline pid_t pid_in(const Tmux& tmux) {
-  EXPECT_TRUE(until([&] { return !read_text(tmux.folder() / "pid").empty(); }));
-  return static_cast<pid_t>(std::stol("0" + read_text(tmux.folder() / "pid")));
+  std::string pid;
+  if (!until([&] { return (pid = read_text(tmux.folder() / "pid")).ends_with('\n'); }))
+    throw std::runtime_error("the monitor was not started");  // and 0 would be this process, too
+  return static_cast<pid_t>(std::stol(pid));
 }
 
 inline void expect_screen(const Tmux& tmux, const std::string& text) {

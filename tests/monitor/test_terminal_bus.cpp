@@ -8,6 +8,7 @@
 #include <atomic>
 #include <csignal>
 #include <regex>
+#include <utility>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
@@ -86,7 +87,11 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
 
   tmux.keys("Space");
   ASSERT_TRUE(until([&] { return tmux.shows("VIEW PAUSED"); }));
-  const std::string still = tmux.screen();
+  std::string still;
+  until([&] {  // all of it is drawn
+    const std::string before = std::exchange(still, tmux.screen());
+    return still == before;
+  });
   std::this_thread::sleep_for(500ms);
   EXPECT_EQ(tmux.screen(), still);
   tmux.keys("Space");
@@ -127,6 +132,7 @@ TEST(Terminal, HostileSendersReachNeitherTheTerminalNorTheTitle) {
     EXPECT_TRUE(tmux.alternate_screen());
   }
   tmux.keys("Escape");
+  ASSERT_TRUE(until([&] { return !tmux.shows("the best fit to the motions"); })) << tmux.screen();
   tmux.keys("q");
   expect_shell_is_back(tmux);
   EXPECT_EQ(read_text(tmux.folder() / "status"), "0\n");

@@ -16,6 +16,13 @@
 
 namespace egocal::test {
 
+/// kill() that takes one process only. -1 is what waiting leaves and what is said of a process that was not
+/// found; kill() sends to all processes of the machine for it.
+inline void send_signal(pid_t pid, int number) {
+  if (pid <= 0) throw std::runtime_error("there is no process for signal " + std::to_string(number));
+  ::kill(pid, number);
+}
+
 /// A program that is running; killed when the object goes.
 class ChildProcess {
  public:
@@ -39,9 +46,10 @@ class ChildProcess {
       _exit(127);
     }
   }
-  ChildProcess(ChildProcess&& other) noexcept : pid_(other.pid_) { other.pid_ = -1; }
+  ChildProcess(ChildProcess&& other) noexcept : pid_(other.pid_), code_(other.code_) { other.pid_ = -1; }
   ChildProcess& operator=(ChildProcess&& other) noexcept {
     std::swap(pid_, other.pid_);
+    std::swap(code_, other.code_);
     return *this;
   }
   ~ChildProcess() {
@@ -51,16 +59,18 @@ class ChildProcess {
   }
 
   pid_t pid() const { return pid_; }
-  void signal(int number) const { ::kill(pid_, number); }
+  void signal(int number) const { send_signal(pid_, number); }
 
   /// Exit code; 128 + the signal that ended it; -1: still running after the timeout.
   int wait(std::chrono::milliseconds timeout) {
     const auto end = std::chrono::steady_clock::now() + timeout;
+    if (pid_ <= 0) return code_;
     do {
       int status = 0;
       if (waitpid(pid_, &status, WNOHANG) == pid_) {
         pid_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        return code_;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     } while (std::chrono::steady_clock::now() < end);
@@ -69,6 +79,7 @@ class ChildProcess {
 
  private:
   pid_t pid_ = -1;
+  int code_ = -1;  ///< once it has been waited for
 };
 
 }  // namespace egocal::test

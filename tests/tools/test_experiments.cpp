@@ -132,17 +132,15 @@ TEST(Online, FallsBackOnTheGlobalSolverUntilTheFastOneIsVerified) {
 }
 
 TEST(Figure, LeavesNumbersAndPictures) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / "egocal_test_figure" / "it's deep";
-  std::filesystem::remove_all(folder);
+  const testing::ScratchFolder scratch;
+  const std::string folder = scratch.path("its") + "/it's deep";
   const std::vector<GlobalityPoint> points{{.frames = 10, .rotation = true, .amount = 1, .gap_median = 0.5}};
-  const std::vector<std::string> files = write_figure(folder.string(), "gap", csv(points), panels(points));
+  const std::vector<std::string> files = write_figure(folder, "gap", csv(points), panels(points));
   ASSERT_GE(files.size(), 3u);
   EXPECT_THAT(content_of(files[0]), HasSubstr("10,rotation,1,deg,0,0.5,"));
   EXPECT_THAT(files[1], ::testing::EndsWith("gap-rotation.svg"));
   EXPECT_THAT(content_of(files[1]), ::testing::StartsWith("<svg"));
   EXPECT_THAT(content_of(files[1]), HasSubstr("10 frames"));
-  std::filesystem::remove_all(folder.parent_path());
 }
 
 TEST(Figure, NamesTheFileThatItCannotWrite) {

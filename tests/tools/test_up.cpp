@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // What `egocal up` says of a drive that it played.
+#include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/bus/loop.hpp"
 #include "json_keys.hpp"
 #include "up.hpp"
 
@@ -11,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::ChildProcess;
 using test::read;
+using test::send_signal;
 using test::until;
 using test::Up;
 using ::testing::HasSubstr;
@@ -92,10 +95,18 @@ TEST_F(Up, APageThatContradictsEndsWithThreeWhateverTheProcessesSaid) {
                           "600", "--noise", "0.001", "--terrain", "free", "--bump", "camera=20:0,0,0,0,6,0"})
                 .wait(60s),
             0);
-  ChildProcess egocal = up({"--log", log, "--speed", "10", "--report"});
-  ASSERT_TRUE(until([&] { return child(egocal.pid(), "egocal-diagnosi") > 0; }));
-  std::this_thread::sleep_for(4s);
-  kill(child(egocal.pid(), "egocal-diagnosi"), SIGKILL);  // its successor knows nothing of the bump
+  const std::string url = "udpm://239.255.76.67:7778?ttl=0";
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  std::int64_t motions = 0;
+  loop.subscribe<problem_t>(
+      bus::problem_channel("lidar", "camera"),
+      [&](const problem_t& problem, const bus::Arrival&) { motions = problem.matched; });
+  ChildProcess egocal = up({"--log", log, "--speed", "10", "--report", "--lcm-url", url});
+  ASSERT_TRUE(until([&] {
+    loop.run_once(5ms);
+    return motions > 300;
+  }));
+  send_signal(child(egocal.pid(), "egocal-diagnosi"), SIGKILL);  // its successor knows nothing of the bump
   EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
   EXPECT_THAT(read(path("said")), HasSubstr("report-lidar-camera.html: contradictory: The mounting changed"));
 }
@@ -107,14 +118,24 @@ TEST_F(Up, AnAnswerWithoutTheEndOfTheLogIsNotOneOfTheLog) {
   for (const char* name :
        {"egocal-pairing", "egocal-fast", "egocal-global", "egocal-diagnosis", "egocal-player"})
     std::filesystem::create_symlink(paths::bin_dir() + "/" + name, path("bin/" + std::string(name)));
-  ChildProcess egocal({path("bin/egocal"), "up", rig, "--log", log, "--speed", "4", "--output-dir",
-                       path("out"), "--lcm-url", "udpm://239.255.76.67:7756?ttl=0"},
+  const std::string url = "udpm://239.255.76.67:7756?ttl=0";
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  bool good = false;
+  loop.subscribe<verdict_t>(
+      bus::verdict_channel("lidar", "camera"),
+      [&](const verdict_t& verdict, const bus::Arrival&) { good = verdict.verdict == "good"; });
+  ChildProcess egocal({path("bin/egocal"), "up", rig, "--log", log, "--speed", "3", "--output-dir",
+                       path("out"), "--lcm-url", url},
                       path("said"));
   ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
-  std::this_thread::sleep_for(3s);
+  std::this_thread::sleep_for(3s);  // they have started well: a program that is gone is looked for again
+  ASSERT_TRUE(until([&] {
+    loop.run_once(5ms);
+    return good;
+  }));
   for (const char* name : {"egocal-fast", "egocal-global"}) {
     std::filesystem::remove(path("bin/" + std::string(name)));
-    kill(child(egocal.pid(), name), SIGKILL);
+    send_signal(child(egocal.pid(), name), SIGKILL);
   }
   EXPECT_EQ(egocal.wait(60s), 3) << read(path("said"));
   const std::string said = read(path("said"));
@@ -176,15 +197,15 @@ TEST_F(Up, FailsWhereNothingWasCalibrated) {
 TEST_F(Up, WhatListenAndTheMonitorPrintAsJsonIsDescribed) {
   const std::string url = "udpm://239.255.76.67:7779?ttl=0", listened = path("listened"),
                     watched = path("watched"), bin = paths::bin_dir();
-  ChildProcess egocal = up({"--log", log, "--speed", "4", "--lcm-url", url});
-  ChildProcess monitor({bin + "/egocal-monitor", "--rig", rig, "--lcm-url", url, "--json", "--duration", "9"},
-                       watched);
+  ChildProcess egocal = up({"--log", log, "--speed", "3", "--lcm-url", url});
+  ChildProcess monitor({bin + "/egocal-monitor", "--rig", rig, "--lcm-url", url, "--json"}, watched);
   ASSERT_TRUE(until([&] { return read(watched).find("rotation_wxyz") != std::string::npos; }));
   ChildProcess listen({bin + "/egocal", "listen", rig, "--lcm-url", url, "--json", "--seconds", "2"},
                       listened);
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
   listen.wait(20s);
-  monitor.wait(20s);
+  monitor.signal(SIGINT);
+  EXPECT_EQ(monitor.wait(20s), 0);
   // a window of two seconds had never ended by then
   EXPECT_TRUE(nlohmann::json::parse(read(listened))["sensors"][0]["heard"]["rate_hz"].is_number())
       << read(listened);

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Processes of `egocal up` that are killed, stopped or told, and what they keep.
-#include <fcntl.h>
 #include <sys/resource.h>
 
-#include <cstdio>
 #include <functional>
 #include <map>
 
@@ -23,6 +21,7 @@ using test::children;
 using test::lines;
 using test::read;
 using test::runs;
+using test::send_signal;
 using test::until;
 using test::Up;
 using ::testing::HasSubstr;
@@ -44,13 +43,12 @@ TEST_F(Up, AStateThatCannotBeSavedIsReported) {
 TEST_F(Up, AnErrorThatIsOverIsReportedAsOver) {
   const std::string disk = path("disk"), away = path("away");
   std::filesystem::create_directories(disk);
-  ChildProcess egocal = up({"--log", log, "--speed", "2", "--state", disk + "/kept"});
+  ChildProcess egocal = up({"--log", log, "--speed", "1", "--state", disk + "/kept"});
   const auto said = [&](const std::string& text) {
     return until([&] { return read(path("said")).find(text) != std::string::npos; });
   };
   ASSERT_TRUE(until([&] { return std::filesystem::exists(disk + "/kept"); }));
-  std::filesystem::rename(disk, away);
-  std::ofstream(disk) << "no folder";
+  take_away(disk, away);
   const std::string error = disk + "/kept";
   EXPECT_TRUE(said("egocal up: egocal-pairing: " + error)) << read(path("said"));
   std::filesystem::remove(disk);
@@ -65,7 +63,7 @@ TEST_F(Up, StartsItsOwnListenerAgain) {
   ChildProcess egocal = up({"--log", log, "--speed", "10"});
   ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
   std::this_thread::sleep_for(1100ms);
-  kill(child(egocal.pid(), "egocal"), SIGKILL);
+  send_signal(child(egocal.pid(), "egocal"), SIGKILL);
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
   EXPECT_THAT(read(path("said")),
               HasSubstr("egocal up: the process that listens to the bus has ended; it is started"));
@@ -76,12 +74,9 @@ TEST_F(Up, StartsItsOwnListenerAgain) {
 TEST_F(Up, APairingThatDiesWhenTheOutputFolderIsGoneCalibratesOn) {
   ChildProcess egocal = up({"--log", log, "--speed", "5"});
   ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
-  // exchanged in one step: a pairing that saves its state makes the folder again
-  std::ofstream(path("in its place")) << "a file\n";
-  ASSERT_EQ(renameat2(AT_FDCWD, path("out").c_str(), AT_FDCWD, path("in its place").c_str(), RENAME_EXCHANGE),
-            0);
+  take_away(path("out"), path("away"));
   const pid_t killed = child(egocal.pid(), "egocal-pairing");
-  kill(killed, SIGKILL);
+  send_signal(killed, SIGKILL);
   EXPECT_TRUE(until([&] {
     const pid_t now = child(egocal.pid(), "egocal-pairing");
     return now > 0 && now != killed;
@@ -126,10 +121,10 @@ TEST_F(Up, APairWithoutNewMotionsIsReportedAndThatTheyComeAgain) {
 }
 
 TEST_F(Up, AProcessThatWasStoppedIsContinuedAndNothingIsLost) {
-  ChildProcess egocal = up({"--log", log, "--speed", "10"});
-  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), calibrating); }));
-  std::this_thread::sleep_for(2s);
-  kill(child(egocal.pid(), "egocal-pairing"), SIGSTOP);
+  ChildProcess egocal = up({"--log", log, "--speed", "5"});
+  ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
+  std::this_thread::sleep_for(1s);  // its status was heard
+  send_signal(child(egocal.pid(), "egocal-pairing"), SIGSTOP);
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
   EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing is silent for "));
   EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven), 400 motion pairs"));
@@ -141,7 +136,7 @@ TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {
   for (const std::string name : {"egocal-fast", "egocal-pairing", "egocal-global"}) {
     ASSERT_TRUE(until([&] { return child(self, name) > 0; })) << name;
     const pid_t before = child(self, name);
-    kill(before, SIGKILL);
+    send_signal(before, SIGKILL);
     ASSERT_TRUE(until([&] {
       const pid_t now = child(self, name);
       return now > 0 && now != before;
@@ -163,7 +158,7 @@ TEST_F(Up, AKilledPairingCostsNothing) {
     problem_t problem{};
     loop.subscribe<problem_t>(bus::problem_channel("lidar", "camera"),
                               [&](const problem_t& message, const bus::Arrival&) { problem = message; });
-    ChildProcess egocal = up({"--log", log, "--speed", "40", "--lcm-url", url});
+    ChildProcess egocal = up({"--log", log, "--speed", "20", "--lcm-url", url});
     bool done = false;
     EXPECT_TRUE(until(
         [&] {
@@ -173,13 +168,14 @@ TEST_F(Up, AKilledPairingCostsNothing) {
             std::string other = read(rig);
             other.replace(other.find("camera"), 6, "kamera");
             std::ofstream(rig) << other;
-            kill(child(egocal.pid(), "egocal-pairing"), SIGKILL);
+            send_signal(child(egocal.pid(), "egocal-pairing"), SIGKILL);
             killed = false;
           }
           return done = done || egocal.wait(0ms) == 0;
         },
         60s))
         << read(path("said"));
+    for (int i = 0; i < 10; ++i) loop.run_once(5ms);  // what waits in the socket
     return problem;
   };
   const problem_t expected = last_problem(false), found = last_problem(true);
@@ -255,7 +251,7 @@ TEST_F(Up, LeavesNoOrphans) {
 }
 
 TEST_F(Up, WhatWasAccumulatedIsKeptWhenItDidNotEndAsItShould) {
-  ChildProcess egocal = up({"--log", log, "--speed", "40"});
+  ChildProcess egocal = up({"--log", log, "--speed", "5"});
   ASSERT_TRUE(until([&] { return std::filesystem::exists(path("out/pairing-1.state")); }));
   egocal.signal(SIGKILL);
   egocal.wait(10s);

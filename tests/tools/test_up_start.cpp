@@ -3,8 +3,10 @@
 // What `egocal up` looks at before it starts anything, and what it refuses.
 #include <map>
 
+#include "egocal/bus/channels.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/bus/loop.hpp"
 #include "up.hpp"
 
 namespace egocal::test_up_start {
@@ -126,9 +128,16 @@ TEST_F(Up, ChecksTheLogBeforeItPlaysIt) {
 
 TEST_F(Up, ASecondOneOnTheSameBusRefusesUnlessItIsToJoin) {
   const std::string url = "udpm://239.255.76.67:7754?ttl=0";
+  bool runs = false;
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    runs = runs || (status.name == "egocal-pairing" && status.state == "running");
+  });
   ChildProcess first = up({"--lcm-url", url});
-  ASSERT_TRUE(until([&] { return child(first.pid(), "egocal-pairing") > 0; }));
-  std::this_thread::sleep_for(500ms);
+  ASSERT_TRUE(until([&] {
+    loop.run_once(5ms);
+    return runs;
+  }));
   std::filesystem::remove(path("said"));
   ChildProcess second = up({"--lcm-url", url});
   EXPECT_EQ(second.wait(30s), 1);

@@ -6,9 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -52,6 +55,12 @@ class Up : public Supervision {
   static bool all_run(pid_t parent, const std::vector<std::string>& names) {
     return std::all_of(names.begin(), names.end(),
                        [&](const std::string& name) { return child(parent, name.substr(0, 15)) > 0; });
+  }
+  /// A file takes the place of a folder, which is kept as `away`, in one step: a process that saves its state
+  /// makes a folder that is missing again.
+  void take_away(const std::string& place, const std::string& away) const {
+    std::ofstream(away) << "no folder\n";
+    ASSERT_EQ(renameat2(AT_FDCWD, place.c_str(), AT_FDCWD, away.c_str(), RENAME_EXCHANGE), 0);
   }
   const std::vector<std::string> calibrating{"egocal-pairing", "egocal-fast", "egocal-global",
                                              "egocal-diagnosis"};

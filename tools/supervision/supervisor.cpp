@@ -14,7 +14,9 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "egocal/error.hpp"
@@ -53,6 +55,15 @@ struct Child {
 std::string ending(int status) {
   if (WIFSIGNALED(status)) return fmt::format("killed by signal {}", WTERMSIG(status));
   return fmt::format("exit code {}", WEXITSTATUS(status));
+}
+
+/// It computes, or would if it got a core.
+bool has_work(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  const std::size_t name_end = text.rfind(") ");
+  return name_end != std::string::npos && (text[name_end + 2] == 'R' || text[name_end + 2] == 'D');
 }
 
 class Supervisor {
@@ -149,7 +160,14 @@ class Supervisor {
     }
   }
 
-  /// After a log's end. What does not come any more is not waited for.
+  bool any_has_work() const {
+    return std::any_of(children_.begin(), children_.end(), [](const Child& child) {
+      return child.pid > 0 && !child.program.foreground && has_work(child.pid);
+    });
+  }
+
+  /// After a log's end. What does not come any more is not waited for. A diagnosis takes seconds on a small
+  /// computer, or beside other programs.
   bool waits_for_answers(Clock::time_point now) {
     const int awaited = options_.awaited && !wanted_at_once_ ? options_.awaited() : 0;
     if (awaited == 0) return false;
@@ -159,9 +177,13 @@ class Supervisor {
             fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
       awaited_ = awaited;
       fell_at_ = now;
+      idle_ = {};
+    } else if (!any_has_work()) {
+      idle_ += now - asked_at_;
     }
+    asked_at_ = now;
     end_at_ = now + look_again;
-    return now - fell_at_ < options_.stall;
+    return idle_ < options_.stall && now - fell_at_ < options_.longest_stall;
   }
 
   void start(Child& child) {
@@ -372,7 +394,8 @@ class Supervisor {
   std::optional<Clock::time_point> end_at_;
   bool wanted_at_once_ = false;  ///< the user has closed the monitor
   std::optional<int> awaited_;   ///< the fewest so far,
-  Clock::time_point fell_at_{};
+  Clock::time_point fell_at_{}, asked_at_{};
+  Clock::duration idle_{};  ///< since it fell
   Clock::time_point kill_at_{};
   bool ending_ = false, failed_ = false;
 };

@@ -21,9 +21,11 @@ struct SupervisorOptions {
   /// The same death is reported again after this time.
   std::chrono::milliseconds repeat_report{60'000};
   std::chrono::milliseconds settle{1500};  ///< after the player's end, for the last answers
-  /// How many answers are still awaited then; while this number falls within each `stall`, it is waited.
+  /// How many answers are still awaited then. It is waited while this number falls within each `stall` of the
+  /// time in which no process has work, and each `longest_stall` of all time: a core that others take is not
+  /// an end, and a process that turns in circles is none that answers.
   std::function<int()> awaited{};
-  std::chrono::milliseconds stall{5000};
+  std::chrono::milliseconds stall{5000}, longest_stall{60'000};
   /// How long ago a process was heard on the bus; nothing: never. A process that is silent while another one
   /// is heard hangs, or somebody has stopped it: it is reported and continued (SIGCONT) after `silent`,
   /// killed and started again after `hangs`. Foreground programs are left alone, and so is a process that was

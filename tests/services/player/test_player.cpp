@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -136,12 +137,16 @@ TEST_F(PlayerProcess, PlaysARangeOfTheChosenChannelsInTime) {
   EXPECT_EQ(ended(), 0);
   const std::vector<double> expected{1, 1.2, 1.4, 1.6, 1.8, 2, 2.2, 2.4};
   ASSERT_EQ(heard.size(), expected.size()) << said();
+  // never early; late as far as the machine is busy, which is why four of them say when it began
+  double began = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(heard[i].channel, "LEFT");
     EXPECT_NEAR(heard[i].seconds, expected[i], 1e-9);
-    // never early; late only as far as the machine is busy
-    const double after = 1e-6 * static_cast<double>(heard[i].mono_us - heard[0].mono_us);
-    EXPECT_GT(after, expected[i] - 1 - 0.1);
+    const double begins = 1e-6 * static_cast<double>(heard[i].mono_us) - (expected[i] - 1);
+    if (i < 4)
+      began = std::min(began, begins);
+    else
+      EXPECT_GT(begins, began - 0.1);
   }
 }
 
@@ -151,10 +156,11 @@ TEST_F(PlayerProcess, SpeedIsThatOfTheOptionAndChangesLive) {
   ASSERT_TRUE(until([&] { return status.state == "paused"; }));
   listen(3500ms);  // no pairing to keep in step with: it continues alone
   EXPECT_TRUE(heard.empty());
+  const std::int64_t resumed_us = loop->mono_us();
   command("resume");
   ASSERT_TRUE(until([&] { return heard.size() >= 40; })) << said();
-  const double first = 1e-6 * static_cast<double>(heard[39].mono_us - heard[0].mono_us);
-  EXPECT_GT(first, 3.9 / 5 - 0.1);
+  const double first = 1e-6 * static_cast<double>(heard[39].mono_us - resumed_us);
+  EXPECT_GT(first, 3.9 / 5 - 0.01);
   EXPECT_LT(first, 3.9) << "not faster than recorded";
   command("speed 1000");
   const auto begin = std::chrono::steady_clock::now();
