@@ -75,7 +75,8 @@ bool with_scale(const CalibrationOptions& options) {
   return options.estimate_scale || options.scale != 1;
 }
 
-CalibrationOptions without_scale(CalibrationOptions options) {
+CalibrationOptions without_scale(CalibrationOptions options, const std::optional<ScaleSolution>& estimate) {
+  if (estimate) options.diagnosis.unit = unit_of_scaled(options.diagnosis.unit, estimate->scale);
   options.estimate_scale = false;
   options.scale = 1;
   return options;
@@ -203,7 +204,7 @@ Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const Cal
   const double scale = estimate ? estimate->scale : options.scale;
   const bool on_a = options.scale_side == Side::a;
   Calibration result = calibrate_streams(on_a ? scaled(a, scale) : a, on_a ? b : scaled(b, scale),
-                                         without_scale(options), beside, estimate);
+                                         without_scale(options, estimate), beside, estimate);
   put_scale(estimate, scale, options, result);
   return result;
 }
@@ -219,7 +220,7 @@ Calibration calibrate_scaled(std::span<const MotionPair> pairs, const Calibratio
     DualQuaternion& motion = options.scale_side == Side::a ? pair.a : pair.b;
     motion = scaled(motion, scale);
   }
-  Calibration result = calibrate_pairs(scaled_pairs, without_scale(options), estimate);
+  Calibration result = calibrate_pairs(scaled_pairs, without_scale(options, estimate), estimate);
   put_scale(estimate, scale, options, result);
   return result;
 }

@@ -195,6 +195,45 @@ inline Trajectory with_angles_in_another_order(const Trajectory& trajectory) {
   });
 }
 
+/// Roll, pitch and yaw [rad] as a program changed them: R = Rz(yaw) Ry(pitch) Rx(roll).
+inline Trajectory with_angles(const Trajectory& trajectory,
+                              const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& change) {
+  return changed(trajectory, [&](const Pose& pose) {
+    const Eigen::Matrix3d R = pose.rotation.toRotationMatrix();
+    const Eigen::Vector3d x =
+        change({std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2))),
+                std::atan2(R(1, 0), R(0, 0))});
+    const Eigen::Quaterniond q =
+        rotation_exp({0, 0, x[2]}) * rotation_exp({0, x[1], 0}) * rotation_exp({x[0], 0, 0});
+    return Pose{q.normalized(), pose.translation};
+  });
+}
+
+/// Each step turned by a factor, and summed up with the wrong rotations: half or double angles of a
+/// gyroscope.
+inline Trajectory with_scaled_steps(const Trajectory& trajectory, double factor) {
+  Trajectory result = trajectory;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    Pose step = to_pose(conjugate(trajectory[i - 1].pose) * trajectory[i].pose);
+    step.rotation = rotation_exp(factor * rotation_log(step.rotation));
+    result[i].pose = canonical_sign(normalized(result[i - 1].pose * to_dual_quaternion(step)));
+  }
+  return result;
+}
+
+/// Velocities in the axes of the world [m/s] where positions should be.
+inline Trajectory with_velocities(const Trajectory& trajectory) {
+  Trajectory result = trajectory;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const Pose before = to_pose(trajectory[i - 1].pose), pose = to_pose(trajectory[i].pose);
+    const double seconds = 1e-6 * static_cast<double>(trajectory[i].time_us - trajectory[i - 1].time_us);
+    result[i].pose = canonical_sign(
+        to_dual_quaternion({pose.rotation, (pose.translation - before.translation) / seconds}));
+  }
+  if (result.size() > 1) result[0].pose = result[1].pose;
+  return result;
+}
+
 /// Stamps rounded down to whole multiples [us], as a number with few digits keeps them.
 inline Trajectory with_rounded_stamps(Trajectory trajectory, std::int64_t multiple) {
   const std::int64_t first = trajectory.front().time_us;
@@ -316,6 +355,9 @@ inline std::vector<Mistake> mistakes() {
   cycle << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   const Eigen::Matrix3d flat = Eigen::Vector3d(1, 1, 0).asDiagonal();
   const Eigen::Matrix3d halved = Eigen::Vector3d(1, 1, 0.5).asDiagonal();
+  const Eigen::Matrix3d longer = Eigen::Vector3d(1.3, 1, 1).asDiagonal();
+  const Eigen::Matrix3d in_feet = Eigen::Vector3d(1, 1, 3.2808).asDiagonal();
+  const Eigen::Matrix3d in_degrees = Eigen::Vector3d(1 / 71e3, 1 / 111e3, 1).asDiagonal();
   const Eigen::Matrix3d turn = rotation_exp({0.1, 0, 0.7}).toRotationMatrix();
   const Pose round{rotation_exp({0, 0, std::numbers::pi}), {0.1, 0, 0}};
   const Pose aside{rotation_exp({0, 0.5, 70 * std::numbers::pi / 180}), {0, 0.1, 0}};
@@ -413,7 +455,27 @@ inline std::vector<Mistake> mistakes() {
          s.b = with_turned_lever_arm(s.b, {0.3, 1.5, 0.5});
        }},
       {"headings of b 1.05 times too far", "turning_scale_b",
-       [](Streams& s) { s.b = with_turning_scale(s.b, 1.05); }}};
+       [](Streams& s) { s.b = with_turning_scale(s.b, 1.05); }},
+      {"gyroscope of b in half angles", "turning_scale_b",
+       [](Streams& s) { s.b = with_scaled_steps(s.b, 0.5); }},
+      {"b in latitude and longitude", "axes_b",
+       [=](Streams& s) { s.b = with_position_columns(s.b, in_degrees); }},
+      {"z of b in feet", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, in_feet); }},
+      {"x of b 1.3 times too long", "axes_b", [=](Streams& s) { s.b = with_position_columns(s.b, longer); }},
+      {"yaw of b a compass heading", "axes_b",
+       [](Streams& s) {
+         s.b = with_angles(s.b, [](const Eigen::Vector3d& x) {
+           return Eigen::Vector3d(x[0], x[1], std::numbers::pi / 2 - x[2]);
+         });
+       }},
+      {"roll and yaw of b exchanged", "axes_b",
+       [](Streams& s) {
+         s.b = with_angles(s.b, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(x[2], x[1], x[0]); });
+       }},
+      {"velocities of b as positions", "", [](Streams& s) { s.b = with_velocities(s.b); }},
+      {"b without roll and pitch", "", [](Streams& s) {
+         s.b = with_angles(s.b, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(0, 0, x[2]); });
+       }}};
 }
 
 }  // namespace egocal::testing

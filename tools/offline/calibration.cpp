@@ -254,6 +254,7 @@ void follow_scale(Motions& motions, CalibrationOptions options, SolveResult& res
   if (!course.changes()) return;
   (side == Side::a ? a : b) = scaled(side == Side::a ? a : b, course);
   options.read_a = options.read_b = {};
+  options.diagnosis.unit = unit_of_scaled(options.diagnosis.unit, calibration.scale->scale);
   options.estimate_scale = options.estimate_time_offset = false;
   options.scale = 1;
   Calibration followed = calibrate(a, b, options);
@@ -288,6 +289,7 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
   if (look_like_samples(motions.a, motions.b))
     result.warnings.push_back("these look like still poses of an arm rather than streams: try " +
                               request.solve + "--samples");
+  options.diagnosis.unit = unit_of_answer(request, result);
   Terms terms;
   terms.solve = request.solve;
   result.calibration = calibrate_motions(request.source, motions, options, terms);

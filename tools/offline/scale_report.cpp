@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
@@ -111,10 +109,17 @@ bool in_metres(const SolveResult& result) {
   if (!scaled_has_scale(result) && !unscaled_has_scale(result)) return false;
   if (!result.calibration.scale) return true;
   if (!unscaled_has_scale(result)) return false;
-  // limit: two sensors that both mean metres do not differ by more
-  constexpr double near_one = 1.1;
-  return !scaled_has_scale(result) ||
-         std::abs(std::log(result.calibration.scale->scale)) < std::log(near_one);
+  return !scaled_has_scale(result) || unit_of_scaled(LengthUnit::metres_where_alike,
+                                                     result.calibration.scale->scale) == LengthUnit::metres;
+}
+
+LengthUnit unit_of_answer(const SolveRequest& request, const SolveResult& result) {
+  const bool scaled = request.calibration.estimate_scale || request.calibration.scale != 1;
+  if (scaled ? !unscaled_has_scale(result) : !scaled_has_scale(result) && !unscaled_has_scale(result))
+    return LengthUnit::unknown;
+  const bool unnamed =
+      request.calibration.estimate_scale && request.scale_option == "--scale" && scaled_has_scale(result);
+  return unnamed ? LengthUnit::metres_where_alike : LengthUnit::metres;
 }
 
 std::string unit_of_lengths(const SolveResult& result) {

@@ -18,6 +18,10 @@ std::string scale_text(const SolveResult& result);
 /// Whether the lengths of the answer are metres, as far as that is known: with a scale that was found they
 /// are in the unit of the sensor that is not scaled.
 bool in_metres(const SolveResult& result);
+
+/// The same before the answer, for its verdict: whoever names the sensor without scale says that the other
+/// one measures metres. result: which formats have a scale, and whose lengths are multiplied.
+LengthUnit unit_of_answer(const SolveRequest& request, const SolveResult& result);
 /// "m", or "unit of b".
 std::string unit_of_lengths(const SolveResult& result);
 /// A line for people who read "cm" below; empty where lengths are metres.

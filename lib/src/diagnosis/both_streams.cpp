@@ -22,8 +22,8 @@ bool too_fast_unless_inverted(const Evidence& evidence, const Explanation& both,
                               const DiagnosisOptions& options) {
   const double period = evidence.instants.period;
   const auto impossible = [&](const Motions& motions) {
-    const std::optional<Finding> pace =
-        impossible_pace(motions, evidence.stride * period, period, options.pace);
+    const std::optional<Finding> pace = impossible_pace(motions, evidence.stride * period, period,
+                                                        options.unit == LengthUnit::metres, options.pace);
     return pace && pace->certain;
   };
   return impossible(evidence.given.explained.motions) && !impossible(both.explained.motions);

@@ -135,8 +135,9 @@ std::string rival_in_words(const Finding& rival, const Pose& T_a_b, const Observ
     if (!observability.observable[i]) difference[static_cast<Eigen::Index>(i)] = 0;
   const double rotation = difference.tail<3>().norm(), translation = difference.head<3>().norm();
   if (!(rotation > options.tolerance_rotation || translation > options.tolerance_translation)) return "";
-  return format("%s The answer would be another one, %.3g deg and %.3g cm away.", rival.message.c_str(),
-                rotation * 180 / std::numbers::pi, 100 * translation);
+  return format("%s The answer would be another one, %.3g deg and %s away.", rival.message.c_str(),
+                rotation * 180 / std::numbers::pi,
+                length_in_words(translation, options.unit == LengthUnit::metres).c_str());
 }
 
 }  // namespace egocal::detail

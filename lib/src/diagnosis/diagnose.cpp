@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,12 +19,14 @@
 #include "diagnosis/fit.hpp"
 #include "diagnosis/following_mount.hpp"
 #include "diagnosis/forward.hpp"
+#include "diagnosis/goal.hpp"
 #include "diagnosis/interpolated_stream.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/large_move.hpp"
 #include "diagnosis/late_rotations.hpp"
 #include "diagnosis/mount.hpp"
 #include "diagnosis/not_a_move.hpp"
+#include "diagnosis/other_poses.hpp"
 #include "diagnosis/pace.hpp"
 #include "diagnosis/planes.hpp"
 #include "diagnosis/replacing.hpp"
@@ -33,10 +34,10 @@
 #include "diagnosis/standing_still.hpp"
 #include "diagnosis/stream_check.hpp"
 #include "diagnosis/swaying_mount.hpp"
+#include "diagnosis/turning_alike.hpp"
 #include "diagnosis/undersampling.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/foresee.hpp"
-#include "egocal/in_words.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -57,68 +58,6 @@ struct detail::Foreseen {
 namespace {
 
 using namespace detail;
-
-/// Turning of two unrelated streams correlates by chance only; that of one body is the same. Of this part of
-/// the motions: those that turn most alike.
-double turning_correlation(const Motions& motions, double part = 1) {
-  std::vector<std::size_t> order(motions.all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto count = static_cast<std::size_t>(part * static_cast<double>(order.size()));
-  if (count < order.size()) {
-    const auto difference = [&](std::size_t i) {
-      return std::abs(motions.all[i].angle_a - motions.all[i].angle_b);
-    };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t i, std::size_t k) { return difference(i) < difference(k); });
-  }
-  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = motions.all[order[i]].angle_a, y = motions.all[order[i]].angle_b;
-    n += 1;
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    syy += y * y;
-    sxy += x * y;
-  }
-  const double variance = (sxx - sx * sx / n) * (syy - sy * sy / n);
-  return variance > 0 ? (sxy - sx * sy / n) / std::sqrt(variance) : 0;
-}
-
-Finding certain_finding(const char* code, std::string message, std::string remedy) {
-  Finding finding;
-  finding.code = code;
-  finding.certain = true;
-  finding.message = std::move(message);
-  finding.remedy = std::move(remedy);
-  return finding;
-}
-
-Finding unrelated(double correlation) {
-  return certain_finding(
-      "unrelated",
-      format("The two streams do not turn together (correlation %.2f): they are not of one rigid "
-             "body, or not of one drive.",
-             correlation),
-      "Check that both files are of the same drive and that both sensors are rigidly mounted.");
-}
-
-Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) {
-  return certain_finding("too_little_motion",
-                         motions < options.motions.least
-                             ? "Only " + counted(motions, "motion") + ": too few to judge the fit."
-                             : "The sensors hardly turn: an extrinsic cannot be found from this drive.",
-                         "Record a longer drive with turns in different directions.");
-}
-
-Finding turning_in_noise(double correlation) {
-  return certain_finding(
-      "too_little_motion",
-      format("The streams travel alike but do not turn alike (correlation %.2f): the drive turns by "
-             "less than the noise of the rotations.",
-             correlation),
-      "Record a drive with sharper turns in different directions, or improve the rotations.");
-}
 
 Finding unexplained(const UnexplainedPart& part) {
   Finding finding = certain_finding(
@@ -149,6 +88,26 @@ bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
          });
 }
 
+/// The motions contradict only what they show of an answer. Where another extrinsic suits them better, and
+/// differs from it in directions that are not known alone, that one counts.
+Misfit where_known(const Misfit& misfit, const Motions& motions, const Answered& answered,
+                   const DualQuaternion& best) {
+  constexpr double standard_deviations = 3;
+  if (!(misfit.best < misfit.at_answer)) return misfit;
+  const Vector6d difference = frame_a_difference(answered.T_a_b, best);
+  bool all_known = true;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!answered.observability.observable[k])
+      all_known = false;
+    else if (std::abs(difference[i]) >
+             standard_deviations * with_further_parts(answered.observability.stddev[k], answered, k))
+      return misfit;
+  }
+  if (all_known) return misfit;
+  return {misfit.best, misfit.best, median_misfit(motions, evaluated(motions, best))};
+}
+
 /// What is left where no reading, scale or clock explains the motions. misfit: by what is no noise.
 void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                   const Fit& fit, const DiagnosisOptions& options, Misfit& misfit,
@@ -174,6 +133,17 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     misfit.at_answer = misfit.median = fit.translation_relative_median;
     return;
   }
+  // rotations that were misread do not turn as the other stream does, either
+  if (answered.problem.mode != Mode::planar)
+    if (std::optional<Finding> contents = other_contents(evidence, options)) {
+      // small angles times a factor are nearly those of rotation vectors: both are named where both fit
+      std::vector<Finding> others = wrong_stream(evidence, options);
+      const double gain = others.empty() ? 0 : std::log(others.front().improvement / contents->improvement);
+      if (gain < -options.alike) others.clear();
+      if (gain <= options.alike) others.insert(others.end(), *std::move(contents));
+      findings.insert(findings.begin(), others.begin(), others.end());
+      return;
+    }
   if (misfit.best > options.contradictory_misfit && correlation < options.unrelated_correlation) {
     findings.push_back(unrelated(correlation));
     return;
@@ -273,7 +243,7 @@ void name_askew_rotations(const Evidence& evidence, const Answered& answered, co
   if (answered.problem.mode == Mode::planar) return;
   for (const Finding& finding : findings)
     if ((finding.certain && !finding.code.starts_with("undersampled_")) || finding.code == "mount_moved" ||
-        finding.code == "scale_change" || finding.code == "samples")
+        finding.code == "scale_change" || finding.code == "samples" || finding.code == "odometry")
       return;
   if (std::optional<Finding> askew = askew_rotations(evidence.instants, evidence.stride, answered, options))
     findings.push_back(*std::move(askew));
@@ -351,11 +321,18 @@ Foreseen foresee(const Trajectory& a, const Trajectory& b, const PairingOptions&
   return foreseen;
 }
 
+/// With a tolerance of the translation that suits the unit of the lengths.
+DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options) {
+  if (options.unit != LengthUnit::unknown || !(motions.rotation > 0)) return options;
+  options.tolerance_translation = options.tolerance_rotation * motions.translation / motions.rotation;
+  return options;
+}
+
 Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   const PairingOptions& pairing = foreseen.pairing;
-  const DiagnosisOptions& options = foreseen.options;
   const Evidence& evidence = foreseen.evidence;
   const Motions& motions = evidence.given.explained.motions;
+  const DiagnosisOptions options = in_unit_of(motions, foreseen.options);
   Answered answered = given;
   if (!evidence.instants.empty())
     answered.seconds = evidence.instants.time(evidence.instants.size() - 1) - evidence.instants.time(0);
@@ -379,9 +356,11 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   // while the sensors stand, noise would be compared with noise
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
-  Misfit misfit{detail::misfit(moving, at_answer),
-                detail::misfit(moving, evaluated(moving, evidence.given.explained.fit.T)),
-                median_misfit(moving, at_answer)};
+  const DualQuaternion& best = evidence.given.explained.fit.T;
+  Misfit misfit =
+      where_known({detail::misfit(moving, at_answer), detail::misfit(moving, evaluated(moving, best)),
+                   median_misfit(moving, at_answer)},
+                  moving, answered, best);
   // pairing rejects the motions of a frozen stream: what contradicts the answer is something else
   const bool more_than_frozen = misfit.at_answer > options.doubtful_misfit;
   if (more_than_frozen)
@@ -398,10 +377,16 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained) look_further(pairing, evidence, answered, result.fit, options, misfit, result.findings);
   name_wrong_scale(evidence, pairing, options, result.findings);
+  StreamCheckOptions checks;
+  if (options.unit == LengthUnit::unknown) {
+    checks.close *= options.tolerance_translation / DiagnosisOptions().tolerance_translation;
+    checks.known_translation *= options.tolerance_translation / DiagnosisOptions().tolerance_translation;
+  }
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))
     // that one stream was made from the other explains an answer that is the identity, too
-    for (const std::vector<Finding>& found : {made_from_each_other(result.fit), in_one_frame(answered)})
+    for (const std::vector<Finding>& found :
+         {made_from_each_other(result.fit), in_one_frame(answered, checks)})
       if (!has(result.findings, "same_stream"))
         result.findings.insert(result.findings.end(), found.begin(), found.end());
   const auto reads_otherwise = [](const Finding& one) {
@@ -409,8 +394,9 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   };
   if (std::any_of(result.findings.begin(), result.findings.end(), reads_otherwise)) {
     // the pace is that of inverse poses
-  } else if (std::optional<Finding> pace = impossible_pace(
-                 motions, evidence.stride * evidence.instants.period, evidence.instants.period, options.pace))
+  } else if (std::optional<Finding> pace =
+                 impossible_pace(motions, evidence.stride * evidence.instants.period,
+                                 evidence.instants.period, options.unit == LengthUnit::metres, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
   if (pairing.mode != Mode::planar) name_late_rotations(evidence, pairing.max_gap, options, result.findings);
@@ -449,8 +435,9 @@ Diagnosis Foresight::diagnose(const Answered& answered) const {
 }
 
 Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
-                   const DiagnosisOptions& options) {
-  const Motions motions = motions_of(pairs, options.motions);
+                   const DiagnosisOptions& given) {
+  const Motions motions = motions_of(pairs, given.motions);
+  const DiagnosisOptions options = in_unit_of(motions, given);
   Diagnosis result;
   result.fit = fit_at(motions, to_pose(answered.T_a_b), 0, options.motions);
   Misfit misfit;

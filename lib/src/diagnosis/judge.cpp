@@ -109,14 +109,14 @@ Known known_to(const Answered& answered, const DiagnosisOptions& options) {
 /// "Not known to 1 deg and 60 cm yet": the limits are of all directions together, so the standard deviations
 /// that are printed may all be smaller.
 std::string not_known_yet(const Known& known, const DiagnosisOptions& options) {
+  const bool metres = options.unit == LengthUnit::metres;
   std::string together;
   if (std::isfinite(known.rotation)) together += format("%.3g deg", known.rotation * degrees);
   if (std::isfinite(known.translation))
-    together += (together.empty() ? "" : ", ") +
-                format(known.translation < 10 ? "%.3g cm" : "%.0f cm", 100 * known.translation);
+    together += (together.empty() ? "" : ", ") + length_in_words(known.translation, metres);
   if (!together.empty()) together = " (all directions together, 95 %: " + together + ")";
-  return format("Not known to %.3g deg and %.3g cm yet", options.tolerance_rotation * degrees,
-                100 * options.tolerance_translation) +
+  return format("Not known to %.3g deg and %s yet", options.tolerance_rotation * degrees,
+                length_in_words(options.tolerance_translation, metres).c_str()) +
          together + ": " + known.unknown + ".";
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "egocal/diagnosis/options.hpp"
 #include "egocal/diagnosis/verdict.hpp"
 
 namespace egocal {
@@ -69,6 +70,13 @@ std::optional<double> quantity(std::string_view text,
 }
 
 }  // namespace
+
+LengthUnit unit_of_scaled(LengthUnit unit, double scale) {
+  // two sensors that both mean metres do not differ by more
+  constexpr double near_one = 1.1;
+  if (unit != LengthUnit::metres_where_alike) return unit;
+  return std::abs(std::log(scale)) < std::log(near_one) ? LengthUnit::metres : LengthUnit::unknown;
+}
 
 std::optional<GoalOptions> goal_from_text(std::string_view text) {
   const std::size_t comma = text.find(',');

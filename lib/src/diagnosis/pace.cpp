@@ -28,7 +28,7 @@ std::string taken_as(double factor) {
 
 }  // namespace
 
-std::optional<Finding> impossible_pace(const Motions& motions, double duration, double period,
+std::optional<Finding> impossible_pace(const Motions& motions, double duration, double period, bool metres,
                                        const PaceCheckOptions& options) {
   if (motions.all.empty() || !(duration > 0) || !(period > 0)) return std::nullopt;
   std::vector<double> speeds, turns, accelerations;
@@ -43,9 +43,10 @@ std::optional<Finding> impossible_pace(const Motions& motions, double duration, 
         std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size()))));
   };
   const double speed = quantile(speeds, 0.5), turning = quantile(turns, 0.5);
-  const bool fast =
-      speed > options.usual_speed && quantile(accelerations, options.accelerated) > options.most_acceleration;
-  const bool moves = fast || speed > options.most_speed || turning > options.most_turning;
+  const bool fast = metres && (speed > options.most_speed ||
+                               (speed > options.usual_speed &&
+                                quantile(accelerations, options.accelerated) > options.most_acceleration));
+  const bool moves = fast || turning > options.most_turning;
   if (!moves && !(1 / period > options.most_rate)) return std::nullopt;
   Finding finding;
   finding.code = "time_unit";

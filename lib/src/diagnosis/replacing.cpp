@@ -12,6 +12,7 @@
 #include "diagnosis/not_a_move.hpp"
 #include "diagnosis/turned_lever_arm.hpp"
 #include "diagnosis/turning_scale.hpp"
+#include "diagnosis/unlike_columns.hpp"
 
 namespace egocal::detail {
 
@@ -28,7 +29,8 @@ std::vector<Finding> wrong_stream(const Evidence& evidence, const DiagnosisOptio
   std::vector<Finding> best = turning_scale(evidence.instants, evidence.given.explained, options);
   for (std::optional<Finding> finding :
        {turned_lever_arm(evidence.instants, evidence.given.explained, options),
-        late_positions(evidence.instants, evidence.given.explained, options)})
+        late_positions(evidence.instants, evidence.given.explained, options),
+        unlike_columns(evidence, options)})
     if (finding && (best.empty() || best.front().improvement < finding->improvement))
       best = {*std::move(finding)};
   return best;
@@ -68,6 +70,18 @@ bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, c
 bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
                              const DiagnosisOptions& options, std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return false;
+  const auto of_scale = [](const Finding& one) {
+    return one.certain && (one.code == "scale" || one.code == "units");
+  };
+  // exchanged columns in another unit have two findings already
+  const auto other = [&](const Finding& one) { return one.certain && !of_scale(one); };
+  if (std::any_of(findings.begin(), findings.end(), of_scale) &&
+      std::none_of(findings.begin(), findings.end(), other))
+    if (std::optional<Finding> columns = unlike_columns(evidence, options); columns && columns->certain) {
+      std::erase_if(findings, of_scale);
+      findings.insert(findings.begin(), *std::move(columns));
+      return true;
+    }
   const auto axes = certain_axes_of_both(findings);
   if (axes == findings.end()) return false;
   std::vector<Finding> wrong = wrong_stream(evidence, options);

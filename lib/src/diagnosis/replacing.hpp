@@ -25,7 +25,7 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
 bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                       const DiagnosisOptions& options, std::vector<Finding>& findings);
 
-/// The same of what one stream alone explains more of.
+/// The same of what one stream alone explains more of, and unlike columns that look like another scale.
 bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
                              const DiagnosisOptions& options, std::vector<Finding>& findings);
 

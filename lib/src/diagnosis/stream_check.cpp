@@ -154,6 +154,35 @@ Flatness flatness(const Trajectory& trajectory, const StreamCheckOptions& option
   return result;
 }
 
+/// Whether a stream turns, and about one axis of its world alone.
+bool turns_about_one_axis(const Trajectory& trajectory, const StreamCheckOptions& options) {
+  if (trajectory.size() < options.least) return false;
+  const std::size_t each = std::max<std::size_t>(1, trajectory.size() / options.most);
+  const Rotation back = to_pose(trajectory.front().pose).rotation.conjugate();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < trajectory.size(); i += each, count += 1) {
+    const Eigen::Vector3d turn = 2 * (to_pose(trajectory[i].pose).rotation * back).vec();
+    squares += turn * turn.transpose();
+  }
+  const SymmetricEigen<3> eigen = symmetric_eigen<3>(squares);
+  return std::sqrt(std::max(0.0, eigen.values[0] + eigen.values[1]) / count) <= options.level &&
+         std::sqrt(eigen.values[2] / count) > options.least_tilt;
+}
+
+/// tilt: of the other stream [rad].
+Finding never_tilts(char which, double tilt) {
+  Finding finding;
+  finding.code = std::string("flat_") + which;
+  finding.certain = true;
+  say(finding,
+      format("The rotations of %s are about one axis alone although %s tilts by %.1f deg: roll and pitch are "
+             "missing.",
+             mark(which), mark(which == 'a' ? 'b' : 'a'), tilt * 180 / std::numbers::pi),
+      format("Give whole rotations of %s, or ground planes (planar mode).", mark(which)));
+  return finding;
+}
+
 /// tilt: its own, or that of the other stream where it has none itself [rad].
 Finding flat(char which, char coordinate, double tilt, bool of_other) {
   Finding finding;
@@ -289,12 +318,14 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
   };
   for (const char which : {'a', 'b'}) {
     const Flatness found = flatness(which == 'a' ? a : b, options);
-    if (found.coordinate != 0 && found.tilt > options.least_tilt)
+    if (found.coordinate != 0 && found.tilt > options.least_tilt) {
       findings.push_back(flat(which, found.coordinate, found.tilt, false));
-    else if (found.coordinate != 0 && found.tilt <= options.level) {
+    } else if (found.coordinate != 0 ? found.tilt <= options.level
+                                     : turns_about_one_axis(which == 'a' ? a : b, options)) {
       const Tilting other = tilting(instants, which == 'a' ? Side::b : Side::a, options);
       if (other.tilt > options.least_tilt && other.tilt > options.over_noise * other.noise)
-        findings.push_back(flat(which, found.coordinate, other.tilt, true));
+        findings.push_back(found.coordinate != 0 ? flat(which, found.coordinate, other.tilt, true)
+                                                 : never_tilts(which, other.tilt));
     }
     if (std::optional<Finding> missing =
             which == 'a' ? without_part('a', a, b, options) : without_part('b', b, a, options))

@@ -13,6 +13,7 @@
 #include "diagnosis/changed_motions.hpp"
 #include "diagnosis/common_mistakes.hpp"
 #include "diagnosis/stillest_point.hpp"
+#include "diagnosis/turning_of_steps.hpp"
 #include "diagnosis/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
@@ -257,6 +258,7 @@ std::vector<Finding> turning_scale(const Instants& instants, const Explained& gi
     }
     if (better_one) best.push_back(*std::move(better_one));
   }
+  if (best.empty()) return turning_of_steps(instants, given, options);
   std::stable_sort(best.begin(), best.end(),
                    [](const Scaled& x, const Scaled& y) { return x.comparison.gain > y.comparison.gain; });
   std::vector<Finding> findings;

@@ -6,6 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 #include "diagnosis/axes.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -77,6 +78,22 @@ std::string format(const char* pattern, ...) {
   std::vsnprintf(text, sizeof text, pattern, arguments);
   va_end(arguments);
   return text;
+}
+
+Finding certain_finding(const char* code, std::string message, std::string remedy) {
+  Finding finding;
+  finding.code = code;
+  finding.certain = true;
+  finding.message = std::move(message);
+  finding.remedy = std::move(remedy);
+  return finding;
+}
+
+std::string length_in_words(double length, bool metres) {
+  if (!metres) return format("%.3g units", length);
+  // "%.3g" of 999.5 and more would be "1e+03"
+  if (!(100 * length >= 999.5)) return format("%.3g cm", 100 * length);
+  return length < 999.5 ? format("%.3g m", length) : format("%.0f m", length);
 }
 
 Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseReading& read_b) {

@@ -3,6 +3,8 @@
 // Findings in words: what was found, and what to do about it.
 #pragma once
 
+#include <string>
+
 #include "diagnosis/motions.hpp"
 #include "egocal/diagnosis/verdict.hpp"
 
@@ -12,6 +14,11 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
 /// either: of "units", whichever stream may be in the wrong one.
 Finding worded_scale(Finding finding, bool either = false);
 Finding worded_clock(Finding finding, const ClockModel& clock);
+
+Finding certain_finding(const char* code, std::string message, std::string remedy);
+
+/// "67.8 cm", and from ten metres on "12.3 m"; three digits. Of a unit that is not metres: "67.8 units".
+std::string length_in_words(double length, bool metres = true);
 
 /// The mark of a stream ('a' or 'b') in a sentence of a finding (finding_words.hpp).
 const char* mark(char stream);

@@ -227,6 +227,17 @@ struct ClockCheckOptions {
   std::size_t instants = 1000;  ///< that the offset is estimated from: a limit on time
 };
 
+/// What the lengths of an answer are. A camera without scale measures in a unit of its own.
+enum class LengthUnit {
+  metres,
+  metres_where_alike,  ///< where the scale that is estimated is near one: no sensor is named as the unscaled
+                       ///< one
+  unknown,
+};
+
+/// The unit where the lengths of one sensor were multiplied by an estimated scale.
+LengthUnit unit_of_scaled(LengthUnit unit, double scale);
+
 /// When an answer counts as known or as wrong.
 struct DiagnosisOptions {
   /// Of calibrate(): without it no other explanation is tried, and no answer is called good.
@@ -236,6 +247,10 @@ struct DiagnosisOptions {
   /// What users of vehicles call wrong; an arm wants less.
   double tolerance_rotation = 0.017453292519943295;
   double tolerance_translation = 0.6;
+  /// Where the unit is not known to be metres, the tolerance of the translation is what changes the motions
+  /// as much as tolerance_rotation does: that part of the way in which the sensors turn by a radian. Ordinary
+  /// cars go 20 to 60 m in it, which makes 35 cm to 1 m.
+  LengthUnit unit = LengthUnit::metres;
   /// Signed-rank test of an explanation against the streams as given, over up to 64 blocks of the drive. 3.5
   /// standard deviations are one false alarm in 2000 comparisons of streams that fit equally well.
   double sigmas = 3.5;

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that hold something else than poses in metres and one frame: their motions contradict each other, and
+// the finding says what they hold.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "../support/findings.hpp"
+#include "../support/mistakes.hpp"
+#include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
+
+namespace egocal::test_other_contents {
+namespace {
+
+using testing::drive;
+using testing::find;
+
+Finding certain_finding(const Calibration& calibration, const std::string& code) {
+  const Finding* finding = find(calibration, code);
+  EXPECT_NE(finding, nullptr) << code << ": " << calibration.reason;
+  if (finding == nullptr) return {};
+  EXPECT_TRUE(finding->certain) << finding->message;
+  return *finding;
+}
+
+/// The right answer is that of the finding, and the one as given is called contradictory.
+void expect_cured(const testing::Streams& right, const Calibration& calibration, const Finding& finding,
+                  double rotation, double translation) {
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  ASSERT_TRUE(finding.T_a_b);
+  const ExtrinsicError error = extrinsic_error(right.T, to_dual_quaternion(*finding.T_a_b));
+  EXPECT_LT(error.rotation, rotation) << finding.message;
+  EXPECT_LT(error.translation, translation) << finding.message;
+}
+
+TEST(OtherContents, AGyroscopeThatIsSummedUpInHalfOrDoubleAnglesIsNamed) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (const double factor : {0.5, 2.0}) {
+      const testing::Streams right = drive(terrain);
+      const Calibration calibration = calibrate(right.a, testing::with_scaled_steps(right.b, factor));
+      const Finding of_b = certain_finding(calibration, "turning_scale_b");
+      EXPECT_NEAR(of_b.value.value_or(0) / factor, 1, 0.02);
+      EXPECT_NE(of_b.message.find("from each pose to the next one"), std::string::npos) << of_b.message;
+      expect_cured(right, calibration, of_b, 0.01, 0.5);
+    }
+}
+
+TEST(OtherContents, LatitudeAndLongitudeInDegreesAreNamed) {
+  const testing::Streams right = drive(Terrain::free);
+  Eigen::Matrix3d in_degrees;
+  in_degrees << 0, 1 / 111e3, 0, 1 / 71e3, 0, 0, 0, 0, 1;  // latitude first
+  const Calibration calibration = calibrate(right.a, testing::with_position_columns(right.b, in_degrees));
+  const Finding columns = certain_finding(calibration, "axes_b");
+  EXPECT_NE(columns.message.find("in unlike units"), std::string::npos) << columns.message;
+  expect_cured(right, calibration, columns, 0.01, 0.1);
+}
+
+/// Three factors and a rotation look like one factor on a road, which is nearly level.
+TEST(OtherContents, AHeightInFeetIsNotCalledAScale) {
+  const testing::Streams right = drive(Terrain::rough);
+  const Calibration calibration =
+      calibrate(right.a, testing::with_position_columns(right.b, Eigen::Vector3d(1, 1, 3.2808).asDiagonal()));
+  const Finding columns = certain_finding(calibration, "axes_b");
+  EXPECT_NE(columns.message.find("in unlike units"), std::string::npos) << columns.message;
+  EXPECT_EQ(find(calibration, "scale"), nullptr);
+  expect_cured(right, calibration, columns, 0.02, 1);
+}
+
+/// An odometry that drifts stretches its positions by some per cent, too: no reading of its file cures that.
+TEST(OtherContents, PositionsThatAreStretchedALittleAreOnlySaidToBe) {
+  const testing::Streams right = drive(Terrain::free);
+  const Eigen::Vector3d little(1.05, 0.97, 1), more(1.3, 1, 1);
+  const Calibration drifts = calibrate(right.a, testing::with_position_columns(right.b, little.asDiagonal()));
+  EXPECT_EQ(find(drifts, "axes_b"), nullptr) << drifts.reason;
+  const Finding* odometry = find(drifts, "odometry");
+  ASSERT_NE(odometry, nullptr) << drifts.reason;
+  EXPECT_FALSE(odometry->certain);
+  EXPECT_EQ(drifts.verdict, Verdict::good) << drifts.reason;
+  certain_finding(calibrate(right.a, testing::with_position_columns(right.b, more.asDiagonal())), "axes_b");
+}
+
+TEST(OtherContents, AnglesOfTheWrongSignOrderAndUnitAreNamed) {
+  const auto angles = [](const Trajectory& poses, const std::function<Eigen::Vector3d(Eigen::Vector3d)>& f) {
+    return testing::with_angles(poses, f);
+  };
+  const double degrees = std::numbers::pi / 180;
+  const testing::Streams right = drive(Terrain::free);
+  for (const auto& [words, wrong] :
+       {std::pair<const char*, Trajectory>{"compass heading", angles(right.b,
+                                                                     [=](Eigen::Vector3d x) {
+                                                                       return Eigen::Vector3d(
+                                                                           x[0], x[1], 90 * degrees - x[2]);
+                                                                     })},
+        {"its roll taken with the opposite sign",
+         angles(right.b, [](Eigen::Vector3d x) { return Eigen::Vector3d(-x[0], x[1], x[2]); })},
+        {"its pitch taken with the opposite sign",
+         angles(right.b, [](Eigen::Vector3d x) { return Eigen::Vector3d(x[0], -x[1], x[2]); })},
+        {"radians that were taken as degrees",
+         angles(right.b, [=](Eigen::Vector3d x) { return Eigen::Vector3d(degrees * x); })},
+        {"turned in the opposite order", testing::with_angles_in_another_order(right.b)}}) {
+    const Calibration calibration = calibrate(right.a, wrong);
+    const Finding finding = certain_finding(calibration, "axes_b");
+    EXPECT_NE(finding.message.find(words), std::string::npos) << words << ": " << finding.message;
+    expect_cured(right, calibration, finding, 0.02, 0.2);
+  }
+}
+
+TEST(OtherContents, VelocitiesInPlaceOfPositionsAreNamed) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    const testing::Streams right = drive(terrain);
+    const Calibration calibration = calibrate(right.a, testing::with_velocities(right.b));
+    const Finding finding = certain_finding(calibration, "missing_b");
+    EXPECT_NE(finding.message.find("velocity in the axes of the world"), std::string::npos)
+        << finding.message;
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+  }
+}
+
+TEST(OtherContents, PositionsInTheAxesOfTheSensorAreNamed) {
+  const testing::Streams right = drive(Terrain::free);
+  const Calibration calibration =
+      calibrate(right.a, testing::changed(right.b, [](const Pose& pose) {
+                  return Pose{pose.rotation, pose.rotation.conjugate() * pose.translation};
+                }));
+  EXPECT_FALSE(calibration.findings.empty());
+  expect_cured(right, calibration, certain_finding(calibration, "axes_b"), 0.01, 0.1);
+}
+
+/// A heading alone beside a sensor that tilts with the road.
+TEST(OtherContents, RotationsWithoutRollAndPitchAreNamed) {
+  testing::Streams right = drive(Terrain::rough);
+  right.b = testing::seen_from(right.b, to_dual_quaternion(testing::T_vehicle_b));
+  EXPECT_EQ(find(calibrate(right.a, right.b), "flat_b"), nullptr);
+  const Calibration calibration = calibrate(
+      right.a, testing::with_angles(right.b, [](Eigen::Vector3d x) { return Eigen::Vector3d(0, 0, x[2]); }));
+  const Finding finding = certain_finding(calibration, "flat_b");
+  EXPECT_NE(finding.message.find("roll and pitch are missing"), std::string::npos) << finding.message;
+  EXPECT_GE(calibration.verdict, Verdict::doubtful);
+}
+
+}  // namespace
+}  // namespace egocal::test_other_contents
