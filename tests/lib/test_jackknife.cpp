@@ -237,9 +237,13 @@ TEST(Jackknife, FourAtATimeAreOneAfterTheOther) {
   }
 }
 
+struct Correlations {
+  double of_neighbours = 0, sum = 0;
+};
+
 /// Mean of `drives` drives.
-double correlation_of(double memory, int blocks, int drives) {
-  double mean = 0;
+Correlations correlations_of(double memory, int blocks, int drives) {
+  Correlations mean;
   Random random(11);
   for (int drive = 0; drive < drives; ++drive) {
     detail::Jackknife jackknife(blocks);
@@ -249,15 +253,46 @@ double correlation_of(double memory, int blocks, int drives) {
         difference[i] = memory * difference[i] + std::pow(10.0, -i) * random.normal();
       if (k >= 0) jackknife.leave_out(1, difference, Vector6d::Ones());
     }
-    mean += jackknife.correlation_of_neighbours(2) / drives;
+    mean.of_neighbours += jackknife.correlation_of_neighbours(2) / drives;
+    mean.sum += jackknife.sum_of_correlations(2) / drives;
   }
   return mean;
 }
 
 TEST(Jackknife, SeesWhetherNeighboursShareTheirErrors) {
   for (const double memory : {-0.5, 0.0, 0.5, 0.7}) {
-    EXPECT_NEAR(correlation_of(memory, 2000, 1), memory, 0.03);
-    EXPECT_NEAR(correlation_of(memory, 24, 100), memory, 0.05);
+    EXPECT_NEAR(correlations_of(memory, 2000, 1).of_neighbours, memory, 0.03);
+    EXPECT_NEAR(correlations_of(memory, 24, 100).of_neighbours, memory, 0.05);
+  }
+}
+
+TEST(Jackknife, AddsUpTheCorrelationsOfNearBlocks) {
+  for (const double memory : {-0.5, 0.0, 0.5, 0.7}) {
+    double expected = 0;
+    for (std::size_t lag = 1; lag <= detail::Jackknife::most_lag; ++lag)
+      expected += std::pow(memory, static_cast<double>(lag));
+    EXPECT_NEAR(correlations_of(memory, 4000, 1).sum, expected, 0.1);
+  }
+  EXPECT_NEAR(correlations_of(0, 24, 100).sum, 0, 0.05);
+  EXPECT_EQ(correlations_of(0.5, 3, 1).sum, 0);  // too few
+}
+
+/// A last block that takes off what is in two others is none of those that are omitted.
+TEST(Jackknife, CountsNoBlockThatTakesOff) {
+  const ObservabilityOptions options;
+  const Problem all = noisy_problem(3, {1, 1});
+  for (const std::size_t blocks : {options.least_blocks - 1, options.least_blocks}) {
+    Problem problem = all;
+    problem.blocks.resize(blocks);
+    Statistics shared = all.blocks[blocks];
+    problem.blocks[0] += shared;
+    problem.blocks[1] += shared;
+    shared.dual_rows *= -1;
+    shared.weight *= -1;
+    problem.blocks.push_back(shared);
+    const Answer answer = solve(problem, Method::dual);
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_EQ(std::isfinite(answer.observability.stddev[i]), blocks == options.least_blocks) << blocks;
   }
 }
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "egocal/problem/cost.hpp"
+#include <algorithm>
+#include <cstddef>
+
+#include "egocal/problem/problem.hpp"
 
 namespace egocal::detail {
 
@@ -10,6 +13,12 @@ namespace egocal::detail {
 /// is no part of the drive to omit.
 inline bool takes_off(const Statistics& block) {
   return block.weight < 0;
+}
+
+/// How many blocks can be omitted.
+inline std::size_t blocks_to_omit(const Problem& problem) {
+  return static_cast<std::size_t>(std::count_if(problem.blocks.begin(), problem.blocks.end(),
+                                                [](const Statistics& block) { return !takes_off(block); }));
 }
 
 }  // namespace egocal::detail

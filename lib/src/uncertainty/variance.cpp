@@ -31,35 +31,6 @@ struct Blocks {
       Vector6d::Zero();  ///< in the same units; less than their sum where they touch
 };
 
-/// The sums of neighbours among the first `count` of four, to two places from `first` on. One that has none
-/// stays as it is.
-template <std::size_t n>
-void join(const Fours<n>& from, std::size_t count, std::size_t first, Fours<n>& to) {
-  for (std::size_t row = 0; row < n; ++row) {
-    to[row][first] = count > 1 ? from[row][0] + from[row][1] : from[row][0];
-    to[row][first + 1] = count > 3 ? from[row][2] + from[row][3] : from[row][2];
-  }
-}
-
-/// Neighbours joined, two by two.
-Blocks doubled(const Blocks& blocks) {
-  Blocks result;
-  const std::size_t count = blocks.pairs.size();
-  result.pairs.reserve((count + 1) / 2);
-  for (std::size_t i = 0; i < count; i += 2)
-    result.pairs.push_back(i + 1 < count ? blocks.pairs[i] + blocks.pairs[i + 1] : blocks.pairs[i]);
-  result.forms.resize(fours(result.pairs.size()));
-  result.information.resize(result.forms.size());
-  for (std::size_t i = 0; i < blocks.forms.size(); ++i) {
-    const std::size_t left = count - four * i, first = i % 2 * 2;
-    FourForms& to = result.forms[i / 2];
-    join(blocks.forms[i].curvature, left, first, to.curvature);
-    join(blocks.forms[i].gradient, left, first, to.gradient);
-    join(blocks.information[i], left, first, result.information[i / 2]);
-  }
-  return result;
-}
-
 /// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
 /// transposed: forms of the blocks with the other triangle, where that is not the same.
 void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, const TangentForm& all,
@@ -165,34 +136,29 @@ Blocks blocks_around(const Problem& problem, const ShownDirections& directions, 
   return blocks;
 }
 
-/// How many times the variance of joined blocks exceeds that of single ones, all directions together: one
-/// direction of a dozen parts would be mostly chance, and the largest of six even more. Errors that depend on
-/// the place, as those of real odometries do, last for longer than a block. The mean is one of logarithms, in
-/// which no direction outweighs the others; that of a chi-square of n degrees of freedom over n is -1 / n.
-double scatter_of_joined(const Jackknife& joined, const Jackknife& single) {
-  const Vector6d of_joined = joined.spread(), of_single = single.spread();
-  double sum = 0, count = 0;
-  for (int i = 0; i < 6; ++i) {
-    // joined blocks that hold all that is known have no spread; Jackknife::concentration() counts them
-    if (!(of_single[i] > 0) || !std::isfinite(of_joined[i])) continue;
-    sum += std::log(of_joined[i] / of_single[i]);
-    count += 1;
-  }
-  return count > 0 ? std::exp(sum / count + 1 / (joined.count() - 1) - 1 / (single.count() - 1)) : 1;
+/// What blocks that touch share makes their effects correlate even where no error lasts: a motion between two
+/// of them is in both. overlap: by how much the blocks are together more than the whole. Each motion is in
+/// 1 + overlap blocks in the mean, which alone makes a sum of correlations of overlap / (1 + overlap). With
+/// lengths of motions that fade exponentially the part 1 - overlap^2 of it is between neighbours (within
+/// 0.06).
+double correlation_by_sharing(double overlap) {
+  return overlap * (1 - overlap);
 }
 
-/// By how many times the variance of a sum of many blocks exceeds that of as many single ones, where errors
-/// fade from block to block as the lag-one correlation says (an autoregression of order one). Such blocks
-/// show the variance itself with fewer degrees of freedom, as (1 - r^2) / (1 + r^2) times as many would
-/// (Bartlett 1946).
-double of_memory(const Jackknife& single, const ObservabilityOptions& options) {
+/// By how many times the variance of a sum of many blocks exceeds that of as many single ones: the larger of
+/// two. Where errors fade from block to block as the lag-one correlation says (an autoregression of order
+/// one), blocks show the variance itself with fewer degrees of freedom, as (1 - r^2) / (1 + r^2) times as
+/// many would (Bartlett 1946). And the correlations of near blocks add up, as errors need not fade like that.
+double of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
   constexpr double least_freedom = 2;  // below, student_factor() is too small
-  const double r =
-      std::clamp(single.correlation_of_neighbours(options.least_equal_blocks), 0.0, options.most_correlation);
+  const double sharing = correlation_by_sharing(overlap);
+  const double found = single.correlation_of_neighbours(options.least_equal_blocks);
+  const double r = std::clamp((found - sharing) / (1 - sharing), 0.0, options.most_correlation);
   const double freedom = single.count() - 1;
   const double fewer = std::max(least_freedom, freedom * (1 - r * r) / (1 + r * r));
   const double student = student_factor(std::min(fewer, freedom)) / student_factor(freedom);
-  return (1 + r) / (1 - r) * student * student;
+  const double fading = (1 + r) / (1 - r) * student * student;
+  return std::max(fading, 1 + 2 * (single.sum_of_correlations(options.least_equal_blocks) - sharing));
 }
 
 /// The largest part of what is known of a direction that is in a block.
@@ -208,10 +174,11 @@ double largest_share(const Blocks& blocks, std::size_t block) {
 /// Each is divided by how many times. What is omitted is then a block's share of what is known, with all of
 /// its effect; with twice its share the answer without four blocks of long motions would rest on nothing.
 /// But a block that holds all that is known of a direction is omitted as a whole: half of it would leave the
-/// answer where it is, as if it were certain.
-void count_once(Blocks& blocks, const TangentForm& all, int shown) {
+/// answer where it is, as if it were certain. Returns by how much the blocks are together more than the
+/// whole, from 0 to 1.
+double count_once(Blocks& blocks, const TangentForm& all, int shown) {
   Matrix6d factors = all.curvature;
-  if (!factorise(factors, shown)) return;
+  if (!factorise(factors, shown)) return 0;
   TangentForm of_blocks;
   for (std::size_t i = 0; i < blocks.forms.size(); ++i)
     add(blocks.forms[i], 0, std::min(four, blocks.pairs.size() - four * i), of_blocks);
@@ -221,11 +188,12 @@ void count_once(Blocks& blocks, const TangentForm& all, int shown) {
     solve_factorised(factors, along, shown);
     times += along[i] / shown;
   }
-  if (!(times > 1)) return;
+  if (!(times > 1)) return 0;
   for (std::size_t k = 0; k < blocks.pairs.size(); ++k) {
     const double divisor = times - (times - 1) * largest_share(blocks, k);
     for (auto& entries : blocks.forms[k / four].curvature) entries[k % four] /= divisor;
   }
+  return std::min(times - 1, 1.0);
 }
 
 /// A coordinate that no shown direction has a part of is rounding: it must not count in what is a mean, or a
@@ -246,17 +214,11 @@ Vector6d detail::variance_by_blocks(const Problem& problem, double pairs,
   const ShownDirections directions = without_rounding(all_directions);
   TangentForm sum;
   Blocks blocks = blocks_around(problem, directions, sum);
-  if (blocks.pairs.size() < problem.blocks.size()) count_once(blocks, sum, directions.shown);
+  const double overlap =
+      blocks.pairs.size() < problem.blocks.size() ? count_once(blocks, sum, directions.shown) : 0;
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
-  double shared = 1;  // how many times the variance is that of blocks without common errors
-  if (errors == ErrorCorrelation::correlated) {
-    shared = of_memory(single, options);
-    if (blocks.pairs.size() >= 2 * options.least_double_blocks) {
-      const Blocks of_two = doubled(blocks), of_four = doubled(of_two);
-      for (const Blocks* joined : {&of_two, &of_four})
-        shared = std::max(shared, scatter_of_joined(jackknife_of(*joined, sum, pairs, directions), single));
-    }
-  }
+  const double shared =  // how many times the variance is that of blocks without common errors
+      errors == ErrorCorrelation::correlated ? of_memory(single, overlap, options) : 1;
   return shared *
          single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(single.variance());
 }

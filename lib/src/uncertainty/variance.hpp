@@ -15,10 +15,9 @@ struct ShownDirections {
   int shown;
 };
 
-/// Of the coordinates in sensor a's frame, by the jack-knife over the blocks of a problem. Errors that
-/// neighbouring blocks may share make it as many times larger as the most of three signs of them says, each
-/// in the mean over all directions: the correlation of neighbours, and the spreads without two and without
-/// four of them. pairs: in all blocks. Lengths in units of the space.
+/// Of the coordinates in sensor a's frame, by the jack-knife over the blocks of a problem. Errors that near
+/// blocks may share make it as many times larger as their correlations say, beyond what blocks correlate
+/// because a motion is in two of them. pairs: in all blocks. Lengths in units of the space.
 Vector6d variance_by_blocks(const Problem& problem, double pairs, const ShownDirections& directions,
                             ErrorCorrelation errors, const ObservabilityOptions& options);
 

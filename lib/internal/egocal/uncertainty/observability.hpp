@@ -9,9 +9,8 @@
 
 namespace egocal {
 
-/// Whether the errors of neighbouring blocks may be related. If so, their correlation and the spreads without
-/// two and without four of them count as well (docs/method.md): safer to report, noisier to compare settings
-/// by.
+/// Whether the errors of near blocks may be related. If so, their correlations count as well
+/// (docs/method.md): safer to report, noisier to compare settings by.
 enum class ErrorCorrelation { correlated, independent };
 
 /// When a direction counts as observable.
@@ -47,8 +46,6 @@ struct ObservabilityOptions {
   /// A standard deviation needs at least this many blocks. With six, Student's factor is 1.31; with fewer it
   /// grows without bound (tests/bench/coverage_study.cpp).
   std::size_t least_blocks = 6;
-  /// Double blocks are compared from this many of them: their spread alone scatters by a quarter then.
-  std::size_t least_double_blocks = 8;
   /// Of neighbouring blocks: errors that last for longer than nine blocks cannot be told from systematic ones
   /// in 32.
   double most_correlation = 0.8;
