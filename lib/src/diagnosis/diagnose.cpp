@@ -88,11 +88,18 @@ bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
          });
 }
 
+/// Of one of the streams. That the streams as given fit in some directions is no evidence against it.
+bool is_another_reading(const Finding& finding) {
+  const std::string_view code = finding.code;
+  return code == "inverted_a" || code == "inverted_b" || code.starts_with("quaternion_order_") ||
+         code.starts_with("axes_");
+}
+
 /// The motions contradict only what they show of an answer. Where another extrinsic suits them better, and
 /// differs from it in directions that are not known alone, that one counts.
 Misfit where_known(const Misfit& misfit, const Motions& motions, const Answered& answered,
                    const DualQuaternion& best) {
-  constexpr double standard_deviations = 3;
+  constexpr double standard_deviations = 3;  // mathematics: 99.7 % of what is known keeps within
   if (!(misfit.best < misfit.at_answer)) return misfit;
   const Vector6d difference = frame_a_difference(answered.T_a_b, best);
   bool all_known = true;
@@ -357,10 +364,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
   const DualQuaternion& best = evidence.given.explained.fit.T;
-  Misfit misfit =
-      where_known({detail::misfit(moving, at_answer), detail::misfit(moving, evaluated(moving, best)),
-                   median_misfit(moving, at_answer)},
-                  moving, answered, best);
+  Misfit misfit{detail::misfit(moving, at_answer), detail::misfit(moving, evaluated(moving, best)),
+                median_misfit(moving, at_answer)};
   // pairing rejects the motions of a frozen stream: what contradicts the answer is something else
   const bool more_than_frozen = misfit.at_answer > options.doubtful_misfit;
   if (more_than_frozen)
@@ -406,6 +411,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   // what else was found may be of the stamps alone
   const std::vector<Finding> bursts = stamps_in_bursts(foreseen.a, foreseen.b, result.fit);
   result.findings.insert(result.findings.begin(), bursts.begin(), bursts.end());
+  if (std::none_of(result.findings.begin(), result.findings.end(), is_another_reading))
+    misfit = where_known(misfit, moving, answered, best);
   judge(result, answered, misfit, options);
   return result;
 }
