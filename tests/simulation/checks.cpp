@@ -27,8 +27,8 @@ std::int64_t recent_us(const Plan& plan) {
 constexpr double remembered = 64;
 /// After this time a command has been obeyed, and what was on its way has arrived.
 constexpr std::int64_t heard_us = 200'000;
-/// Of a process [bytes]. A pair takes up to 2.5 MB, and a life has four of them: before 64 poses pairing holds
-/// a copy of what it has accumulated, with choices made early.
+/// Of a process [bytes]. A pair takes up to 2.5 MB, and a life has four of them: before 64 poses pairing
+/// holds a copy of what it has accumulated, with choices made early.
 constexpr std::size_t largest_memory = std::size_t{12} << 20;
 /// Arithmetic of 113 bits takes as long as all the rest of a short life: one answer of this number is
 /// checked.
