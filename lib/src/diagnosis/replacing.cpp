@@ -29,10 +29,12 @@ std::vector<Finding> wrong_stream(const Evidence& evidence, const DiagnosisOptio
   std::vector<Finding> best = turning_scale(evidence.instants, evidence.given.explained, options);
   for (std::optional<Finding> finding :
        {turned_lever_arm(evidence.instants, evidence.given.explained, options),
-        late_positions(evidence.instants, evidence.given.explained, options),
-        unlike_columns(evidence, options)})
+        late_positions(evidence.instants, evidence.given.explained, options)})
     if (finding && (best.empty() || best.front().improvement < finding->improvement))
       best = {*std::move(finding)};
+  std::vector<Finding> columns = unlike_columns(evidence, options);
+  if (!columns.empty() && (best.empty() || best.front().improvement < columns.front().improvement))
+    best = std::move(columns);
   return best;
 }
 
@@ -77,9 +79,10 @@ bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
   const auto other = [&](const Finding& one) { return one.certain && !of_scale(one); };
   if (std::any_of(findings.begin(), findings.end(), of_scale) &&
       std::none_of(findings.begin(), findings.end(), other))
-    if (std::optional<Finding> columns = unlike_columns(evidence, options); columns && columns->certain) {
+    if (const std::vector<Finding> columns = unlike_columns(evidence, options);
+        !columns.empty() && columns.front().certain) {
       std::erase_if(findings, of_scale);
-      findings.insert(findings.begin(), *std::move(columns));
+      findings.insert(findings.begin(), columns.begin(), columns.end());
       return true;
     }
   const auto axes = certain_axes_of_both(findings);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -133,15 +134,16 @@ Finding worded_columns(const Stretched& found, const UnlikeColumnsOptions& colum
 
 }  // namespace
 
-std::optional<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
-                                      const UnlikeColumnsOptions& columns) {
+std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
+                                    const UnlikeColumnsOptions& columns) {
   const Motions& given = evidence.given.explained.motions;
-  if (given.all.size() < options.motions.least) return std::nullopt;
+  if (given.all.size() < options.motions.least) return {};
   // one factor for all columns is another finding
   const Explained& one_scale = evidence.scaled.explained;
   const bool agrees = explains(one_scale, options);
-  std::optional<Stretched> best;
+  std::vector<Stretched> found;
   for (const Side side : {Side::b, Side::a}) {
+    std::optional<Stretched> best;
     const std::vector<Change> changes = changes_of(evidence.instants, given, side);
     for (const Order& order : orders) {
       if (agrees && order != orders.front()) break;
@@ -159,9 +161,19 @@ std::optional<Finding> unlike_columns(const Evidence& evidence, const DiagnosisO
           here.comparison.gain > best->comparison.gain + (order != orders.front() ? options.alike : 0))
         best = std::move(here);
     }
+    if (best) found.push_back(*std::move(best));
   }
-  if (!best) return std::nullopt;
-  return worded_columns(*best, columns);
+  std::stable_sort(found.begin(), found.end(), [](const Stretched& x, const Stretched& y) {
+    return x.comparison.gain > y.comparison.gain;
+  });
+  std::vector<Finding> findings;
+  for (const Stretched& one : found) {
+    // worlds with parallel axes do not show which stream it is
+    if (one.comparison.gain < found.front().comparison.gain - options.alike) break;
+    Finding finding = worded_columns(one, columns);
+    if (findings.empty() || finding.code != findings.front().code) findings.push_back(std::move(finding));
+  }
+  return findings;
 }
 
 }  // namespace egocal::detail

@@ -4,7 +4,7 @@
 // in degrees, a height in feet, x and y of a map that is not true to scale.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "diagnosis/explanations.hpp"
 
@@ -24,9 +24,9 @@ struct UnlikeColumnsOptions {
 };
 
 /// Finding axes_a|_b, or odometry where it is not certain: three factors for the columns of the positions of
-/// one stream fit clearly better than one. Exchanged columns besides where the motions do not agree at all
-/// otherwise.
-std::optional<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
-                                      const UnlikeColumnsOptions& columns = {});
+/// one stream fit clearly better than one. Both streams where either may be the one, the better one first.
+/// Exchanged columns besides where the motions do not agree at all otherwise.
+std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
+                                    const UnlikeColumnsOptions& columns = {});
 
 }  // namespace egocal::detail
