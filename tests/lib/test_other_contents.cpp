@@ -4,15 +4,18 @@
 // the finding says what they hold.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/simulation/simulation.hpp"
 
 namespace egocal::test_other_contents {
 namespace {
@@ -72,6 +75,22 @@ TEST(OtherContents, AHeightInFeetIsNotCalledAScale) {
 }
 
 /// An odometry that drifts stretches its positions by some per cent, too: no reading of its file cures that.
+// Worlds with parallel axes do not show which stream it is.
+TEST(OtherContents, AStretchedAxisOfParallelSensorsIsThatOfEither) {
+  SimulationOptions options;
+  options.roughness = 0.3;
+  options.poses = 601;
+  options.relative_noise = 0.01;
+  options.T_vehicle_sensor = {{Rotation::Identity(), {0, 0, 1.5}}, {Rotation::Identity(), {0.5, 0, 1.5}}};
+  const Eigen::Matrix3d stretch = Eigen::Vector3d(1.3, 1, 1).asDiagonal();
+  for (const std::uint64_t seed : {3, 4, 5}) {
+    options.seed = seed;
+    const std::vector<Trajectory> streams = simulate(options);
+    certain_finding(calibrate(testing::with_position_columns(streams[0], stretch), streams[1]), "axes_a");
+    certain_finding(calibrate(streams[0], testing::with_position_columns(streams[1], stretch)), "axes_b");
+  }
+}
+
 TEST(OtherContents, PositionsThatAreStretchedALittleAreOnlySaidToBe) {
   const testing::Streams right = drive(Terrain::free);
   const Eigen::Vector3d little(1.05, 0.97, 1), more(1.3, 1, 1);
