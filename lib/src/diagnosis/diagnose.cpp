@@ -384,8 +384,9 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   name_wrong_scale(evidence, pairing, options, result.findings);
   StreamCheckOptions checks;
   if (options.unit == LengthUnit::unknown) {
-    checks.close *= options.tolerance_translation / DiagnosisOptions().tolerance_translation;
-    checks.known_translation *= options.tolerance_translation / DiagnosisOptions().tolerance_translation;
+    const double of_a_metre = options.tolerance_translation / DiagnosisOptions().tolerance_translation;
+    checks.close *= of_a_metre;
+    checks.known_translation *= of_a_metre;
   }
   if (std::none_of(result.findings.begin(), result.findings.end(),
                    [](const Finding& one) { return one.certain; }))

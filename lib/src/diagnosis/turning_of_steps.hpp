@@ -13,7 +13,7 @@ namespace egocal::detail {
 struct TurningOfStepsOptions {
   /// Parts by which both sensors turn unlike, at least: TurningScaleOptions.
   double least = 0.005;
-  /// Motions over so many times the stride show the factor as well, at least this part of its logarithm. What
+  /// Longer motions, over this many strides, must show at least this part of the factor's logarithm. What
   /// noise adds to the turning of one stream is a third of it there (mathematics: of a random walk; less of
   /// white noise), and chords of turns to and fro lose a part of any factor.
   int longer = 3;
