@@ -8,7 +8,7 @@
 #include "calibration/no_motions.hpp"
 #include "calibration/scale_verdict.hpp"
 #include "calibration/steps.hpp"
-#include "diagnosis/clock_check.hpp"
+#include "diagnosis/explanations/clock_check.hpp"
 #include "egocal/calibrate_beside.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/diagnosis/foresee.hpp"
@@ -199,7 +199,13 @@ Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const Cal
     if (options.estimate_time_offset)
       offset = estimate_time_offset(a, b, {.max_gap = validated(pairing).max_gap});
     if (offset) pairing.time_offset = 0;
-    estimate = estimate_scale(a, offset ? on_clock_of_a(*offset, b) : b, pairing, scale_options(options));
+    std::optional<Trajectory> corrected;
+    if (offset) corrected = on_clock_of_a(*offset, b);
+    const Trajectory& on_clock = corrected ? *corrected : b;
+    estimate = estimate_scale(a, on_clock, pairing, scale_options(options));
+    if (!estimate)
+      throw AdvisedError(
+          no_motions_in_words(a, on_clock, paired(pairing, a, on_clock).counts(), pairing.max_gap));
   }
   const double scale = estimate ? estimate->scale : options.scale;
   const bool on_a = options.scale_side == Side::a;

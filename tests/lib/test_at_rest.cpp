@@ -9,8 +9,8 @@
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/standing.hpp"
-#include "diagnosis/fit.hpp"
-#include "diagnosis/standing_still.hpp"
+#include "diagnosis/motions/fit.hpp"
+#include "diagnosis/motions/standing_still.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal::test_at_rest {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "diagnosis/motions.hpp"
+#include "diagnosis/motions/motions.hpp"
 
 namespace egocal::detail::test_clock_model {
 namespace {

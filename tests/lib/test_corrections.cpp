@@ -10,7 +10,7 @@
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/shaken_car.hpp"
-#include "diagnosis/correction.hpp"
+#include "diagnosis/motions/correction.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
-#include "diagnosis/stability.hpp"
+#include "diagnosis/verdict/stability.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/pairing/stride_sums.hpp"

@@ -8,8 +8,8 @@
 
 #include "../support/mistakes.hpp"
 #include "../support/standing.hpp"
-#include "diagnosis/fit.hpp"
-#include "diagnosis/robust_fit.hpp"
+#include "diagnosis/motions/fit.hpp"
+#include "diagnosis/motions/robust_fit.hpp"
 
 namespace egocal::test_fit {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "../support/bounded_drive.hpp"
 #include "../support/findings.hpp"
-#include "diagnosis/contradicting_parts.hpp"
-#include "diagnosis/following_mount.hpp"
+#include "diagnosis/mount/following_mount.hpp"
+#include "diagnosis/streams/contradicting_parts.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal::test_following_mount {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../support/simulated_drive.hpp"
-#include "diagnosis/goal.hpp"
-#include "diagnosis/goal_spread.hpp"
+#include "diagnosis/goal/goal.hpp"
+#include "diagnosis/goal/goal_spread.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::test_goal_spread {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "../support/random_motion.hpp"
-#include "diagnosis/robust_fit.hpp"
+#include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/problem/blocks.hpp"
 #include "motions/motions_between.hpp"
 #include "motions/motions_to_one.hpp"

@@ -19,7 +19,7 @@
 #include "../support/random_motion.hpp"
 #include "../support/shaken_car.hpp"
 #include "../support/turning_machine.hpp"
-#include "diagnosis/mount.hpp"
+#include "diagnosis/mount/mount.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 

@@ -285,6 +285,11 @@ TEST(Samples, OfOneListGivenTwiceAreNamed) {
     EXPECT_EQ(found.verdict, Verdict::doubtful);
     ASSERT_EQ(found.findings.size(), 1u);
     EXPECT_EQ(found.findings.front().code, "same_stream");
+    SampleOptions inverted;
+    inverted.read_b.invert = true;
+    const Calibration as_inverse = calibrate_samples(twice, inverted).calibration;
+    EXPECT_EQ(as_inverse.verdict, Verdict::doubtful) << as_inverse.reason;
+    EXPECT_THAT(as_inverse.findings, ::testing::ElementsAre(::testing::Field(&Finding::code, "same_stream")));
     twice.front().b = arm(1, 0, 0, 77).samples[0].a;  // a single other pose
     for (const Finding& finding : calibrate_samples(twice).calibration.findings)
       EXPECT_NE(finding.code, "same_stream");

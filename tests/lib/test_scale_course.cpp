@@ -29,7 +29,7 @@ SimulationOptions drive(std::uint64_t seed, Terrain terrain = Terrain::rough, in
 }
 
 ScaleCourse course_of(const Trajectory& a, const Trajectory& b) {
-  return find_scale_course(a, b, {}, estimate_scale(a, b), Side::a);
+  return find_scale_course(a, b, {}, estimate_scale(a, b).value(), Side::a);
 }
 
 /// From this time on [s] the steps are shorter by the factor, as after a loop closure of a monocular SLAM.
@@ -77,8 +77,8 @@ TEST(EstimateScale, InterpolationTakesNothingOff) {
         options.faults[1].phase = 0.37 / rate;
         const auto sensors = simulate(options);
         const Trajectory a = scaled(sensors[0], 0.4);
-        const ScaleSolution found = estimate_scale(a, sensors[1]),
-                            not_cut = estimate_scale(a, sensors[1], along_screws());
+        const ScaleSolution found = estimate_scale(a, sensors[1]).value(),
+                            not_cut = estimate_scale(a, sensors[1], along_screws()).value();
         EXPECT_TRUE(found.certified);
         EXPECT_NEAR(found.scale, 2.5, 0.002 * 2.5);
         EXPECT_NEAR(found.scale, 2.5, 2.5 * found.stddev);
@@ -94,8 +94,8 @@ TEST(EstimateScale, InterpolationTakesNothingOff) {
 
 TEST(EstimateScale, StreamsMeasuredTogetherAreNotInterpolated) {
   const auto sensors = simulate(drive(1, Terrain::free));
-  const ScaleSolution found = estimate_scale(sensors[0], sensors[1]);
-  const ScaleSolution not_cut = estimate_scale(sensors[0], sensors[1], along_screws());
+  const ScaleSolution found = estimate_scale(sensors[0], sensors[1]).value();
+  const ScaleSolution not_cut = estimate_scale(sensors[0], sensors[1], along_screws()).value();
   EXPECT_EQ(found.scale, not_cut.scale);
   EXPECT_EQ(found.stddev, not_cut.stddev);
 }
@@ -222,7 +222,7 @@ TEST(ScaleCourse, APlanarDriveHasSegmentsToo) {
     planar.mode = Mode::planar;
     planar.plane_a = {{0, 0, 1}, -1.8};
     planar.plane_b = {{0, 0, 1}, -1.5};
-    const ScaleSolution solution = estimate_scale(a, sensors[1], planar);
+    const ScaleSolution solution = estimate_scale(a, sensors[1], planar).value();
     ASSERT_TRUE(solution.observable);
     const ScaleCourse course = find_scale_course(a, sensors[1], planar, solution, Side::a);
     ASSERT_EQ(course.segments.size(), factor == 1 ? 1u : 2u);

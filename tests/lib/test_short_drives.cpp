@@ -45,6 +45,27 @@ testing::Streams truck(std::uint64_t seed, int poses) {
   return streams;
 }
 
+/// Of drives shorter than the motions that show a scale, some ended with "scale: no motion pairs".
+TEST(ShortDrives, OfAFewPosesAreAnswered) {
+  for (int poses = 4; poses <= 13; ++poses)
+    for (std::uint64_t seed = 1; seed <= 4; ++seed)
+      for (const Terrain terrain : {Terrain::rough, Terrain::free})
+        for (const bool scale : {false, true}) {
+          SimulationOptions simulation;
+          simulation.terrain = terrain;
+          simulation.poses = poses;
+          simulation.seed = seed;
+          simulation.relative_noise = 0.002;
+          const testing::Streams streams = testing::simulated_drive(simulation);
+          CalibrationOptions options;
+          options.estimate_scale = scale;
+          Calibration calibration;
+          EXPECT_NO_THROW(calibration = calibrate(streams.a, streams.b, options)) << poses << " " << seed;
+          EXPECT_NE(calibration.verdict, Verdict::good) << poses << " " << seed;
+          EXPECT_NE(calibration.verdict, Verdict::contradictory) << poses << " " << seed;
+        }
+}
+
 /// With equal weights the noise of positions chose the roll: tens of degrees off, and doubtful.
 TEST(ShortDrives, AreWeightedFromSixteenPosesOn) {
   for (const int poses : {20, 40, 60}) {

@@ -13,7 +13,7 @@
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
-#include "diagnosis/stamps_in_bursts.hpp"
+#include "diagnosis/streams/stamps_in_bursts.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal::test_stamps_in_bursts {

@@ -11,7 +11,7 @@
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
-#include "diagnosis/step_across.hpp"
+#include "diagnosis/mount/step_across.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/microseconds.hpp"
 #include "uncertainty/frame_a.hpp"

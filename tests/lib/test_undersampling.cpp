@@ -9,7 +9,7 @@
 
 #include "../support/shaken_car.hpp"
 #include "../support/simulated_drive.hpp"
-#include "diagnosis/undersampling.hpp"
+#include "diagnosis/streams/undersampling.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 #include "uncertainty/frame_a.hpp"

@@ -6,7 +6,7 @@
 #include "../support/mistakes.hpp"
 #include "../support/paths.hpp"
 #include "../support/real_drives.hpp"
-#include "diagnosis/judge.hpp"
+#include "diagnosis/verdict/judge.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal::test_verdict {

@@ -3,12 +3,15 @@
 // Verdicts on lengths that are not known to be metres, and lengths in words.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
-#include "diagnosis/wording.hpp"
+#include "diagnosis/words/wording.hpp"
 #include "egocal/calibrate.hpp"
+#include "egocal/geometry/pose.hpp"
 
 namespace egocal::test_verdict_units {
 namespace {
@@ -52,6 +55,35 @@ TEST(VerdictUnits, WithoutMetresALongUnitDoesNotMakeTheAnswerGood) {
   EXPECT_NE(unknown.reason.find("units"), std::string::npos) << unknown.reason;
 }
 
+/// No finding says metres either: not of a mount that moved far, moved little, or goes back and forth.
+TEST(VerdictUnits, WithoutMetresAMovedMountIsSaidInUnits) {
+  const auto said = [](const Pose& moved, bool back_and_forth, LengthUnit unit) {
+    testing::Streams streams = drive(Terrain::free);
+    const std::int64_t begin_us = streams.b.front().time_us,
+                       middle_us = streams.b[streams.b.size() / 2].time_us;
+    for (StampedPose& pose : streams.b) {
+      const bool there =
+          back_and_forth ? (pose.time_us - begin_us) / 7'000'000 % 2 == 1 : pose.time_us > middle_us;
+      if (there) pose.pose = canonical_sign(normalized(pose.pose * to_dual_quaternion(moved)));
+    }
+    CalibrationOptions options;
+    options.diagnosis.unit = unit;
+    const Calibration calibration = calibrate(streams.a, streams.b, options);
+    const Finding* finding = find(calibration, "mount_moved");
+    return finding == nullptr ? calibration.reason : finding->message + finding->remedy;
+  };
+  const Pose far{Eigen::Quaterniond::Identity(), {0, 3, 0}}, little{rotation_exp({0, 0.06, 0}), {0, 0.1, 0}},
+      loose{rotation_exp({0.03, 0.05, 0}), {0, 0.05, 0}};
+  for (const auto& [moved, back_and_forth] : {std::pair(far, false), {little, false}, {loose, true}}) {
+    const std::string in_metres = said(moved, back_and_forth, LengthUnit::metres);
+    EXPECT_TRUE(in_metres.find(" cm") != std::string::npos || in_metres.find(" m") != std::string::npos)
+        << in_metres;
+    const std::string unknown = said(moved, back_and_forth, LengthUnit::unknown);
+    EXPECT_NE(unknown.find(" units"), std::string::npos) << unknown;
+    EXPECT_EQ(unknown.find(" cm"), std::string::npos) << unknown;
+  }
+}
+
 TEST(VerdictUnits, AScaleNearOneSaysThatBothMeasureMetres) {
   EXPECT_EQ(unit_of_scaled(LengthUnit::metres_where_alike, 1.05), LengthUnit::metres);
   EXPECT_EQ(unit_of_scaled(LengthUnit::metres_where_alike, 0.95), LengthUnit::metres);
@@ -81,6 +113,8 @@ TEST(VerdictUnits, LengthsAreWrittenWithoutPowersOfTen) {
   EXPECT_EQ(length_in_words(999.6), "1000 m");
   EXPECT_EQ(length_in_words(12345), "12345 m");
   EXPECT_EQ(length_in_words(1.234, false), "1.23 units");
+  EXPECT_EQ(length_in_words(999.4, false), "999 units");
+  EXPECT_EQ(length_in_words(999.6, false), "1000 units");
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ TEST_F(Supervision, AllEndWithThePlayerOrTheMonitor) {
 TEST_F(Supervision, AnswersAreAwaitedAfterALogWhileTheyCome) {
   Program player = script("player", "exit 0");
   player.ends_all = true;
-  options.stall = 300ms;
+  options.last_answers.stall = 300ms;
   options.awaited = [left = 5]() mutable { return left > 0 ? left-- : 0; };
   start({waiting("one"), player});
   EXPECT_EQ(ended(), 0);
@@ -212,7 +212,7 @@ TEST_F(Supervision, AnswersAreAwaitedWhileAProcessComputesOneButNotForEver) {
   Program player = script("player", "exit 0");
   player.ends_all = true;
   options.settle = 0ms;
-  options.stall = 500ms;
+  options.last_answers.stall = 500ms;
   options.awaited = [this] { return std::filesystem::exists(path("answered")) ? 0 : 1; };
   // about two seconds on a core of its own
   start({waiting("one"), player,
@@ -223,7 +223,7 @@ TEST_F(Supervision, AnswersAreAwaitedWhileAProcessComputesOneButNotForEver) {
   EXPECT_TRUE(std::filesystem::exists(path("answered")));
 
   std::filesystem::remove(path("answered"));
-  options.longest_stall = 2s;
+  options.last_answers.longest_stall = 2s;
   start({waiting("one"), player, script("turns in circles", "while :; do :; done")});
   EXPECT_EQ(ended(), 0);
   EXPECT_FALSE(std::filesystem::exists(path("answered")));
@@ -234,7 +234,7 @@ TEST_F(Supervision, AClosedMonitorWaitsForNoAnswers) {
   player.ends_all = true;
   Program monitor = script("monitor", "sleep 0.5");
   monitor.foreground = true;
-  options.stall = 1h;
+  options.last_answers.stall = 1h;
   options.awaited = [] { return 1; };
   start({waiting("one"), player, monitor});
   EXPECT_EQ(ended(), 0);
@@ -251,8 +251,8 @@ std::function<std::optional<std::chrono::milliseconds>(pid_t)> silent(const std:
 }
 
 TEST_F(Supervision, WhatHangsIsContinuedAndThenKilled) {
-  options.hangs = 5300ms;  // 0.3 s after it was reported
-  options.silence = silent(path("hanging.pids"), 1);
+  options.silence.hangs = 5300ms;  // 0.3 s after it was reported
+  options.heard_ago = silent(path("hanging.pids"), 1);
   start({waiting("one"), waiting("hanging"),
          script("stopped",
                 "echo $$ >>$F/stopped.pids; kill -STOP $$; "
@@ -271,7 +271,7 @@ TEST_F(Supervision, WhatHangsIsContinuedAndThenKilled) {
 }
 
 TEST_F(Supervision, WhatWasStoppedIsContinued) {
-  options.silence = silent(path("stopped.pids"), 1);
+  options.heard_ago = silent(path("stopped.pids"), 1);
   start({waiting("one"), script("stopped",
                                 "echo $$ >>$F/stopped.pids; kill -STOP $$; echo >>$F/continued; "
                                 "exec sleep 100")});
@@ -280,42 +280,11 @@ TEST_F(Supervision, WhatWasStoppedIsContinued) {
   EXPECT_EQ(ended(), 0);
 }
 
-// The network is away, or the machine slept.
-TEST_F(Supervision, WhereNobodyIsHeardNobodyIsKilled) {
-  options.hangs = options.silent;
-  options.silence = [](pid_t) { return std::optional<std::chrono::milliseconds>(1h); };
-  start({waiting("one"), waiting("two")});
-  process("one");
-  std::this_thread::sleep_for(3s);
-  EXPECT_EQ(lines(path("one.pids")).size(), 1u);
-  send_signal(pid, SIGTERM);
-  EXPECT_EQ(ended(), 0);
-  EXPECT_EQ(read(path("said")), "");
-}
-
-// The network goes away between the statuses of two processes, or somebody stops all of them.
-TEST_F(Supervision, WhereAllFallSilentNoneIsBlamed) {
-  options.silent = 3000ms;
-  const auto begin = std::chrono::steady_clock::now();
-  options.silence = [this, begin](pid_t asked) -> std::optional<std::chrono::milliseconds> {
-    const auto all = lines(path("one.pids"));
-    const auto since =
-        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
-    return !all.empty() && std::stoi(all.back()) == asked ? since + 900ms : since;
-  };
-  start({waiting("one"), waiting("two")});
-  process("one");
-  std::this_thread::sleep_for(5s);
-  send_signal(pid, SIGTERM);
-  EXPECT_EQ(ended(), 0);
-  EXPECT_EQ(read(path("said")), "");
-}
-
 // Ctrl-Z and fg, or a container that is frozen: the time in which the supervisor did not run is not theirs.
 TEST_F(Supervision, WhoWasStoppedTogetherWithTheSupervisorIsNotBlamed) {
   // of the time in which the supervisor was stopped two seconds count; the rest is room for a busy machine
-  options.silent = 5000ms;
-  options.silence = [this](pid_t asked) -> std::optional<std::chrono::milliseconds> {
+  options.silence.silent = 5000ms;
+  options.heard_ago = [this](pid_t asked) -> std::optional<std::chrono::milliseconds> {
     const auto all = lines(path("two.pids"));
     if (all.empty() || std::stoi(all.back()) != asked) return 10ms;
     std::error_code none;

@@ -48,8 +48,7 @@ struct Child {
   bool finished = false;     ///< ended as it should
   std::string reported{};    ///< how it ended when that was reported last,
   Clock::time_point reported_at{};
-  milliseconds silent{0};         ///< while others are heard
-  bool silence_reported = false;  ///< and not over yet
+  Silence silence{};
 };
 
 std::string ending(int status) {
@@ -121,41 +120,42 @@ class Supervisor {
       for (Child& child : children_)
         if (child.pid < 0 && !child.finished && now >= child.start_at) start(child);
       if (end_at_ && now >= *end_at_ && !waits_for_answers(now)) end_all(SIGTERM, false);
-      if (options_.silence) watch_silence(now);
+      if (options_.heard_ago) watch_silence(now);
     }
     wait();
   }
 
-  /// Silence is counted only while another process is heard: without a network, and after a machine has
-  /// slept or all of them were stopped, all of them are silent.
   void watch_silence(Clock::time_point now) {
-    const auto heard = [this](const Child& child) {
-      return child.pid > 0 ? options_.silence(child.pid) : std::nullopt;
+    const auto heard_ago = [this](const Child& child) {
+      return child.pid > 0 ? options_.heard_ago(child.pid) : std::nullopt;
     };
+    const milliseconds heard = options_.silence.heard;
     const bool any_heard = std::any_of(children_.begin(), children_.end(), [&](const Child& child) {
-      return heard(child).value_or(options_.heard) < options_.heard;
+      return heard_ago(child).value_or(heard) < heard;
     });
     const auto passed = std::chrono::duration_cast<milliseconds>(now - watched_at_);
     watched_at_ = now;
     for (Child& child : children_) {
-      const std::optional<milliseconds> since = heard(child);
+      const std::optional<milliseconds> since = heard_ago(child);
       if (child.program.foreground || !since) continue;
-      child.silent = std::min(*since, any_heard ? child.silent + passed : child.silent);
-      if (child.silent < options_.silent) {
-        if (child.silence_reported) reports_.report(fmt::format("{} is heard again", child.program.name));
-        child.silence_reported = false;
-      } else if (!child.silence_reported) {
-        child.silence_reported = true;
-        reports_.report(
-            fmt::format("{} is silent for {:.1f} s: it hangs or was stopped; it is continued, and "
-                        "killed where that does not help",
-                        child.program.name, 1e-3 * static_cast<double>(since->count())));
-        kill(child.pid, SIGCONT);
-      } else if (child.silent > options_.hangs) {
-        reports_.report(fmt::format("{} still hangs and is killed", child.program.name));
-        kill(child.pid, SIGKILL);
-        child.silence_reported = false;
-        child.silent = {};
+      const std::string& name = child.program.name;
+      switch (child.silence.look(*since, passed, any_heard, options_.silence)) {
+        case Silence::Next::nothing:
+          break;
+        case Silence::Next::report_heard:
+          reports_.report(fmt::format("{} is heard again", name));
+          break;
+        case Silence::Next::report_and_continue:
+          reports_.report(
+              fmt::format("{} is silent for {:.1f} s: it hangs or was stopped; it is continued, and "
+                          "killed where that does not help",
+                          name, 1e-3 * static_cast<double>(since->count())));
+          kill(child.pid, SIGCONT);
+          break;
+        case Silence::Next::kill:
+          reports_.report(fmt::format("{} still hangs and is killed", name));
+          kill(child.pid, SIGKILL);
+          break;
       }
     }
   }
@@ -166,24 +166,14 @@ class Supervisor {
     });
   }
 
-  /// After a log's end. What does not come any more is not waited for. A diagnosis takes seconds on a small
-  /// computer, or beside other programs.
+  /// After a log's end.
   bool waits_for_answers(Clock::time_point now) {
     const int awaited = options_.awaited && !wanted_at_once_ ? options_.awaited() : 0;
-    if (awaited == 0) return false;
-    if (!awaited_ || awaited < *awaited_) {
-      if (!awaited_)
-        reports_.report(
-            fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
-      awaited_ = awaited;
-      fell_at_ = now;
-      idle_ = {};
-    } else if (!any_has_work()) {
-      idle_ += now - asked_at_;
-    }
-    asked_at_ = now;
+    if (awaited > 0 && !last_answers_.begun())
+      reports_.report(
+          fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
     end_at_ = now + look_again;
-    return idle_ < options_.stall && now - fell_at_ < options_.longest_stall;
+    return last_answers_.wait_on(awaited, any_has_work(), now);
   }
 
   void start(Child& child) {
@@ -306,8 +296,7 @@ class Supervisor {
           std::find_if(children_.begin(), children_.end(), [pid](const Child& c) { return c.pid == pid; });
       if (child == children_.end()) continue;
       child->pid = -1;
-      child->silence_reported = false;
-      child->silent = {};
+      child->silence = {};
       if (child->program.foreground) terminal_->restore();
       if (!ending_) ended(*child, status);
     }
@@ -393,9 +382,7 @@ class Supervisor {
   std::string said_;  ///< the beginning of a line
   std::optional<Clock::time_point> end_at_;
   bool wanted_at_once_ = false;  ///< the user has closed the monitor
-  std::optional<int> awaited_;   ///< the fewest so far,
-  Clock::time_point fell_at_{}, asked_at_{};
-  Clock::duration idle_{};  ///< since it fell
+  LastAnswers last_answers_{options_.last_answers};
   Clock::time_point kill_at_{};
   bool ending_ = false, failed_ = false;
 };

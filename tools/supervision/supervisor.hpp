@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "supervision/last_answers.hpp"
 #include "supervision/restarts.hpp"
+#include "supervision/silence.hpp"
 
 namespace egocal::tools {
 
@@ -21,19 +23,13 @@ struct SupervisorOptions {
   /// The same death is reported again after this time.
   std::chrono::milliseconds repeat_report{60'000};
   std::chrono::milliseconds settle{1500};  ///< after the player's end, for the last answers
-  /// How many answers are still awaited then. It is waited while this number falls within each `stall` of the
-  /// time in which no process has work, and each `longest_stall` of all time: a core that others take is not
-  /// an end, and a process that turns in circles is none that answers.
+  /// How many answers are still missing then.
   std::function<int()> awaited{};
-  std::chrono::milliseconds stall{5000}, longest_stall{60'000};
-  /// How long ago a process was heard on the bus; nothing: never. A process that is silent while another one
-  /// is heard hangs, or somebody has stopped it: it is reported and continued (SIGCONT) after `silent`,
-  /// killed and started again after `hangs`. Foreground programs are left alone, and so is a process that was
-  /// never heard.
-  std::function<std::optional<std::chrono::milliseconds>(pid_t)> silence{};
-  std::chrono::milliseconds silent{5000}, hangs{20'000};
-  /// Another one is heard: within this time, in which each of them sends two statuses.
-  std::chrono::milliseconds heard{2500};
+  LastAnswersOptions last_answers;
+  /// How long ago a process was heard on the bus; nothing: never. Foreground programs are left alone, and so
+  /// is a process that was never heard.
+  std::function<std::optional<std::chrono::milliseconds>(pid_t)> heard_ago{};
+  SilenceOptions silence;
   int lines = -1;  ///< lines from this file descriptor are reported as well; it does not block. -1: none
   /// Asked where `lines` has ended: the file descriptor of whoever writes them from then on; empty: nobody.
   std::function<std::optional<int>()> lines_again;

@@ -9,11 +9,11 @@
 #include <numeric>
 #include <string>
 
-#include "diagnosis/fit.hpp"
-#include "diagnosis/judge.hpp"
-#include "diagnosis/robust_fit.hpp"
-#include "diagnosis/stream_check.hpp"
-#include "diagnosis/wording.hpp"
+#include "diagnosis/motions/fit.hpp"
+#include "diagnosis/motions/robust_fit.hpp"
+#include "diagnosis/streams/stream_check.hpp"
+#include "diagnosis/verdict/judge.hpp"
+#include "diagnosis/words/wording.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "samples/agreeing.hpp"
@@ -143,14 +143,18 @@ Finding too_few_poses(std::size_t units) {
   return finding;
 }
 
-/// Whether the poses of both lists are the same to the digits that files keep.
+/// Whether the poses of both lists are the same to the digits that files keep, read alike or one as the
+/// inverse.
 bool given_twice(const SampleSet& set, std::span<const PoseSample> samples) {
   constexpr double digits = 1e-9;  // of lengths; quaternions of files have nine digits, too
-  return std::all_of(samples.begin(), samples.end(), [&](const PoseSample& sample) {
-    const Pose a = to_pose(sample.a), b = to_pose(sample.b);
-    return a.rotation.angularDistance(b.rotation) < digits &&
-           (a.translation - b.translation).norm() < digits * (set.length() + a.translation.norm());
-  });
+  const auto all_alike = [&](bool inverse_of_b) {
+    return std::all_of(samples.begin(), samples.end(), [&](const PoseSample& sample) {
+      const Pose a = to_pose(sample.a), given = to_pose(sample.b), b = inverse_of_b ? inverse(given) : given;
+      return a.rotation.angularDistance(b.rotation) < digits &&
+             (a.translation - b.translation).norm() < digits * (set.length() + a.translation.norm());
+    });
+  };
+  return all_alike(false) || all_alike(true);
 }
 
 bool another_reading(const Finding& finding) {

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "diagnosis/reading.hpp"
-#include "diagnosis/wording.hpp"
+#include "diagnosis/motions/reading.hpp"
+#include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/solvers/global.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"

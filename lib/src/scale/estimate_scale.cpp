@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "egocal/error.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -57,8 +56,9 @@ ScaleSolution estimate_scale(std::span<const MotionPair> given, const DriveScale
   return solution;
 }
 
-ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const PairingOptions& given,
-                             const DriveScaleOptions& given_options) {
+std::optional<ScaleSolution> estimate_scale(const Trajectory& a, const Trajectory& b,
+                                            const PairingOptions& given,
+                                            const DriveScaleOptions& given_options) {
   DriveScaleOptions options = given_options;
   const Side side = options.scale.side;
   PairingOptions pairing = given;
@@ -68,7 +68,7 @@ ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const Pai
   (side == Side::a ? pairing.plane_a : pairing.plane_b).distance = 0;
 
   const std::vector<MotionPair> first = detail::unjudged_motions(a, b, pairing, options.first_motion);
-  if (first.empty()) throw Error("scale: no motion pairs");
+  if (first.empty()) return std::nullopt;
   options.scale.balance = detail::even_balance(scale_blocks(first), side);
   options.scale.doubt = interpolation_doubt(a, b, pairing);
   ScaleSolution solution = estimate_scale(first, options);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "egocal/microseconds.hpp"
 
@@ -25,7 +24,10 @@ std::vector<MotionPair> unjudged_motions(const Trajectory& a, const Trajectory& 
   const double period = span / static_cast<double>(slower.size() - 1);
   pairing.track_time_offset = false;
   const double steps = std::clamp(std::round(length / std::max(period, 1e-6)), 1.0, 64.0);
-  return pair_motions(unjudged(std::move(pairing), static_cast<int>(steps)), a, b).pairs;
+  std::vector<MotionPair> motions;
+  for (int stride = static_cast<int>(steps); stride > 0 && motions.empty(); stride /= 2)
+    motions = pair_motions(unjudged(pairing, stride), a, b).pairs;
+  return motions;
 }
 
 }  // namespace egocal::detail

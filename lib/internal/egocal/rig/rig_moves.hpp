@@ -22,7 +22,7 @@ struct RigMovesOptions {
   double most_decades = 30;
 };
 
-/// What the diagnosis of a pair by itself (diagnosis/mount.hpp) says of its mount.
+/// What the diagnosis of a pair by itself (diagnosis/mount/mount.hpp) says of its mount.
 struct ShownMove {
   std::size_t pair = 0;  ///< index
   double time = 0;       ///< [s] from the begin of the pair's first motion

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "egocal/pairing/options.hpp"
 #include "egocal/pairing/trajectory.hpp"
 #include "egocal/scale/solve_scale.hpp"
@@ -21,9 +23,9 @@ struct DriveScaleOptions {
 
 /// The scale of one stream's translations from two trajectories: pairs them, omits motions that do not
 /// fit, and repeats both with the scale found, since screw congruence holds at the true scale only. Multiply
-/// the stream by it (scaled()) and calibrate. The time offset of `pairing` is used, not estimated. Throws
-/// Error where no motion pair is found. Deterministic.
-ScaleSolution estimate_scale(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing = {},
+/// the stream by it (scaled()) and calibrate. The time offset of `pairing` is used, not estimated.
+/// Empty where no motion pair is found. Deterministic.
+std::optional<ScaleSolution> estimate_scale(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing = {},
                              const DriveScaleOptions& options = {});
 
 /// The same from motion pairs; in planar mode as seen from the planes, that of the scaled sensor through its

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// How the two files are best read: inverted, in another order, in other axes.
+#pragma once
+
+#include <optional>
+
+#include "diagnosis/explanations/explanations.hpp"
+
+namespace egocal::detail {
+
+struct BestReading {
+  Explanation best;
+  std::optional<Explanation> twin{};  ///< fits as well
+  /// Rotations of both files that are those of the inverse poses, where the motions show it but do not prove
+  /// it (CommonAxesOptions); whatever the best reading is.
+  std::optional<Explanation> inverse_rotations{};
+  /// Axes of one file that are turned by a few degrees, likewise (TurnedAxesOptions).
+  std::optional<Explanation> turned_axes{};
+};
+
+/// As given unless another reading is clearly better; with a scale of b where that is shown besides.
+BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options);
+
+}  // namespace egocal::detail

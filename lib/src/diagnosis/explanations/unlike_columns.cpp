@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/explanations/unlike_columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/without_lever_arms.hpp"
+#include "diagnosis/motions/changed_motions.hpp"
+#include "diagnosis/motions/stillest_point.hpp"
+#include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Which column of the file is x, y and z.
+using Order = std::array<int, 3>;
+constexpr std::array<Order, 6> orders{{{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}}};
+
+/// Of one stream in each motion: what the columns of the file changed by, and the world in the frame of its
+/// begin.
+struct Change {
+  Vector3d columns;
+  Matrix3d back;
+};
+
+std::vector<Change> changes_of(const Instants& instants, const Motions& motions, Side side) {
+  std::vector<Change> changes;
+  const std::vector<std::size_t> begins = begins_of(instants, motions);
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    const PosePair poses = instants.at(begins[i]);
+    const Matrix3d R = rotation_of(side == Side::a ? poses.a : poses.b);
+    const Motion& motion = motions.all[i];
+    changes.push_back({R * (side == Side::a ? motion.t_a : motion.t_b), R.transpose()});
+  }
+  return changes;
+}
+
+struct Stretched {
+  Side side = Side::b;
+  Order order = orders.front();
+  Vector3d factors = Vector3d::Ones();
+  Explained explained;
+  Comparison comparison;
+  double unlike = 0;  ///< largest factor over the smallest, as a logarithm
+};
+
+Vector3d in_order(const Vector3d& columns, const Order& order) {
+  return {columns[order[0]], columns[order[1]], columns[order[2]]};
+}
+
+Explained stretched(const Motions& given, const std::vector<Change>& changes, const Stretched& how,
+                    const DiagnosisOptions& options) {
+  Explained result{given, {}};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    Motion& motion = result.motions.all[i];
+    const Vector3d t = changes[i].back * how.factors.cwiseProduct(in_order(changes[i].columns, how.order));
+    set_motion(motion, how.side, to_pose(how.side == Side::a ? motion.a : motion.b).rotation, t);
+  }
+  measure_sizes(result.motions);
+  result.fit = robust_fit(result.motions, options.fit);
+  return result;
+}
+
+/// Root mean squares of the columns.
+Vector3d sizes_of(const std::vector<Change>& changes, const Order& order) {
+  Vector3d squares = Vector3d::Zero();
+  for (const Change& change : changes) squares += in_order(change.columns, order).cwiseAbs2();
+  return (squares / static_cast<double>(changes.size())).cwiseSqrt();
+}
+
+Stretched fitted(const Motions& given, const std::vector<Change>& changes, Side side, const Order& order,
+                 const DiagnosisOptions& options, const UnlikeColumnsOptions& columns) {
+  Stretched result{side, order, Vector3d::Ones(), {}, {}, 0};
+  const Vector3d sizes = sizes_of(changes, order);
+  std::vector<Matrix3d> added;
+  for (const Change& change : changes) {
+    Vector3d parts = in_order(change.columns, order);
+    for (int k = 0; k < 3; ++k) parts[k] = sizes[k] > 0 ? parts[k] / sizes[k] : 0;
+    added.push_back(change.back * parts.asDiagonal());
+  }
+  result.explained = stretched(given, changes, result, options);
+  for (int round = 0; round < columns.rounds; ++round) {
+    const Vector3d more = best_numbers<3>(result.explained, added, side);
+    for (int k = 0; k < 3; ++k)
+      if (sizes[k] > 0) result.factors[k] += more[k] / sizes[k];
+    result.explained = stretched(given, changes, result, options);
+  }
+  const Vector3d ways = result.factors.cwiseProduct(sizes).cwiseAbs();
+  double least = INFINITY, most = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (!(ways[k] >= columns.least_part * ways.sum())) continue;
+    least = std::min(least, std::abs(result.factors[k]));
+    most = std::max(most, std::abs(result.factors[k]));
+  }
+  if (most > 0) result.unlike = std::log(most / least);
+  return result;
+}
+
+Finding worded_columns(const Stretched& found, const UnlikeColumnsOptions& columns) {
+  const char which = found.side == Side::a ? 'a' : 'b';
+  const auto column = [&](std::size_t k) { return "xyz"[found.order[k]]; };
+  Finding finding;
+  finding.certain = found.unlike >= columns.certain || found.comparison.gain >= columns.gain_of_certain;
+  finding.code = finding.certain ? std::string("axes_") + which : "odometry";
+  finding.improvement = std::exp(found.comparison.gain);
+  finding.T_a_b = to_pose(found.explained.fit.T);
+  const std::string evidence = format(
+      ": x as %.4g %c, y as %.4g %c and z as %.4g %c suit its rotations, the squared residuals are "
+      "%.3g times smaller then.",
+      found.factors[0], column(0), found.factors[1], column(1), found.factors[2], column(2),
+      finding.improvement);
+  if (finding.certain)
+    say(finding, format("The columns of the position of %s are in unlike units", mark(which)),
+        format("Give all coordinates of %s in metres along three axes: latitude and longitude are angles.",
+               mark(which)),
+        evidence);
+  else
+    say(finding, format("The positions of %s are stretched by unlike factors along its axes", mark(which)),
+        "Compare with another drive; give all coordinates in metres along three axes.", evidence);
+  return finding;
+}
+
+}  // namespace
+
+std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
+                                    const UnlikeColumnsOptions& columns) {
+  const Motions& given = evidence.given.explained.motions;
+  if (given.all.size() < options.motions.least) return {};
+  // one factor for all columns is another finding
+  const Explained& one_scale = evidence.scaled.explained;
+  const bool agrees = explains(one_scale, options);
+  std::vector<Stretched> found;
+  for (const Side side : {Side::b, Side::a}) {
+    std::optional<Stretched> best;
+    const std::vector<Change> changes = changes_of(evidence.instants, given, side);
+    for (const Order& order : orders) {
+      if (agrees && order != orders.front()) break;
+      Stretched here = fitted(given, changes, side, order, options, columns);
+      if (!(here.unlike >= columns.least) || !here.factors.allFinite() || !explains(here.explained, options))
+        continue;
+      here.comparison = compare(one_scale, here.explained);
+      const double length = here.explained.motions.translation;
+      if (!better(here.comparison, options.gain, options) ||
+          !better(compare(without_lever_arms(one_scale, length), without_lever_arms(here.explained, length)),
+                  options.least_gain, LeverArmOptions{}.sigmas))
+        continue;
+      // columns as they are come first
+      if (!best ||
+          here.comparison.gain > best->comparison.gain + (order != orders.front() ? options.alike : 0))
+        best = std::move(here);
+    }
+    if (best) found.push_back(*std::move(best));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Stretched& x, const Stretched& y) {
+    return x.comparison.gain > y.comparison.gain;
+  });
+  std::vector<Finding> findings;
+  for (const Stretched& one : found) {
+    // worlds with parallel axes do not show which stream it is
+    if (one.comparison.gain < found.front().comparison.gain - options.alike) break;
+    Finding finding = worded_columns(one, columns);
+    if (findings.empty() || finding.code != findings.front().code) findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+}  // namespace egocal::detail

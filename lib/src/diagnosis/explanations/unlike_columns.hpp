@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Columns of the position of one stream that are in unlike units, or stretched unlike: latitude and longitude
+// in degrees, a height in feet, x and y of a map that is not true to scale.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/explanations/explanations.hpp"
+
+namespace egocal::detail {
+
+struct UnlikeColumnsOptions {
+  /// Largest factor over the smallest, as a logarithm, at least: twice what the scales of ordinary odometries
+  /// differ by (ScaleCheckOptions).
+  double least = 0.03;
+  /// It is certain from this on, or with this mean log ratio of the squared residuals: an odometry that
+  /// drifts by 5 % along each axis has factors that differ by up to 0.12, and a ratio of up to 1.
+  double certain = 0.15, gain_of_certain = 2;
+  int rounds = 3;  ///< of factors and extrinsic in turn
+  /// A column counts where its part of the way is at least this, under the factors: of what hardly moves the
+  /// factor is noise.
+  double least_part = 0.01;
+};
+
+/// Finding axes_a|_b, or odometry where it is not certain: three factors for the columns of the positions of
+/// one stream fit clearly better than one. Both streams where either may be the one, the better one first.
+/// Exchanged columns besides where the motions do not agree at all otherwise.
+std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
+                                    const UnlikeColumnsOptions& columns = {});
+
+}  // namespace egocal::detail

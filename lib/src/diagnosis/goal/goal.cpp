@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/goal/goal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/goal/goal_spread.hpp"
+#include "diagnosis/goal/manoeuvres.hpp"
+#include "egocal/directions.hpp"
+
+namespace egocal {
+
+namespace detail {
+
+bool expected(const Answered& answered, std::size_t direction) {
+  if (answered.problem.mode != Mode::planar) return true;
+  const double normal = std::abs(answered.problem.plane_a.normal[static_cast<int>(direction % 3)]);
+  return direction < 3 ? normal < 0.5 : normal > 0.5;
+}
+
+namespace {
+
+/// How probable it is that a direction is within `interval` goals, where its errors are normal. ratio: its
+/// standard deviation over the goal.
+double chance_within(double ratio, double interval) {
+  return std::erf(interval / (ratio * std::numbers::sqrt2));
+}
+
+/// By which all standard deviations have to fall until all directions are within the goal by that
+/// probability. ratios: finite, above 0.
+double excess_of(const std::vector<double>& ratios, const GoalSpreadOptions& tuning) {
+  const auto enough = [&](double factor) {
+    double chance = 1;
+    for (const double ratio : ratios) chance *= chance_within(ratio / factor, tuning.interval);
+    return chance >= tuning.probability;
+  };
+  double low = 0, high = *std::max_element(ratios.begin(), ratios.end());
+  while (!enough(high)) high *= 2;
+  for (int i = 0; i < 60; ++i) {  // to the last bit
+    const double middle = 0.5 * (low + high);
+    (enough(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+double with_further_parts(double stddev, const Answered& answered, std::size_t direction) {
+  return std::hypot(std::hypot(stddev, answered.scale_stddev[direction]), answered.timing_stddev[direction]);
+}
+
+Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpreadOptions& tuning) {
+  const std::array<double, 6> spread = goal_spread(answered, tuning);
+  std::vector<std::pair<double, std::size_t>> missing;
+  std::vector<double> ratios;
+  double chance = 1;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!expected(answered, i)) continue;
+    const double wanted = i < 3 ? options.translation : options.rotation;
+    const double stddev =
+        answered.observability.observable[i] ? with_further_parts(spread[i], answered, i) : INFINITY;
+    const double ratio = stddev >= 0 && wanted > 0 ? stddev / wanted : INFINITY;
+    missing.emplace_back(ratio, i);
+    ratios.push_back(ratio);
+    chance *= chance_within(ratio, tuning.interval);
+  }
+  // of directions that are all as probable as this, the goal would be reached
+  const double each = std::pow(tuning.probability, 1.0 / static_cast<double>(ratios.size()));
+  std::erase_if(missing, [&](const auto& x) { return chance_within(x.first, tuning.interval) >= each; });
+  Goal goal;
+  goal.reached = chance >= tuning.probability || missing.empty();
+  if (goal.reached) return goal;
+  std::sort(missing.begin(), missing.end(), [](const auto& x, const auto& y) {
+    return x.first > y.first || (x.first == y.first && x.second < y.second);
+  });
+  for (const auto& [ratio, i] : missing) goal.missing.emplace_back(direction_names[i]);
+  if (const double worst = missing.front().first; std::isfinite(worst)) {
+    const double excess = excess_of(ratios, tuning);
+    for (auto& [ratio, i] : missing) ratio *= excess / worst;  // the worst one is known well enough at 1
+    if (answered.seconds > 0)
+      goal.seconds_left = answered.seconds * (std::pow(excess, 1 / tuning.exponent) - 1);
+  }
+  goal.next = next_manoeuvre(answered, options, missing, goal.seconds_left, tuning.exponent);
+  return goal;
+}
+
+}  // namespace detail
+
+}  // namespace egocal

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Parts of the drive that the answer of the others does not explain at all: where a mounting moves twice
+// within seconds, neither place of a move is found.
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "diagnosis/motions/motions.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+struct ContradictingPartsOptions {
+  std::size_t parts = 10;  ///< of the drive, of equal duration
+  std::size_t least = 5;   ///< motions of a part that counts, none at rest
+  /// The median rotation of a part contradicts where the answer leaves so many times more than in the median
+  /// part, in degrees and for each degree that is turned. Clean drives: 3.2 (116 of an independent
+  /// simulator).
+  double times = 10;
+  /// And at least [rad]: as large as what users call wrong.
+  double least_rotation = std::numbers::pi / 180;
+  /// Motions of this part of the length leave so many times more for each degree, too: a single jump is in
+  /// few of them.
+  int shorter = 4;
+  double times_of_shorter = 3;
+  double least_turning = 0.1;  ///< less turning than this part of the usual one counts as so much
+};
+
+struct ContradictingPart {
+  double begin = 0, end = 0;  ///< [s]
+  double rotation = 0;        ///< median of what the answer leaves [rad]
+};
+struct ContradictingParts {
+  std::vector<ContradictingPart> parts;
+  double others = 0;  ///< rotation that the answer leaves in the median part [rad]
+};
+
+ContradictingParts contradicting_parts(const Instants& instants, int stride, const Pose& T_a_b,
+                                       const MotionSampleOptions& motions,
+                                       const ContradictingPartsOptions& options = {});
+
+/// Finding mount_moved, uncertain, where there are such parts.
+std::optional<Finding> contradicting_parts_finding(const ContradictingParts& found);
+
+}  // namespace egocal::detail

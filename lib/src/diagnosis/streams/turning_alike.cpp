@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/streams/turning_alike.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/words/wording.hpp"
+#include "egocal/in_words.hpp"
+
+namespace egocal::detail {
+
+double turning_correlation(const Motions& motions, double part) {
+  std::vector<std::size_t> order(motions.all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto count = static_cast<std::size_t>(part * static_cast<double>(order.size()));
+  if (count < order.size()) {
+    const auto difference = [&](std::size_t i) {
+      return std::abs(motions.all[i].angle_a - motions.all[i].angle_b);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t i, std::size_t k) { return difference(i) < difference(k); });
+  }
+  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = motions.all[order[i]].angle_a, y = motions.all[order[i]].angle_b;
+    n += 1;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    syy += y * y;
+    sxy += x * y;
+  }
+  const double variance = (sxx - sx * sx / n) * (syy - sy * sy / n);
+  return variance > 0 ? (sxy - sx * sy / n) / std::sqrt(variance) : 0;
+}
+
+Finding unrelated(double correlation) {
+  return certain_finding(
+      "unrelated",
+      format("The two streams do not turn together (correlation %.2f): they are not of one rigid "
+             "body, or not of one drive.",
+             correlation),
+      "Check that both files are of the same drive and that both sensors are rigidly mounted.");
+}
+
+Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) {
+  return certain_finding("too_little_motion",
+                         motions < options.motions.least
+                             ? "Only " + counted(motions, "motion") + ": too few to judge the fit."
+                             : "The sensors hardly turn: an extrinsic cannot be found from this drive.",
+                         "Record a longer drive with turns in different directions.");
+}
+
+Finding turning_in_noise(double correlation) {
+  return certain_finding(
+      "too_little_motion",
+      format("The streams travel alike but do not turn alike (correlation %.2f): the drive turns by "
+             "less than the noise of the rotations.",
+             correlation),
+      "Record a drive with sharper turns in different directions, or improve the rotations.");
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/verdict/judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/goal/goal.hpp"
+#include "diagnosis/verdict/stability.hpp"
+#include "diagnosis/words/wording.hpp"
+#include "egocal/directions.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal {
+
+namespace detail {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+/// 95 % of a normal distribution, on one side (mathematics).
+constexpr double confidence_one_sided = 1.645;
+/// 95 % of the length of three equal, independent components (mathematics).
+constexpr double length_of_three = 2.79;
+
+/// How far another answer is, as a part of the tolerance, in the directions that are known.
+double shift(const Finding& finding, const Answered& answered, const DiagnosisOptions& options) {
+  if (!finding.T_a_b) return finding.certain ? INFINITY : 0;
+  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
+  double rotation = 0, translation = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (!answered.observability.observable[static_cast<std::size_t>(i)]) continue;
+    (i < 3 ? translation : rotation) += difference[i] * difference[i];
+  }
+  return std::max(std::sqrt(rotation) / options.tolerance_rotation,
+                  std::sqrt(translation) / options.tolerance_translation);
+}
+
+/// A wrong scale that moves the answer by more than it states to be uncertain.
+bool significant_scale(const Finding& finding, const Answered& answered, const ScaleCheckOptions& options) {
+  if (!finding.certain || finding.code != "scale" || !finding.T_a_b || !finding.value) return false;
+  const double size = std::abs(std::log(*finding.value));
+  if (!(size >= options.least)) return false;
+  const double significant = size >= options.clear ? options.significant_where_clear : options.significant;
+  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!answered.observability.observable[k]) continue;
+    const double stddev = with_further_parts(answered.observability.stddev[k], answered, k);
+    if (std::abs(difference[i]) > significant * stddev) return true;
+  }
+  return false;
+}
+
+/// Length that a vector keeps below in 95 % of all cases where its components scatter independently with
+/// these standard deviations: a chi-square of as many degrees of freedom as the variances are equal, by
+/// Wilson and Hilferty. 1.94 of one component, 2.79 of three equal ones.
+double length_95(const std::array<double, 3>& stddev) {
+  double sum = 0, sum_of_squares = 0;
+  for (const double s : stddev) {
+    sum += s * s;
+    sum_of_squares += s * s * s * s;
+  }
+  if (!(sum_of_squares > 0)) return 0;
+  const double part = 2 * sum_of_squares / (9 * sum * sum);
+  return std::sqrt(sum * std::pow(1 - part + confidence_one_sided * std::sqrt(part), 3));
+}
+
+/// What the answer as a whole keeps within, with a chance of 95 %.
+struct Known {
+  double rotation = 0, translation = 0;  ///< [rad, m]; infinite: some direction is not observable
+  /// Directions that must be known better before it keeps within the tolerance: the worst ones, until the
+  /// rest would.
+  std::string unknown{};
+};
+
+Known known_to(const Answered& answered, const DiagnosisOptions& options) {
+  Known result;
+  const std::array<double, 6> unstable =
+      spread_without_fifths(answered.problem, answered.T_a_b, options.stability);
+  std::array<bool, 6> unknown{};
+  for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {
+    const double tolerance = first == 0 ? options.tolerance_translation : options.tolerance_rotation;
+    std::array<double, 3> stddev{};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (expected(answered, first + i))
+        stddev[i] =
+            answered.observability.observable[first + i]
+                ? with_further_parts(std::max(answered.observability.stddev[first + i], unstable[first + i]),
+                                     answered, first + i)
+                : INFINITY;
+    const bool finite = std::all_of(stddev.begin(), stddev.end(), [](double s) { return std::isfinite(s); });
+    (first == 0 ? result.translation : result.rotation) = finite ? length_95(stddev) : INFINITY;
+    for (std::size_t known = 3; known > 0; --known) {
+      const auto worst = std::max_element(stddev.begin(), stddev.end());
+      if (std::isfinite(*worst) && length_95(stddev) <= tolerance) break;
+      if (*worst == 0) break;
+      unknown[first + static_cast<std::size_t>(worst - stddev.begin())] = true;
+      *worst = 0;
+    }
+  }
+  for (std::size_t i = 0; i < 6; ++i)
+    if (unknown[i]) result.unknown += (result.unknown.empty() ? "" : ", ") + std::string(direction_names[i]);
+  return result;
+}
+
+/// "Not known to 1 deg and 60 cm yet": the limits are of all directions together, so the standard deviations
+/// that are printed may all be smaller.
+std::string not_known_yet(const Known& known, const DiagnosisOptions& options) {
+  const bool metres = options.unit == LengthUnit::metres;
+  std::string together;
+  if (std::isfinite(known.rotation)) together += format("%.3g deg", known.rotation * degrees);
+  if (std::isfinite(known.translation))
+    together += (together.empty() ? "" : ", ") + length_in_words(known.translation, metres);
+  if (!together.empty()) together = " (all directions together, 95 %: " + together + ")";
+  return format("Not known to %.3g deg and %s yet", options.tolerance_rotation * degrees,
+                length_in_words(options.tolerance_translation, metres).c_str()) +
+         together + ": " + known.unknown + ".";
+}
+
+/// Not another reading: what is wrong with the poses themselves. Pairing rejects those that repeat.
+bool stream_fault(const Finding& finding) {
+  return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
+         finding.code == "flat_b" || finding.code.starts_with("stamps_") ||
+         ((finding.code == "same_stream" || finding.code == "time_unit") && finding.certain);
+}
+
+/// Right streams, which leave the answer less certain than its motions say.
+bool undersampling(const Finding& finding) {
+  return finding.code.starts_with("undersampled_");
+}
+
+/// The streams mean something else than was taken: whatever the answer is, it is not theirs.
+bool misread(const Finding& finding) {
+  return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
+         finding.code != "clock_drift" && finding.code != "mount_moved" && finding.code != "scale_change" &&
+         !finding.code.starts_with("late_positions_") && !stream_fault(finding) && !undersampling(finding);
+}
+
+/// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
+/// unknown.
+bool casts_doubt(const Finding& finding) {
+  return finding.code != "inverted_both" && finding.code != "scale" && finding.code != "clock_offset" &&
+         finding.code != "clock_drift";
+}
+
+/// Another reading fits far better and has another answer. Which one it is may be open, not that the streams
+/// as given are wrong.
+bool refutes(const Finding& finding, double far, const DiagnosisOptions& options) {
+  const bool reading = finding.code == "inverted_a" || finding.code == "inverted_b" ||
+                       finding.code.starts_with("quaternion_order_");
+  return reading && far > 1 && finding.improvement > options.overwhelming;
+}
+
+struct Opinion {
+  Verdict verdict = Verdict::good;
+  std::string reason;
+};
+
+Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const DiagnosisOptions& options) {
+  Opinion worst;
+  for (const Finding& finding : diagnosis.findings) {
+    Verdict verdict = Verdict::good;
+    const double far = shift(finding, answered, options);
+    if (finding.code == "too_little_motion")
+      verdict = Verdict::incomplete;
+    else if (undersampling(finding))
+      verdict = Verdict::good;  // what is unknown by it counts as unknown
+    else if (stream_fault(finding))
+      verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
+    else if (misread(finding) || refutes(finding, far, options) ||
+             (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
+      verdict = Verdict::contradictory;
+    else if (finding.code == "mount_moved" || finding.code == "scale_change" ||
+             (finding.certain && far > 0.5) || significant_scale(finding, answered, options.scale_check) ||
+             (casts_doubt(finding) && far > 1))
+      verdict = Verdict::doubtful;
+    if (verdict > worst.verdict) worst = {verdict, finding.message};
+  }
+  return worst;
+}
+
+Opinion of_fit(const Misfit& misfit, const Answered& answered, const DiagnosisOptions& options) {
+  if (misfit.at_answer > options.doubtful_misfit) {
+    const bool contradictory = misfit.at_answer > options.contradictory_misfit;
+    return {contradictory ? Verdict::contradictory : Verdict::doubtful,
+            format("These motions contradict each other: %.0f %% of the typical motion is not explained.",
+                   100 * misfit.at_answer)};
+  }
+  if (misfit.median > options.half_contradicts && misfit.at_answer > options.not_outliers)
+    return {Verdict::doubtful,
+            format("These motions agree badly: half of them leave more than %.0f %% unexplained.",
+                   100 * misfit.median)};
+  const PairingCounts& counts = answered.counts;
+  const double incongruent =
+      static_cast<double>(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)]);
+  if (2 * incongruent > static_cast<double>(counts.synchronised))
+    return {Verdict::doubtful,
+            format("Most poses were rejected: %.0f of %.0f make motions that no rigid mounting explains.",
+                   incongruent, static_cast<double>(counts.synchronised))};
+  return {};
+}
+
+}  // namespace
+
+void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
+           const DiagnosisOptions& options) {
+  const Opinion of_explanations = of_findings(diagnosis, answered, options),
+                fit = of_fit(misfit, answered, options);
+  if (options.goal) diagnosis.goal = goal_of(answered, *options.goal, options.goal_spread);
+  const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
+  diagnosis.verdict = worse.verdict;
+  diagnosis.reason = worse.reason;
+  if (&worse == &fit)
+    for (const Finding& finding : diagnosis.findings)
+      if (stream_fault(finding) || finding.code == "samples") {
+        diagnosis.reason = finding.message;
+        break;
+      }
+  if (diagnosis.verdict >= Verdict::doubtful) return;
+  const Known known = known_to(answered, options);
+  const auto little = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                   [](const Finding& one) { return one.code == "too_little_motion"; });
+  if (little != diagnosis.findings.end()) {
+    diagnosis.verdict = Verdict::incomplete;
+    diagnosis.reason = little->message + " " + little->remedy;
+  } else if (!known.unknown.empty()) {
+    diagnosis.verdict = Verdict::incomplete;
+    diagnosis.reason = not_known_yet(known, options);
+    if (!diagnosis.goal && answered.seconds > 0) {
+      const GoalOptions usable{options.tolerance_rotation / length_of_three,
+                               options.tolerance_translation / length_of_three, options.platform};
+      if (const std::string next = goal_of(answered, usable, options.goal_spread).next; !next.empty())
+        diagnosis.reason += " " + next;
+    }
+  } else if (diagnosis.goal && !diagnosis.goal->reached) {
+    diagnosis.verdict = Verdict::incomplete;
+    diagnosis.reason = "The motions agree; the goal is not reached yet.";
+  } else if (diagnosis.reason.empty()) {
+    diagnosis.reason =
+        format("The motions agree to %.2g %%, and all directions are known.", 100 * misfit.at_answer);
+  }
+}
+
+}  // namespace detail
+
+}  // namespace egocal

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What the supervisor decides about silent processes and about answers that are missing at the end of a log,
+// in virtual time. Real processes: test_supervision.cpp.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "supervision/last_answers.hpp"
+#include "supervision/silence.hpp"
+
+namespace egocal::tools::test_supervision_decisions {
+namespace {
+
+using namespace std::chrono_literals;
+using Next = Silence::Next;
+using Time = LastAnswers::Time;
+
+TEST(SilenceOfAProcess, IsReportedOnceThenTheProcessIsKilledOnce) {
+  Silence silence;
+  const SilenceOptions options;
+  for (auto since = 0ms; since < options.silent; since += 1000ms)
+    EXPECT_EQ(silence.look(since, 1s, true, options), Next::nothing) << since.count();
+  EXPECT_EQ(silence.look(options.silent, 1s, true, options), Next::report_and_continue);
+  for (auto since = options.silent + 1000ms; since <= options.hangs; since += 1000ms)
+    EXPECT_EQ(silence.look(since, 1s, true, options), Next::nothing) << since.count();
+  EXPECT_EQ(silence.look(options.hangs + 1000ms, 1s, true, options), Next::kill);
+  // what is started in its place has said nothing yet
+  EXPECT_EQ(silence.look(options.hangs + 2000ms, 1s, true, options), Next::nothing);
+}
+
+TEST(SilenceOfAProcess, ThatIsHeardAgainIsReportedOnce) {
+  Silence silence;
+  const SilenceOptions options;
+  for (auto since = 0ms; since < options.silent; since += 1000ms) silence.look(since, 1s, true, options);
+  EXPECT_EQ(silence.look(options.silent, 1s, true, options), Next::report_and_continue);
+  EXPECT_EQ(silence.look(100ms, 1s, true, options), Next::report_heard);
+  EXPECT_EQ(silence.look(200ms, 1s, true, options), Next::nothing);
+}
+
+// The network is away, or somebody stops all of them.
+TEST(SilenceOfAProcess, WhereNobodyIsHeardNobodyIsBlamed) {
+  Silence silence;
+  for (auto since = 0ms; since < 3'600'000ms; since += 1000ms)
+    ASSERT_EQ(silence.look(since, 1s, false, {}), Next::nothing) << since.count();
+}
+
+// The network goes away between the statuses of two processes.
+TEST(SilenceOfAProcess, WhereAllFallSilentTheLastOneHeardBlamesNobody) {
+  Silence silence;
+  const SilenceOptions options;
+  for (auto since = 0ms; since < 60'000ms; since += 1000ms)
+    ASSERT_EQ(silence.look(since, 1s, since < options.heard, options), Next::nothing) << since.count();
+}
+
+// After an hour without a network the first that is heard does not condemn the second.
+TEST(SilenceOfAProcess, CountsFromWhenAnotherOneIsHeard) {
+  Silence silence;
+  const SilenceOptions options;
+  silence.look(1h, 1h, false, options);
+  for (auto heard = 1000ms; heard < options.silent; heard += 1000ms)
+    EXPECT_EQ(silence.look(1h + heard, 1s, true, options), Next::nothing) << heard.count();
+  EXPECT_EQ(silence.look(1h + options.silent, 1s, true, options), Next::report_and_continue);
+}
+
+TEST(LastAnswersOfALog, AreWaitedForWhileTheyCome) {
+  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  Time now{};
+  EXPECT_FALSE(answers.begun());
+  for (int missing = 20; missing > 0; --missing, now += 4s) {
+    EXPECT_TRUE(answers.wait_on(missing, false, now)) << missing;
+    EXPECT_TRUE(answers.begun());
+  }
+  EXPECT_FALSE(answers.wait_on(0, true, now));
+}
+
+TEST(LastAnswersOfALog, AreGivenUpWhereNothingHappens) {
+  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  Time now{};
+  for (; now < Time{5s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, false, now));
+  EXPECT_FALSE(answers.wait_on(1, false, now));
+}
+
+// A diagnosis that waits for a core, and one that never ends.
+TEST(LastAnswersOfALog, AreWaitedForWhileAProcessHasWorkButNotForEver) {
+  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  Time now{};
+  for (; now < Time{60s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, true, now));
+  EXPECT_FALSE(answers.wait_on(1, true, now));
+}
+
+// Every second moment counts as idle.
+TEST(LastAnswersOfALog, IdleTimeAddsUpBetweenWork) {
+  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  Time now{};
+  bool has_work = false;
+  for (; now < Time{9900ms}; now += 100ms, has_work = !has_work)
+    ASSERT_TRUE(answers.wait_on(2, has_work, now)) << now.time_since_epoch().count();
+  for (; now < Time{10'200ms}; now += 100ms, has_work = !has_work) answers.wait_on(2, has_work, now);
+  EXPECT_FALSE(answers.wait_on(2, false, now));
+  EXPECT_TRUE(answers.wait_on(1, false, now)) << "another one has come";
+}
+
+}  // namespace
+}  // namespace egocal::tools::test_supervision_decisions

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// How long the answers that are missing after a log's end are waited for. No clock and no processes here.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace egocal::tools {
+
+/// A core that others take is not an end, and a process that turns in circles is none that answers.
+struct LastAnswersOptions {
+  /// In which no process has work and no further answer comes: a diagnosis takes seconds on a small computer.
+  std::chrono::milliseconds stall{5000};
+  std::chrono::milliseconds longest_stall{60'000};  ///< in which no further answer comes, whoever has work
+};
+
+class LastAnswers {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit LastAnswers(const LastAnswersOptions& options) : options_(options) {}
+
+  bool begun() const { return fewest_.has_value(); }
+  /// Whether to wait on. missing: answers. has_work: any process.
+  bool wait_on(int missing, bool has_work, Time now);
+
+ private:
+  LastAnswersOptions options_;
+  std::optional<int> fewest_;
+  Time fell_at_{}, asked_at_{};
+  Time::duration idle_{};  ///< since it fell
+};
+
+}  // namespace egocal::tools
