@@ -288,6 +288,15 @@ TEST_F(Tables, ALastRowThatIsCutOffIsCounted) {
   EXPECT_EQ(reading.trajectory.size(), 2u);
   EXPECT_TRUE(reading.losses.truncated);
   expect_error("1 0 0 0 0 0 0 1\n2 0 0 0 0\n3 0 0 0 0 0 0 1\n", ":2: expected 8 fields");
+  // in the midst of its last number
+  for (const char* cut : {"3 0 0 0 0.6 0 0 0.", "3 0 0 0 0.6 0 0 -", "3 0 0 0 0.6 0 0 0.7"}) {
+    const TrajectoryReading of_number = read(std::string("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n") + cut);
+    EXPECT_EQ(of_number.trajectory.size(), 2u) << cut;
+    EXPECT_TRUE(of_number.losses.truncated) << cut;
+    expect_error(std::string("1 0 0 0 0 0 0 1\n") + cut + "\n", ":2");
+  }
+  expect_error("1 0 0 0 0 0 0 1\n2 0 0 x 0 0 0 1", ":2");
+  expect_error("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1 5", ":2: expected 8 fields");
 }
 
 TEST_F(Tables, EmptyFieldsOfATableAreCounted) {

@@ -48,7 +48,7 @@ testing::Streams truck(std::uint64_t seed, int poses) {
 /// Of drives shorter than the motions that show a scale, some ended with "scale: no motion pairs".
 TEST(ShortDrives, OfAFewPosesAreAnswered) {
   for (int poses = 4; poses <= 13; ++poses)
-    for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    for (std::uint64_t seed = 1; seed <= 2; ++seed)
       for (const Terrain terrain : {Terrain::rough, Terrain::free})
         for (const bool scale : {false, true}) {
           SimulationOptions simulation;
@@ -61,7 +61,10 @@ TEST(ShortDrives, OfAFewPosesAreAnswered) {
           options.estimate_scale = scale;
           Calibration calibration;
           EXPECT_NO_THROW(calibration = calibrate(streams.a, streams.b, options)) << poses << " " << seed;
-          EXPECT_NE(calibration.verdict, Verdict::good) << poses << " " << seed;
+          const auto error = extrinsic_error(streams.T, to_dual_quaternion(calibration.T_a_b));
+          EXPECT_TRUE(calibration.verdict != Verdict::good ||
+                      (error.rotation < 0.0175 && error.translation < 0.6))
+              << poses << " " << seed;
           EXPECT_NE(calibration.verdict, Verdict::contradictory) << poses << " " << seed;
         }
 }

@@ -148,7 +148,13 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
     notes_.push_back("poses are integrated from the velocities in the frame of the sensor");
   TextRows rows(*source_, layout_);
   while (rows.next()) {
-    const std::optional<StampedPose> pose = pose_of_row(rows);
+    std::optional<StampedPose> pose;
+    try {
+      pose = pose_of_row(rows);
+    } catch (const Error&) {
+      if (!may_end_in_a_cut_number(rows)) throw;
+      losses_.truncated = true;
+    }
     if (pose) {
       ++streams_[0].messages;
       take(0, *pose);
@@ -173,6 +179,16 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
 std::vector<std::string> TextRecording::unused(const ReadOptions& options) const {
   if (!(options.rate > 0) || (!layout_.times && times_.empty())) return {};
   return {"--rate is not used: the poses have times"};
+}
+
+/// A last row without its line end that holds all fields, numbers but perhaps for the last one.
+bool TextRecording::may_end_in_a_cut_number(const TextRows& rows) const {
+  const std::size_t n = rows.fields.size();
+  if (rows.lines.terminated() || rows.count < 2 || n != std::max(layout_.fields, layout_.names.size()))
+    return false;
+  for (std::size_t i = 0; i + 1 < n; ++i)
+    if (!rows.number(i)) return false;
+  return true;
 }
 
 /// Empty: the row is skipped and counted.

@@ -35,6 +35,7 @@ class TextRecording : public Recording {
   AngleUnit unit_by_rows(const std::vector<Quantity>& angles);
   double seconds_of_row(const TextRows& rows) const;
   Error unit_of_angles_needed(const std::vector<Quantity>& angles) const;
+  bool may_end_in_a_cut_number(const TextRows& rows) const;
   std::optional<StampedPose> pose_of_row(const TextRows& rows);
   std::int64_t time_of_row(const TextRows& rows) const;
   DualQuaternion pose_of_matrix(const TextRows& rows) const;
