@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/goal_spread.hpp"
+#include "diagnosis/goal/goal_spread.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/io/whole_file.hpp"

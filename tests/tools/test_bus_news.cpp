@@ -191,6 +191,19 @@ TEST_F(BusNewsTest, AnErrorIsReportedOnceAndItsEndOnce) {
   EXPECT_EQ(run(200), "egocal-pairing: this is over: state: cannot be written\n");
 }
 
+// The state file of a process that is restarted without it is as bad as before.
+TEST_F(BusNewsTest, AnErrorOfAProcessThatWasRestartedMayLast) {
+  pairing.last_error = "state: cannot be written";
+  run(10);
+  pairing.last_error.clear();
+  pairing.run += 1;
+  EXPECT_EQ(run(200), "egocal-pairing: since its restart it no longer reports: state: cannot be written\n");
+  pairing.last_error = "state: cannot be written";
+  EXPECT_EQ(run(200), "egocal-pairing: state: cannot be written\n");
+  pairing.last_error.clear();
+  EXPECT_EQ(run(200), "egocal-pairing: this is over: state: cannot be written\n");
+}
+
 // A process that is restarted meets the same error within a second.
 TEST_F(BusNewsTest, AnErrorThatIsMetAgainIsNotOver) {
   diagnosis.last_error = "state: cannot be written";

@@ -97,8 +97,11 @@ void BusNews::hear_error(const status_t& status, std::int64_t now_us) {
   if (status.last_error.empty() && status.state == bus::state_name(bus::State::waiting)) return;
   Error& error = errors_[status.role];
   Complaint heard;
-  if (!status.last_error.empty())
+  error.heard = status.run;
+  if (!status.last_error.empty()) {
+    error.complained = status.run;
     heard = {bus::printable(status.name, 40), bus::printable(status.last_error, 300)};
+  }
   if (heard == error.now) return;
   error.now = std::move(heard);
   error.since_us = now_us;
@@ -110,7 +113,10 @@ std::string BusNews::errors(std::int64_t now_us) {
     if (error.now == error.reported) continue;
     if (error.now.text.empty()) {
       if (seconds_between(error.since_us, now_us) < options_.over_after) continue;
-      text += error.reported.process + ": this is over: " + error.reported.text + "\n";
+      const bool restarted = error.heard != error.complained;
+      text += error.reported.process +
+              (restarted ? ": since its restart it no longer reports: " : ": this is over: ") +
+              error.reported.text + "\n";
     } else {
       const auto before = reported_us_.find(error.now.line());
       if (before == reported_us_.end() ? reported_us_.size() >= most_errors

@@ -86,6 +86,9 @@ class BusNews {
   struct Error {
     Complaint now, reported;
     std::int64_t since_us = 0;
+    /// Starts of processes (status_t::run): the last one that complained, and the one heard last. A process
+    /// that was restarted without its state file has no error with it either.
+    std::int64_t complained = 0, heard = 0;
   };
 
   void hear_error(const status_t& status, std::int64_t now_us);

@@ -14,13 +14,12 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "egocal/error.hpp"
 #include "supervision/output_file.hpp"
+#include "supervision/process_state.hpp"
 #include "supervision/reports.hpp"
 #include "supervision/spawn.hpp"
 #include "supervision/terminal_modes.hpp"
@@ -36,8 +35,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds look_again{100};
 /// Two turns of the supervisor are no farther apart, unless it was stopped.
 constexpr milliseconds longest_turn{2000};
-/// A foreground program has given the terminal back by then.
-constexpr milliseconds gives_back{1000};
 
 struct Child {
   Program program;
@@ -54,15 +51,6 @@ struct Child {
 std::string ending(int status) {
   if (WIFSIGNALED(status)) return fmt::format("killed by signal {}", WTERMSIG(status));
   return fmt::format("exit code {}", WEXITSTATUS(status));
-}
-
-/// It computes, or would if it got a core.
-bool has_work(pid_t pid) {
-  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-  std::string text;
-  std::getline(stat, text);
-  const std::size_t name_end = text.rfind(") ");
-  return name_end != std::string::npos && (text[name_end + 2] == 'R' || text[name_end + 2] == 'D');
 }
 
 class Supervisor {
@@ -200,9 +188,9 @@ class Supervisor {
     std::error_code none;
     std::filesystem::create_directories(folder, none);
     if (std::filesystem::is_directory(folder, none)) return command;
-    reports_.report(
-        fmt::format("{}: is gone and cannot be made again; {} starts without the state file there",
-                    folder.string(), child.program.name));
+    reports_.report(fmt::format(
+        "{}: is gone and cannot be made again; {} starts without the state file there, and saves nothing",
+        folder.string(), child.program.name));
     command.erase(option, option + 2);
     return command;
   }
@@ -267,26 +255,12 @@ class Supervisor {
     }
   }
 
-  /// A shell takes the terminal when we have stopped: the program that has it must have given it back by
-  /// then, or it would be stopped a second time when it does.
+  /// Ctrl-Z, or SIGTSTP from somebody.
   void suspend(bool by_key) {
-    for (const Child& child : children_) {
-      if (!child.program.foreground || child.pid <= 0) continue;
-      if (!by_key) kill(child.pid, SIGTSTP);
-      siginfo_t stopped{};
-      const Clock::time_point end = Clock::now() + gives_back;
-      while (waitid(P_PID, static_cast<id_t>(child.pid), &stopped, WSTOPPED | WNOHANG) == 0 &&
-             stopped.si_pid == 0 && Clock::now() < end)
-        std::this_thread::sleep_for(milliseconds(5));
-    }
-    sigset_t stop;
-    sigemptyset(&stop);
-    sigaddset(&stop, SIGTSTP);
-    raise(SIGTSTP);
-    sigprocmask(SIG_UNBLOCK, &stop, nullptr);  // stops here, until SIGCONT
-    sigprocmask(SIG_BLOCK, &stop, nullptr);
+    std::vector<pid_t> foreground;
     for (const Child& child : children_)
-      if (child.program.foreground && child.pid > 0) kill(child.pid, SIGCONT);
+      if (child.program.foreground && child.pid > 0) foreground.push_back(child.pid);
+    stop_until_continued(foreground, by_key);
   }
 
   void reap() {
