@@ -211,7 +211,7 @@ void run(const UpOptions& options, Interruptions& interruptions) {
     report_left_behind(supervisor.output_dir);
     passing.emplace(supervisor.output_dir);
   }
-  supervisor.silence = [&watch](pid_t pid) { return watch.silence(pid); };
+  supervisor.heard_ago = [&watch](pid_t pid) { return watch.silence(pid); };
   supervisor.lines = watch.lines();
   supervisor.lines_again = [&watch] { return watch.listen_again(); };
   if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };
