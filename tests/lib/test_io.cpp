@@ -140,8 +140,23 @@ TEST_F(Io, BadTrajectoriesGetOneClearLine) {
   expect_error("1,0,0,0,0,0\n", ":1: expected at least 8 fields");
   expect_error("1 0 0 1 0 2 0 2 0 0 1 3\n", "not a rotation", file("t1", "0\n"));
   expect_error("1 0 0 1 0 1 0 2 0 0 1 3\n", "expected 1 times", file("t2", "0\n1\n"));
-  expect_error(good, "belongs to KITTI poses", file("t3", "0\n"));
+  expect_error(good, "its poses have times of their own", file("t3", "0\n"));
   EXPECT_THROW(read_trajectory(path("missing")), Error);
+}
+
+// As docs/formats.md says, and as the note on an assumed rate offers.
+TEST_F(Io, AFileOfTimesSuitsAllPosesWithoutTimes) {
+  const std::string times = file("times", "5\n5.5\n");
+  for (const std::string poses :
+       {"1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 1 0 1 0 2 0 0 1 4\n", "1 2 3 0 0 0 1\n1 2 4 0 0 0 1\n",
+        "0 1 0 0 1 0 1 0 2 0 0 1 3\n1 1 0 0 1 0 1 0 2 0 0 1 4\n",
+        "1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1\n1 0 0 1 0 1 0 2 0 0 1 4 0 0 0 1\n"}) {
+    const Trajectory trajectory = read_trajectory(file("poses", poses), times);
+    ASSERT_EQ(trajectory.size(), 2u) << poses;
+    EXPECT_EQ(trajectory[0].time_us, 5'000'000) << poses;
+    EXPECT_EQ(trajectory[1].time_us, 5'500'000) << poses;
+    EXPECT_EQ(to_pose(trajectory[1].pose).translation.z(), 4) << poses;
+  }
 }
 
 TEST_F(Io, PairsSurviveARoundTripAndBadOnesDoNot) {

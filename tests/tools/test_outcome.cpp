@@ -26,8 +26,8 @@ class OutcomeTest : public AnswersTest {
                    {"right", "RIGHT", bus::OdometryType::odometry, {}}};
     rig.pairs.emplace_back().a = "left";
     rig.pairs.back().b = "right";
-    extent.sensors["left"] = {begin_us, begin_us + 10 * second, {}};
-    extent.sensors["right"] = {begin_us + second / 10, begin_us + 10 * second, {}};
+    extent.sensors["left"] = {begin_us, begin_us + 10 * second, {}, 0};
+    extent.sensors["right"] = {begin_us + second / 10, begin_us + 10 * second, {}, 0};
     read_until = {{"LEFT", begin_us + 10 * second}, {"RIGHT", begin_us + 10 * second}};
     const problem_t end = problem(100);
     answers.hear(end);
@@ -104,6 +104,22 @@ TEST_F(OutcomeTest, ThatBeginsLateSaysSo) {
   extent.sensors["left"].first_us = begin_us;
   extent.sensors["right"].first_us = begin_us - 3600 * second;
   EXPECT_THAT(outcome().text, Not(HasSubstr("are not in this answer")));
+}
+
+// Half of the drive was missing in an answer that was called good, without a word.
+TEST_F(OutcomeTest, AfterAClockWentBackSaysSo) {
+  for (auto& [name, stream] : extent.sensors) stream.earlier_us = 30 * second;
+  const auto says_so = HasSubstr(
+      "the first 30.0 s of the log are not in this answer: a sensor's clock went back, and the statistics "
+      "began anew");
+  EXPECT_FALSE(outcome().unusable);
+  EXPECT_THAT(outcome().text, says_so);
+  // the session was numbered after the one before it
+  for (auto& [name, stream] : extent.sensors) {
+    stream.first_us -= 3600 * second;
+    stream.last_us -= 3600 * second;
+  }
+  EXPECT_THAT(outcome().text, says_so);
 }
 
 // All processes were restarted with another rig: pairing read the rest, for a pair of another name.
@@ -197,6 +213,24 @@ TEST_F(OutcomeTest, TheExtentOfALogIsInTheSensorsTime) {
   EXPECT_EQ(poses.between(begin_us + 4 * second, begin_us + 9 * second), 0);
   EXPECT_DOUBLE_EQ(poses.period(), 1);
   EXPECT_FALSE(found.damage.any());
+}
+
+TEST_F(OutcomeTest, TheExtentOfALogWhoseClockWentBackIsThatOfTheLastTimeline) {
+  const std::string log = folder / "back.log";
+  {
+    bus::LogWriter writer(log);
+    for (int i = 0; i < 600; ++i) {
+      const std::int64_t time_us = begin_us + i * second / 10 - (i < 300 ? 0 : 3600 * second);
+      writer.write(i, "LEFT", bus::encode(bus::to_message(StampedPose{time_us, {}}, i)));
+    }
+    writer.close();
+  }
+  bus::LogReader reader(log);
+  const LogExtent::Stream left = log_extent(reader, rig).sensors.at("left");
+  EXPECT_EQ(left.first_us, begin_us - 3570 * second);
+  EXPECT_EQ(left.last_us, begin_us - 3570 * second + 29 * second + 900'000);
+  EXPECT_EQ(left.earlier_us, 29 * second + 900'000);
+  EXPECT_EQ(left.poses.between(begin_us - 3580 * second, begin_us), 300);
 }
 
 // It was "no solver answered".

@@ -37,7 +37,7 @@ void refuse_reading_options(const ReadingOptions& options, const char* instead) 
 }
 
 void add_reading_options(cli::App command, ReadOptions& options) {
-  command.add_option("--times", options.times_file, "times of KITTI poses, one a line [s]");
+  command.add_option("--times", options.times_file, "times of poses that have none (KITTI), one a line [s]");
   command.add_option("--columns", options.columns,
                      "names of the columns of tables: t,x,y,z,qx,qy,qz,qw or yaw, roll, pitch; units as "
                      "yaw[deg]; - for others");

@@ -17,18 +17,22 @@ constexpr std::int64_t tenth_us = 100'000;  // a fiftieth of the shortest hole t
 /// The poses of a sensor as pairing counts them: in order, each time once, without damaged times.
 class Counting {
  public:
-  void push(const StampedPose& pose, PoseCounts& counts) {
-    count(stream_.push({pose, -1, 0, false}), counts);
+  void push(const StampedPose& pose, LogExtent::Stream& counted) {
+    count(stream_.push({pose, -1, 0, false}), counted);
   }
-  void finish(PoseCounts& counts) { count(stream_.flush(), counts); }
+  void finish(LogExtent::Stream& counted) { count(stream_.flush(), counted); }
 
  private:
-  void count(const std::vector<NumberedPose>& in_order, PoseCounts& counts) {
+  void count(const std::vector<NumberedPose>& in_order, LogExtent::Stream& counted) {
     for (const NumberedPose& next : in_order) {
-      if (next.begins_anew) counts.clear();
+      if (next.begins_anew) {
+        if (newest_us_) counted.earlier_us += *newest_us_ - counted.first_us;
+        counted.first_us = next.pose.time_us;
+        counted.poses.clear();
+      }
       if (next.begins_anew || !newest_us_ || next.pose.time_us > *newest_us_) {
         newest_us_ = next.pose.time_us;
-        counts.add(*newest_us_);
+        counted.poses.add(*newest_us_);
       }
     }
   }
@@ -74,12 +78,12 @@ LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig) {
       if (!odometry.decoded || !odometry.pose) continue;
       const StampedPose& pose = *odometry.pose.value;
       LogExtent::Stream& stream =
-          extent.sensors.try_emplace(sensor.name, LogExtent::Stream{pose.time_us, pose.time_us, {}})
+          extent.sensors.try_emplace(sensor.name, LogExtent::Stream{pose.time_us, pose.time_us, {}, 0})
               .first->second;
       stream.last_us = pose.time_us;
-      countings[sensor.name].push(pose, stream.poses);
+      countings[sensor.name].push(pose, stream);
     }
-  for (auto& [name, counting] : countings) counting.finish(extent.sensors.at(name).poses);
+  for (auto& [name, counting] : countings) counting.finish(extent.sensors.at(name));
   extent.damage = log.damage();
   return extent;
 }

@@ -37,7 +37,8 @@ class PoseCounts {
 struct LogExtent {
   struct Stream {
     std::int64_t first_us = 0, last_us = 0;  ///< in the sensor's own time, in the log's order [us]
-    PoseCounts poses;                        ///< of the last timeline
+    PoseCounts poses;
+    std::int64_t earlier_us = 0;  ///< on earlier timelines: its clock went back. All else is of the last one
   };
   std::map<std::string, Stream> sensors;  ///< by name; one whose channel holds no pose is missing
   bus::LogDamage damage;

@@ -31,16 +31,31 @@ double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& exte
   return most > options.least_missing ? most : 0;
 }
 
+/// What comes before the answer's statistics.
+struct Begin {
+  double seconds = 0;
+  bool clock_went_back = false;
+};
+
 /// The log's begin before the answer's session, which begins with a pose of either sensor, in that one's
-/// time [s]. Of clocks that differ the nearer one is it.
-double not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session,
-                      const OutcomeOptions& options) {
+/// time. Of clocks that differ the nearer one is it.
+Begin not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session,
+                     const OutcomeOptions& options) {
   std::optional<double> least;
+  bool clock_went_back = false;
   for (const std::string& name : {pair.first, pair.second})
-    if (const auto stream = extent.sensors.find(name); stream != extent.sensors.end())
-      if (const double late = to_seconds(session - stream->second.first_us); late >= 0)
-        least = std::min(least.value_or(late), late);
-  return least.value_or(0) > options.least_missing ? *least : 0;
+    if (const auto found = extent.sensors.find(name); found != extent.sensors.end()) {
+      const LogExtent::Stream& stream = found->second;
+      clock_went_back = clock_went_back || stream.earlier_us > 0;
+      std::int64_t late_us = session - stream.first_us;
+      if (late_us < 0) continue;
+      // numbers of sessions only grow: of one that began when the clock had gone back it is no time
+      if (stream.earlier_us > 0 && session > stream.last_us) late_us = 0;
+      const double late = to_seconds(stream.earlier_us + late_us);
+      least = std::min(least.value_or(late), late);
+    }
+  if (!(least.value_or(0) > options.least_missing)) return {};
+  return {*least, clock_went_back};
 }
 
 /// The log after the last motion of the pair, while both sensors send [s]: pairing rejected the rest, or knew
@@ -126,7 +141,7 @@ std::string missing_end(const PairName& pair, const Answers& answers, double unr
 
 /// Of a pair that has an answer.
 std::string line_of(const PairName& pair, const Answers& answers, const std::string& missing,
-                    double not_in_session, const Hole& hole, double without_motion) {
+                    const Begin& begin, const Hole& hole, double without_motion) {
   const Answers::Best& best = *answers.best(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Pose T = to_pose(best.checked.answer.T_a_b);
@@ -138,10 +153,10 @@ std::string line_of(const PairName& pair, const Answers& answers, const std::str
       answers.certified(pair) ? "optimal (proven)" : "not proven to be optimal",
       counted(static_cast<std::uint64_t>(best.message.pairs), "motion pair"), T.translation.x(),
       T.translation.y(), T.translation.z(), q.w(), q.x(), q.y(), q.z());
-  if (not_in_session > 0)
-    text += fmt::format(
-        "  the first {:.1f} s of the log are not in this answer: its statistics begin after them\n",
-        not_in_session);
+  if (begin.seconds > 0)
+    text += fmt::format("  the first {:.1f} s of the log are not in this answer: {}\n", begin.seconds,
+                        begin.clock_went_back ? "a sensor's clock went back, and the statistics began anew"
+                                              : "its statistics begin after them");
   if (hole.seconds > 0)
     text += fmt::format(
         "  about {:.1f} s in the middle of the log are not in this answer, between {:.1f} and {:.1f} s: "

@@ -29,9 +29,11 @@ TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions opt
     : Recording(source->file()), source_(std::move(source)), options_(std::move(options)) {
   layout_ = detect_layout(*source_, options_);
   if (!options_.times_file.empty()) {
-    if (!layout_.matrix || layout_.first_column != 0)
-      throw MisplacedTimes(error_at(
-          file_, 0, "", "a file of times belongs to KITTI poses (12 fields a line), this is not one"));
+    if (layout_.times)
+      throw MisplacedTimes(
+          error_at(file_, 0, "",
+                   "its poses have times of their own; a file of times belongs to poses without, "
+                   "such as those of KITTI (12 fields a line)"));
     times_ = read_times_file(options_.times_file);
   }
   if (options_.rate != 0 && !rates_of_poses.contains(options_.rate))
