@@ -293,6 +293,7 @@ void Player::watch_over() {
   show_progress(false);
   // without a network nobody can be heard: the waits begin when it is back
   if (!loop_.network_error().empty()) started_mono_us_ = progress_mono_us_ = now;
+  say_that_it_waits(now);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {
     alone_ = true;
     say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
@@ -314,6 +315,17 @@ void Player::watch_over() {
     in_flight_.clear();
     play();
   }
+}
+
+/// For a pairing process, where it takes long and the network is there.
+void Player::say_that_it_waits(std::int64_t now) {
+  const bool waits =
+      !in_flight_.heard() && !alone_ && !paused_ && now - started_mono_us_ > options_.pace.announced_wait_us;
+  if (waits == waits_announced_) return;
+  waits_announced_ = waits;
+  constexpr const char* waiting = "waiting for a pairing process";
+  if (waits) say(waiting);
+  heartbeat_.set_error(waits ? waiting : "");
 }
 
 void Player::finish() {

@@ -50,6 +50,7 @@ class Player {
   bool network_may_return();
   void send_again();
   void watch_over();
+  void say_that_it_waits(std::int64_t now);
   void finish();
   std::int64_t recorded_now() const;
   void anchor(std::int64_t recorded_us);
@@ -75,7 +76,8 @@ class Player {
   std::optional<std::int64_t> refused_mono_us_;   ///< since when the next message cannot be sent
   std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported
   std::optional<bus::Loop::TimerId> timer_;
-  bool paused_ = false, step_ = false, alone_ = false, ended_ = false, terminal_ = false, line_open_ = false;
+  bool paused_ = false, step_ = false, alone_ = false, waits_announced_ = false, ended_ = false,
+       terminal_ = false, line_open_ = false;
   std::uint64_t out_ = 0, reported_regions_ = 0, reported_jumps_ = 0;
 };
 

@@ -161,7 +161,9 @@ std::vector<Program> programs_of(const UpOptions& options, const std::string& ri
     programs.back().foreground = true;
   }
   if (!options.log.empty()) {
-    programs.push_back(program("egocal-player", {options.log, "--speed", options.speed}));
+    // pairing is started again until it works: nothing of the log is played without it
+    programs.push_back(
+        program("egocal-player", {options.log, "--speed", options.speed, "--wait-for-pairing", "1e9"}));
     programs.back().ends_all = true;
   }
   return programs;

@@ -105,6 +105,30 @@ TEST_F(InStep, WithoutANetworkAtTheStartTheLogWaitsForPairing) {
   EXPECT_EQ(heard_.size(), static_cast<std::size_t>(messages));
 }
 
+// `egocal up` starts pairing until it works: what is played before is lost.
+TEST_F(InStep, ForAsLongAsItShouldTheLogWaitsForPairing) {
+  test::run_for(clock_, {&loop_}, 10ms);  // what pairing has said already
+  pairing_.set_state(bus::State::waiting);
+  std::string error;
+  other_.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    if (status.role == "player") error = status.last_error;
+  });
+  PlayerOptions options{.log = file_.string(), .range = {}};
+  options.pace.wait_for_pairing_us = 3'600'000'000;
+  Player player(loop_, heartbeat_, options);
+  test::run_for(clock_, {&loop_, &other_}, 3s);
+  EXPECT_EQ(error, "");
+  test::run_for(clock_, {&loop_, &other_}, 60s);
+  EXPECT_EQ(heard_.size(), 0u);
+  EXPECT_EQ(error, "waiting for a pairing process");
+  pairing_.set_state(bus::State::running);
+  acknowledge(0, 0);
+  test::run_for(clock_, {&loop_, &other_}, 1500ms);
+  EXPECT_EQ(error, "");
+  test::run_for(clock_, {&loop_, &other_}, 15s);
+  EXPECT_EQ(heard_.size(), static_cast<std::size_t>(messages));
+}
+
 // A seek is announced before the first message from there, to listeners that would miss what is skipped.
 TEST_F(InStep, SeeksAreCountedInTheStatusAtOnce) {
   std::vector<std::int64_t> seeks;
