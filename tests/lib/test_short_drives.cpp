@@ -12,8 +12,10 @@
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/online/answer.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/simulation/simulation.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal::test_short_drives {
 namespace {
@@ -87,23 +89,46 @@ TEST(ShortDrives, AreWeightedFromSixteenPosesOn) {
   }
 }
 
-/// Twenty slow metres in noise show no translation. What is printed of it is anything, and the motions do not
-/// contradict it by that.
-TEST(ShortDrives, ThatShowLittleAreIncomplete) {
+/// Slow, on an uneven road, with noise of a tenth of the mean motion: it shows no translation.
+testing::Streams slow(std::uint64_t seed, int poses) {
   SimulationOptions options;
   options.speed = 1;
-  options.poses = 200;
+  options.poses = poses;
   options.speed_variation = 0.5;
   options.relative_noise = 0.1;
   options.noise_of_motion = 0.05;
   options.T_vehicle_sensor = {
       {Rotation(-0.310371, 0.176944, -0.213396, -0.909298).normalized(), {-0.62, -0.63, 1.34}},
       {Rotation(-0.947157, -0.206119, 0.115487, 0.216961).normalized(), {-0.57, 0.72, 1.82}}};
-  for (const std::uint64_t seed : {5009, 5023, 5035, 5043}) {  // of sixty, those that were doubtful or worse
-    options.seed = seed;
-    const std::vector<Trajectory> streams = simulate(options);
-    const Calibration calibration = calibrate(streams[0], streams[1]);
+  options.seed = seed;
+  const std::vector<Trajectory> streams = simulate(options);
+  return {to_dual_quaternion(true_extrinsic(options, 0, 1)), streams[0], streams[1], {}};
+}
+
+/// What is printed of a translation that is not shown is anything, and the motions do not contradict it by
+/// that.
+TEST(ShortDrives, ThatShowLittleAreIncomplete) {
+  for (const std::uint64_t seed : {5009, 5018, 5023, 5035, 5043}) {  // of sixty, those that were not
+    const testing::Streams streams = slow(seed, 200);
+    const Calibration calibration = calibrate(streams.a, streams.b);
     EXPECT_EQ(calibration.verdict, Verdict::incomplete) << seed << ": " << calibration.reason;
+  }
+}
+
+/// By translations alone an answer that is turned by half a turn about the direction of travel, with a lever
+/// arm of half a motion's length, fits as well. Where they counted a thousand times too much, it was chosen
+/// for the small spread of its jack-knife: seven of these drives were off by 100 to 165 deg, 5 to 10 of the
+/// stated standard deviations.
+TEST(ShortDrives, AreNotTurnedByWeightsThatTheResidualsRefute) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const testing::Streams streams = slow(seed, 20);
+    const Answer answer = solve(paired({}, streams.a, streams.b).problem(), Method::dual);
+    const auto error = detail::frame_a_difference(streams.T, answer.T_a_b);
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (!answer.observability.observable[i]) continue;
+      EXPECT_LT(std::abs(error[static_cast<Eigen::Index>(i)]), 5 * answer.observability.stddev[i])
+          << "seed " << seed << ", direction " << i;
+    }
   }
 }
 

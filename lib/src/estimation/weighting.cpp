@@ -208,6 +208,15 @@ WeightChoice with_memory(const Ladder& ladder, Mode mode, double memory, DualQua
   return completed(ladder, std::move(weights), q, memory);
 }
 
+std::string reason_without_spread(const WeightChoice& choice) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "sum over strides, %.1f steps in the mean, weighted by the residuals, which no single stride "
+                "explains as well",
+                choice.mean_stride);
+  return text;
+}
+
 std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
   char text[200];
   std::snprintf(
@@ -219,14 +228,16 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
 }
 
 /// By how much the noise of motions grows with their steps, relative to that of poses: what the residuals of
-/// the rotations show beyond doubt. Those of translations also grow with the rotations' noise. Noise that is
-/// forgotten within a block of instants is noise on poses as far as omitting blocks is concerned.
-double noise_growth(const Ladder& ladder, const Residuals& residual, std::uint64_t block_length,
+/// the rotations show beyond doubt, or in the plane most likely. Those of translations also grow with the
+/// rotations' noise. Noise that is forgotten within a block of instants is noise on poses as far as omitting
+/// blocks is concerned.
+double noise_growth(const Ladder& ladder, const Residuals& residual, std::uint64_t block_length, Mode mode,
                     const WeightingOptions& options) {
+  const double evidence = mode == Mode::planar ? options.growth_evidence_in_plane : options.growth_evidence;
   detail::StrideVariances seen{ladder.strides, residual.rotation, independent(ladder, ladder.turns)};
   for (std::size_t i = 0; i < ladder.size(); ++i)
     if (ladder.strides[i] < static_cast<double>(block_length)) seen.independent[i] = 0;
-  return detail::least_growth(seen, growths(options.residuals), options.growth_evidence);
+  return detail::least_growth(seen, growths(options.residuals), evidence);
 }
 
 /// The memories that may be better than the weights by the residuals. Where noise on poses and on motions
@@ -258,7 +269,7 @@ class Trials {
 
   /// Without it no spread is corrected.
   void judge_noise(const Residuals& residual) {
-    growth_ = noise_growth(ladder_, residual, block_length_, options_);
+    growth_ = noise_growth(ladder_, residual, block_length_, problem_.mode, options_);
   }
   /// False where the blocks are too few for a spread.
   bool set(const StrideWeights& weights) {
@@ -305,6 +316,36 @@ bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, bool shorter, 
              options.agreement * single.translation + options.residuals.least_translation_spread &&
          std::sqrt(rotation) <= options.agreement * single.rotation + options.residuals.least_rotation_spread;
 }
+
+/// How likely answers are by what they leave of the rival's motions.
+class ByRivalsMotions {
+ public:
+  ByRivalsMotions(const SingleStride& rival, const WeightingOptions& options)
+      : sum_(sum_blocks(rival.problem.blocks)), options_(options) {
+    if (sum_.weight > 0) of_rival_ = misfit(minimiser(cost_matrix(rival.problem), rival.problem.mode));
+  }
+  bool refute_rival(const DualQuaternion& q) const { return of_rival_ - misfit(q) > limit(); }
+  bool refute(const DualQuaternion& q) const { return misfit(q) - of_rival_ > limit(); }
+
+ private:
+  double limit() const { return std::log(options_.less_likely); }
+  /// The logarithm of the product of the mean squared residuals of rotations and of translations. It is the
+  /// likelihood of Gaussian noise of unknown sizes.
+  double misfit(const DualQuaternion& q) const {
+    if (!(sum_.weight > 0)) return 0;
+    const auto log_of = [&](double squares, double rounding) {
+      return std::log(std::max(squares / sum_.weight, rounding * rounding));
+    };
+    const Vector8d v = q.vec();
+    return log_of(q.real.dot(sum_.dual_rows.bottomRightCorner<4, 4>() * q.real),
+                  options_.residuals.least_rotation_spread) +
+           log_of(v.dot(sum_.dual_rows * v), options_.residuals.least_translation_spread);
+  }
+
+  Statistics sum_;
+  const WeightingOptions& options_;
+  double of_rival_ = 0;
+};
 
 /// The part of the neighbouring steps' weight that was taken off as their residuals are far from typical.
 double weight_taken_off(const Ladder& ladder) {
@@ -355,6 +396,14 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   const Ladder ladder(blocks, sums, options.residuals);
   std::optional<WeightChoice> best = residual_weights(ladder, problem.mode);
   if (!best) return std::nullopt;
+  std::optional<ByRivalsMotions> likelihood;
+  if (rival) likelihood.emplace(*rival, options);
+  // where the rival is at a wrong minimum the residuals decide, though no spread may tell how well
+  std::optional<WeightChoice> without_spread;
+  if (likelihood && likelihood->refute_rival(best->q)) {
+    without_spread = best;
+    without_spread->reason = reason_without_spread(*best);
+  }
   const Residuals residual = residuals(ladder, best->q);
   std::vector<WeightChoice> others;
   for (const double memory : possible_memories(ladder, residual, options))
@@ -365,10 +414,10 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   trials.judge_noise(residual);
   SeenDirections seen{};
   if (!others.empty() && trials.set(others.back().weights)) seen = trials.seen();
-  if (!trials.set(best->weights)) return std::nullopt;
+  if (!trials.set(best->weights)) return without_spread;
   const SeenDirections more = trials.seen();
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || more[i];
-  if (std::none_of(seen.begin(), seen.end(), [](bool direction) { return direction; })) return std::nullopt;
+  if (std::none_of(seen.begin(), seen.end(), [](bool direction) { return direction; })) return without_spread;
 
   const SpreadByPoses reference = trials.spread(seen);
   SpreadByPoses least = reference;
@@ -390,9 +439,10 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
     least = std::move(here);
     least_score = score;
   }
-  if (!std::isfinite(least.score)) return std::nullopt;
-  if (rival)
-    best->beats_single = beats(least, best->mean_stride, *rival, current && current->beats_single, ladder,
+  if (!std::isfinite(least.score)) return without_spread;
+  if (rival && !likelihood->refute_rival(best->q))
+    best->beats_single = !likelihood->refute(best->q) &&
+                         beats(least, best->mean_stride, *rival, current && current->beats_single, ladder,
                                trials, seen, options);
   best->reason = reason(*best, least);
   return best;
