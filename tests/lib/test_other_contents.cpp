@@ -13,13 +13,21 @@
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
+#include "diagnosis/explanations/turning_of_steps.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/simulation/simulation.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::test_other_contents {
 namespace {
 
+using detail::Instants;
+using detail::Motion;
+using detail::Motions;
+using detail::motions_of;
+using detail::synchronised;
+using detail::turns_too_far_by_more_than_noise;
 using testing::drive;
 using testing::find;
 
@@ -82,7 +90,7 @@ TEST(OtherContents, AStretchedAxisOfParallelSensorsIsThatOfEither) {
   options.poses = 601;
   options.relative_noise = 0.01;
   options.T_vehicle_sensor = {{Rotation::Identity(), {0, 0, 1.5}}, {Rotation::Identity(), {0.5, 0, 1.5}}};
-  const Eigen::Matrix3d stretch = Eigen::Vector3d(1.3, 1, 1).asDiagonal();
+  const Eigen::Matrix3d stretch = Eigen::Vector3d(1.6, 1, 1).asDiagonal();
   for (const std::uint64_t seed : {3, 4, 5}) {
     options.seed = seed;
     const std::vector<Trajectory> streams = simulate(options);
@@ -93,7 +101,7 @@ TEST(OtherContents, AStretchedAxisOfParallelSensorsIsThatOfEither) {
 
 TEST(OtherContents, PositionsThatAreStretchedALittleAreOnlySaidToBe) {
   const testing::Streams right = drive(Terrain::free);
-  const Eigen::Vector3d little(1.05, 0.97, 1), more(1.3, 1, 1);
+  const Eigen::Vector3d little(1.05, 0.97, 1), more(1.6, 1, 1);
   const Calibration drifts = calibrate(right.a, testing::with_position_columns(right.b, little.asDiagonal()));
   EXPECT_EQ(find(drifts, "axes_b"), nullptr) << drifts.reason;
   const Finding* odometry = find(drifts, "odometry");
@@ -101,6 +109,35 @@ TEST(OtherContents, PositionsThatAreStretchedALittleAreOnlySaidToBe) {
   EXPECT_FALSE(odometry->certain);
   EXPECT_EQ(drifts.verdict, Verdict::good) << drifts.reason;
   certain_finding(calibrate(right.a, testing::with_position_columns(right.b, more.asDiagonal())), "axes_b");
+}
+
+/// Hills under a lidar whose heights drift: the answer is right to half a degree.
+TEST(OtherContents, HeightsThatAreStretchedAreNoContradictionWhereTheAnswerStays) {
+  SimulationOptions options;
+  options.roughness = 0.5;
+  options.poses = 301;
+  options.relative_noise = 0.002;
+  options.T_vehicle_sensor = {{Rotation::Identity(), {0, 0, 1.8}}, {Rotation::Identity(), {0.5, -0.4, 1.5}}};
+  for (const double factor : {1.16, 0.84}) {
+    const Eigen::Matrix3d stretch = Eigen::Vector3d(1, 1, factor).asDiagonal();
+    const std::vector<Trajectory> streams = simulate(options);
+    const Calibration calibration =
+        calibrate(streams[0], testing::with_position_columns(streams[1], stretch));
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << factor << ": " << calibration.reason;
+    const Pose right{Rotation::Identity(), {0.5, -0.4, -0.3}};
+    EXPECT_LT(extrinsic_error(to_dual_quaternion(right), to_dual_quaternion(calibration.T_a_b)).rotation,
+              0.0175);
+  }
+}
+
+TEST(OtherContents, PositionsThatAreTurnedByLessThanTheToleranceAreNoContradiction) {
+  const testing::Streams right = testing::noisy_drive(Terrain::rough, 0.002, 301);
+  const auto turned = [&](double degrees) {
+    const Rotation turn = rotation_exp({0, 0, degrees * std::numbers::pi / 180});
+    return calibrate(right.a, testing::with_position_columns(right.b, turn.toRotationMatrix()));
+  };
+  EXPECT_LE(turned(0.6).verdict, Verdict::incomplete) << turned(0.6).reason;
+  EXPECT_EQ(turned(3).verdict, Verdict::contradictory) << turned(3).reason;
 }
 
 TEST(OtherContents, AnglesOfTheWrongSignOrderAndUnitAreNamed) {
@@ -127,6 +164,81 @@ TEST(OtherContents, AnglesOfTheWrongSignOrderAndUnitAreNamed) {
     EXPECT_NE(finding.message.find(words), std::string::npos) << words << ": " << finding.message;
     expect_cured(right, calibration, finding, 0.02, 0.2);
   }
+}
+
+/// Axes of positions that are turned explain a part of them, and a mount that shakes does.
+TEST(OtherContents, AnglesOfTheWrongSignOfEitherStreamAreNamedOnRoads) {
+  using Change = std::function<Eigen::Vector3d(Eigen::Vector3d)>;
+  const std::vector<std::pair<const char*, Change>> changes{
+      {"its yaw taken with the opposite sign",
+       [](Eigen::Vector3d x) { return Eigen::Vector3d(x[0], x[1], -x[2]); }},
+      {"compass heading",
+       [](Eigen::Vector3d x) { return Eigen::Vector3d(x[0], x[1], std::numbers::pi / 2 - x[2]); }},
+      {"its pitch taken with the opposite sign",
+       [](Eigen::Vector3d x) { return Eigen::Vector3d(x[0], -x[1], x[2]); }}};
+  for (const double roughness : {0.05, 0.3}) {
+    SimulationOptions options;
+    options.roughness = roughness;
+    options.poses = 301;
+    options.relative_noise = 0.01;
+    const testing::Streams right = testing::simulated_drive(options);
+    for (const auto& [words, change] : changes)
+      for (const char side : {'a', 'b'}) {
+        testing::Streams streams = right;
+        Trajectory& wrong = side == 'a' ? streams.a : streams.b;
+        wrong = testing::with_angles(wrong, change);
+        const Calibration calibration = calibrate(streams.a, streams.b);
+        const Finding finding = certain_finding(calibration, std::string("axes_") + side);
+        EXPECT_NE(finding.message.find(words), std::string::npos)
+            << words << " of " << side << ": " << finding.message;
+        EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+      }
+  }
+}
+
+/// Small angles turn by nearly nothing, and the streams would be said to hardly turn.
+TEST(OtherContents, RadiansThatWereTakenAsDegreesAreNamedOnARoad) {
+  const testing::Streams right = testing::noisy_drive(Terrain::rough, 0.01, 301);
+  const Calibration calibration = calibrate(right.a, testing::with_angles(right.b, [](Eigen::Vector3d x) {
+                                              return Eigen::Vector3d(std::numbers::pi / 180 * x);
+                                            }));
+  const Finding finding = certain_finding(calibration, "axes_b");
+  EXPECT_NE(finding.message.find("radians that were taken as degrees"), std::string::npos) << finding.message;
+}
+
+TEST(OtherContents, AHeightInFeetIsNotCalledAnotherFrame) {
+  const testing::Streams right = testing::noisy_drive(Terrain::rough, 0.001, 301);
+  const Eigen::Matrix3d in_feet = Eigen::Vector3d(1, 1, 3.2808).asDiagonal();
+  const Calibration calibration = calibrate(testing::with_position_columns(right.a, in_feet), right.b);
+  const Finding finding = certain_finding(calibration, "axes_a");
+  EXPECT_NE(finding.message.find("in unlike units"), std::string::npos) << finding.message;
+}
+
+/// Two or three motions: there are no longer ones, but shorter ones, of which noise is a larger part.
+TEST(OtherContents, NoiseIsNoFactorOfTheTurningInAShortDrive) {
+  constexpr int poses = 100, stride = 40;
+  const auto streams = [](double noise, double factor) {
+    testing::Random random(3);
+    testing::Streams result;
+    for (int i = 0; i < poses; ++i) {
+      const std::int64_t time_us = static_cast<std::int64_t>(i) * 100'000;
+      const Eigen::Vector3d turned(0, 0, 0.002 * i), position(i, 0, 0);
+      const Rotation jitter = rotation_exp(random.normal3(noise));
+      result.a.push_back({time_us, to_dual_quaternion(Pose{rotation_exp(turned), position})});
+      result.b.push_back({time_us, canonical_sign(to_dual_quaternion(
+                                       Pose{rotation_exp(factor * turned) * jitter, position}))});
+    }
+    return result;
+  };
+  const auto turns_too_far = [](const testing::Streams& of) {
+    const Instants instants = synchronised(of.a, of.b, {}, 1);
+    const Motions motions = motions_of(instants, {}, {}, stride, 700);
+    std::vector<double> ratios;
+    for (const Motion& motion : motions.all) ratios.push_back(motion.angle_b / motion.angle_a);
+    return turns_too_far_by_more_than_noise(instants, motions, detail::median(ratios), {});
+  };
+  EXPECT_FALSE(turns_too_far(streams(0.02, 1)));
+  EXPECT_TRUE(turns_too_far(streams(0, 1.5)));
 }
 
 TEST(OtherContents, VelocitiesInPlaceOfPositionsAreNamed) {

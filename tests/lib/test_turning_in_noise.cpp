@@ -63,6 +63,44 @@ TEST(TurningInNoise, OfTwoTrainsIsNotOfOne) {
   }
 }
 
+/// Two sensors of a slow car, or of two cars: steps of 5 cm that turn by noise.
+testing::Streams slow_cars(std::uint64_t seed, double rotation_noise, bool one) {
+  SimulationOptions options;
+  options.poses = 600;
+  options.rate = 20;
+  options.speed = 1;
+  options.seed = seed;
+  options.noise_rotation = rotation_noise;
+  options.noise_translation = 0.003;
+  testing::Streams result = testing::simulated_drive(options);
+  options.seed = seed + 1000;
+  if (!one) result.b = testing::simulated_drive(options).b;
+  return result;
+}
+
+/// At one speed they do not show that they travel together; but what they turn unlike is no more than noise.
+TEST(TurningInNoise, OfASlowCarIsNotAnotherDrive) {
+  int contradicted = 0;  // noise may look like a mount that moved
+  for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    for (const double noise : {0.0009, 0.0018, 0.0035}) {
+      const testing::Streams streams = slow_cars(seed, noise, true);
+      const Calibration calibration = calibrate(streams.a, streams.b);
+      EXPECT_EQ(find(calibration, "unrelated"), nullptr)
+          << seed << ", " << noise << ": " << calibration.reason;
+      EXPECT_LT(calibration.verdict, Verdict::contradictory)
+          << seed << ", " << noise << ": " << calibration.reason;
+      contradicted += calibration.verdict > Verdict::incomplete;
+    }
+  EXPECT_LE(contradicted, 1);
+}
+
+TEST(TurningInNoise, OfTwoSlowCarsIsLessThanWhatTheyTurnUnlike) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const testing::Streams streams = slow_cars(seed, 0.0003, false);
+    EXPECT_EQ(calibrate(streams.a, streams.b).verdict, Verdict::contradictory) << seed;
+  }
+}
+
 /// A parked car: whatever its sensors measure is noise, which contradicts every extrinsic.
 TEST(TurningInNoise, OfSensorsThatStandIsTooLittleMotion) {
   testing::Random random(1);

@@ -98,6 +98,26 @@ TEST(Verdict, OfBothStreamsInvertedOnARealRoad) {
   EXPECT_EQ(calibration.findings.front().code, "inverted_both");
 }
 
+/// The ends of the lines were measured: they have another answer where much is lost between them.
+TEST(Verdict, OfPositionsOnLinesIsNotGoodWhereTheirEndsHaveAnotherAnswer) {
+  SimulationOptions options;
+  options.poses = 1201;
+  options.rate = 20;
+  options.relative_noise = 0.002;
+  options.speed_variation = 0.3;
+  const testing::Streams right = testing::simulated_drive(options);
+  const auto verdict_of = [&](std::size_t each) {
+    const Trajectory lines = testing::interpolated(right.b, each);
+    Trajectory b = right.b;
+    for (std::size_t i = 0; i < b.size(); ++i)
+      b[i].pose = canonical_sign(
+          to_dual_quaternion(Pose{to_pose(right.b[i].pose).rotation, to_pose(lines[i].pose).translation}));
+    return calibrate(right.a, b);
+  };
+  EXPECT_EQ(verdict_of(20).verdict, Verdict::incomplete) << "75 cm off: " << verdict_of(20).reason;
+  EXPECT_EQ(verdict_of(4).verdict, Verdict::good) << "4 cm off: " << verdict_of(4).reason;
+}
+
 // The standard deviations of an answer with a wrong scale are those of lengths that do not fit.
 TEST(Verdict, AClearlyWrongScaleIsDoubtfulWhereItMovesTheAnswerByMoreThanItStates) {
   Answered answered;

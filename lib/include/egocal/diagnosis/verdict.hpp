@@ -64,18 +64,20 @@ struct Finding {
   /// inverted_a|_b|_both, quaternion_order_a|_b|_both, scale, units, scale_change, clock_offset, clock_drift,
   /// time_unit, stamps_a|_b, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, plane_a|_b,
   /// mount_moved, unrelated, frozen_a|_b, missing_a|_b, flat_a|_b, same_stream, samples, wrong_samples,
-  /// undersampled_a|_b, odometry, too_little_motion. docs/trust.md, "Findings", says what each means.
+  /// undersampled_a|_b, held_a|_b, odometry, too_little_motion. docs/trust.md, "Findings", says what each
+  /// means.
   std::string code;
-  bool certain = false;         ///< it fits clearly better; otherwise both remain possible
-  std::string message;          ///< what was found, one sentence
-  std::string remedy;           ///< option or action that cures it
-  double improvement = 1;       ///< squared residuals as given / under this explanation
-  std::optional<Pose> T_a_b;    ///< the answer under this explanation, where it has one
-  std::optional<double> time;   ///< mount_moved, scale_change, unrelated: since the first pose of a [s]
-  std::optional<double> value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
-                                ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
-                                ///< how late they are [s]; time_unit, turning_scale_a|_b: factor
-  FindingWords words{};         ///< of message and remedy, for those who name the streams
+  bool certain = false;        ///< it fits clearly better; otherwise both remain possible
+  std::string message;         ///< what was found, one sentence
+  std::string remedy;          ///< option or action that cures it
+  double improvement = 1;      ///< squared residuals as given / under this explanation
+  std::optional<Pose> T_a_b;   ///< the answer under this explanation, where it has one
+  std::optional<double> time;  ///< mount_moved, scale_change, unrelated: since the first pose of a [s]
+  std::optional<double>
+      value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
+              ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
+              ///< how late they are [s]; time_unit, turning_scale_a|_b: factor; held_a|_b: new ones a second
+  FindingWords words{};                    ///< of message and remedy, for those who name the streams
   std::optional<MountingChange> change{};  ///< mount_moved: how, where that is known
 };
 

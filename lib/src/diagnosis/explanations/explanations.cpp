@@ -10,6 +10,7 @@
 #include "diagnosis/explanations/both_streams.hpp"
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/scale.hpp"
+#include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/mount/large_move.hpp"
 #include "diagnosis/words/wording.hpp"
@@ -108,6 +109,17 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   return result;
 }
 
+/// Positions that are turned by less than what makes an answer wrong: an honest odometry that drifts by a per
+/// cent of its way does that, too. What else changes of the answer decides.
+bool turns_within_tolerance(const Explanation& explanation, const DiagnosisOptions& options) {
+  const auto turns_little = [&](const PoseReading& reading) {
+    return !reading.invert && !reading.conjugate && reading.axes.determinant() > 0 &&
+           turn_of(reading.axes).norm() < options.tolerance_rotation;
+  };
+  return explanation.code.starts_with("axes_") && turns_little(explanation.read_a) &&
+         turns_little(explanation.read_b);
+}
+
 /// What holds in a part of the drive only cures nothing by itself: a file whose convention changes on its
 /// way.
 void name_part(const Explained& final, std::vector<Finding>& findings) {
@@ -198,12 +210,15 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     finding.T_a_b = to_pose(final.fit.T);
     findings.push_back(std::move(finding));
   };
+  const auto is_certain = [&](const Explanation& one) {
+    return certain && !open && !turns_within_tolerance(one, options);
+  };
   if (!best.code.empty())
-    add(worded_reading(finding_of(best, overall, certain && !open), best.read_a, best.read_b));
+    add(worded_reading(finding_of(best, overall, is_certain(best)), best.read_a, best.read_b));
   if (reading.twin)
-    findings.push_back(
-        worded_reading(finding_of(*reading.twin, compare(given, reading.twin->explained), certain && !open),
-                       reading.twin->read_a, reading.twin->read_b));
+    findings.push_back(worded_reading(
+        finding_of(*reading.twin, compare(given, reading.twin->explained), is_certain(*reading.twin)),
+        reading.twin->read_a, reading.twin->read_b));
   if (best.scale != 1) {
     Explanation explanation = best;
     explanation.explained.fit.T = final.fit.T;

@@ -75,15 +75,9 @@ Motions later(const Motions& given, const Changes& changes, Side side, double de
   return motions;
 }
 
-struct Late {
-  Side side = Side::b;
-  double delay = 0;
-  Explained explained;
-  Comparison comparison;
-};
-
-Late fitted(const Explained& given, const Changes& changes, Side side, const DiagnosisOptions& options) {
-  Late late{side, 0, given, {}};
+LatePositions fitted(const Explained& given, const Changes& changes, Side side,
+                     const DiagnosisOptions& options) {
+  LatePositions late{side, 0, given, {}};
   for (int round = 0; round < options.fit.rounds; ++round) {
     late.delay += best_numbers<1>(late.explained, changes, side)[0];
     late.explained.motions = later(given.motions, changes, side, late.delay);
@@ -95,37 +89,51 @@ Late fitted(const Explained& given, const Changes& changes, Side side, const Dia
 
 }  // namespace
 
-std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
-                                      const DiagnosisOptions& options, std::optional<Side> only,
-                                      const LatePositionsOptions& late) {
+std::optional<LatePositions> best_late_positions(const Instants& instants, const Explained& given,
+                                                 const DiagnosisOptions& options, std::optional<Side> only,
+                                                 const LatePositionsOptions& late) {
   if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
   const ByDelay changes = changes_of(instants, given.motions, late);
-  std::optional<Late> best;
+  std::optional<LatePositions> best;
   for (const Side side : {Side::b, Side::a}) {
     if (only && side != *only) continue;
-    Late here = fitted(given, changes.of(side), side, options);
-    if (!std::isfinite(here.delay) || std::abs(here.delay) < late.least ||
-        !explains(here.explained, options) || !better(here.comparison, options.gain, options))
-      continue;
-    if (!best || here.comparison.gain > best->comparison.gain) best = std::move(here);
+    LatePositions here = fitted(given, changes.of(side), side, options);
+    if (std::isfinite(here.delay) && (!best || here.comparison.gain > best->comparison.gain))
+      best = std::move(here);
   }
-  if (!best) return std::nullopt;
-  const char which = best->side == Side::a ? 'a' : 'b';
+  return best;
+}
+
+bool certain(const LatePositions& found, const DiagnosisOptions& options, const LatePositionsOptions& late) {
+  return std::abs(found.delay) >= late.least && explains(found.explained, options) &&
+         number_explains(found.comparison, options);
+}
+
+Finding worded(const LatePositions& found) {
+  const char which = found.side == Side::a ? 'a' : 'b';
   Finding finding;
   finding.code = std::string("late_positions_") + which;
   finding.certain = true;
-  finding.improvement = std::exp(best->comparison.gain);
-  finding.T_a_b = to_pose(best->explained.fit.T);
-  finding.value = best->delay;
+  finding.improvement = std::exp(found.comparison.gain);
+  finding.T_a_b = to_pose(found.explained.fit.T);
+  finding.value = found.delay;
   say(finding,
       format(
           "The positions of %s are about %.2f s %s than its rotations: the squared residuals are %.3g times "
           "smaller with both at the same times.",
-          mark(which), std::abs(best->delay), best->delay > 0 ? "later" : "earlier", finding.improvement),
+          mark(which), std::abs(found.delay), found.delay > 0 ? "later" : "earlier", finding.improvement),
       format("Give positions and rotations of %s of the same times: no filter that smooths or delays one of "
              "them.",
              mark(which)));
   return finding;
+}
+
+std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
+                                      const DiagnosisOptions& options, std::optional<Side> only,
+                                      const LatePositionsOptions& late) {
+  const std::optional<LatePositions> best = best_late_positions(instants, given, options, only, late);
+  if (!best || !certain(*best, options, late)) return std::nullopt;
+  return worded(*best);
 }
 
 }  // namespace egocal::detail

@@ -21,10 +21,30 @@ struct LatePositionsOptions {
   double least = 0.01;
 };
 
-/// The stream whose positions are late, or early, the extrinsic without that, and by how much the motions
-/// then fit better, where they clearly do. Along a straight way at one speed, and in steady turns, this
-/// cannot be seen: it looks like a longer lever arm. instants, given: the drive, and its motions with the
-/// extrinsic that suits them as they are. only: of this stream; empty: of either.
+/// Positions of one stream that are taken later.
+struct LatePositions {
+  Side side = Side::b;
+  double delay = 0;  ///< > 0: they belong to later times than the rotations [s]
+  Explained explained;
+  Comparison comparison;  ///< with the motions as they are
+};
+
+/// The one that suits the motions better. instants, given: the drive, and its motions with the extrinsic that
+/// suits them as they are. only: of this stream; empty: of either. Empty where there are too few motions.
+std::optional<LatePositions> best_late_positions(const Instants& instants, const Explained& given,
+                                                 const DiagnosisOptions& options,
+                                                 std::optional<Side> only = {},
+                                                 const LatePositionsOptions& late = {});
+
+/// Whether the delay explains the drive, and more than chance. Along a straight way at one speed, and in
+/// steady turns, a delay cannot be seen: it looks like a longer lever arm.
+bool certain(const LatePositions& found, const DiagnosisOptions& options,
+             const LatePositionsOptions& late = {});
+
+/// late_positions_a or late_positions_b, certain, with the extrinsic at that delay.
+Finding worded(const LatePositions& found);
+
+/// The same in one where it is certain.
 std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
                                       const DiagnosisOptions& options, std::optional<Side> only = {},
                                       const LatePositionsOptions& late = {});

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/explanations/not_a_move.hpp"
+#include "diagnosis/explanations/other_contents.hpp"
 #include "diagnosis/explanations/turned_lever_arm.hpp"
 #include "diagnosis/explanations/turning_scale.hpp"
 #include "diagnosis/explanations/unlike_columns.hpp"
@@ -23,23 +25,55 @@ std::vector<Finding>::const_iterator certain_axes_of_both(const std::vector<Find
                       [](const Finding& one) { return one.certain && one.code == "axes_both"; });
 }
 
+/// Both where their best ones explain about as much.
+std::vector<Finding> more_likely(std::vector<Finding> first, std::vector<Finding> second, double alike) {
+  if (first.empty()) return second;
+  if (second.empty()) return first;
+  const double gain = std::log(second.front().improvement / first.front().improvement);
+  if (gain > alike) return second;
+  if (gain >= -alike) first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+bool of_reading_or_clock(const Finding& finding) {
+  const std::string_view code = finding.code;
+  return code.starts_with("axes_") || code.starts_with("quaternion_order_") || code == "inverted_a" ||
+         code == "inverted_b" || code.starts_with("clock_");
+}
+
 }  // namespace
 
-std::vector<Finding> wrong_stream(const Evidence& evidence, const DiagnosisOptions& options) {
-  std::vector<Finding> best = turning_scale(evidence.instants, evidence.given.explained, options);
-  for (std::optional<Finding> finding :
-       {turned_lever_arm(evidence.instants, evidence.given.explained, options),
-        late_positions(evidence.instants, evidence.given.explained, options)})
+const std::vector<Finding>& WrongStream::contents() {
+  if (!contents_)
+    contents_ = mode_ == Mode::planar ? std::vector<Finding>() : other_contents(evidence_, options_);
+  return *contents_;
+}
+
+const std::vector<Finding>& WrongStream::columns() {
+  if (!columns_)
+    columns_ = mode_ == Mode::planar ? std::vector<Finding>() : unlike_columns(evidence_, options_);
+  return *columns_;
+}
+
+const std::vector<Finding>& WrongStream::best() {
+  if (best_) return *best_;
+  best_.emplace();
+  if (mode_ == Mode::planar) return *best_;
+  const Explained& given = evidence_.given.explained;
+  std::vector<Finding> best = turning_scale(evidence_.instants, given, options_);
+  for (std::optional<Finding> finding : {turned_lever_arm(evidence_.instants, given, options_),
+                                         late_positions(evidence_.instants, given, options_)})
     if (finding && (best.empty() || best.front().improvement < finding->improvement))
       best = {*std::move(finding)};
-  std::vector<Finding> columns = unlike_columns(evidence, options);
-  if (!columns.empty() && (best.empty() || best.front().improvement < columns.front().improvement))
-    best = std::move(columns);
-  return best;
+  if (!columns().empty() && (best.empty() || best.front().improvement < columns().front().improvement))
+    best = columns();
+  // small angles times a factor are nearly those of rotation vectors: both are named where both fit
+  return *(best_ = more_likely(std::move(best), contents(), options_.alike));
 }
 
 bool replace_by_large_move(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
-                           const DiagnosisOptions& options, std::vector<Finding>& findings) {
+                           const DiagnosisOptions& options, WrongStream& wrong,
+                           std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return false;
   for (const Finding& finding : findings)
     if (finding.certain && !finding.code.starts_with("axes_") && !finding.code.starts_with("clock_"))
@@ -48,6 +82,10 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
   if (!move) return false;
   for (const Finding& finding : findings)
     if (finding.code != "inverted_both" && finding.improvement > move->improvement) return false;
+  if (!wrong.contents().empty() && wrong.contents().front().improvement > move->improvement) {
+    findings = wrong.contents();
+    return true;
+  }
   const std::vector<PoseReading> of_both = readings_of_both(findings);
   // its time is more exact where it is small enough for the linear test
   findings = moved_mount(evidence.instants, answered, options).findings;
@@ -69,9 +107,18 @@ bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, c
   return true;
 }
 
-bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
-                             const DiagnosisOptions& options, std::vector<Finding>& findings) {
-  if (answered.problem.mode == Mode::planar) return false;
+void replace_by_contents(const DiagnosisOptions& options, WrongStream& wrong,
+                         std::vector<Finding>& findings) {
+  if (findings.empty() || !std::all_of(findings.begin(), findings.end(), [](const Finding& one) {
+        return of_reading_or_clock(one) || one.code == "scale" || one.code == "units";
+      }))
+    return;
+  if (std::none_of(findings.begin(), findings.end(), of_reading_or_clock)) return;
+  findings =
+      more_likely(std::move(findings), more_likely(wrong.contents(), wrong.columns(), 0), options.alike);
+}
+
+bool replace_by_wrong_stream(WrongStream& wrong, std::vector<Finding>& findings) {
   const auto of_scale = [](const Finding& one) {
     return one.certain && (one.code == "scale" || one.code == "units");
   };
@@ -79,17 +126,16 @@ bool replace_by_wrong_stream(const Evidence& evidence, const Answered& answered,
   const auto other = [&](const Finding& one) { return one.certain && !of_scale(one); };
   if (std::any_of(findings.begin(), findings.end(), of_scale) &&
       std::none_of(findings.begin(), findings.end(), other))
-    if (const std::vector<Finding> columns = unlike_columns(evidence, options);
-        !columns.empty() && columns.front().certain) {
+    if (const std::vector<Finding>& columns = wrong.columns();
+        !columns.empty() && columns.front().code.starts_with("axes_")) {
       std::erase_if(findings, of_scale);
       findings.insert(findings.begin(), columns.begin(), columns.end());
       return true;
     }
   const auto axes = certain_axes_of_both(findings);
   if (axes == findings.end()) return false;
-  std::vector<Finding> wrong = wrong_stream(evidence, options);
-  if (wrong.empty() || wrong.front().improvement <= axes->improvement) return false;
-  findings = std::move(wrong);
+  if (wrong.best().empty() || wrong.best().front().improvement <= axes->improvement) return false;
+  findings = wrong.best();
   return true;
 }
 

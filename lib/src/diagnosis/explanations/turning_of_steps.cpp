@@ -48,16 +48,6 @@ std::vector<Pose> corrected(const std::vector<Pose>& given, double part, bool ri
   return poses;
 }
 
-/// Better by noise alone where the motions are short, and not where they are longer.
-bool of_long_motions_too(const Instants& instants, const Motions& motions, double ratio,
-                         const DiagnosisOptions& options, const TurningOfStepsOptions& turning) {
-  const int longer = turning.longer * motions.stride;
-  if (static_cast<std::size_t>(longer) >= instants.size()) return true;
-  const std::optional<double> of_longer =
-      ratio_of_turns(motions_of(instants, {}, {}, longer, options.motions.most, options.motions));
-  return of_longer && std::log(*of_longer) / std::log(ratio) >= turning.part_of_longer;
-}
-
 Finding worded_turning(Side side, double factor, const Explained& explained, const Comparison& comparison) {
   const char which = side == Side::a ? 'a' : 'b';
   Finding finding;
@@ -79,11 +69,23 @@ Finding worded_turning(Side side, double factor, const Explained& explained, con
 
 }  // namespace
 
+bool turns_too_far_by_more_than_noise(const Instants& instants, const Motions& motions, double ratio,
+                                      const DiagnosisOptions& options, const TurningOfStepsOptions& turning) {
+  const int longer = turning.longer * motions.stride, shorter = motions.stride / turning.longer;
+  const bool fits = static_cast<std::size_t>(longer) < instants.size();
+  if (!fits && shorter < 1) return false;
+  const std::optional<double> other = ratio_of_turns(
+      motions_of(instants, {}, {}, fits ? longer : shorter, options.motions.most, options.motions));
+  if (!other) return false;
+  const double of_longer = std::log(fits ? *other : ratio), of_shorter = std::log(fits ? ratio : *other);
+  return of_longer / of_shorter >= turning.part_of_longer;
+}
+
 std::vector<Finding> turning_of_steps(const Instants& instants, const Explained& given,
                                       const DiagnosisOptions& options, const TurningOfStepsOptions& turning) {
   const std::optional<double> ratio = ratio_of_turns(given.motions);
   if (!ratio || !(std::abs(*ratio - 1) >= turning.least) ||
-      !of_long_motions_too(instants, given.motions, *ratio, options, turning))
+      !turns_too_far_by_more_than_noise(instants, given.motions, *ratio, options, turning))
     return {};
   struct Better {
     Side side;

@@ -52,8 +52,9 @@ struct Stretched {
   Order order = orders.front();
   Vector3d factors = Vector3d::Ones();
   Explained explained;
-  Comparison comparison;
-  double unlike = 0;  ///< largest factor over the smallest, as a logarithm
+  Comparison comparison;       ///< with one factor for all columns
+  double gain_over_given = 0;  ///< as other findings state it
+  double unlike = 0;           ///< largest factor over the smallest, as a logarithm
 };
 
 Vector3d in_order(const Vector3d& columns, const Order& order) {
@@ -82,7 +83,9 @@ Vector3d sizes_of(const std::vector<Change>& changes, const Order& order) {
 
 Stretched fitted(const Motions& given, const std::vector<Change>& changes, Side side, const Order& order,
                  const DiagnosisOptions& options, const UnlikeColumnsOptions& columns) {
-  Stretched result{side, order, Vector3d::Ones(), {}, {}, 0};
+  Stretched result;
+  result.side = side;
+  result.order = order;
   const Vector3d sizes = sizes_of(changes, order);
   std::vector<Matrix3d> added;
   for (const Change& change : changes) {
@@ -112,9 +115,10 @@ Finding worded_columns(const Stretched& found, const UnlikeColumnsOptions& colum
   const char which = found.side == Side::a ? 'a' : 'b';
   const auto column = [&](std::size_t k) { return "xyz"[found.order[k]]; };
   Finding finding;
-  finding.certain = found.unlike >= columns.certain || found.comparison.gain >= columns.gain_of_certain;
-  finding.code = finding.certain ? std::string("axes_") + which : "odometry";
-  finding.improvement = std::exp(found.comparison.gain);
+  finding.certain = found.unlike >= columns.certain || found.order != orders.front();
+  const bool of_columns = finding.certain || found.unlike >= columns.of_columns;
+  finding.code = of_columns ? std::string("axes_") + which : "odometry";
+  finding.improvement = std::exp(found.gain_over_given);
   finding.T_a_b = to_pose(found.explained.fit.T);
   const std::string evidence = format(
       ": x as %.4g %c, y as %.4g %c and z as %.4g %c suit its rotations, the squared residuals are "
@@ -161,7 +165,9 @@ std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOpt
           here.comparison.gain > best->comparison.gain + (order != orders.front() ? options.alike : 0))
         best = std::move(here);
     }
-    if (best) found.push_back(*std::move(best));
+    if (!best) continue;
+    best->gain_over_given = compare(evidence.given.explained, best->explained).gain;
+    found.push_back(*std::move(best));
   }
   std::stable_sort(found.begin(), found.end(), [](const Stretched& x, const Stretched& y) {
     return x.comparison.gain > y.comparison.gain;

@@ -14,18 +14,22 @@ struct UnlikeColumnsOptions {
   /// Largest factor over the smallest, as a logarithm, at least: twice what the scales of ordinary odometries
   /// differ by (ScaleCheckOptions).
   double least = 0.03;
-  /// It is certain from this on, or with this mean log ratio of the squared residuals: an odometry that
-  /// drifts by 5 % along each axis has factors that differ by up to 0.12, and a ratio of up to 1.
-  double certain = 0.15, gain_of_certain = 2;
+  /// It is the columns that are called stretched from this on, and else the odometry: one that drifts by 5 %
+  /// along each axis has factors that differ by up to 0.12.
+  double of_columns = 0.15;
+  /// It is certain from this on, a factor of 1.5: feet have 1.19, degrees of latitude and longitude 0.4 where
+  /// people live. Below, an honest odometry may drift that way: a lidar measures heights of hills 25 % wrong
+  /// and the answer is off by less than the tolerance. Then the change of the answer decides.
+  double certain = 0.4;
   int rounds = 3;  ///< of factors and extrinsic in turn
   /// A column counts where its part of the way is at least this, under the factors: of what hardly moves the
   /// factor is noise.
   double least_part = 0.01;
 };
 
-/// Finding axes_a|_b, or odometry where it is not certain: three factors for the columns of the positions of
-/// one stream fit clearly better than one. Both streams where either may be the one, the better one first.
-/// Exchanged columns besides where the motions do not agree at all otherwise.
+/// Finding axes_a|_b, certain or not, or odometry where it is little: three factors for the columns of the
+/// positions of one stream fit clearly better than one. Both streams where either may be the one, the better
+/// one first. Exchanged columns besides where the motions do not agree at all otherwise.
 std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOptions& options,
                                     const UnlikeColumnsOptions& columns = {});
 

@@ -14,11 +14,12 @@ namespace egocal::detail {
 namespace {
 
 struct Lines {
-  std::size_t moving = 0, straight = 0;  ///< poses
-  double seconds = 0;                    ///< that they take
+  std::size_t moving = 0, straight = 0, corners = 0;  ///< poses
+  double seconds = 0;                                 ///< that they take
 
   double part() const { return moving > 0 ? static_cast<double>(straight) / static_cast<double>(moving) : 0; }
-  /// Of poses that are on no line, which are the ends of lines [1/s].
+  /// Lines have ends. What moves evenly is nearly straight everywhere, and no more elsewhere.
+  bool end() const { return 2 * corners > moving - straight; }
   double rate() const { return seconds > 0 ? static_cast<double>(moving - straight) / seconds : 0; }
 };
 
@@ -41,22 +42,24 @@ Kinds lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options
                           turns = rotation_log(y.rotation.conjugate() * z.rotation);
     // digits of the three poses, and of coordinates of a map
     const double digits = options.digits * std::max(1.0, ratio) + options.rounding * y.translation.norm();
-    const auto alike = [&](const Eigen::Vector3d& here, const Eigen::Vector3d& next) {
-      return (ratio * next - here).norm() < options.straight * here.norm() + digits;
+    // how far a step differs from the one before, in units of what a straight one may
+    const auto bend = [&](const Eigen::Vector3d& here, const Eigen::Vector3d& next) {
+      return (ratio * next - here).norm() / (options.straight * here.norm() + digits);
     };
-    const auto count_in = [&](Lines& lines, double motion, bool straight) {
+    const auto count_in = [&](Lines& lines, double motion, double bent) {
       if (motion < 10 * digits) return;  // at rest
       lines.seconds += before;
       ++lines.moving;
-      lines.straight += straight ? 1 : 0;
+      lines.straight += bent < 1 ? 1 : 0;
+      lines.corners += bent > options.corner ? 1 : 0;
     };
-    const bool evenly_moved = alike(moved, moves), evenly_turned = alike(turned, turns);
+    const double moved_on = bend(moved, moves), turned_on = bend(turned, turns);
     // position and rotation by themselves, or along a screw
+    const double along_screw = bend(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves);
     count_in(kinds.poses, std::max(moved.norm(), turned.norm()),
-             evenly_turned &&
-                 (evenly_moved || alike(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves)));
-    count_in(kinds.positions, moved.norm(), evenly_moved);
-    count_in(kinds.rotations, turned.norm(), evenly_turned);
+             std::max(turned_on, std::min(moved_on, along_screw)));
+    count_in(kinds.positions, moved.norm(), moved_on);
+    count_in(kinds.rotations, turned.norm(), turned_on);
   }
   return kinds;
 }
@@ -75,7 +78,8 @@ std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory&
                                    Kind{&Kinds::rotations, "rotations"}})
     for (const char which : {'a', 'b'}) {
       const Lines &lines = (which == 'a' ? of_a : of_b).*kind, &other = (which == 'a' ? of_b : of_a).*kind;
-      if (lines.moving < options.least || lines.part() < options.part || other.part() > options.other_part)
+      if (lines.moving < options.least || lines.part() < options.part || !lines.end() ||
+          other.part() > options.other_part)
         continue;
       Finding finding;
       finding.code = std::string("undersampled_") + which;

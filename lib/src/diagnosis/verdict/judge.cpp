@@ -136,7 +136,8 @@ bool undersampling(const Finding& finding) {
 bool misread(const Finding& finding) {
   return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
          finding.code != "clock_drift" && finding.code != "mount_moved" && finding.code != "scale_change" &&
-         !finding.code.starts_with("late_positions_") && !stream_fault(finding) && !undersampling(finding);
+         !finding.code.starts_with("late_positions_") && !finding.code.starts_with("held_") &&
+         !stream_fault(finding) && !undersampling(finding);
 }
 
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// One half of a stream comes at a lower rate and is held in between: positions of a slow receiver in the rows
+// of fast rotations, tables that were joined by the last value. A value that is held for three rows is a row
+// late in the mean, and with it the lever arm is wrong by the way of that time, at any residual.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/explanations/explanations.hpp"
+#include "diagnosis/streams/held.hpp"
+
+namespace egocal::detail {
+
+/// Study: tests/lib/test_held_streams.cpp.
+struct HeldStreamOptions {
+  HeldOptions rows;
+  std::size_t most = 700;  ///< held values that are looked at, evenly spread; as motions elsewhere
+  /// While a value repeats the sensor moves by so many times as much as the motions between new values leave
+  /// unexplained, in the median. Rounding leaves about as much in both, an arm that turns in one place little
+  /// in either; held values differ by a step.
+  double moved = 3;
+};
+
+/// held_a, held_b, certain: the positions, or the rotations, of a stream repeat although the sensor moves on,
+/// as the other stream says. With the answer of the poses that are new. max_gap: of interpolation [s].
+std::vector<Finding> held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
+                                  const HeldStreamOptions& options = {});
+
+/// Puts them before the others, without those that are the same with less certainty: held values are late.
+void name_held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
+                       std::vector<Finding>& findings);
+
+}  // namespace egocal::detail

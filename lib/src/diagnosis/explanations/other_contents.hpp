@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What a file holds in place of the poses that it should hold.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnosis/explanations/explanations.hpp"
+
+namespace egocal::detail {
+
+struct OtherContentsOptions {
+  /// Contents of either stream that are fitted to all motions after the first look, the most promising first:
+  /// a compass heading and a yaw of the wrong sign of both streams look alike.
+  std::size_t followed = 4;
+};
+
+/// Of one stream: angles of the wrong sign, in the wrong place, order or unit; positions in the axes of the
+/// sensor; velocities or increments in place of positions. Findings axes_a|_b and missing_a|_b, the best one
+/// first, with those that fit nearly as well. Velocities are looked for where no scale makes the motions
+/// agree.
+std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOptions& options,
+                                    const OtherContentsOptions& contents = {});
+
+}  // namespace egocal::detail

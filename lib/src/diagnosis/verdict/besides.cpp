@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/verdict/besides.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "diagnosis/explanations/askew_rotations.hpp"
+
+namespace egocal::detail {
+
+bool explains(const Finding& finding, const DiagnosisOptions& options) {
+  return finding.certain || finding.code == "samples" ||
+         (finding.code != "inverted_both" && finding.improvement > options.overwhelming);
+}
+
+void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing,
+                      const DiagnosisOptions& options, std::vector<Finding>& findings) {
+  for (const Finding& finding : findings)
+    if (explains(finding, options) || finding.code == "mount_moved") return;
+  std::optional<Finding> scale = wrong_scale(evidence, options);
+  if (!scale) scale = wrong_scale_of_drive(evidence, pairing, options);
+  if (!scale) return;
+  // the same with less certainty, and what its motions were taken for
+  std::erase_if(findings, [](const Finding& one) {
+    return one.code == "scale" || one.code == "units" || one.code == "inverted_both";
+  });
+  findings.push_back(*std::move(scale));
+}
+
+void name_askew_rotations(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
+                          std::vector<Finding>& findings) {
+  if (answered.problem.mode == Mode::planar) return;
+  for (const Finding& finding : findings)
+    if ((finding.certain && !finding.code.starts_with("undersampled_")) || finding.code == "mount_moved" ||
+        finding.code == "scale_change" || finding.code == "samples" || finding.code == "odometry")
+      return;
+  if (std::optional<Finding> askew = askew_rotations(evidence.instants, evidence.stride, answered, options))
+    findings.push_back(*std::move(askew));
+}
+
+}  // namespace egocal::detail

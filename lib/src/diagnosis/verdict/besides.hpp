@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What is looked for where nothing else is certain, whatever else was found.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/explanations/explanations.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+/// There is nothing further to look for. Twin readings that both fit far better are uncertain each, but one
+/// of them is right.
+bool explains(const Finding& finding, const DiagnosisOptions& options);
+
+/// A wrong scale that few motions show, where nothing else is certain.
+void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing,
+                      const DiagnosisOptions& options, std::vector<Finding>& findings);
+
+/// What no part of the drive shows by itself, where nothing else explains the streams.
+void name_askew_rotations(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
+                          std::vector<Finding>& findings);
+
+}  // namespace egocal::detail

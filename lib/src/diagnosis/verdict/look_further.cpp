@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/verdict/look_further.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/not_a_move.hpp"
+#include "diagnosis/mount/back_and_forth.hpp"
+#include "diagnosis/mount/following_mount.hpp"
+#include "diagnosis/mount/large_move.hpp"
+#include "diagnosis/mount/mount.hpp"
+#include "diagnosis/mount/swaying_mount.hpp"
+#include "diagnosis/streams/contradicting_parts.hpp"
+#include "diagnosis/streams/one_drive.hpp"
+#include "diagnosis/streams/turning_alike.hpp"
+#include "diagnosis/verdict/turning_noise.hpp"
+#include "diagnosis/words/wording.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+Finding unexplained(const UnexplainedPart& part) {
+  Finding finding = certain_finding(
+      "unrelated",
+      format(
+          "The answer explains the motions of the drive but for those from %.0f to %.0f s after the start, "
+          "which contradict it: a sensor was moved, a clock jumped, or an odometry was lost.",
+          part.begin, part.end),
+      "Use the part of the drive where the streams belong together.");
+  finding.time = part.begin;
+  return finding;
+}
+
+/// Where the scale of less than half of the drive is another one, its tenths show it. While the sensors stand
+/// any residual is a large part of the way, but a small one in metres.
+bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
+  const double usual = fit.translation_relative_median;
+  return usual > options.scale_change_misfit ||
+         std::any_of(fit.tenths.begin(), fit.tenths.end(), [&](const FitTenth& tenth) {
+           return tenth.translation_median > fit.translation_median &&
+                  tenth.translation_relative >
+                      std::max(options.scale_change_misfit, options.scale_change_in_tenth * usual);
+         });
+}
+
+/// What the motions leave is the noise of their steps, and the translations agree.
+bool left_by_noise(const Evidence& evidence, const Fit& fit, const DiagnosisOptions& options,
+                   const Misfit& misfit) {
+  const TurningNoiseOptions noise;
+  const Explained& given = evidence.given.explained;
+  return misfit.median > options.unrelated_misfit && fit.translation_relative_median < noise.most_of_way &&
+         steps_leave_noise(evidence.instants, given.motions, to_pose(given.fit.T), noise);
+}
+
+}  // namespace
+
+void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
+                  const Fit& fit, const DiagnosisOptions& options, WrongStream& wrong_stream, Misfit& misfit,
+                  std::vector<Finding>& findings) {
+  const Motions& motions = evidence.given.explained.motions;
+  // rotations that were misread do not turn as the other stream does, or hardly at all
+  if (!explains(evidence.scaled.explained, options) && !wrong_stream.contents().empty()) {
+    const std::vector<Finding>& wrong = wrong_stream.best();
+    findings.insert(findings.begin(), wrong.begin(), wrong.end());
+    return;
+  }
+  double turned = 0;
+  for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
+  turned *= static_cast<double>(evidence.instants.size()) /
+            static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
+  if (turned < options.least_turning) {
+    findings.push_back(too_little_motion(motions.all.size(), options));
+    // what the rotations leave is noise: the translations alone can contradict the answer
+    misfit.at_answer = misfit.median = fit.translation_relative_median;
+    return;
+  }
+  const double correlation = turning_correlation(motions);
+  const bool noise = left_by_noise(evidence, fit, options, misfit);
+  const bool one_drive = noise || travel_together(motions);
+  const double way = noise ? TurningNoiseOptions().most_of_way : options.unrelated_misfit;
+  if (one_drive && misfit.best > options.doubtful_misfit &&
+      correlation < options.unrelated_part_correlation && fit.translation_relative_median < way) {
+    findings.push_back(turning_in_noise(correlation));
+    // what the rotations leave is noise: the translations alone can contradict the answer
+    misfit.at_answer = misfit.median = fit.translation_relative_median;
+    return;
+  }
+  if (noise) misfit.at_answer = misfit.median = fit.translation_relative_median;
+  if (!noise && misfit.best > options.contradictory_misfit && correlation < options.unrelated_correlation) {
+    findings.push_back(unrelated(correlation));
+    return;
+  }
+  for (Finding& finding : unrelated_part(motions)) {
+    findings.push_back(std::move(finding));
+    return;
+  }
+  if (answered.seconds >= options.unrelated_least_seconds && misfit.best > options.unrelated_misfit &&
+      misfit.best <= options.contradictory_misfit && !one_drive &&
+      turning_correlation(motions, options.unrelated_part) < options.unrelated_part_correlation) {
+    findings.push_back(unrelated(correlation));
+    return;
+  }
+  const std::vector<Finding>& wrong = wrong_stream.best();
+  const auto explains_more = [&wrong](double improvement) {
+    return wrong.empty() || improvement > wrong.front().improvement;
+  };
+  MovedMount moved = moved_mount(evidence.instants, answered, options);
+  std::vector<Finding>& moves = moved.findings;
+  // where a stream is wrong, parts of the drive with other speeds and headings have other extrinsics
+  if (!moves.empty() && !wrong.empty() && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
+    moves.clear();
+  const bool of_both = std::any_of(findings.begin(), findings.end(),
+                                   [](const Finding& one) { return one.code == "axes_both"; });
+  if (answered.problem.mode != Mode::planar && !of_both)
+    if (std::optional<Finding> inverse = inverse_rotations_instead(evidence, moves, answered, options))
+      findings.push_back(*std::move(inverse));
+  moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
+  // a mount that moved looks like many things, and another reading of both streams like one that moved
+  if (!moves.empty()) {
+    std::erase_if(findings, [](const Finding& one) { return !one.code.ends_with("_both"); });
+    findings.insert(findings.begin(), moves.begin(), moves.end());
+    return;
+  }
+  if (scale_may_change(fit, options))
+    if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options);
+        scale && explains_more(scale->improvement)) {
+      findings.insert(findings.begin(), *std::move(scale));
+      return;
+    }
+  if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T)) {
+    findings.push_back(unexplained(*part));
+    return;
+  }
+  if (!wrong.empty()) {
+    findings.insert(findings.begin(), wrong.begin(), wrong.end());
+    return;
+  }
+  std::optional<Finding> last;
+  if (answered.problem.mode != Mode::planar) last = back_and_forth(evidence.instants, answered, options);
+  if (!last && answered.problem.mode != Mode::planar)
+    last = swaying_mount(evidence.instants, answered, options);
+  if (!last && answered.problem.mode != Mode::planar)
+    last = following_mount(evidence.instants, evidence.stride, answered, options);
+  if (!last)
+    last = contradicting_parts_finding(
+        contradicting_parts(evidence.instants, evidence.stride, to_pose(answered.T_a_b), options.motions));
+  if (!last) last = contradicting_times(moved.unexplained, options);
+  if (last) findings.insert(findings.begin(), *std::move(last));
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What the times of the poses leave unknown of an answer.
+#pragma once
+
+#include "diagnosis/verdict/foreseen.hpp"
+
+namespace egocal::detail {
+
+/// What clocks that differ and interpolation change. Of streams that are understood otherwise: a wrong answer
+/// has no standard deviation that could be right.
+void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& result);
+
+}  // namespace egocal::detail
