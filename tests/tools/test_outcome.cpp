@@ -5,6 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <map>
+#include <string>
+
 #include "egocal/bus/log_file.hpp"
 #include "pair_messages.hpp"
 #include "supervision/log_extent.hpp"
@@ -114,11 +118,10 @@ TEST_F(OutcomeTest, AfterAClockWentBackSaysSo) {
       "began anew");
   EXPECT_FALSE(outcome().unusable);
   EXPECT_THAT(outcome().text, says_so);
-  // the session was numbered after the one before it
-  for (auto& [name, stream] : extent.sensors) {
-    stream.first_us -= 3600 * second;
-    stream.last_us -= 3600 * second;
-  }
+  // of one sensor, by an hour: the session was numbered after the one before it
+  extent.sensors["right"].earlier_us = 0;
+  extent.sensors["left"].first_us -= 3600 * second;
+  extent.sensors["left"].last_us -= 3600 * second;
   EXPECT_THAT(outcome().text, says_so);
 }
 
@@ -131,6 +134,13 @@ TEST_F(OutcomeTest, WhoseLastMotionIsFarFromTheEndSaysSo) {
   // one sensor ended earlier
   extent.sensors["right"].last_us -= 27 * second;
   EXPECT_THAT(outcome().text, Not(HasSubstr("are not in this answer")));
+}
+
+// A seventh of the messages was cut in half, and only a monitor showed it.
+TEST_F(OutcomeTest, OfALogWithUnreadableMessagesSaysSo) {
+  EXPECT_THAT(outcome().text, Not(HasSubstr("can be read")));
+  extent.unreadable["right"] = 256;
+  EXPECT_THAT(outcome().text, HasSubstr("right: 256 messages of the log hold no pose that can be read\n"));
 }
 
 TEST_F(OutcomeTest, OfADamagedLogSaysSo) {
@@ -212,6 +222,7 @@ TEST_F(OutcomeTest, TheExtentOfALogIsInTheSensorsTime) {
   EXPECT_EQ(poses.between(begin_us, begin_us + 2 * second), 2);
   EXPECT_EQ(poses.between(begin_us + 4 * second, begin_us + 9 * second), 0);
   EXPECT_DOUBLE_EQ(poses.period(), 1);
+  EXPECT_EQ(found.unreadable, (std::map<std::string, std::int64_t>{{"left", 1}}));
   EXPECT_FALSE(found.damage.any());
 }
 

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // `egocal solve` with three sensors and more, and several drives, on simulated drives.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -9,7 +12,9 @@
 #include <sstream>
 
 #include "egocal/geometry/pose.hpp"
+#include "egocal/io/trajectory_file.hpp"
 #include "rig_command.hpp"
+#include "support/mistakes.hpp"
 #include "support/random_motion.hpp"
 
 namespace egocal::test_rig_command {
@@ -248,6 +253,22 @@ TEST_F(RigOfFiles, ASensorThatIsWrongIsNamed) {
     EXPECT_EQ(object["findings"][0]["code"], wrong.code) << wrong.fault;
     EXPECT_EQ(object["findings"][0]["sensor"], wrong.sensor) << wrong.fault;
   }
+}
+
+// Each pair of the camera names either of its sensors; the camera is the one that both may mean.
+TEST_F(RigOfFiles, WhereBothPairsNameEitherSensorTheCommonOneIsBlamed) {
+  const std::string files = rig("turns", "--roughness 0.3", 1200, "rough");
+  const std::string camera = folder.path("turns") + "/camera.tum";
+  write_tum(camera, testing::with_turning_scale(read_trajectory(camera), 0.97));
+  const Result result = run("solve --json" + files);
+  EXPECT_EQ(result.code, 3);
+  const json object = result.object();
+  EXPECT_EQ(object["blamed"], "camera");
+  const auto turning = std::find_if(object["findings"].begin(), object["findings"].end(),
+                                    [](const json& one) { return one["code"] == "turning_scale"; });
+  ASSERT_NE(turning, object["findings"].end()) << object["findings"];
+  EXPECT_EQ((*turning)["sensor"], "camera");
+  EXPECT_THAT((*turning)["remedy"].get<std::string>(), ::testing::HasSubstr("camera"));
 }
 
 TEST_F(RigOfFiles, ARelocalisationIsNoMovedMount) {

@@ -18,8 +18,8 @@ void add_source_options(cli::App command, Source& source) {
                          "trajectory of sensor a, or several drives A1,A2; without files: a simulated drive");
   cli::Option b = command.add_option("B", source.file_b, "trajectory of sensor b, or B1,B2");
   a.needs(b);
-  command.add_option("--times-a", source.reading_a.times_file, "times of A, whose poses have none (KITTI)").needs(a);
-  command.add_option("--times-b", source.reading_b.times_file, "times of B, whose poses have none (KITTI)").needs(a);
+  command.add_option("--times-a", source.reading_a.times_file, "times of A, if its poses have none").needs(a);
+  command.add_option("--times-b", source.reading_b.times_file, "times of B, if its poses have none").needs(a);
   const auto text = [&](const char* name, const char* help, auto&& take) {
     return command.add_option_function(name, std::forward<decltype(take)>(take), help);
   };

@@ -16,6 +16,7 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "offline/median.hpp"
 
@@ -54,12 +55,17 @@ std::vector<Seen> different_poses(const Trajectory& trajectory) {
 
 Drives::Drives(std::vector<Trajectory*> sensors, std::vector<std::string> names)
     : sensors_(std::move(sensors)) {
-  note(std::move(names), {sensors_.begin(), sensors_.end()}, std::vector<std::size_t>(sensors_.size(), 0));
+  note(std::move(names), {sensors_.begin(), sensors_.end()}, std::vector<std::size_t>(sensors_.size(), 0), 0);
 }
 
 void Drives::note(std::vector<std::string> names, const std::vector<const Trajectory*>& drive,
-                  std::vector<std::size_t> begin) {
+                  std::vector<std::size_t> begin, std::int64_t shift_us) {
   Drive noted{std::move(names), {}, std::move(begin)};
+  if (const Trajectory& first = *drive.front(); !first.empty()) {
+    const std::int64_t origin_us = sensors_.front()->front().time_us;
+    noted.from = to_seconds(first.front().time_us + shift_us - origin_us);
+    noted.to = to_seconds(first.back().time_us + shift_us - origin_us);
+  }
   for (const Trajectory* trajectory : drive) noted.spans.push_back(span_in_words(*trajectory));
   drives_.push_back(std::move(noted));
 }
@@ -123,9 +129,9 @@ void Drives::append(std::vector<Trajectory> drive, std::vector<std::string> name
     if (!trajectory.empty()) begin = std::min(begin, trajectory.front().time_us);
     parts.push_back(&trajectory);
   }
-  note(std::move(names), parts, std::move(sizes));
   // the same shift for all sensors keeps them synchronised
   const std::int64_t shift = end - begin + gap_us;
+  note(std::move(names), parts, std::move(sizes), shift);
   for (std::size_t i = 0; i < sensors_.size(); ++i)
     for (const StampedPose& pose : drive[i]) sensors_[i]->push_back({pose.time_us + shift, pose.pose});
 }
@@ -134,6 +140,16 @@ Trajectory Drives::part(const Trajectory& stream, std::size_t drive, std::size_t
   const auto at = [&](std::size_t i) { return stream.begin() + static_cast<std::ptrdiff_t>(i); };
   const bool last = drive + 1 == drives_.size();
   return {at(drives_[drive].begin[sensor]), last ? stream.end() : at(drives_[drive + 1].begin[sensor])};
+}
+
+std::string Drives::place_of(double seconds) const {
+  if (drives_.size() < 2) return {};
+  std::size_t k = drives_.size() - 1;
+  while (k > 0 && seconds < drives_[k].from) --k;
+  const Drive& drive = drives_[k];
+  if (seconds <= drive.to || k + 1 == drives_.size())
+    return fmt::format("{:.1f} s into {}", seconds - drive.from, drive.names.front());
+  return fmt::format("between {} and {}", drive.names.front(), drives_[k + 1].names.front());
 }
 
 void Drives::require_motions(std::size_t sensor_a, std::size_t sensor_b, const Trajectory& a,

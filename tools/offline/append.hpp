@@ -23,6 +23,10 @@ class Drives {
   /// further evidence and is omitted; one that shares poses with it is not. `notes` report both.
   void append(std::vector<Trajectory> drive, std::vector<std::string> names, std::vector<std::string>& notes);
 
+  /// Where a time since the first pose of the first sensor is [s]: "12.3 s into b.tum", "that is
+  /// between a.tum and b.tum". Empty of a single drive.
+  std::string place_of(double seconds) const;
+
   /// Throws Error where a drive gives two sensors no motion pair: it would be ignored without a word. a, b:
   /// the sensors' streams as they are paired, with as many poses as were read.
   void require_motions(std::size_t sensor_a, std::size_t sensor_b, const Trajectory& a, const Trajectory& b,
@@ -32,9 +36,10 @@ class Drives {
   struct Drive {
     std::vector<std::string> names, spans;
     std::vector<std::size_t> begin;  ///< index of the first pose of each sensor
+    double from = 0, to = 0;         ///< of the first sensor, since the first pose of all [s]
   };
   void note(std::vector<std::string> names, const std::vector<const Trajectory*>& drive,
-            std::vector<std::size_t> begin);
+            std::vector<std::size_t> begin, std::int64_t shift_us);
   struct Repeated {
     double part = 0;            ///< of the different poses of one drive: those that another one has as well
     std::int64_t shift_us = 0;  ///< what has to be added to their times [us]

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -297,7 +299,15 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
   word_for_options(options, request.scale_option, result.calibration);
   if (std::string warning = scale_warning(request, result); !warning.empty())
     result.warnings.push_back(std::move(warning));
-  for (Finding& finding : result.calibration.findings) finding.remedy = remedy_in_terms(finding, terms);
+  for (Finding& finding : result.calibration.findings) {
+    finding.remedy = remedy_in_terms(finding, terms);
+    if (!finding.time) continue;
+    const std::string place = drives.place_of(*finding.time);
+    if (place.empty()) continue;
+    const std::string said = fmt::format("{} {:.1f} s is {}.", finding.message, *finding.time, place);
+    if (result.calibration.reason == finding.message) result.calibration.reason = said;
+    finding.message = said;
+  }
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);
   if (!request.append.empty()) {

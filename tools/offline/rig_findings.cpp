@@ -91,24 +91,37 @@ bool makes_bad(const RigReport& report, const PairFinding& found) {
   return !leaves_the_answer_right(code) && report.pairs[found.pair].verdict >= Verdict::doubtful;
 }
 
-/// The one sensor that every finding names or has; empty where there is none or more than one.
+/// Whether it is of this sensor, or may be.
+bool may_be_of(const RigReport& report, const PairFinding& found, std::size_t sensor) {
+  const RigPairAnswer& answer = report.solution.pairs[found.pair];
+  return found.sensor ? *found.sensor == sensor : answer.a == sensor || answer.b == sensor;
+}
+
+/// The one sensor that the findings of every pair name or may mean; a pair may name either of its sensors, by
+/// two findings. Empty where there is none or more than one.
 std::optional<std::size_t> common_sensor(const RigReport& report, const PairFindings& of_code) {
   if (report.names.size() < 3) return std::nullopt;
   std::vector<std::size_t> common;
   for (std::size_t s = 0; s < report.names.size(); ++s)
-    if (std::all_of(of_code.begin(), of_code.end(), [&](const PairFinding& found) {
-          const RigPairAnswer& answer = report.solution.pairs[found.pair];
-          return found.sensor ? *found.sensor == s : answer.a == s || answer.b == s;
+    if (std::all_of(of_code.begin(), of_code.end(), [&](const PairFinding& of_pair) {
+          return std::any_of(of_code.begin(), of_code.end(), [&](const PairFinding& found) {
+            return found.pair == of_pair.pair && may_be_of(report, found, s);
+          });
         }))
       common.push_back(s);
   if (common.size() != 1) return std::nullopt;
   return common.front();
 }
 
-const PairFinding& best_of(const PairFindings& of_code) {
-  return *std::max_element(of_code.begin(), of_code.end(), [](const PairFinding& i, const PairFinding& k) {
-    return i.finding->improvement < k.finding->improvement;
-  });
+/// sensor: of those that may be of it; empty: of all.
+const PairFinding& best_of(const RigReport& report, const PairFindings& of_code,
+                           std::optional<std::size_t> sensor) {
+  const PairFinding* best = nullptr;
+  for (const PairFinding& found : of_code)
+    if ((!sensor || may_be_of(report, found, *sensor)) &&
+        (!best || best->finding->improvement < found.finding->improvement))
+      best = &found;
+  return *best;
 }
 
 /// Of one code, in the words of the rig.
@@ -117,7 +130,7 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
   RigFinding finding;
   finding.code = code;
   finding.sensor = common_sensor(report, of_code);
-  const PairFinding& best = best_of(of_code);
+  const PairFinding& best = best_of(report, of_code, finding.sensor);
   finding.pair = best.pair;
   finding.certain = best.finding->certain;
   const RigPairAnswer& answer = report.solution.pairs[best.pair];

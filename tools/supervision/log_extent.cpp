@@ -75,7 +75,10 @@ LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig) {
     for (const bus::Sensor& sensor : rig.sensors) {
       if (sensor.channel != event->channel) continue;
       const bus::ReceivedOdometry odometry = bus::decode_odometry(sensor, event->data);
-      if (!odometry.decoded || !odometry.pose) continue;
+      if (!odometry.decoded || !odometry.pose) {
+        ++extent.unreadable[sensor.name];
+        continue;
+      }
       const StampedPose& pose = *odometry.pose.value;
       LogExtent::Stream& stream =
           extent.sensors.try_emplace(sensor.name, LogExtent::Stream{pose.time_us, pose.time_us, {}, 0})

@@ -40,7 +40,8 @@ struct LogExtent {
     PoseCounts poses;
     std::int64_t earlier_us = 0;  ///< on earlier timelines: its clock went back. All else is of the last one
   };
-  std::map<std::string, Stream> sensors;  ///< by name; one whose channel holds no pose is missing
+  std::map<std::string, Stream> sensors;           ///< by name; one whose channel holds no pose is missing
+  std::map<std::string, std::int64_t> unreadable;  ///< messages of a sensor that hold no pose, by its name
   bus::LogDamage damage;
 };
 

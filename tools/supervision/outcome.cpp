@@ -38,24 +38,22 @@ struct Begin {
 };
 
 /// The log's begin before the answer's session, which begins with a pose of either sensor, in that one's
-/// time. Of clocks that differ the nearer one is it.
+/// time; of clocks that differ the nearer one is it. A session that began since a clock went back has a
+/// number that is no time, as these only grow: all of the log before is missing, at least.
 Begin not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session,
                      const OutcomeOptions& options) {
   std::optional<double> least;
-  bool clock_went_back = false;
-  for (const std::string& name : {pair.first, pair.second})
-    if (const auto found = extent.sensors.find(name); found != extent.sensors.end()) {
-      const LogExtent::Stream& stream = found->second;
-      clock_went_back = clock_went_back || stream.earlier_us > 0;
-      std::int64_t late_us = session - stream.first_us;
-      if (late_us < 0) continue;
-      // numbers of sessions only grow: of one that began when the clock had gone back it is no time
-      if (stream.earlier_us > 0 && session > stream.last_us) late_us = 0;
-      const double late = to_seconds(stream.earlier_us + late_us);
+  double earlier = 0;
+  for (const std::string& name : {pair.first, pair.second}) {
+    const auto stream = extent.sensors.find(name);
+    if (stream == extent.sensors.end()) continue;
+    earlier = std::max(earlier, to_seconds(stream->second.earlier_us));
+    if (const double late = to_seconds(session - stream->second.first_us); late >= 0)
       least = std::min(least.value_or(late), late);
-    }
+  }
+  if (earlier > options.least_missing) return {earlier, true};
   if (!(least.value_or(0) > options.least_missing)) return {};
-  return {*least, clock_went_back};
+  return {*least, false};
 }
 
 /// The log after the last motion of the pair, while both sensors send [s]: pairing rejected the rest, or knew
@@ -212,6 +210,10 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
                 missing.empty() ? without_motion(pair, extent, answers, options) : 0);
   }
   outcome.text += possible_of_all(rig, answers);
+  for (const auto& [name, count] : extent.unreadable)
+    outcome.text +=
+        fmt::format("{}: {} of the log {} no pose that can be read\n", name,
+                    counted(static_cast<std::uint64_t>(count), "message"), count == 1 ? "holds" : "hold");
   if (const std::string damage = damage_in_words(extent.damage); !damage.empty())
     outcome.text += damage + "\n";
   if (outcome.answered && extent.sensors.empty()) {

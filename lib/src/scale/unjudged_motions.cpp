@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "egocal/microseconds.hpp"
 
@@ -25,8 +26,11 @@ std::vector<MotionPair> unjudged_motions(const Trajectory& a, const Trajectory& 
   pairing.track_time_offset = false;
   const double steps = std::clamp(std::round(length / std::max(period, 1e-6)), 1.0, 64.0);
   std::vector<MotionPair> motions;
-  for (int stride = static_cast<int>(steps); stride > 0 && motions.empty(); stride /= 2)
-    motions = pair_motions(unjudged(pairing, stride), a, b).pairs;
+  for (int stride = static_cast<int>(steps); stride > 0 && motions.empty(); stride /= 2) {
+    PairingResult result = pair_motions(unjudged(pairing, stride), a, b);
+    motions = std::move(result.pairs);
+    if (result.drive.counts().synchronised < 2) break;  // no shorter ones, either
+  }
   return motions;
 }
 

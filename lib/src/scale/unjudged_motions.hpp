@@ -13,7 +13,8 @@ namespace egocal::detail {
 PairingOptions unjudged(PairingOptions pairing, int stride);
 
 /// Motions that last about this long [s] by the mean period of the stream with fewer poses, and at most 64
-/// steps; of a drive that is shorter, half or a quarter as long and so on. The time offset of `pairing` is used, not estimated.
+/// steps; of a drive that is shorter, half or a quarter as long and so on. The time offset of `pairing` is
+/// used, not estimated.
 std::vector<MotionPair> unjudged_motions(const Trajectory& a, const Trajectory& b, PairingOptions pairing,
                                          double length);
 

@@ -25,8 +25,9 @@ struct DriveScaleOptions {
 /// fit, and repeats both with the scale found, since screw congruence holds at the true scale only. Multiply
 /// the stream by it (scaled()) and calibrate. The time offset of `pairing` is used, not estimated.
 /// Empty where no motion pair is found. Deterministic.
-std::optional<ScaleSolution> estimate_scale(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing = {},
-                             const DriveScaleOptions& options = {});
+std::optional<ScaleSolution> estimate_scale(const Trajectory& a, const Trajectory& b,
+                                            const PairingOptions& pairing = {},
+                                            const DriveScaleOptions& options = {});
 
 /// The same from motion pairs; in planar mode as seen from the planes, that of the scaled sensor through its
 /// origin (the height of a plane is in metres already).
