@@ -63,7 +63,8 @@ function(egocal_compile_flags target)
     target_link_options(${target} PUBLIC -fsanitize=${EGOCAL_SANITIZE})
   endif()
   if(EGOCAL_BUILD_FUZZERS)
-    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    target_compile_options(${target} PRIVATE
+      -fsanitize=fuzzer-no-link -fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/cmake/coverage_ignorelist.txt)
   endif()
 endfunction()
 
