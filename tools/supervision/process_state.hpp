@@ -14,8 +14,8 @@ bool has_work(pid_t pid);
 
 /// Stops this process after the programs that have its terminal, until SIGCONT, then continues them. A shell
 /// takes the terminal when this process has stopped: a program must have given it back by then, or it would
-/// be stopped a second time when it does. by_key: the terminal has sent it to them already. SIGTSTP is blocked
-/// before and after.
+/// be stopped a second time when it does. by_key: the terminal has sent it to them already. SIGTSTP is
+/// blocked before and after.
 void stop_until_continued(std::span<const pid_t> foreground, bool by_key);
 
 }  // namespace egocal::tools
