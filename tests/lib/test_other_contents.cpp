@@ -246,7 +246,7 @@ TEST(OtherContents, VelocitiesInPlaceOfPositionsAreNamed) {
     const testing::Streams right = drive(terrain);
     const Calibration calibration = calibrate(right.a, testing::with_velocities(right.b));
     const Finding finding = certain_finding(calibration, "missing_b");
-    EXPECT_NE(finding.message.find("velocity in the axes of the world"), std::string::npos)
+    EXPECT_NE(finding.message.find("velocities in the axes of the world"), std::string::npos)
         << finding.message;
     EXPECT_EQ(calibration.verdict, Verdict::contradictory);
   }

@@ -229,13 +229,8 @@ TEST_F(Commands, TimesOfFindingsAreThoseOfADrive) {
     EXPECT_EQ(egocal("simulate --terrain free --poses 400 --noise 0.002 --out " + path(name) + more).code, 0);
     return path(name) + "/lidar.tum " + path(name) + "/camera.tum";
   };
-  const std::string sensors = " --sensor lidar=0,0,1.8,1,0,0,0 --sensor camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5",
-                    turned =
-                        " --sensor lidar=0,0,1.8,1,0,0,0 --sensor camera=1.5,0.2,1.5,0.53,-0.47,0.53,-0.47";
-  const std::string one = drive("one", sensors + " --seed 1"), two = drive("two", turned + " --seed 2");
-  EXPECT_THAT(egocal("solve " + one + " --append " + two).out,
-              HasSubstr(" s is between " + path("one/lidar.tum") + " and " + path("two/lidar.tum") + "."));
-  const std::string bumped = drive("bumped", sensors + " --seed 3 --bump camera=20:0,0,0,0,4,0");
+  const std::string one = drive("one", " --seed 1");
+  const std::string bumped = drive("bumped", " --seed 3 --bump camera=20:0,0,0,0,4,0");
   EXPECT_THAT(egocal("solve " + one + " --append " + bumped).out,
               ::testing::ContainsRegex(" s is (19|20|21)\\.[0-9] s into " + path("bumped/lidar.tum")));
 }

@@ -301,7 +301,8 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
     result.warnings.push_back(std::move(warning));
   for (Finding& finding : result.calibration.findings) {
     finding.remedy = remedy_in_terms(finding, terms);
-    if (!finding.time) continue;
+    // a slow change has no one time
+    if (!finding.time || finding.change == MountingChange::slowly) continue;
     const std::string place = drives.place_of(*finding.time);
     if (place.empty()) continue;
     const std::string said = fmt::format("{} {:.1f} s is {}.", finding.message, *finding.time, place);
