@@ -244,10 +244,12 @@ std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOpt
         motions_under(*candidate.contents, given.motions, ends_of_side(candidate.side), candidate.side, 1),
         {}};
     here.fit = robust_fit(here.motions, options.fit);
-    if (!explains(here, options) || !better(compare(evidence.scaled.explained, here), options.gain, options))
+    // a free scale may fit worse than none, where few motions decide
+    const Comparison with_given = compare(given, here);
+    if (!explains(here, options) || !better(with_given, options.gain, options) ||
+        !better(compare(evidence.scaled.explained, here), options.gain, options))
       continue;
-    const double gain = compare(given, here).gain;
-    found.push_back({candidate, std::move(here), gain});
+    found.push_back({candidate, std::move(here), with_given.gain});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Fitted& x, const Fitted& y) { return x.gain > y.gain; });

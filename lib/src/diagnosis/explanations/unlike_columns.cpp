@@ -167,7 +167,8 @@ std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOpt
     }
     if (!best) continue;
     best->gain_over_given = compare(evidence.given.explained, best->explained).gain;
-    found.push_back(*std::move(best));
+    // a free scale may fit worse than none, where few motions decide
+    if (best->gain_over_given >= options.gain) found.push_back(*std::move(best));
   }
   std::stable_sort(found.begin(), found.end(), [](const Stretched& x, const Stretched& y) {
     return x.comparison.gain > y.comparison.gain;
