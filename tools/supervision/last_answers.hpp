@@ -12,7 +12,8 @@ namespace egocal::tools {
 struct LastAnswersOptions {
   /// In which no process has work and no further answer comes: a diagnosis takes seconds on a small computer.
   std::chrono::milliseconds stall{5000};
-  std::chrono::milliseconds longest_stall{60'000};  ///< in which no further answer comes, whoever has work
+  std::chrono::milliseconds longest_stall{
+      60'000};  ///< without a further answer, even where a process has work
 };
 
 class LastAnswers {

@@ -76,7 +76,7 @@ class PlayerProcess : public ::testing::Test {
     return seconds;
   }
   void start(std::vector<std::string> more = {}) {
-    // nobody pairs here
+    // there is no pairing process
     std::vector<std::string> arguments{
         paths::bin_dir() + "/egocal-player", log, "--lcm-url", url, "--wait-for-pairing", "0.2"};
     arguments.insert(arguments.end(), more.begin(), more.end());

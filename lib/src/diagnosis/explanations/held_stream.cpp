@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "diagnosis/explanations/measured_part.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -38,15 +39,10 @@ Finding worded(const Held& found, char which) {
 /// there are too few.
 std::optional<Pose> fitted_to_new(const Held& found, Side side, const Evidence& evidence, double max_gap,
                                   const DiagnosisOptions& diagnosis) {
-  const Trajectory &a = evidence.streams.a, &b = evidence.streams.b;
+  const Trajectory& own = side == Side::a ? evidence.streams.a : evidence.streams.b;
   Trajectory measured;
-  for (const std::size_t i : found.fresh) measured.push_back((side == Side::a ? a : b)[i]);
-  const Instants instants = synchronised(side == Side::a ? measured : a, side == Side::b ? measured : b,
-                                         evidence.clock, max_gap, 1, diagnosis.motions);
-  if (instants.empty() || !(instants.period > 0)) return std::nullopt;
-  const double length = evidence.stride * evidence.instants.period;
-  const int stride = std::max(1, static_cast<int>(std::lround(length / instants.period)));
-  const Motions motions = motions_of(instants, {}, {}, stride, diagnosis.motions.most, diagnosis.motions);
+  for (const std::size_t i : found.fresh) measured.push_back(own[i]);
+  const Motions motions = motions_of_part(measured, side, evidence, max_gap, diagnosis);
   if (motions.all.size() < diagnosis.motions.least) return std::nullopt;
   return to_pose(robust_fit(motions, diagnosis.fit).T);
 }

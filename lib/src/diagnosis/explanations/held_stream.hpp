@@ -16,9 +16,9 @@ namespace egocal::detail {
 struct HeldStreamOptions {
   HeldOptions rows;
   std::size_t most = 700;  ///< held values that are looked at, evenly spread; as motions elsewhere
-  /// While a value repeats the sensor moves by so many times as much as the motions between new values leave
-  /// unexplained, in the median. Rounding leaves about as much in both, an arm that turns in one place little
-  /// in either; held values differ by a step.
+  /// Least ratio of two medians: what the sensor moves while a value repeats, and what the motions between
+  /// new values leave unexplained. Rounding makes them alike. An arm that turns in one place hardly moves. A
+  /// held value is wrong by a whole step.
   double moved = 3;
 };
 

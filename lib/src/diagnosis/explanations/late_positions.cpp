@@ -128,12 +128,4 @@ Finding worded(const LatePositions& found) {
   return finding;
 }
 
-std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
-                                      const DiagnosisOptions& options, std::optional<Side> only,
-                                      const LatePositionsOptions& late) {
-  const std::optional<LatePositions> best = best_late_positions(instants, given, options, only, late);
-  if (!best || !certain(*best, options, late)) return std::nullopt;
-  return worded(*best);
-}
-
 }  // namespace egocal::detail

@@ -44,9 +44,4 @@ bool certain(const LatePositions& found, const DiagnosisOptions& options,
 /// late_positions_a or late_positions_b, certain, with the extrinsic at that delay.
 Finding worded(const LatePositions& found);
 
-/// The same in one where it is certain.
-std::optional<Finding> late_positions(const Instants& instants, const Explained& given,
-                                      const DiagnosisOptions& options, std::optional<Side> only = {},
-                                      const LatePositionsOptions& late = {});
-
 }  // namespace egocal::detail

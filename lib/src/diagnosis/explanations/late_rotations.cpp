@@ -72,9 +72,9 @@ std::optional<TimeOffset> offset_of_rotations(const Evidence& evidence, double m
 
 /// Where the offset in force is a compromise.
 std::optional<Finding> between_two_clocks(const Evidence& evidence, double max_gap,
-                                          const DiagnosisOptions& options, const LateRotationsOptions& late) {
-  const Explained& given = evidence.given.explained;
-  const std::optional<LatePositions> first = best_late_positions(evidence.instants, given, options);
+                                          const DiagnosisOptions& options, WrongStream& wrong,
+                                          const LateRotationsOptions& late) {
+  const std::optional<LatePositions>& first = wrong.late();
   if (!first || first->comparison.gain < late.first_gain || first->comparison.sigmas < late.first_sigmas)
     return std::nullopt;
   const std::optional<TimeOffset> found = offset_of_rotations(evidence, max_gap, options, late);
@@ -86,7 +86,7 @@ std::optional<Finding> between_two_clocks(const Evidence& evidence, double max_g
   std::optional<LatePositions> best = late_of_either(clock, more < 0 ? Side::b : Side::a, options);
   if (!best) return std::nullopt;
   // both together, against one clock for both
-  best->comparison = compare(given, best->explained);
+  best->comparison = compare(evidence.given.explained, best->explained);
   if (!number_explains(best->comparison, options)) return std::nullopt;
   return worded_at("At the clock of the rotations", *best);
 }
@@ -94,7 +94,8 @@ std::optional<Finding> between_two_clocks(const Evidence& evidence, double max_g
 }  // namespace
 
 void name_late_rotations(const Evidence& evidence, double max_gap, const DiagnosisOptions& options,
-                         std::vector<Finding>& findings, const LateRotationsOptions& late) {
+                         WrongStream& wrong, std::vector<Finding>& findings,
+                         const LateRotationsOptions& late) {
   const auto clock = std::find_if(findings.begin(), findings.end(), [](const Finding& one) {
     return one.certain && one.code == "clock_offset" && one.value;
   });
@@ -102,7 +103,7 @@ void name_late_rotations(const Evidence& evidence, double max_gap, const Diagnos
                   [](const Finding& one) { return one.certain && one.code != "clock_offset"; }))
     return;
   if (clock == findings.end()) {
-    if (std::optional<Finding> found = between_two_clocks(evidence, max_gap, options, late))
+    if (std::optional<Finding> found = between_two_clocks(evidence, max_gap, options, wrong, late))
       findings.insert(findings.begin(), *std::move(found));
     return;
   }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "diagnosis/explanations/explanations.hpp"
+#include "diagnosis/explanations/replacing.hpp"
 
 namespace egocal::detail {
 
@@ -23,8 +23,9 @@ struct LateRotationsOptions {
 /// _b is added after a certain clock_offset, and both have the answer that suits both. An offset that was
 /// estimated from both is a compromise, at which neither seems to be late by much: late_positions_a or _b is
 /// then named at the clock of the rotations. Nothing is added beside other certain findings. max_gap: of
-/// interpolation [s].
+/// interpolation [s]. wrong: of the same evidence.
 void name_late_rotations(const Evidence& evidence, double max_gap, const DiagnosisOptions& options,
-                         std::vector<Finding>& findings, const LateRotationsOptions& late = {});
+                         WrongStream& wrong, std::vector<Finding>& findings,
+                         const LateRotationsOptions& late = {});
 
 }  // namespace egocal::detail

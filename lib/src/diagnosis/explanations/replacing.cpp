@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/explanations/not_a_move.hpp"
 #include "diagnosis/explanations/other_contents.hpp"
 #include "diagnosis/explanations/turned_lever_arm.hpp"
@@ -55,14 +54,24 @@ const std::vector<Finding>& WrongStream::columns() {
   return *columns_;
 }
 
+const std::optional<LatePositions>& WrongStream::late() {
+  if (!late_)
+    late_ = mode_ == Mode::planar
+                ? std::nullopt
+                : best_late_positions(evidence_.instants, evidence_.given.explained, options_);
+  return *late_;
+}
+
 const std::vector<Finding>& WrongStream::best() {
   if (best_) return *best_;
   best_.emplace();
   if (mode_ == Mode::planar) return *best_;
   const Explained& given = evidence_.given.explained;
   std::vector<Finding> best = turning_scale(evidence_.instants, given, options_);
-  for (std::optional<Finding> finding : {turned_lever_arm(evidence_.instants, given, options_),
-                                         late_positions(evidence_.instants, given, options_)})
+  std::optional<Finding> of_late;
+  if (late() && certain(*late(), options_)) of_late = worded(*late());
+  for (std::optional<Finding> finding :
+       {turned_lever_arm(evidence_.instants, given, options_), std::move(of_late)})
     if (finding && (best.empty() || best.front().improvement < finding->improvement))
       best = {*std::move(finding)};
   if (!columns().empty() && (best.empty() || best.front().improvement < columns().front().improvement))

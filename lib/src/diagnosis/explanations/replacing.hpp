@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
+#include "diagnosis/explanations/late_positions.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/pairing/options.hpp"
 
@@ -22,6 +23,8 @@ class WrongStream {
   /// Other contents than poses in metres, and unlike columns.
   const std::vector<Finding>& contents();
   const std::vector<Finding>& columns();
+  /// Certain or not; empty where there are too few motions.
+  const std::optional<LatePositions>& late();
   /// What explains most of these, late positions, a lever arm that was turned wrongly, and turning too far.
   const std::vector<Finding>& best();
 
@@ -30,6 +33,7 @@ class WrongStream {
   Mode mode_;
   const DiagnosisOptions& options_;
   std::optional<std::vector<Finding>> contents_, columns_, best_;
+  std::optional<std::optional<LatePositions>> late_;
 };
 
 /// A mount that moved by much looks like other axes, another clock or another recording: it is named instead

@@ -143,7 +143,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                                  evidence.instants.period, options.unit == LengthUnit::metres, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
-  if (pairing.mode != Mode::planar) name_late_rotations(evidence, pairing.max_gap, options, result.findings);
+  if (pairing.mode != Mode::planar)
+    name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
   name_askew_rotations(evidence, answered, options, result.findings);
   for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b)) {
     if (pairing.mode != Mode::planar) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "diagnosis/explanations/measured_part.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/microseconds.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -30,7 +31,7 @@ OnLine on_lines(const Trajectory& poses, const EndsOfLinesOptions& options) {
     const double ratio = after > 0 ? before / after : 1;
     const Pose x = to_pose(poses[i - 1].pose), y = to_pose(poses[i].pose), z = to_pose(poses[i + 1].pose);
     const auto straight = [&](const Vector3d& here, const Vector3d& next) {
-      return (ratio * next - here).norm() < options.straight * here.norm() + options.digits;
+      return (ratio * next - here).norm() < options.lines.straight * here.norm() + options.lines.digits;
     };
     const Vector3d moved = y.translation - x.translation, moves = z.translation - y.translation;
     // along a line of the world, or along a screw
@@ -46,7 +47,7 @@ Trajectory ends_of(const Trajectory& poses, const EndsOfLinesOptions& options) {
   const OnLine lines = on_lines(poses, options);
   const auto interpolated = [&](const std::vector<bool>& straight) {
     return static_cast<double>(std::count(straight.begin(), straight.end(), true)) >=
-           options.part * static_cast<double>(straight.size());
+           options.lines.part * static_cast<double>(straight.size());
   };
   const bool positions = interpolated(lines.positions), rotations = interpolated(lines.rotations);
   Trajectory ends;
@@ -73,16 +74,9 @@ std::array<double, 6> lost_on_lines(const Evidence& evidence, Side side, double 
                                     const Answered& answered, const DiagnosisOptions& options,
                                     const EndsOfLinesOptions& lines) {
   std::array<double, 6> stddev{};
-  const Trajectory &a = evidence.streams.a, &b = evidence.streams.b;
-  const Trajectory ends = ends_of(side == Side::a ? a : b, lines);
+  const Trajectory ends = ends_of(side == Side::a ? evidence.streams.a : evidence.streams.b, lines);
   if (ends.size() < lines.least) return stddev;
-  const Instants measured = synchronised(side == Side::a ? ends : a, side == Side::b ? ends : b,
-                                         evidence.clock, max_gap, 1, options.motions);
-  if (!(measured.period > 0)) return stddev;
-  // as long as the motions that are compared, of which the noise is a small part
-  const double length = evidence.stride * evidence.instants.period;
-  const int stride = std::max(1, static_cast<int>(std::lround(length / measured.period)));
-  const Motions motions = motions_of(measured, {}, {}, stride, options.motions.most, options.motions);
+  const Motions motions = motions_of_part(ends, side, evidence, max_gap, options);
   if (motions.all.size() < lines.least) return stddev;
   const auto change_without = [&](std::size_t part) {
     return frame_a_difference(answered.T_a_b, fitted_without(part, lines.parts, motions, options.fit));

@@ -7,15 +7,14 @@
 #include <cstddef>
 
 #include "diagnosis/explanations/explanations.hpp"
+#include "diagnosis/streams/interpolated_stream.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
 
 struct EndsOfLinesOptions {
-  /// As InterpolatedStreamOptions: a pose lies on a line where the steps before and after it differ by less
-  /// than this part, or by the digits of a file [m, rad]; and this part of the poses do in what was
-  /// interpolated.
-  double straight = 1e-3, digits = 3e-6, part = 0.4;
+  /// When a pose lies on a line, and which part of them in what was interpolated.
+  InterpolatedStreamOptions lines;
   std::size_t least = 30;  ///< ends of lines; fewer show no answer
   std::size_t parts = 10;  ///< of the drive that are omitted in turn: their changes show what is chance
   double significant = 3;  ///< standard deviations of the change that may be chance
