@@ -146,7 +146,10 @@ class Stream {
   std::vector<NumberedPose> look_ahead(NumberedPose sample);
   void pass_checked(std::vector<NumberedPose>& out);
   std::vector<NumberedPose> in_order(NumberedPose sample);
+  std::vector<NumberedPose> count_repeated(std::int64_t time_us);
+  std::vector<NumberedPose> confirm_jump(NumberedPose sample);
   std::vector<NumberedPose> place(NumberedPose sample);
+  std::vector<NumberedPose> place_before_candidates(NumberedPose sample);
   std::vector<NumberedPose> hold(NumberedPose sample);
   std::vector<NumberedPose> go_over(NumberedPose sample);
   std::vector<NumberedPose> settled();
