@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/drive_sample.hpp"
+#include "diagnosis/judged_answer.hpp"
 #include "diagnosis/memory.hpp"
 #include "diagnosis/saved_memory.hpp"
 #include "diagnosis/unseen.hpp"
@@ -25,9 +26,13 @@
 namespace egocal::services {
 
 struct DiagnosingOptions {
-  /// Part of a core that diagnoses may take: the next one waits until the last one's time is this part of the
-  /// time since it began.
+  /// Part of a core that diagnoses may take: the next one waits until the last one's time on the processor is
+  /// this part of the time since it began.
   double share = 0.04;
+  /// An answer that is further than this from the one that was judged, in the standard deviations stated
+  /// then, is judged once without waiting: a good verdict stood beside answers metres away for seconds.
+  /// Study: docs/processes.md, "The diagnosis".
+  double far_from_judged = 6;
   double least_distance = 1;  ///< [s] between two diagnoses, however quick
   /// A pair without a new problem for this time [s] is judged once without waiting: a drive has ended.
   double idle = 0.6;
@@ -92,6 +97,8 @@ class Diagnosing {
     std::int64_t judged_until_us = 0;      ///< time of the last poses that were judged
     std::int64_t newest_pose_mono_us = 0;  ///< arrival
     std::optional<verdict_t> verdict;      ///< the last one, of the newest problem's session
+    std::optional<JudgedAnswer> judged;    ///< what that is about; empty: it called the answer no good
+    std::int64_t compared_seq = -1;        ///< of the newest problem whose answer was compared with it
     std::string error;                     ///< why its last diagnosis failed; empty: it did not
     bool paused = false;
   };
@@ -99,6 +106,7 @@ class Diagnosing {
   void take(std::size_t sensor, const bus::Arrival& arrival);
   void take_problems();
   void look();
+  bool left_what_was_judged(Pair& pair) const;
   bool idle(const Pair& pair) const;
   bool to_be_judged(const Pair& pair, bool early) const;
   void restore(Memory memory);
@@ -127,6 +135,7 @@ class Diagnosing {
   std::string save_error_;
   std::size_t turn_ = 0;                 ///< the pair that is judged next where several wait
   std::int64_t not_before_mono_us_ = 0;  ///< see DiagnosingOptions::share
+  bool hurried_ = false;                 ///< the last diagnosis did not wait until then
 };
 
 }  // namespace egocal::services

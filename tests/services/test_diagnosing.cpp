@@ -3,6 +3,7 @@
 // What egocal-diagnosis judges, and when.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "diagnosis_service.hpp"
@@ -86,6 +87,39 @@ TEST_F(DiagnosisService, JudgesPosesThatMakeNoMotions) {
   const std::size_t before = verdicts.size();
   pass(5s);
   EXPECT_LE(verdicts.size(), before + 6) << "repeated once a second, not judged again";
+}
+
+// It was called good until the share of the processor allowed another diagnosis: 20 s where one takes a
+// second.
+TEST_F(DiagnosisService, JudgesAtOnceAnAnswerThatLeftTheOneJudged) {
+  options.least_distance = 60;
+  start();
+  testing::Streams streams = drive(700);
+  streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, 0, 0.3}), {0.5, 0, 0}});
+  MotionPairing pairing(bus::drive_options(rig, rig.pairs[0]));
+  std::int64_t problem_when_doubted = 0;
+  for (std::size_t i = 0; i < streams.a.size() && problem_when_doubted == 0; ++i) {
+    send_poses(streams, i, pairing);
+    if (i >= 40) publish(pairing, streams.a[0].time_us, streams.a[i].time_us, problems);
+    if (i == 340) {
+      ASSERT_FALSE(verdicts.empty());
+      EXPECT_THAT(verdicts.back().verdict, ::testing::AnyOf("good", "incomplete"));
+    }
+    if (i > 350 && verdicts.back().verdict != "good" && verdicts.back().verdict != "incomplete")
+      problem_when_doubted = static_cast<std::int64_t>(i);
+  }
+  EXPECT_GT(problem_when_doubted, 350);
+  EXPECT_LT(problem_when_doubted, 500);
+}
+
+TEST(JudgedAnswer, IsComparedInTheDirectionsThatWereObservable) {
+  JudgedAnswer judged;
+  judged.observability.observable = {true, true, false, true, true, true};
+  judged.observability.stddev = {0.01, 0.02, std::numeric_limits<double>::infinity(), 0.001, 0.001, 0.001};
+  const Pose moved{rotation_exp({0.002, 0, 0}), {0.03, 0.02, 5}};
+  EXPECT_NEAR(deviations_from(judged, to_dual_quaternion(moved)), 3, 1e-9);
+  judged.observability.observable = {};
+  EXPECT_EQ(deviations_from(judged, to_dual_quaternion(moved)), 0);
 }
 
 TEST(UnseenMotions, AreNotCalledGoodUntilTheyAreFew) {

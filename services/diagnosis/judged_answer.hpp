@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "egocal/geometry/dual_quaternion.hpp"
+#include "egocal/geometry/pose.hpp"
+#include "egocal/uncertainty/directions.hpp"
+
+namespace egocal::services {
+
+/// The answer that a verdict is about.
+struct JudgedAnswer {
+  Pose T_a_b;
+  Observability observability;
+};
+
+/// How far an answer is from one that was judged: the largest difference in a direction that was observable,
+/// in its standard deviations as they were stated then. 0 where none was.
+double deviations_from(const JudgedAnswer& judged, const DualQuaternion& T_a_b);
+
+}  // namespace egocal::services
