@@ -42,7 +42,7 @@ TEST(MotionsBetween, HasTheBitsOfTheMotionOfEachSensor) {
     from.b = random_pose(random);
     to.a = random_pose(random);
     to.b = i % 10 == 0 ? from.b : random_pose(random);
-    if (i % 7 == 0) to.a = from.a * DualQuaternion{QuaternionVector(0, 1, 0, 0), {}};  // a half turn
+    if (i % 7 == 0) to.a = from.a * DualQuaternion{QuaternionVector(0, 1, 0, 0)};  // a half turn
     const detail::MotionsOfBoth motions = detail::motions_between(from, to);
     EXPECT_EQ(motions.a.vec(), motion_between(from.a, to.a).vec()) << i;
     EXPECT_EQ(motions.b.vec(), motion_between(from.b, to.b).vec()) << i;
@@ -62,7 +62,7 @@ TEST(MotionsToOne, HaveTheBitsOfOneAtATime) {
       from[k].b = i % 10 == 0 ? to.b : random_pose(random);
       places[k] = &from[k];
     }
-    if (i % 7 == 0) from[1].a = to.a * DualQuaternion{QuaternionVector(0, 1, 0, 0), {}};  // a half turn
+    if (i % 7 == 0) from[1].a = to.a * DualQuaternion{QuaternionVector(0, 1, 0, 0)};  // a half turn
     for (const bool in_pairs : {false, true}) {
       detail::MotionsToOne found;
       detail::set_motions_to_one(places, to, found, in_pairs);
