@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/calibrate.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "calibration/scale_verdict.hpp"
 #include "calibration/steps.hpp"
 #include "diagnosis/explanations/clock_check.hpp"
+#include "diagnosis/verdict/judge.hpp"
 #include "egocal/calibrate_beside.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/diagnosis/foresee.hpp"
@@ -21,6 +23,7 @@
 #include "egocal/robust/prove_outliers.hpp"
 #include "egocal/robust/robust_statistics.hpp"
 #include "egocal/scale/estimate_scale.hpp"
+#include "pairing/likeliest_balance.hpp"
 
 namespace egocal {
 
@@ -46,7 +49,8 @@ Problem formulation(const PairingOptions& options) {
   return problem;
 }
 
-/// The balance with the smallest jack-knife spread; the motions of a file have no strides to choose from.
+/// The balance with the smallest jack-knife spread, or with the most likely answer where none has a spread;
+/// the motions of a file have no strides to choose from.
 Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   Choice choice;
   choice.balance = problem.balance;
@@ -56,7 +60,14 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   const MotionsOfStride motions{1, problem.blocks};
   const std::optional<SelectedSetting> selected =
       select_setting(problem, {&motions, 1}, options.accumulator.balances, std::nullopt, std::nullopt);
-  if (!selected) return choice;
+  if (!selected) {
+    const auto& balances = options.accumulator.balances;
+    if (const auto likeliest = detail::likeliest_balance(problem, motions, balances)) {
+      choice.balance = *likeliest;
+      choice.reason = "most likely of " + std::to_string(balances.size()) + " balances";
+    }
+    return choice;
+  }
   choice.balance = selected->setting.balance;
   choice.reason = "smallest jack-knife spread of " + std::to_string(selected->tried) + " balances";
   return choice;
@@ -82,17 +93,29 @@ CalibrationOptions without_scale(CalibrationOptions options, const std::optional
   return options;
 }
 
+/// The same tolerance as the diagnosis has, by motions as long as those that it begins with.
+DiagnosisOptions in_unit_of_streams(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
+                                    const DiagnosisOptions& options) {
+  const detail::Instants instants =
+      detail::synchronised(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap, 1, options.motions);
+  const int stride = std::max(1, static_cast<int>(instants.size()) / 32);
+  return detail::in_unit_of(
+      detail::motions_of(instants, {}, {}, stride, options.motions.most, options.motions), options);
+}
+
 /// What it means that another time offset fits as well.
 void put_rival_offset(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                       const DiagnosisOptions& options, Calibration& result) {
   TimeOffset rival = *result.time_offset;
   rival.seconds = *rival.rival;
-  const Problem problem = paired(pairing, a, on_clock_of_a(rival, b)).problem();
+  const Trajectory on_clock = on_clock_of_a(rival, b);
+  const Problem problem = paired(pairing, a, on_clock).problem();
   if (problem.blocks.empty()) return;
   const Finding finding =
       detail::rival_clock_offset(*result.time_offset, solve(problem, Method::dual).minimum);
   result.findings.push_back(finding);
-  const std::string reason = detail::rival_in_words(finding, result.minimum, result.observability, options);
+  const std::string reason = detail::rival_in_words(finding, result.minimum, result.observability,
+                                                    in_unit_of_streams(a, on_clock, pairing, options));
   if (reason.empty() || result.verdict != Verdict::good) return;
   result.verdict = Verdict::incomplete;
   result.reason = reason;

@@ -251,7 +251,7 @@ Correlations correlations_of(double memory, int blocks, int drives) {
     for (int k = -20; k < blocks; ++k) {
       for (int i = 0; i < 5; ++i)  // the last direction never changes
         difference[i] = memory * difference[i] + std::pow(10.0, -i) * random.normal();
-      if (k >= 0) jackknife.leave_out(1, difference, Vector6d::Ones());
+      if (k >= 0) jackknife.leave_out(1, difference, Vector6d::Ones(), difference);
     }
     mean.of_neighbours += jackknife.correlation_of_neighbours(2) / drives;
     mean.sum += jackknife.sum_of_correlations(2) / drives;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "estimation/misfit.hpp"
 #include "estimation/missed_noise.hpp"
 #include "estimation/noise_growth.hpp"
 #include "estimation/spread_by_poses.hpp"
@@ -240,11 +241,18 @@ double noise_growth(const Ladder& ladder, const Residuals& residual, std::uint64
   return detail::least_growth(seen, growths(options.residuals), evidence);
 }
 
+/// Spreads of shorter blocks [instants] choose no memory. Such blocks are shorter than the noise lasts that a
+/// memory is for, and their spreads say too little of long motions. In drives of 20 motions with noise of a
+/// memory of four steps they chose long ones for every third, whose errors were four times what blocks said;
+/// without it translations err by a sixth less (docs/accuracy.md, "No memory in short drives").
+constexpr std::uint64_t least_block_for_memory = 4;
+
 /// The memories that may be better than the weights by the residuals. Where noise on poses and on motions
 /// explains the residuals, no memory is that they refute: the smallest of several noisy spreads would
 /// mislead.
 std::vector<double> possible_memories(const Ladder& ladder, const Residuals& residual,
-                                      const WeightingOptions& options) {
+                                      std::uint64_t block_length, const WeightingOptions& options) {
+  if (block_length < least_block_for_memory) return {};
   const auto fit = [&](const std::vector<double>& variances, const std::vector<double>& counts) {
     return detail::fit_noise({ladder.strides, variances, independent(ladder, counts)},
                              growths(options.residuals), options.least_independent);
@@ -329,17 +337,9 @@ class ByRivalsMotions {
 
  private:
   double limit() const { return std::log(options_.less_likely); }
-  /// The logarithm of the product of the mean squared residuals of rotations and of translations. It is the
-  /// likelihood of Gaussian noise of unknown sizes.
   double misfit(const DualQuaternion& q) const {
-    if (!(sum_.weight > 0)) return 0;
-    const auto log_of = [&](double squares, double rounding) {
-      return std::log(std::max(squares / sum_.weight, rounding * rounding));
-    };
-    const Vector8d v = q.vec();
-    return log_of(q.real.dot(sum_.dual_rows.bottomRightCorner<4, 4>() * q.real),
-                  options_.residuals.least_rotation_spread) +
-           log_of(v.dot(sum_.dual_rows * v), options_.residuals.least_translation_spread);
+    return detail::misfit(sum_, q, options_.residuals.least_rotation_spread,
+                          options_.residuals.least_translation_spread);
   }
 
   Statistics sum_;
@@ -406,7 +406,7 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   }
   const Residuals residual = residuals(ladder, best->q);
   std::vector<WeightChoice> others;
-  for (const double memory : possible_memories(ladder, residual, options))
+  for (const double memory : possible_memories(ladder, residual, blocks.state().block_length, options))
     others.push_back(with_memory(ladder, problem.mode, memory, best->q));
 
   // what one of them shows counts for all: a direction is seen or not by the motion, not by the weights

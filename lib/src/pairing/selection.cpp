@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "egocal/uncertainty/observability.hpp"
+#include "estimation/misfit.hpp"
 #include "online/solve_and_verify.hpp"
 #include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -24,19 +26,33 @@ double score(const Spread& spread, int stride, const SelectionOptions& options) 
   return noise ? sum - options.longer * std::log2(stride) : sum;
 }
 
+/// A setting is not taken where its answer leaves this many times as much of the motions of its stride as the
+/// answer of another balance (detail::misfit()), however small its spread is: it is a wrong minimum, or rests
+/// on the noise of what counts too much. As WeightingOptions::less_likely, with the same study
+/// (docs/accuracy.md, "Wrong minima").
+constexpr double less_likely = 2;
+
 /// A setting with its answer.
 struct Trial {
   DualQuaternion T_a_b;
   Observability known;
-  Spread spread;
+  Spread spread;      ///< of no directions where none is seen
+  double misfit = 0;  ///< of the answer, by the motions of the setting's stride
 };
 
-/// parts: with blocks of at least two strides' length.
+DualQuaternion minimiser_of(const DualQuaternion& T_a_b, const Problem& problem) {
+  if (problem.mode == Mode::spatial) return T_a_b;
+  return planar_from_extrinsic(T_a_b, plane_frame(problem.plane_a), plane_frame(problem.plane_b));
+}
+
+/// parts: with blocks of at least two strides' length. Empty where they are too few for a spread.
 std::optional<Trial> tried(const Problem& parts, const SelectionOptions& options) {
   if (parts.blocks.size() < options.least_parts) return std::nullopt;
   const Matrix8d Q = cost_matrix(parts);
   Trial result;
   result.T_a_b = detail::solve_and_verify(parts, Q, Method::dual).T_a_b;
+  result.misfit = detail::misfit(sum_blocks(parts.blocks), minimiser_of(result.T_a_b, parts),
+                                 options.least_rotation, options.least_translation);
   result.known = assess_observability(parts, Q, result.T_a_b, ErrorCorrelation::independent);
   const Observability& known = result.known;
   double rotation = 0, translation = 0;
@@ -45,7 +61,6 @@ std::optional<Trial> tried(const Problem& parts, const SelectionOptions& options
     ++result.spread.directions;
     (i < 3 ? translation : rotation) += known.stddev[i] * known.stddev[i];
   }
-  if (result.spread.directions == 0) return std::nullopt;
   result.spread.rotation = std::sqrt(rotation);
   result.spread.translation = std::sqrt(translation);
   return result;
@@ -132,6 +147,13 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
     return score(trials[i]->spread, candidates[i].stride, options) -
            (current == i ? 2 * options.hysteresis : 0);
   };
+  const auto refuted = [&](std::size_t i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < trials.size(); ++k)
+      if (trials[k] && candidates[k].stride == candidates[i].stride)
+        least = std::min(least, trials[k]->misfit);
+    return trials[i]->misfit - least > std::log(less_likely);
+  };
   const auto better = [&](std::size_t i, std::size_t than) {
     const int here = trials[i]->spread.directions, there = trials[than]->spread.directions;
     return here > there || (here == there && score_of(i) < score_of(than));
@@ -147,7 +169,7 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
     const int stride = candidates[*next].stride;
     std::optional<std::size_t> best;
     for (; next != by_stride.end() && candidates[*next].stride == stride; ++next) {
-      if (!trials[*next]) continue;
+      if (!trials[*next] || trials[*next]->spread.directions == 0 || refuted(*next)) continue;
       possible[*next] = std::none_of(longer.begin(), longer.end(), [&](std::size_t other) {
         return contradicted(*trials[*next], *trials[other], options);
       });

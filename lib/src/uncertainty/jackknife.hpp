@@ -23,8 +23,10 @@ class Jackknife {
 
   explicit Jackknife(double pairs) : pairs_(pairs) {}
   /// difference: estimate without the block minus estimate with all. information: what part of what is known
-  /// of each direction the block holds, up to a common factor.
-  void leave_out(double block_pairs, const Vector6d& difference, const Vector6d& information) {
+  /// of each direction the block holds, up to a common factor. parts: the difference in other coordinates, of
+  /// which the correlations are. The more independent they are, the less of the correlations is chance.
+  void leave_out(double block_pairs, const Vector6d& difference, const Vector6d& information,
+                 const Vector6d& parts) {
     const double h = pairs_ / block_pairs;
     const Vector6d pseudo = -(h - 1) * difference;  // pseudo value minus the estimate with all
     count_ += 1;
@@ -34,7 +36,7 @@ class Jackknife {
     weights_ += 1 / (h - 1);
     information_ += information;
     information_squares_ += information.cwiseAbs2();
-    neighbours_.add(difference);
+    neighbours_.add(parts);
   }
   double count() const { return count_; }
   /// Mean of (pseudo - mean)^2 / (h - 1).
@@ -46,27 +48,28 @@ class Jackknife {
     const double student = student_factor(count_ - 1);
     return student * student * spread();
   }
-  /// Lag-one correlation of what omitting a block changes, the mean over the directions that change at all.
+  /// Lag-one correlation of what omitting a block changes, the mean over the parts that change at all.
   /// Of m equal blocks, as seen from their own mean, a correlation of r is found as r - (1 + 3 r) / m in the
   /// mean (Kendall 1954), which is undone.
   double correlation_of_neighbours(double least_equal_blocks) const {
     constexpr double least_left = 0.5;  // of r: with six blocks half of it is found
-    return mean_over_directions([&](int i) -> std::optional<double> {
+    const double m = mean_equal_blocks(least_equal_blocks);
+    return mean_over_parts([&](int i) -> std::optional<double> {
       const std::optional<double> found = neighbours_.correlation(i, 1);
       if (!found) return std::nullopt;
-      const double m = equal_blocks(i, least_equal_blocks);
       return (*found + 1 / m) / std::max(least_left, 1 - 3 / m);
     });
   }
-  /// The sum of the correlations of blocks up to most_lag apart, the mean over the directions. What their own
+  /// The sum of the correlations of blocks up to most_lag apart, the mean over the parts. What their own
   /// mean takes from each, about 1 / m, is undone.
   double sum_of_correlations(double least_equal_blocks) const {
-    return mean_over_directions([&](int i) -> std::optional<double> {
+    const double m = mean_equal_blocks(least_equal_blocks);
+    return mean_over_parts([&](int i) -> std::optional<double> {
       double sum = 0;
       for (std::size_t lag = 1; lag <= most_lag && neighbours_.count > lag + 2; ++lag) {
         const std::optional<double> found = neighbours_.correlation(i, lag);
         if (!found) return std::nullopt;
-        sum += *found + 1 / equal_blocks(i, least_equal_blocks);
+        sum += *found + 1 / m;
       }
       return sum;
     });
@@ -92,20 +95,31 @@ class Jackknife {
     return std::clamp(squares > 0 ? sum * sum / squares : count_, least, count_);
   }
 
-  /// of_direction: empty where it does not count.
-  template <typename Value>
-  static double mean_over_directions(const Value& of_direction) {
+  /// The mean over the directions that the blocks know something of.
+  double mean_equal_blocks(double least) const {
     double sum = 0, directions = 0;
     for (int i = 0; i < 6; ++i) {
-      const std::optional<double> value = of_direction(i);
-      if (!value) continue;
-      sum += *value;
+      if (!(information_squares_[i] > 0)) continue;
+      sum += equal_blocks(i, least);
       directions += 1;
     }
-    return directions > 0 ? sum / directions : 0;
+    return directions > 0 ? sum / directions : count_;
   }
 
-  /// Sums of differences and of products of those that are up to most_lag blocks apart.
+  /// of_part: empty where it does not count.
+  template <typename Value>
+  static double mean_over_parts(const Value& of_part) {
+    double sum = 0, parts = 0;
+    for (int i = 0; i < 6; ++i) {
+      const std::optional<double> value = of_part(i);
+      if (!value) continue;
+      sum += *value;
+      parts += 1;
+    }
+    return parts > 0 ? sum / parts : 0;
+  }
+
+  /// Sums of parts and of products of those that are up to most_lag blocks apart.
   struct Neighbours {
     std::size_t count = 0;
     std::array<Vector6d, most_lag> last;   ///< number k at place k % most_lag
@@ -116,25 +130,25 @@ class Jackknife {
     Neighbours() {
       for (auto* vectors : {&last, &first, &products}) vectors->fill(Vector6d::Zero());
     }
-    void add(const Vector6d& difference) {
-      sum += difference;
-      squares += difference.cwiseAbs2();
+    void add(const Vector6d& parts) {
+      sum += parts;
+      squares += parts.cwiseAbs2();
       if (count < most_lag) first[count] = sum;
       for (std::size_t lag = 1; lag <= std::min<std::size_t>(count, most_lag); ++lag)
-        products[lag - 1] += last[(count - lag) % most_lag].cwiseProduct(difference);
-      last[count % most_lag] = difference;
+        products[lag - 1] += last[(count - lag) % most_lag].cwiseProduct(parts);
+      last[count % most_lag] = parts;
       ++count;
     }
     /// Of more blocks than the lag. Empty where nothing changes, or a block cannot be omitted.
-    std::optional<double> correlation(int direction, std::size_t lag) const {
+    std::optional<double> correlation(int part, std::size_t lag) const {
       const double blocks = static_cast<double>(count), pairs = static_cast<double>(count - lag);
-      const double total = sum[direction], mean = total / blocks;
-      const double variance = squares[direction] - mean * total;
+      const double total = sum[part], mean = total / blocks;
+      const double variance = squares[part] - mean * total;
       if (!(variance > 0) || !std::isfinite(variance)) return std::nullopt;
       double of_last = 0;
-      for (std::size_t k = 1; k <= lag; ++k) of_last += last[(count - k) % most_lag][direction];
-      const double of_pairs = 2 * total - first[lag - 1][direction] - of_last;
-      return (products[lag - 1][direction] - mean * of_pairs + pairs * mean * mean) / variance;
+      for (std::size_t k = 1; k <= lag; ++k) of_last += last[(count - k) % most_lag][part];
+      const double of_pairs = 2 * total - first[lag - 1][part] - of_last;
+      return (products[lag - 1][part] - mean * of_pairs + pairs * mean * mean) / variance;
     }
   };
 

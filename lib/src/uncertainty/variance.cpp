@@ -55,22 +55,38 @@ void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, c
     blocks.information[i] = sums_of_products(transposed.empty() ? blocks.forms[i] : transposed[i], products);
 }
 
+/// Of a step in the directions that are seen: with their curvature H = LDL', L' times the step. Errors of
+/// these parts are independent, and of one size up to D, where the noise is what the weights are made for.
+/// factors: of factorise().
+Vector6d independent_parts(const Matrix6d& factors, const Vector6d& step, int shown) {
+  Vector6d parts = Vector6d::Zero();
+  for (int j = 0; j < shown; ++j) {
+    parts[j] = step[j];
+    for (int i = j + 1; i < shown; ++i) parts[j] += factors(i, j) * step[i];
+  }
+  return parts;
+}
+
 /// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
 Jackknife jackknife_of(const Blocks& blocks, const TangentForm& all, double pairs,
                        const ShownDirections& directions) {
   Jackknife jackknife(pairs);
+  Matrix6d factors = all.curvature;
+  if (!factorise(factors, directions.shown)) factors.setIdentity();
   Fours<6> steps{};
   for (std::size_t i = 0; i < blocks.pairs.size(); ++i) {
     const FourForms& forms = blocks.forms[i / four];
     const std::size_t k = i % four;
-    Vector6d step;
+    Vector6d step, change;
     if (directions.shown == 6) {
       if (k == 0) steps = TangentSpace::newton_steps_without(all, forms);
-      step = column(steps, k);
+      change = step = column(steps, k);
     } else {
-      step = directions.basis.lazyProduct(TangentSpace::newton_step(all - forms.form(k), directions.shown));
+      step = TangentSpace::newton_step(all - forms.form(k), directions.shown);
+      change = directions.basis.lazyProduct(step);
     }
-    jackknife.leave_out(blocks.pairs[i], step, column(blocks.information[i / four], k));
+    jackknife.leave_out(blocks.pairs[i], change, column(blocks.information[i / four], k),
+                        independent_parts(factors, step, directions.shown));
   }
   return jackknife;
 }
@@ -137,13 +153,30 @@ Blocks blocks_around(const Problem& problem, const ShownDirections& directions, 
 }
 
 /// What blocks that touch share makes their effects correlate even where no error lasts: a motion between two
-/// of them is in both. overlap: by how much the blocks are together more than the whole. Each motion is in
-/// 1 + overlap blocks in the mean, which alone makes a sum of correlations of overlap / (1 + overlap). With
-/// lengths of motions that fade exponentially the part 1 - overlap^2 of it is between neighbours (within
-/// 0.06).
-double correlation_by_sharing(double overlap) {
-  return overlap * (1 - overlap);
-}
+/// of them is in both, and so are all motions that span a pose or step near their border, with its noise.
+/// overlap: by how much the blocks are together more than the whole. Neighbours correlate by three quarters
+/// of it where the noise is what the weights are made for. Where nearly all motions are longer than a block
+/// (overlap near one) what is shared is spread over many blocks, little between any two. Studies:
+/// docs/accuracy.md, "What touching blocks share".
+struct Sharing {
+  /// Correlation of neighbours, as a part of the overlap: 0.75 less what errors that are not random need.
+  static constexpr double of_overlap = 0.6;
+  /// The part of the longest motions that neighbours do not share. Blocks of one step share the noise of the
+  /// steps even so: in drives of 20 motions intervals would be a tenth wider with 1.
+  static constexpr double spread_of_longest = 0.6;
+
+  explicit Sharing(double overlap) : overlap_(overlap) {
+    const double squared = overlap * overlap, fourth = squared * squared, eighth = fourth * fourth;
+    longest_ = eighth * eighth;  // from a tenth at 0.87 to one half at 0.96
+  }
+  double of_neighbours() const { return of_overlap * overlap_ * (1 - spread_of_longest * longest_); }
+  double of_near_blocks() const { return of_overlap * overlap_ * (1 - longest_); }
+  /// How many times the correlations of near blocks count: they show half of what the longest motions make.
+  double near_blocks_count() const { return 1 + longest_; }
+
+ private:
+  double overlap_, longest_;
+};
 
 /// By how many times the variance of a sum of many blocks exceeds that of as many single ones: the larger of
 /// two. Where errors fade from block to block as the lag-one correlation says (an autoregression of order
@@ -151,14 +184,16 @@ double correlation_by_sharing(double overlap) {
 /// many would (Bartlett 1946). And the correlations of near blocks add up, as errors need not fade like that.
 double of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
   constexpr double least_freedom = 2;  // below, student_factor() is too small
-  const double sharing = correlation_by_sharing(overlap);
+  const Sharing sharing(overlap);
   const double found = single.correlation_of_neighbours(options.least_equal_blocks);
-  const double r = std::clamp((found - sharing) / (1 - sharing), 0.0, options.most_correlation);
+  const double of_neighbours = sharing.of_neighbours();
+  const double r = std::clamp((found - of_neighbours) / (1 - of_neighbours), 0.0, options.most_correlation);
   const double freedom = single.count() - 1;
   const double fewer = std::max(least_freedom, freedom * (1 - r * r) / (1 + r * r));
   const double student = student_factor(std::min(fewer, freedom)) / student_factor(freedom);
   const double fading = (1 + r) / (1 - r) * student * student;
-  return std::max(fading, 1 + 2 * (single.sum_of_correlations(options.least_equal_blocks) - sharing));
+  const double of_near = single.sum_of_correlations(options.least_equal_blocks) - sharing.of_near_blocks();
+  return std::max(fading, 1 + 2 * sharing.near_blocks_count() * of_near);
 }
 
 /// The largest part of what is known of a direction that is in a block.
