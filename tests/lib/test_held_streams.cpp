@@ -85,17 +85,27 @@ TEST(HeldStreams, BesideASlowerStreamInALongDriveAreNamed) {
   EXPECT_NEAR(finding->value.value_or(0), 5, 0.1);
 }
 
-/// What explains more comes first: at a wrong scale nothing says whether the sensor moved on.
-TEST(HeldStreams, AWrongScaleIsNamedAllTheSame) {
-  testing::Streams streams = drive(Terrain::rough, 2);
-  for (std::size_t i = streams.b.size() - 1; i > 0; --i) {
-    Pose pose = to_pose(streams.b[i].pose);
-    pose.translation = 0.5 * to_pose(streams.b[i - i % 3].pose).translation;
-    streams.b[i].pose = canonical_sign(to_dual_quaternion(pose));
-  }
-  const Calibration calibration = calibrate(streams.a, streams.b);
-  EXPECT_EQ(calibration.verdict, Verdict::contradictory);
-  EXPECT_NE(find(calibration, "scale"), nullptr) << calibration.reason;
+/// On the clock, or at the scale, that is certain the other stream says that the sensor moved on.
+TEST(HeldStreams, BesideAWrongScaleOrClockTheyAreNamed) {
+  for (const bool positions : {true, false})
+    for (const bool clock : {true, false}) {
+      testing::Streams streams = drive(Terrain::rough, 2);
+      const Trajectory right = streams.b;
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        const Pose now = to_pose(right[i].pose), then = to_pose(right[i - i % 3].pose);
+        const Pose held =
+            positions ? Pose{now.rotation, then.translation} : Pose{then.rotation, now.translation};
+        streams.b[i].pose = canonical_sign(to_dual_quaternion(held));
+      }
+      if (clock)
+        streams.b = testing::late(streams.b, 3);
+      else
+        streams.b = testing::lengthened(streams.b, 0.5);
+      const Calibration calibration = calibrate(streams.a, streams.b);
+      EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+      EXPECT_NE(find(calibration, clock ? "clock_offset" : "scale"), nullptr) << calibration.reason;
+      EXPECT_NE(find(calibration, "held_b"), nullptr) << positions << clock << calibration.reason;
+    }
 }
 
 bool is_held(const Calibration& calibration) {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "../support/bounded_drive.hpp"
 #include "../support/findings.hpp"
@@ -197,20 +198,65 @@ TEST(HiddenMistakes, AStreamThatIsInvertedFromSomeTimeOnSaysSo) {
   EXPECT_TRUE(finding->remedy.starts_with("Calibrate the drive from 0 to ")) << finding->remedy;
 }
 
-/// A filter that is late by 0.3 s, of the positions alone.
+/// Late positions of one stream are early ones of the other: both are named, the late one first, and that one
+/// of them is wrong is certain.
+void expect_either(const Calibration& calibration, const std::string& first, const std::string& second,
+                   double delay) {
+  std::vector<std::string> codes;
+  for (const Finding& finding : calibration.findings) {
+    if (!finding.code.starts_with("late_positions_")) continue;
+    codes.push_back(finding.code);
+    EXPECT_FALSE(finding.certain) << finding.message;
+    EXPECT_NE(finding.message.find(", or those of "), std::string::npos) << finding.message;
+    ASSERT_TRUE(finding.value && finding.T_a_b);
+    EXPECT_NEAR(*finding.value, finding.code == first ? delay : -delay, 0.05);
+  }
+  EXPECT_EQ(codes, (std::vector<std::string>{first, second})) << calibration.reason;
+}
+
+/// A filter that is late by 0.3 s, of the positions alone. Turns that are quick and a long lever arm show in
+/// which stream.
 TEST(HiddenMistakes, PositionsThatAreLaterThanTheRotationsAreNamed) {
-  testing::Streams streams = bounded_drive();
-  EXPECT_EQ(find(calibrate(streams.a, streams.b), "late_positions_b"), nullptr);
-  streams.b = testing::with_late_positions(streams.b, 3);
-  const Calibration calibration = calibrate(streams.a, streams.b);
-  EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
-  const Finding* finding = find(calibration, "late_positions_b");
-  ASSERT_NE(finding, nullptr) << calibration.reason;
-  EXPECT_TRUE(finding->certain);
-  ASSERT_TRUE(finding->value && finding->T_a_b);
-  EXPECT_NEAR(*finding->value, 0.3, 0.05);
-  const auto off_by = [&](const DualQuaternion& T) { return extrinsic_error(streams.T, T).translation; };
-  EXPECT_LT(off_by(to_dual_quaternion(*finding->T_a_b)), 0.5 * off_by(to_dual_quaternion(calibration.T_a_b)));
+  for (const Side side : {Side::a, Side::b}) {
+    testing::Streams streams = bounded_drive();
+    EXPECT_EQ(find(calibrate(streams.a, streams.b), "late_positions_b"), nullptr);
+    Trajectory& wrong = side == Side::a ? streams.a : streams.b;
+    wrong = testing::with_late_positions(wrong, 3);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+    const bool of_a = side == Side::a;
+    const Finding* finding = find(calibration, of_a ? "late_positions_a" : "late_positions_b");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_TRUE(finding->certain);
+    EXPECT_EQ(find(calibration, of_a ? "late_positions_b" : "late_positions_a"), nullptr);
+    ASSERT_TRUE(finding->value && finding->T_a_b);
+    EXPECT_NEAR(*finding->value, 0.3, 0.05);
+    const auto off_by = [&](const Pose& T) {
+      return extrinsic_error(streams.T, to_dual_quaternion(T)).translation;
+    };
+    EXPECT_LT(off_by(finding->T_a_b.value()), 0.5 * off_by(calibration.T_a_b));
+  }
+}
+
+/// Rows off by one on a road: the verdict is as if one stream were named.
+TEST(HiddenMistakes, OnARoadEitherStreamMayHaveTheLatePositions) {
+  for (const Side side : {Side::a, Side::b}) {
+    SimulationOptions simulation;
+    simulation.terrain = Terrain::rough;
+    simulation.poses = 601;
+    simulation.relative_noise = 0.001;
+    simulation.speed_variation = 0.3;
+    simulation.seed = 7;
+    testing::Streams streams = testing::simulated_drive(simulation);
+    Trajectory& wrong = side == Side::a ? streams.a : streams.b;
+    wrong = testing::with_late_positions(wrong, 1);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+    if (side == Side::a)
+      expect_either(calibration, "late_positions_a", "late_positions_b", 0.1);
+    else
+      expect_either(calibration, "late_positions_b", "late_positions_a", 0.1);
+  }
 }
 
 /// Moved to another point of the body by p + R'l. The motions nearly agree, with an answer about a metre off.
@@ -354,7 +400,6 @@ TEST(HiddenMistakes, RotationsThatAreLaterThanThePositionsAreNamedBesideAnEstima
   const Finding* finding = find(calibration, "late_positions_b");
   if (!finding) finding = find(calibration, "late_positions_a");
   ASSERT_NE(finding, nullptr) << calibration.reason;
-  EXPECT_TRUE(finding->certain);
   EXPECT_NEAR(std::abs(*finding->value), 0.1, 0.03);
   ASSERT_TRUE(finding->T_a_b);
   EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*finding->T_a_b)).rotation, 0.01);

@@ -55,6 +55,28 @@ TEST(VerdictUnits, WithoutMetresALongUnitDoesNotMakeTheAnswerGood) {
   EXPECT_NE(unknown.reason.find("units"), std::string::npos) << unknown.reason;
 }
 
+/// Nor of streams of one frame, nor of a copy that was rounded.
+TEST(VerdictUnits, WithoutMetresOneFrameAndARoundedCopyAreSaidInUnits) {
+  const testing::Streams streams = drive(Terrain::free);
+  CalibrationOptions options;
+  options.diagnosis.unit = LengthUnit::unknown;
+  const Pose T{rotation_exp({0.3, -0.4, 1}), {0.5, 0.2, -0.1}};
+  Trajectory rounded = testing::seen_from(streams.a, to_dual_quaternion(T));
+  for (StampedPose& pose : rounded) {
+    Pose here = to_pose(pose.pose);
+    here.translation = (1e3 * here.translation).array().round() / 1e3;
+    here.rotation.coeffs() = (1e5 * here.rotation.coeffs()).array().round() / 1e5;
+    here.rotation.normalize();
+    pose.pose = canonical_sign(to_dual_quaternion(here));
+  }
+  for (const Trajectory& b : {testing::seen_from(streams.b, streams.T), rounded}) {
+    const Calibration calibration = calibrate(streams.a, b, options);
+    const Finding* finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_NE(finding->message.find(" units"), std::string::npos) << finding->message;
+  }
+}
+
 /// No finding says metres either: not of a mount that moved far, moved little, or goes back and forth.
 TEST(VerdictUnits, WithoutMetresAMovedMountIsSaidInUnits) {
   const auto said = [](const Pose& moved, bool back_and_forth, LengthUnit unit) {

@@ -319,6 +319,36 @@ inline Trajectory with_late_positions(const Trajectory& trajectory, std::size_t 
   return result;
 }
 
+/// The same of the rotations.
+inline Trajectory with_late_rotations(const Trajectory& trajectory, std::size_t poses) {
+  Trajectory result = trajectory;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Pose pose = to_pose(trajectory[i].pose), before = to_pose(trajectory[i - std::min(i, poses)].pose);
+    result[i].pose = canonical_sign(to_dual_quaternion({before.rotation, pose.translation}));
+  }
+  return result;
+}
+
+/// Positions of a slow receiver, each held for n rows of fast rotations.
+inline Trajectory with_held_positions(const Trajectory& trajectory, std::size_t n) {
+  Trajectory result = trajectory;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Pose pose = to_pose(trajectory[i].pose), new_one = to_pose(trajectory[i - i % n].pose);
+    result[i].pose = canonical_sign(to_dual_quaternion({pose.rotation, new_one.translation}));
+  }
+  return result;
+}
+
+/// The same of the rotations.
+inline Trajectory with_held_rotations(const Trajectory& trajectory, std::size_t n) {
+  Trajectory result = trajectory;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Pose pose = to_pose(trajectory[i].pose), new_one = to_pose(trajectory[i - i % n].pose);
+    result[i].pose = canonical_sign(to_dual_quaternion({new_one.rotation, pose.translation}));
+  }
+  return result;
+}
+
 /// A causal filter of first order; each pose keeps this part of the one before.
 inline Trajectory low_passed(Trajectory trajectory, double kept) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
@@ -473,9 +503,18 @@ inline std::vector<Mistake> mistakes() {
          s.b = with_angles(s.b, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(x[2], x[1], x[0]); });
        }},
       {"velocities of b as positions", "", [](Streams& s) { s.b = with_velocities(s.b); }},
-      {"b without roll and pitch", "", [](Streams& s) {
+      {"b without roll and pitch", "",
+       [](Streams& s) {
          s.b = with_angles(s.b, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(0, 0, x[2]); });
-       }}};
+       }},
+      {"positions of b a row late", "", [](Streams& s) { s.b = with_late_positions(s.b, 1); }},
+      {"rotations of b a row late", "", [](Streams& s) { s.b = with_late_rotations(s.b, 1); }},
+      {"positions of b held for three rows", "held_b", [](Streams& s) { s.b = with_held_positions(s.b, 3); }},
+      {"rotations of b held for three rows", "held_b",
+       [](Streams& s) { s.b = with_held_rotations(s.b, 3); }}};
 }
+
+/// The last of these, of rows: a few seconds, and a drive at one speed, do not show them.
+inline constexpr std::size_t mistakes_of_rows = 4;
 
 }  // namespace egocal::testing

@@ -271,6 +271,22 @@ TEST_F(RigOfFiles, WhereBothPairsNameEitherSensorTheCommonOneIsBlamed) {
   EXPECT_THAT((*turning)["remedy"].get<std::string>(), ::testing::HasSubstr("camera"));
 }
 
+// Each pair of the radar says that either of its sensors may have the late positions, and is uncertain.
+TEST_F(RigOfFiles, LatePositionsOfEitherSensorAreThoseOfTheCommonOne) {
+  const std::string files = rig("late", "--speed-variation 0.4", 900, "rough");
+  const std::string radar = folder.path("late") + "/radar.tum";
+  write_tum(radar, testing::with_late_positions(read_trajectory(radar), 3));
+  const Result result = run("solve --json" + files);
+  EXPECT_EQ(result.code, 3);
+  const json object = result.object();
+  EXPECT_EQ(object["blamed"], "radar");
+  ASSERT_FALSE(object["findings"].empty());
+  const json& finding = object["findings"][0];
+  EXPECT_EQ(finding["code"], "late_positions");
+  EXPECT_EQ(finding["sensor"], "radar");
+  EXPECT_EQ(finding["certain"], true);
+}
+
 TEST_F(RigOfFiles, ARelocalisationIsNoMovedMount) {
   const Result result = run("solve --json" + rig("jump", "--jump camera=40:0.5,0,0,0,0,5", 1200));
   EXPECT_EQ(result.code, 0);

@@ -62,12 +62,17 @@ struct PairFinding {
 
 using PairFindings = std::vector<PairFinding>;
 
+/// Late positions of either of two streams are uncertain each, but one of the two has them.
+bool certain_of_either(const Finding& finding) {
+  return finding.certain || finding.code.starts_with("late_positions_");
+}
+
 /// The certain or the uncertain findings by code, without the _a and _b that name a sensor already.
 std::map<std::string, PairFindings> findings_by_code(const RigReport& report, bool certain) {
   std::map<std::string, PairFindings> result;
   for (std::size_t i = 0; i < report.pairs.size(); ++i)
     for (const Finding& finding : report.pairs[i].findings) {
-      if (finding.certain != certain) continue;
+      if (certain_of_either(finding) != certain) continue;
       PairFinding found{i, std::nullopt, &finding};
       std::string code = finding.code;
       const RigPairAnswer& answer = report.solution.pairs[i];
@@ -84,11 +89,21 @@ bool leaves_the_answer_right(const std::string& code) {
   return code == "undersampled" || code == "frozen" || code == "too_little_motion";
 }
 
+/// Held values leave most answers right: whether they are why the pair is doubtful, or nothing else is.
+bool is_the_reason(const Calibration& pair, const Finding& finding) {
+  return pair.reason == finding.message ||
+         std::none_of(pair.findings.begin(), pair.findings.end(), [&pair](const Finding& other) {
+           return other.message == pair.reason || other.code == "mount_moved";
+         });
+}
+
 /// Whether a pair that shows it should not be used as it is.
 bool makes_bad(const RigReport& report, const PairFinding& found) {
+  const Calibration& pair = report.pairs[found.pair];
   std::string code = found.finding->code;
   if (found.sensor) code.resize(code.size() - 2);
-  return !leaves_the_answer_right(code) && report.pairs[found.pair].verdict >= Verdict::doubtful;
+  return !leaves_the_answer_right(code) && pair.verdict >= Verdict::doubtful &&
+         (code != "held" || is_the_reason(pair, *found.finding));
 }
 
 /// Whether it is of this sensor, or may be.
@@ -132,7 +147,9 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
   finding.sensor = common_sensor(report, of_code);
   const PairFinding& best = best_of(report, of_code, finding.sensor);
   finding.pair = best.pair;
-  finding.certain = best.finding->certain;
+  const bool several = std::any_of(of_code.begin(), of_code.end(),
+                                   [&](const PairFinding& found) { return found.pair != best.pair; });
+  finding.certain = best.finding->certain || (certain_of_either(*best.finding) && finding.sensor && several);
   const RigPairAnswer& answer = report.solution.pairs[best.pair];
   RigWords words;
   words.rig = request.rig;

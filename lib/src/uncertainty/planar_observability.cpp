@@ -8,6 +8,7 @@
 #include <string>
 
 #include "egocal/solvers/global.hpp"
+#include "egocal/uncertainty/plane_directions.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/hint.hpp"
@@ -94,12 +95,7 @@ std::array<bool, 6> detail::observable_in_plane(const Problem& problem, const Su
                                                 ErrorCorrelation errors,
                                                 const ObservabilityOptions& options) {
   std::array<bool, 6> result = observable_around(around, errors, options);
-  for (int i = 0; i < 3; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double along = std::abs(problem.plane_a.normal[i]);
-    result[k] = result[k] && along <= options.leak;
-    result[k + 3] = result[k + 3] && 1 - along <= options.leak;
-  }
+  for (std::size_t i = 0; i < 6; ++i) result[i] = result[i] && in_plane(problem.plane_a, i);
   return result;
 }
 

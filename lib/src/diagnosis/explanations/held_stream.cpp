@@ -35,22 +35,41 @@ Finding worded(const Held& found, char which) {
   return finding;
 }
 
+/// Under which the streams belong together but for what is held.
+struct Corrected {
+  ClockModel clock;
+  double scale = 1;  ///< of the lengths of b
+};
+
+/// By what was found for certain.
+Corrected corrected_by(const std::vector<Finding>& findings, const ClockModel& given) {
+  Corrected result{given, 1};
+  for (const Finding& one : findings) {
+    if (!one.certain || !one.value) continue;
+    if (one.code == "clock_offset") result.clock = {*one.value, 0, 0};
+    if (one.code == "scale" || one.code == "units") result.scale = *one.value;
+  }
+  return result;
+}
+
 /// The answer of the rows with new values, from motions as long as those that are compared elsewhere. Empty:
 /// there are too few.
-std::optional<Pose> fitted_to_new(const Held& found, Side side, const Evidence& evidence, double max_gap,
+std::optional<Pose> fitted_to_new(const Held& found, Side side, const Evidence& evidence,
+                                  const Corrected& corrected, double max_gap,
                                   const DiagnosisOptions& diagnosis) {
   const Trajectory& own = side == Side::a ? evidence.streams.a : evidence.streams.b;
   Trajectory measured;
   for (const std::size_t i : found.fresh) measured.push_back(own[i]);
-  const Motions motions = motions_of_part(measured, side, evidence, max_gap, diagnosis);
+  const Motions motions =
+      scaled(motions_of_part(measured, side, evidence, corrected.clock, max_gap, diagnosis), corrected.scale);
   if (motions.all.size() < diagnosis.motions.least) return std::nullopt;
   return to_pose(robust_fit(motions, diagnosis.fit).T);
 }
 
 /// What an extrinsic leaves of one half, in the median [m or rad].
-double median_left(const std::vector<MotionPair>& pairs, const Pose& T, bool positions) {
+double median_left(const std::vector<MotionPair>& pairs, const Pose& T, double scale_b, bool positions) {
   std::vector<double> left;
-  for (const Motion& motion : motions_of(pairs).all) {
+  for (const Motion& motion : scaled(motions_of(pairs), scale_b).all) {
     const Residual residual = residual_at(motion, T);
     left.push_back(positions ? residual.translation : residual.rotation);
   }
@@ -58,12 +77,12 @@ double median_left(const std::vector<MotionPair>& pairs, const Pose& T, bool pos
 }
 
 /// Whether the sensor of this side moves on while its values repeat.
-bool moves_on(const Held& found, Side side, const Evidence& evidence, double max_gap, const Pose& T,
-              const HeldStreamOptions& options) {
+bool moves_on(const Held& found, Side side, const Evidence& evidence, const Corrected& corrected,
+              double max_gap, const Pose& T, const HeldStreamOptions& options) {
   const bool of_a = side == Side::a;
   const Trajectory &own = of_a ? evidence.streams.a : evidence.streams.b,
                    &other = of_a ? evidence.streams.b : evidence.streams.a;
-  const double shift_us = (of_a ? -1e6 : 1e6) * evidence.clock.offset, gap_us = 1e6 * max_gap;
+  const double shift_us = (of_a ? -1e6 : 1e6) * corrected.clock.offset, gap_us = 1e6 * max_gap;
   std::vector<MotionPair> between, meanwhile;
   const std::size_t each = std::max<std::size_t>(1, found.repeating.size() / options.most);
   std::size_t from = 0;
@@ -84,8 +103,8 @@ bool moves_on(const Held& found, Side side, const Evidence& evidence, double max
     meanwhile.push_back(motion(rows.last, *last));
   }
   if (meanwhile.size() < options.rows.least) return false;
-  return median_left(meanwhile, T, found.positions) >
-         options.moved * median_left(between, T, found.positions);
+  return median_left(meanwhile, T, corrected.scale, found.positions) >
+         options.moved * median_left(between, T, corrected.scale, found.positions);
 }
 
 struct HeldHalf {
@@ -93,23 +112,29 @@ struct HeldHalf {
   Pose T;
 };
 
-std::optional<HeldHalf> held_half(Side side, const Evidence& evidence, double max_gap,
-                                  const DiagnosisOptions& diagnosis, const HeldStreamOptions& options) {
+/// As the streams are given; and else under what was found.
+std::optional<HeldHalf> held_half(Side side, const Evidence& evidence, const Corrected& corrected,
+                                  double max_gap, const DiagnosisOptions& diagnosis,
+                                  const HeldStreamOptions& options) {
   std::optional<Held> found =
       repeating_half(side == Side::a ? evidence.streams.a : evidence.streams.b, options.rows);
   if (!found) return std::nullopt;
-  const std::optional<Pose> T = fitted_to_new(*found, side, evidence, max_gap, diagnosis);
-  if (!T || !moves_on(*found, side, evidence, max_gap, *T, options)) return std::nullopt;
-  return HeldHalf{*std::move(found), *T};
+  for (const Corrected& how : {Corrected{evidence.clock, 1}, corrected}) {
+    const std::optional<Pose> T = fitted_to_new(*found, side, evidence, how, max_gap, diagnosis);
+    if (T && moves_on(*found, side, evidence, how, max_gap, *T, options))
+      return HeldHalf{*std::move(found), *T};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 std::vector<Finding> held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
-                                  const HeldStreamOptions& options) {
+                                  const std::vector<Finding>& beside, const HeldStreamOptions& options) {
+  const Corrected corrected = corrected_by(beside, evidence.clock);
   std::vector<Finding> findings;
   for (const Side side : {Side::a, Side::b}) {
-    const std::optional<HeldHalf> found = held_half(side, evidence, max_gap, diagnosis, options);
+    const std::optional<HeldHalf> found = held_half(side, evidence, corrected, max_gap, diagnosis, options);
     if (!found) continue;
     findings.push_back(worded(found->rows, side == Side::a ? 'a' : 'b'));
     findings.back().T_a_b = found->T;
@@ -119,7 +144,7 @@ std::vector<Finding> held_streams(const Evidence& evidence, double max_gap, cons
 
 void name_held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
                        std::vector<Finding>& findings) {
-  const std::vector<Finding> held = held_streams(evidence, max_gap, diagnosis);
+  const std::vector<Finding> held = held_streams(evidence, max_gap, diagnosis, findings);
   for (const Finding& one : held) {
     const double period = 1 / one.value.value();
     std::erase_if(findings, [&](const Finding& other) {

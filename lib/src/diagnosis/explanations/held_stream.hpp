@@ -24,8 +24,9 @@ struct HeldStreamOptions {
 
 /// held_a, held_b, certain: the positions, or the rotations, of a stream repeat although the sensor moves on,
 /// as the other stream says. With the answer of the poses that are new. max_gap: of interpolation [s].
+/// beside: what else was found; the other stream says so on the clock and at the scale that are certain.
 std::vector<Finding> held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
-                                  const HeldStreamOptions& options = {});
+                                  const std::vector<Finding>& beside, const HeldStreamOptions& options = {});
 
 /// Puts them before the others, without those that are the same with less certainty: held values are late.
 void name_held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,

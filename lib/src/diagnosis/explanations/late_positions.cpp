@@ -87,45 +87,70 @@ LatePositions fitted(const Explained& given, const Changes& changes, Side side,
   return late;
 }
 
-}  // namespace
-
-std::optional<LatePositions> best_late_positions(const Instants& instants, const Explained& given,
-                                                 const DiagnosisOptions& options, std::optional<Side> only,
-                                                 const LatePositionsOptions& late) {
-  if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
-  const ByDelay changes = changes_of(instants, given.motions, late);
-  std::optional<LatePositions> best;
-  for (const Side side : {Side::b, Side::a}) {
-    if (only && side != *only) continue;
-    LatePositions here = fitted(given, changes.of(side), side, options);
-    if (std::isfinite(here.delay) && (!best || here.comparison.gain > best->comparison.gain))
-      best = std::move(here);
-  }
-  return best;
+/// "The positions of b are about 0.30 s later than its rotations".
+std::string claim_of(const LatePositions& found) {
+  return format("he positions of %s are about %.2f s %s than its rotations",
+                mark(found.side == Side::a ? 'a' : 'b'), std::abs(found.delay),
+                found.delay > 0 ? "later" : "earlier");
 }
 
-bool certain(const LatePositions& found, const DiagnosisOptions& options, const LatePositionsOptions& late) {
-  return std::abs(found.delay) >= late.least && explains(found.explained, options) &&
-         number_explains(found.comparison, options);
-}
-
-Finding worded(const LatePositions& found) {
+Finding worded_one(const LatePositions& found, const LatePositions* other, const std::string& clock) {
   const char which = found.side == Side::a ? 'a' : 'b';
   Finding finding;
   finding.code = std::string("late_positions_") + which;
-  finding.certain = true;
+  finding.certain = other == nullptr;
   finding.improvement = std::exp(found.comparison.gain);
   finding.T_a_b = to_pose(found.explained.fit.T);
   finding.value = found.delay;
-  say(finding,
-      format(
-          "The positions of %s are about %.2f s %s than its rotations: the squared residuals are %.3g times "
-          "smaller with both at the same times.",
-          mark(which), std::abs(found.delay), found.delay > 0 ? "later" : "earlier", finding.improvement),
+  const std::string open =
+      other ? format(", or those of %s %s by as much", mark(other->side == Side::a ? 'a' : 'b'),
+                     other->delay > 0 ? "later" : "earlier")
+            : "";
+  say(finding, (clock.empty() ? "T" : clock + " t") + claim_of(found),
       format("Give positions and rotations of %s of the same times: no filter that smooths or delays one of "
              "them.",
-             mark(which)));
+             mark(which)),
+      open + format(": the squared residuals are %.3g times smaller with both at the same times.",
+                    finding.improvement));
   return finding;
+}
+
+}  // namespace
+
+std::optional<LateOfEither> best_late_positions(const Instants& instants, const Explained& given,
+                                                const DiagnosisOptions& options, std::optional<Side> behind,
+                                                const LatePositionsOptions& late) {
+  if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
+  const ByDelay changes = changes_of(instants, given.motions, late);
+  std::optional<LatePositions> best, other;
+  for (const Side side : {Side::b, Side::a}) {
+    LatePositions here = fitted(given, changes.of(side), side, options);
+    if (!std::isfinite(here.delay)) continue;
+    (best ? other : best) = std::move(here);
+  }
+  if (!best) return std::nullopt;
+  if (other && other->comparison.gain > best->comparison.gain) std::swap(best, other);
+  if (other && better(compare(other->explained, best->explained), options.alike, options)) other.reset();
+  const bool other_first = other && (behind ? other->side == *behind : other->delay > 0);
+  return LateOfEither{*std::move(best), std::move(other), other_first};
+}
+
+bool certain(const LateOfEither& found, const DiagnosisOptions& options, const LatePositionsOptions& late) {
+  return std::abs(found.best.delay) >= late.least && explains(found.best.explained, options) &&
+         number_explains(found.best.comparison, options);
+}
+
+std::vector<Finding> worded(const LateOfEither& found, const char* clock) {
+  const LatePositions* const other = found.other ? &*found.other : nullptr;
+  std::vector<Finding> findings{worded_one(found.best, other, clock)};
+  if (other)
+    findings.insert(found.other_first ? findings.begin() : findings.end(),
+                    worded_one(*other, &found.best, clock));
+  return findings;
+}
+
+bool certain_of_either(const Finding& finding) {
+  return finding.certain || finding.code.starts_with("late_positions_");
 }
 
 }  // namespace egocal::detail

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
 
@@ -29,19 +30,33 @@ struct LatePositions {
   Comparison comparison;  ///< with the motions as they are
 };
 
-/// The one that suits the motions better. instants, given: the drive, and its motions with the extrinsic that
-/// suits them as they are. only: of this stream; empty: of either. Empty where there are too few motions.
-std::optional<LatePositions> best_late_positions(const Instants& instants, const Explained& given,
-                                                 const DiagnosisOptions& options,
-                                                 std::optional<Side> only = {},
-                                                 const LatePositionsOptions& late = {});
+/// The stream whose late positions suit the motions better, and the other one where its own suit them about
+/// as well: positions of one that are late are those of the other one early, but for what the lever arm turns
+/// meanwhile.
+struct LateOfEither {
+  LatePositions best;
+  std::optional<LatePositions> other;
+  bool other_first = false;  ///< it is the likelier one
+};
+
+/// instants, given: the drive, and its motions with the extrinsic that suits them as they are. behind: the
+/// likelier stream where either may be the one; empty: the one whose positions are late, as filters delay.
+/// Empty where there are too few motions.
+std::optional<LateOfEither> best_late_positions(const Instants& instants, const Explained& given,
+                                                const DiagnosisOptions& options,
+                                                std::optional<Side> behind = {},
+                                                const LatePositionsOptions& late = {});
 
 /// Whether the delay explains the drive, and more than chance. Along a straight way at one speed, and in
 /// steady turns, a delay cannot be seen: it looks like a longer lever arm.
-bool certain(const LatePositions& found, const DiagnosisOptions& options,
+bool certain(const LateOfEither& found, const DiagnosisOptions& options,
              const LatePositionsOptions& late = {});
 
-/// late_positions_a or late_positions_b, certain, with the extrinsic at that delay.
-Finding worded(const LatePositions& found);
+/// late_positions_a or late_positions_b, certain, with the extrinsic at that delay. Both, and uncertain,
+/// where either may be the one. clock: of what the delay is seen, as "At this clock"; may be empty.
+std::vector<Finding> worded(const LateOfEither& found, const char* clock = "");
+
+/// Something is wrong for certain, although it may be open with which stream.
+bool certain_of_either(const Finding& finding);
 
 }  // namespace egocal::detail

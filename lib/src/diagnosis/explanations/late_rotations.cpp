@@ -6,13 +6,12 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
-#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/pairing/time_offset.hpp"
 
 namespace egocal::detail {
@@ -35,25 +34,13 @@ OnClock on_clock(const Evidence& evidence, double offset, double max_gap, const 
   return result;
 }
 
-/// Filters delay: the stream whose rotations are behind those of the other one.
-std::optional<LatePositions> late_of_either(const OnClock& clock, Side behind,
-                                            const DiagnosisOptions& options) {
-  for (const std::optional<Side> side : {std::optional(behind), std::optional<Side>()})
-    if (std::optional<LatePositions> found =
-            best_late_positions(clock.instants, clock.explained, options, side);
-        found && certain(*found, options))
-      return found;
-  return std::nullopt;
-}
-
-/// clock: "At this clock".
-Finding worded_at(const char* clock, const LatePositions& found) {
-  Finding finding = worded(found);
-  FindingWords words = finding.words;
-  words.claim[0] = 't';  // "The positions of"
-  words.claim = std::string(clock) + " " + words.claim;
-  say(finding, std::move(words));
-  return finding;
+/// At this clock. Filters delay: the likelier stream is the one whose rotations are behind those of the other
+/// one.
+std::optional<LateOfEither> late_of_either(const OnClock& clock, Side behind,
+                                           const DiagnosisOptions& options) {
+  std::optional<LateOfEither> found = best_late_positions(clock.instants, clock.explained, options, behind);
+  if (found && !certain(*found, options)) found.reset();
+  return found;
 }
 
 /// Of all motions of the middle of the drive, by their rotations alone.
@@ -71,24 +58,27 @@ std::optional<TimeOffset> offset_of_rotations(const Evidence& evidence, double m
 }
 
 /// Where the offset in force is a compromise.
-std::optional<Finding> between_two_clocks(const Evidence& evidence, double max_gap,
-                                          const DiagnosisOptions& options, WrongStream& wrong,
-                                          const LateRotationsOptions& late) {
-  const std::optional<LatePositions>& first = wrong.late();
-  if (!first || first->comparison.gain < late.first_gain || first->comparison.sigmas < late.first_sigmas)
-    return std::nullopt;
+std::vector<Finding> between_two_clocks(const Evidence& evidence, double max_gap,
+                                        const DiagnosisOptions& options, WrongStream& wrong,
+                                        const LateRotationsOptions& late) {
+  const std::optional<LateOfEither>& first = wrong.late();
+  if (!first || first->best.comparison.gain < late.first_gain ||
+      first->best.comparison.sigmas < late.first_sigmas)
+    return {};
   const std::optional<TimeOffset> found = offset_of_rotations(evidence, max_gap, options, late);
-  if (!found) return std::nullopt;
+  if (!found) return {};
   const double more = found->seconds - evidence.clock.offset;
-  if (!(std::abs(more) > late.sigmas * found->stddev)) return std::nullopt;
+  if (!(std::abs(more) > late.sigmas * found->stddev)) return {};
   const OnClock clock = on_clock(evidence, found->seconds, max_gap, options);
-  if (clock.explained.motions.all.empty()) return std::nullopt;
-  std::optional<LatePositions> best = late_of_either(clock, more < 0 ? Side::b : Side::a, options);
-  if (!best) return std::nullopt;
+  if (clock.explained.motions.all.empty()) return {};
+  std::optional<LateOfEither> either = late_of_either(clock, more < 0 ? Side::b : Side::a, options);
+  if (!either) return {};
   // both together, against one clock for both
-  best->comparison = compare(evidence.given.explained, best->explained);
-  if (!number_explains(best->comparison, options)) return std::nullopt;
-  return worded_at("At the clock of the rotations", *best);
+  const Explained& given = evidence.given.explained;
+  either->best.comparison = compare(given, either->best.explained);
+  if (either->other) either->other->comparison = compare(given, either->other->explained);
+  if (!number_explains(either->best.comparison, options)) return {};
+  return worded(*either, "At the clock of the rotations");
 }
 
 }  // namespace
@@ -100,21 +90,21 @@ void name_late_rotations(const Evidence& evidence, double max_gap, const Diagnos
     return one.certain && one.code == "clock_offset" && one.value;
   });
   if (std::any_of(findings.begin(), findings.end(),
-                  [](const Finding& one) { return one.certain && one.code != "clock_offset"; }))
+                  [](const Finding& one) { return certain_of_either(one) && one.code != "clock_offset"; }))
     return;
   if (clock == findings.end()) {
-    if (std::optional<Finding> found = between_two_clocks(evidence, max_gap, options, wrong, late))
-      findings.insert(findings.begin(), *std::move(found));
+    const std::vector<Finding> found = between_two_clocks(evidence, max_gap, options, wrong, late);
+    findings.insert(findings.begin(), found.begin(), found.end());
     return;
   }
   const OnClock corrected = on_clock(evidence, *clock->value, max_gap, options);
   if (corrected.explained.motions.all.empty()) return;
-  const std::optional<LatePositions> found =
+  const std::optional<LateOfEither> found =
       late_of_either(corrected, *clock->value < 0 ? Side::b : Side::a, options);
   if (!found) return;
-  Finding finding = worded_at("At this clock", *found);
-  clock->T_a_b = finding.T_a_b;
-  findings.insert(std::next(clock), std::move(finding));
+  const std::vector<Finding> both = worded(*found, "At this clock");
+  clock->T_a_b = both.front().T_a_b;
+  findings.insert(std::next(clock), both.begin(), both.end());
 }
 
 }  // namespace egocal::detail

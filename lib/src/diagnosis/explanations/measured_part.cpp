@@ -7,11 +7,11 @@
 
 namespace egocal::detail {
 
-Motions motions_of_part(const Trajectory& measured, Side side, const Evidence& evidence, double max_gap,
-                        const DiagnosisOptions& options) {
+Motions motions_of_part(const Trajectory& measured, Side side, const Evidence& evidence,
+                        const ClockModel& clock, double max_gap, const DiagnosisOptions& options) {
   const Trajectory &a = evidence.streams.a, &b = evidence.streams.b;
   const Instants instants = synchronised(side == Side::a ? measured : a, side == Side::b ? measured : b,
-                                         evidence.clock, max_gap, 1, options.motions);
+                                         clock, max_gap, 1, options.motions);
   if (!(instants.period > 0)) return {};
   const double length = evidence.stride * evidence.instants.period;
   const int stride = std::max(1, static_cast<int>(std::lround(length / instants.period)));

@@ -34,6 +34,12 @@ std::vector<Finding> more_likely(std::vector<Finding> first, std::vector<Finding
   return first;
 }
 
+double best_improvement(const std::vector<Finding>& findings) {
+  double best = 0;
+  for (const Finding& finding : findings) best = std::max(best, finding.improvement);
+  return best;
+}
+
 bool of_reading_or_clock(const Finding& finding) {
   const std::string_view code = finding.code;
   return code.starts_with("axes_") || code.starts_with("quaternion_order_") || code == "inverted_a" ||
@@ -54,7 +60,7 @@ const std::vector<Finding>& WrongStream::columns() {
   return *columns_;
 }
 
-const std::optional<LatePositions>& WrongStream::late() {
+const std::optional<LateOfEither>& WrongStream::late() {
   if (!late_)
     late_ = mode_ == Mode::planar
                 ? std::nullopt
@@ -68,14 +74,14 @@ const std::vector<Finding>& WrongStream::best() {
   if (mode_ == Mode::planar) return *best_;
   const Explained& given = evidence_.given.explained;
   std::vector<Finding> best = turning_scale(evidence_.instants, given, options_);
-  std::optional<Finding> of_late;
-  if (late() && certain(*late(), options_)) of_late = worded(*late());
-  for (std::optional<Finding> finding :
-       {turned_lever_arm(evidence_.instants, given, options_), std::move(of_late)})
-    if (finding && (best.empty() || best.front().improvement < finding->improvement))
-      best = {*std::move(finding)};
-  if (!columns().empty() && (best.empty() || best.front().improvement < columns().front().improvement))
-    best = columns();
+  const auto take = [&best](std::vector<Finding> found) {
+    if (!found.empty() && (best.empty() || best_improvement(best) < best_improvement(found)))
+      best = std::move(found);
+  };
+  if (std::optional<Finding> arm = turned_lever_arm(evidence_.instants, given, options_))
+    take({*std::move(arm)});
+  if (late() && certain(*late(), options_)) take(worded(*late()));
+  take(columns());
   // small angles times a factor are nearly those of rotation vectors: both are named where both fit
   return *(best_ = more_likely(std::move(best), contents(), options_.alike));
 }

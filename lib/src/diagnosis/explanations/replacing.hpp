@@ -24,7 +24,7 @@ class WrongStream {
   const std::vector<Finding>& contents();
   const std::vector<Finding>& columns();
   /// Certain or not; empty where there are too few motions.
-  const std::optional<LatePositions>& late();
+  const std::optional<LateOfEither>& late();
   /// What explains most of these, late positions, a lever arm that was turned wrongly, and turning too far.
   const std::vector<Finding>& best();
 
@@ -33,7 +33,7 @@ class WrongStream {
   Mode mode_;
   const DiagnosisOptions& options_;
   std::optional<std::vector<Finding>> contents_, columns_, best_;
-  std::optional<std::optional<LatePositions>> late_;
+  std::optional<std::optional<LateOfEither>> late_;
 };
 
 /// A mount that moved by much looks like other axes, another clock or another recording: it is named instead

@@ -12,15 +12,14 @@
 #include "diagnosis/goal/goal_spread.hpp"
 #include "diagnosis/goal/manoeuvres.hpp"
 #include "egocal/directions.hpp"
+#include "egocal/uncertainty/plane_directions.hpp"
 
 namespace egocal {
 
 namespace detail {
 
 bool expected(const Answered& answered, std::size_t direction) {
-  if (answered.problem.mode != Mode::planar) return true;
-  const double normal = std::abs(answered.problem.plane_a.normal[static_cast<int>(direction % 3)]);
-  return direction < 3 ? normal < 0.5 : normal > 0.5;
+  return answered.problem.mode != Mode::planar || in_plane(answered.problem.plane_a, direction);
 }
 
 namespace {

@@ -172,7 +172,7 @@ bool explained_by_rounding(const Left& left, const RoundedCopyOptions& options) 
 }  // namespace
 
 std::optional<Finding> rounded_copy(const Trajectory& a, const Trajectory& b, const Instants& instants,
-                                    const RoundedCopyOptions& options) {
+                                    bool metres, const RoundedCopyOptions& options) {
   if (instants.size() < options.fewest) return std::nullopt;
   const auto motions_over = [&](std::size_t stride) {
     return motions_of(instants, {}, {}, static_cast<int>(std::max<std::size_t>(1, stride)), options.motions);
@@ -198,9 +198,10 @@ std::optional<Finding> rounded_copy(const Trajectory& a, const Trajectory& b, co
   Finding finding;
   finding.code = "same_stream";
   finding.message = format(
-      "The motions agree to the rounding of the files (%.2g deg and %.2g m): one stream was made from the "
+      "The motions agree to the rounding of the files (%.2g deg and %s): one stream was made from the "
       "other, or both were simulated without noise.",
-      of_longer.rotation_of_rounding * 180 / std::numbers::pi, of_longer.translation_of_rounding);
+      of_longer.rotation_of_rounding * 180 / std::numbers::pi,
+      length_in_words(of_longer.translation_of_rounding, metres).c_str());
   finding.remedy = "Give what each sensor measured by itself; ignore this where the streams were simulated.";
   return finding;
 }

@@ -33,9 +33,9 @@ struct RoundedCopyOptions {
   std::size_t parts = 32;     ///< of the drive that the longer motions span; the shorter ones an eighth
 };
 
-/// same_stream, uncertain. What rounding leaves does not grow with the length of the motions, other noise
-/// does: both short and long ones must agree to it.
+/// same_stream, uncertain. metres: what the lengths are in, or units of their own. What rounding leaves does
+/// not grow with the length of the motions, other noise does: both short and long ones must agree to it.
 std::optional<Finding> rounded_copy(const Trajectory& a, const Trajectory& b, const Instants& instants,
-                                    const RoundedCopyOptions& options = {});
+                                    bool metres, const RoundedCopyOptions& options = {});
 
 }  // namespace egocal::detail

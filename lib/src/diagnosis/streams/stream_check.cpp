@@ -155,7 +155,8 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
   check('a', steps.frozen_a, steps.travelled_a);
   check('b', steps.frozen_b, steps.travelled_b);
   if (findings.empty())
-    if (std::optional<Finding> copy = rounded_copy(a, b, instants)) findings.push_back(*std::move(copy));
+    if (std::optional<Finding> copy = rounded_copy(a, b, instants, options.metres))
+      findings.push_back(*std::move(copy));
   return findings;
 }
 
@@ -176,9 +177,10 @@ std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOpt
   Finding finding;
   finding.code = "same_stream";
   finding.message = format(
-      "The answer is the identity to %.2f deg and %.1f cm: both streams may be of one frame, such as that of "
-      "the vehicle.",
-      x.tail<3>().norm() * 180 / std::numbers::pi, 100 * x.head<3>().norm());
+      "The answer is the identity to %.2f deg and %s: both streams may be of one frame, such as that of the "
+      "vehicle.",
+      x.tail<3>().norm() * 180 / std::numbers::pi,
+      length_in_words(x.head<3>().norm(), options.metres).c_str());
   finding.remedy =
       "Give the poses of the sensors themselves, not moved to a common frame; ignore this where the sensors "
       "really sit side by side and look the same way.";

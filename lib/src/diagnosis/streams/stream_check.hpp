@@ -33,6 +33,7 @@ struct StreamCheckOptions {
   /// Half of the motions agree to less [rad, and as a part of their length]: rounding, and a hundredth of
   /// what two sensors leave.
   double of_rounding = 1e-5;
+  bool metres = true;  ///< what the lengths of the streams are in, or units of their own
 };
 
 /// Certain: the poses of both sensors are the same.

@@ -7,11 +7,12 @@
 #include <utility>
 
 #include "diagnosis/explanations/askew_rotations.hpp"
+#include "diagnosis/explanations/late_positions.hpp"
 
 namespace egocal::detail {
 
 bool explains(const Finding& finding, const DiagnosisOptions& options) {
-  return finding.certain || finding.code == "samples" ||
+  return certain_of_either(finding) || finding.code == "samples" ||
          (finding.code != "inverted_both" && finding.improvement > options.overwhelming);
 }
 
@@ -33,8 +34,9 @@ void name_askew_rotations(const Evidence& evidence, const Answered& answered, co
                           std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return;
   for (const Finding& finding : findings)
-    if ((finding.certain && !finding.code.starts_with("undersampled_")) || finding.code == "mount_moved" ||
-        finding.code == "scale_change" || finding.code == "samples" || finding.code == "odometry")
+    if ((certain_of_either(finding) && !finding.code.starts_with("undersampled_")) ||
+        finding.code == "mount_moved" || finding.code == "scale_change" || finding.code == "samples" ||
+        finding.code == "odometry")
       return;
   if (std::optional<Finding> askew = askew_rotations(evidence.instants, evidence.stride, answered, options))
     findings.push_back(*std::move(askew));

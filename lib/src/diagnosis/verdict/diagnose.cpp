@@ -15,6 +15,7 @@
 #include "diagnosis/explanations/clock_check.hpp"
 #include "diagnosis/explanations/forward.hpp"
 #include "diagnosis/explanations/held_stream.hpp"
+#include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/explanations/late_rotations.hpp"
 #include "diagnosis/explanations/planes.hpp"
 #include "diagnosis/explanations/replacing.hpp"
@@ -55,13 +56,6 @@ bool one_is_inverted(const std::vector<Finding>& findings, const DiagnosisOption
   return named("inverted_a") && named("inverted_b");
 }
 
-/// With a tolerance of the translation that suits the unit of the lengths.
-DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options) {
-  if (options.unit != LengthUnit::unknown || !(motions.rotation > 0)) return options;
-  options.tolerance_translation = options.tolerance_rotation * motions.translation / motions.rotation;
-  return options;
-}
-
 /// What is unknown by that counts as unknown.
 void add_lost_on_lines(const Evidence& evidence, Side side, double max_gap, const DiagnosisOptions& options,
                        Answered& answered) {
@@ -93,7 +87,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   result.findings = foreseen.findings;
   if (answered.problem.mode == Mode::planar)
     for (Finding& finding :
-         check_planes(motions, answered.problem.plane_a, answered.problem.plane_b, options.planes))
+         check_planes(evidence.given.explained, answered.problem.plane_a, answered.problem.plane_b,
+                      options.unit == LengthUnit::metres, options.planes))
       result.findings.push_back(std::move(finding));
   // while the sensors stand, noise would be compared with noise
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
@@ -121,13 +116,13 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
   name_wrong_scale(evidence, pairing, options, result.findings);
   StreamCheckOptions checks;
+  checks.metres = options.unit == LengthUnit::metres;
   if (options.unit == LengthUnit::unknown) {
     const double of_a_metre = options.tolerance_translation / DiagnosisOptions().tolerance_translation;
     checks.close *= of_a_metre;
     checks.known_translation *= of_a_metre;
   }
-  if (std::none_of(result.findings.begin(), result.findings.end(),
-                   [](const Finding& one) { return one.certain; }))
+  if (std::none_of(result.findings.begin(), result.findings.end(), certain_of_either))
     // that one stream was made from the other explains an answer that is the identity, too
     for (const std::vector<Finding>& found :
          {made_from_each_other(result.fit), in_one_frame(answered, checks)})
@@ -196,6 +191,10 @@ Diagnosis diagnose(std::span<const MotionPair> pairs, const Answered& answered,
   Misfit misfit;
   if (motions.all.size() >= options.motions.least) {
     misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
+    if (answered.problem.mode == Mode::planar)
+      result.findings =
+          check_planes({motions, robust_fit(motions, options.fit)}, answered.problem.plane_a,
+                       answered.problem.plane_b, options.unit == LengthUnit::metres, options.planes);
   } else {
     result.findings.push_back(too_little_motion(motions.all.size(), options));
   }

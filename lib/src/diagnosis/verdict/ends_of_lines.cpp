@@ -76,7 +76,7 @@ std::array<double, 6> lost_on_lines(const Evidence& evidence, Side side, double 
   std::array<double, 6> stddev{};
   const Trajectory ends = ends_of(side == Side::a ? evidence.streams.a : evidence.streams.b, lines);
   if (ends.size() < lines.least) return stddev;
-  const Motions motions = motions_of_part(ends, side, evidence, max_gap, options);
+  const Motions motions = motions_of_part(ends, side, evidence, evidence.clock, max_gap, options);
   if (motions.all.size() < lines.least) return stddev;
   const auto change_without = [&](std::size_t part) {
     return frame_a_difference(answered.T_a_b, fitted_without(part, lines.parts, motions, options.fit));

@@ -19,7 +19,9 @@ Foreseen foresee_streams(const Trajectory& a, const Trajectory& b, const Pairing
   Foreseen foreseen{a, b, pairing, options,
                     gather(a, b, {pairing.time_offset, 0, 0}, pairing.max_gap, options)};
   if (foreseen.evidence.given.explained.motions.all.size() < options.motions.least) return foreseen;
-  foreseen.findings = check_streams(a, b, foreseen.evidence.instants);
+  StreamCheckOptions checks;
+  checks.metres = options.unit == LengthUnit::metres;
+  foreseen.findings = check_streams(a, b, foreseen.evidence.instants, checks);
   if (pairing.mode == Mode::planar)  // level positions are what planar mode is for
     std::erase_if(foreseen.findings, [](const Finding& one) { return one.code.starts_with("flat_"); });
   const bool still = standing_still(foreseen.evidence.instants);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/goal/goal.hpp"
 #include "diagnosis/verdict/stability.hpp"
 #include "diagnosis/words/wording.hpp"
@@ -165,6 +166,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
   for (const Finding& finding : diagnosis.findings) {
     Verdict verdict = Verdict::good;
     const double far = shift(finding, answered, options);
+    const bool certain = certain_of_either(finding);
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
     else if (undersampling(finding))
@@ -172,11 +174,11 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     else if (stream_fault(finding))
       verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
     else if (misread(finding) || refutes(finding, far, options) ||
-             (finding.certain && (far > 1 || finding.improvement > options.overwhelming)))
+             (certain && (far > 1 || finding.improvement > options.overwhelming)))
       verdict = Verdict::contradictory;
     else if (finding.code == "mount_moved" || finding.code == "scale_change" ||
-             (finding.certain && far > 0.5) || significant_scale(finding, answered, options.scale_check) ||
-             (casts_doubt(finding) && far > 1))
+             finding.code.starts_with("plane_") || (certain && far > 0.5) ||
+             significant_scale(finding, answered, options.scale_check) || (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }
@@ -205,6 +207,12 @@ Opinion of_fit(const Misfit& misfit, const Answered& answered, const DiagnosisOp
 }
 
 }  // namespace
+
+DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options) {
+  if (options.unit != LengthUnit::unknown || !(motions.rotation > 0)) return options;
+  options.tolerance_translation = options.tolerance_rotation * motions.translation / motions.rotation;
+  return options;
+}
 
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
@@ -240,8 +248,11 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
     diagnosis.verdict = Verdict::incomplete;
     diagnosis.reason = "The motions agree; the goal is not reached yet.";
   } else if (diagnosis.reason.empty()) {
-    diagnosis.reason =
-        format("The motions agree to %.2g %%, and all directions are known.", 100 * misfit.at_answer);
+    diagnosis.reason = format("The motions agree to %.2g %%, and all directions %s.", 100 * misfit.at_answer,
+                              answered.problem.mode == Mode::planar
+                                  ? "in the plane are known; height, roll and pitch are as good as the "
+                                    "ground planes"
+                                  : "are known");
   }
 }
 

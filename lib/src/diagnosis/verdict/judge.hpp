@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "diagnosis/motions/motions.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
@@ -12,6 +13,9 @@ struct Misfit {
   double best = 0;    ///< at the extrinsic that suits the motions best
   double median = 0;  ///< residual at the answer that half of the motion keeps below
 };
+
+/// With a tolerance of the translation that suits the unit of the lengths.
+DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options);
 
 /// Sets verdict and reason from fit, findings and what is known of each direction.
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,

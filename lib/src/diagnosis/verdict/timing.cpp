@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diagnosis/explanations/clock_check.hpp"
+#include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/streams/undersampling.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -30,7 +31,7 @@ void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& resu
   if (answered.problem.mode == Mode::planar) return;
   const auto certain = [&](const auto& which) {
     return std::find_if(result.findings.begin(), result.findings.end(),
-                        [&](const Finding& one) { return one.certain && which(one); });
+                        [&](const Finding& one) { return certain_of_either(one) && which(one); });
   };
   if (certain([](const Finding& one) { return !of_clock(one); }) != result.findings.end()) return;
   const MiddlePart part = middle_part(a, b, options.change.most_poses);

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What the turns of a vehicle say of the normals of its ground planes: a vehicle turns about the normal of
+// the ground it stands on, and both sensors turn alike.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "diagnosis/motions/robust_fit.hpp"
+
+namespace egocal::detail {
+
+/// About what one sensor turns, in its own frame.
+struct TurningAxis {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of length 1, on the side of the plane's normal
+  double off = 0;                                  ///< from the normal [rad], at most a right angle
+  double stddev = 0;                               ///< of `off` [rad], by leaving out parts of the drive
+  /// Ratio of the mean squares of the turns about this axis and the next one: 1 where there is no axis.
+  double ratio = 1;
+};
+
+/// Angle between the normal of a and that of b turned into the frame of a as the turns of both say [rad].
+struct NormalsApart {
+  double angle = 0, stddev = 0;
+};
+
+struct PlaneTurning {
+  TurningAxis a, b;
+  NormalsApart apart;
+};
+
+/// given: the motions with the extrinsic that suits them best, in all six directions; at least two motions.
+/// blocks: parts of the drive that are left out, one at a time; at most as many as there are motions.
+PlaneTurning plane_turning(const Explained& given, const Eigen::Vector3d& normal_a,
+                           const Eigen::Vector3d& normal_b, std::size_t blocks);
+
+}  // namespace egocal::detail
