@@ -263,8 +263,12 @@ bool Diagnosing::left_what_was_judged(Pair& pair) const {
   if (!pair.judged || !pair.newest) return false;
   const std::int64_t seq = pair.newest->message.seq;
   if (seq == pair.judged_seq || std::exchange(pair.compared_seq, seq) == seq) return false;
-  const Answer answer = solve(pair.newest->problem, Method::dual);
-  return deviations_from(*pair.judged, answer.T_a_b) > options_.far_from_judged;
+  try {
+    const Answer answer = solve(pair.newest->problem, Method::dual);
+    return deviations_from(*pair.judged, answer.T_a_b) > options_.far_from_judged;
+  } catch (const std::exception&) {
+    return true;  // judge() reports it
+  }
 }
 
 void Diagnosing::look() {

@@ -16,9 +16,13 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/uncertainty/observability.hpp"
 #include "samples/agreeing.hpp"
+#include "samples/both_lists.hpp"
+#include "samples/faults.hpp"
 #include "samples/leave_one_out.hpp"
 #include "samples/readings.hpp"
+#include "samples/slip.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal {
@@ -92,6 +96,14 @@ Problem problem_of(const SampleFit& fit, const SampleOptions& options) {
   return problem;
 }
 
+/// Directions that the samples do not show.
+DirectionBasis hidden_from(const Calibration& calibration) {
+  const std::array<bool, 6>& seen = calibration.observability.observable;
+  if (std::all_of(seen.begin(), seen.end(), [](bool one) { return one; })) return {};
+  return hidden_directions(calibration.problem, cost_matrix(calibration.problem),
+                           to_dual_quaternion(calibration.T_a_b));
+}
+
 /// Residuals of all samples, and the spread of the target over those that count.
 void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
                     const std::vector<std::size_t>& places, SampleCalibration& result) {
@@ -111,61 +123,53 @@ void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
   result.spread_median = detail::median(std::move(distances));
 }
 
-Finding wrong_samples(const std::vector<SampleResidual>& residuals) {
-  Finding finding;
-  finding.code = "wrong_samples";
-  finding.certain = true;
-  std::string rows;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (!residuals[i].wrong) continue;
-    ++count;
-    if (rows.size() < 200) rows += (rows.empty() ? "" : ", ") + std::to_string(i + 1);
-  }
-  finding.message = format("%zu of %zu samples contradict the others and do not count: %s.", count,
-                           residuals.size(), rows.c_str());
-  finding.remedy = "Check these poses: a target detected wrongly, or a robot pose of another moment.";
-  return finding;
-}
-
-/// Two motions: fewer show no hand-eye pose.
-constexpr std::size_t least_units = 3;
-
-Finding too_few_poses(std::size_t units) {
-  Finding finding;
-  finding.code = "too_little_motion";
-  finding.certain = true;
-  finding.message =
-      format("Only %s, where samples that share a pose of a, or one of b, count as one: an answer needs %zu.",
-             counted(units, "different pose").c_str(), least_units);
-  finding.remedy =
-      "Move the arm: 10 poses and more, with turns of 20 degrees and more in different directions.";
-  return finding;
-}
-
-/// Whether the poses of both lists are the same to the digits that files keep, read alike or one as the
-/// inverse.
-bool given_twice(const SampleSet& set, std::span<const PoseSample> samples) {
-  constexpr double digits = 1e-9;  // of lengths; quaternions of files have nine digits, too
-  const auto all_alike = [&](bool inverse_of_b) {
-    return std::all_of(samples.begin(), samples.end(), [&](const PoseSample& sample) {
-      const Pose a = to_pose(sample.a), given = to_pose(sample.b), b = inverse_of_b ? inverse(given) : given;
-      return a.rotation.angularDistance(b.rotation) < digits &&
-             (a.translation - b.translation).norm() < digits * (set.length() + a.translation.norm());
-    });
-  };
-  return all_alike(false) || all_alike(true);
-}
-
 bool another_reading(const Finding& finding) {
-  return finding.code.starts_with("inverted_") || finding.code.starts_with("quaternion_order_");
+  return finding.code == "inverted_a" || finding.code == "inverted_b" ||
+         finding.code.starts_with("quaternion_order_");
 }
 
-void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
-                   const AgreeingSamples& agreeing, const SampleOptions& options, Calibration& calibration) {
+/// The samples as they are judged: distinct ones, and which given ones they are.
+struct Judged {
+  const std::vector<PoseSample>& samples;
+  const SampleSet& set;
+  const AgreeingSamples& agreeing;
+  std::vector<std::size_t> order, rows;  ///< in the order given, the first of those that repeat each other
+};
+
+Judged judged(const DistinctSamples& distinct, const SampleSet& set, const AgreeingSamples& agreeing) {
+  Judged result{distinct.samples, set, agreeing, {}, {}};
+  std::vector<bool> met(distinct.samples.size(), false);
+  for (std::size_t row = 0; row < distinct.places.size(); ++row) {
+    const std::size_t i = distinct.places[row];
+    if (met[i]) continue;
+    met[i] = true;
+    result.order.push_back(i);
+    result.rows.push_back(row);
+  }
+  return result;
+}
+
+/// Other explanations of samples that move enough.
+std::vector<Finding> explanations(const Judged& judged, bool agree, const SampleOptions& options) {
+  std::vector<Finding> findings = find_other_readings(judged.samples, judged.agreeing, options);
+  const auto add = [&](std::optional<Finding> finding) {
+    if (finding) findings.push_back(*std::move(finding));
+  };
+  const bool may_slip = std::all_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.code == "scale" && !finding.certain;
+  });
+  if (may_slip)
+    add(find_slip(judged.set, judged.agreeing, judged.order, judged.rows,
+                  options.diagnosis.unit == LengthUnit::metres));
+  if (findings.empty() && agree) add(both_inverted(judged.samples, judged.set, judged.agreeing, options));
+  add(not_in_metres(judged.set, judged.agreeing.fit, options));
+  return findings;
+}
+
+void judge_samples(const Judged& judged, const SampleOptions& options, Calibration& calibration) {
   DiagnosisOptions tolerances = options.diagnosis;
   tolerances.tolerance_translation =
-      std::min(tolerances.tolerance_translation, options.tolerance_of_distance * set.length());
+      std::min(tolerances.tolerance_translation, options.tolerance_of_distance * judged.set.length());
   const Answered answered{to_dual_quaternion(calibration.T_a_b),
                           calibration.observability,
                           calibration.counts,
@@ -173,20 +177,23 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
                           1,
                           0,
                           Platform::arm};
-  const Motions motions = motions_of(motions_between(samples, options.most_motions), tolerances.motions);
+  const Motions motions =
+      motions_of(motions_between(judged.samples, options.most_motions), tolerances.motions);
   Diagnosis diagnosis;
   diagnosis.fit = fit_at(motions, calibration.T_a_b, 0, tolerances.motions);
   diagnosis.fit.tenths.clear();  // samples have no order in time
   Misfit misfit;
   misfit.at_answer = misfit.best = detail::misfit(motions, evaluated(motions, answered.T_a_b));
-  if (set.units() < least_units) {
-    diagnosis.findings = {too_few_poses(set.units())};
-    misfit = {};  // noise contradicts every answer
-  } else if (given_twice(set, samples)) {
+  if (judged.set.units() < least_units)
+    diagnosis.findings = {too_few_poses(judged.set.units())};
+  else if (given_twice(judged.set, judged.samples))
     diagnosis.findings = {same_stream()};
-  } else if (options.diagnosis.enabled) {
-    diagnosis.findings = find_other_readings(samples, agreeing, options);
-  }
+  else if (const std::optional<Finding> small = turns_too_small(judged.samples, judged.agreeing.fit.noise))
+    diagnosis.findings = {*small};
+  else if (options.diagnosis.enabled)
+    diagnosis.findings = explanations(judged, misfit.at_answer < tolerances.doubtful_misfit, options);
+  const bool little = !diagnosis.findings.empty() && diagnosis.findings.front().code == "too_little_motion";
+  if (little) misfit = {};  // noise contradicts every answer
   judge(diagnosis, answered, misfit, tolerances);
   // The poses as given are refuted, also where they show no direction in which the answers could differ.
   for (const Finding& finding : diagnosis.findings)
@@ -194,6 +201,11 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
       diagnosis.verdict = Verdict::contradictory;
       diagnosis.reason = finding.message;
     }
+  if (diagnosis.verdict < Verdict::doubtful && !little &&
+      agree_by_chance(judged.set, judged.agreeing.fit.noise)) {
+    diagnosis.verdict = Verdict::doubtful;
+    diagnosis.reason = "So few samples may agree as badly by chance: take ten and more.";
+  }
   calibration.verdict = diagnosis.verdict;
   calibration.reason = std::move(diagnosis.reason);
   calibration.fit = std::move(diagnosis.fit);
@@ -205,7 +217,8 @@ void judge_samples(const std::vector<PoseSample>& samples, const SampleSet& set,
 
 SampleCalibration calibrate_samples(std::span<const PoseSample> given, const SampleOptions& options) {
   require_usable(given);
-  const auto [samples, places] = distinct(detail::reread(given, options.read_a, options.read_b));
+  const DistinctSamples distinct_samples = distinct(detail::reread(given, options.read_a, options.read_b));
+  const auto& [samples, places] = distinct_samples;
   const SampleSet set(samples);
   AgreeingSamples agreeing = find_agreeing(set, options);
   if (set.units() < least_units) agreeing.fit.statistics = Statistics();  // what is there is noise
@@ -229,7 +242,7 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   agreeing.fit.Y = target_at(set, agreeing.chosen, agreeing.fit, answer.T_a_b);
   agreeing.fit.X = answer.T_a_b;
   calibration.observability.stddev =
-      spread_without_each(set, agreeing.chosen, agreeing.fit, options.most_solved);
+      spread_without_each(set, agreeing.chosen, agreeing.fit, hidden_from(calibration), options.most_solved);
   for (std::size_t i = 0; i < 6; ++i)
     if (!calibration.observability.observable[i])
       calibration.observability.stddev[i] = std::numeric_limits<double>::infinity();
@@ -242,8 +255,12 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   measure_spread(set, agreeing, places, result);
   for (const SampleResidual& residual : result.residuals)
     ++(residual.wrong ? calibration.counts.outliers : calibration.counts.matched);
-  judge_samples(samples, set, agreeing, options, calibration);
-  const bool misread = calibration.verdict == Verdict::contradictory && !calibration.findings.empty();
+  judge_samples(judged(distinct_samples, set, agreeing), options, calibration);
+  // under another reading other samples are wrong; a slip leaves them what they are
+  const auto& findings = calibration.findings;
+  const bool misread = calibration.verdict == Verdict::contradictory &&
+                       std::any_of(findings.begin(), findings.end(),
+                                   [](const Finding& one) { return one.code != "mount_moved"; });
   if (calibration.counts.outliers > 0 && !misread)
     calibration.findings.push_back(wrong_samples(result.residuals));
   return result;

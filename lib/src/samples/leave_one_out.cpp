@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -32,11 +33,24 @@ std::vector<Unit> units_of_chosen(const SampleSet& set, const std::vector<std::s
   return units;
 }
 
+/// As many groups of units as that, each of units far apart in the order.
+std::vector<Unit> groups_of(const std::vector<Unit>& units, std::size_t number) {
+  constexpr std::size_t least = 8;  // fewer differences show no spread
+  std::vector<Unit> groups(std::min(std::max(number, least), units.size()));
+  for (std::size_t k = 0; k < units.size(); ++k) {
+    Unit& group = groups[k % groups.size()];
+    group.insert(group.end(), units[k].begin(), units[k].end());
+  }
+  for (Unit& group : groups) std::sort(group.begin(), group.end());
+  return groups;
+}
+
 /// Differences of the answers without each unit from the one with all, in the frame of a.
 std::vector<Vector6d> solved(const SampleSet& set, const std::vector<std::size_t>& chosen,
-                             const std::vector<Unit>& units, const SampleFit& fit) {
+                             const std::vector<Unit>& units, const SampleFit& fit, FitPrecision precision) {
   FitSettings settings;
   settings.start = fit;
+  settings.precision = precision;
   settings.noise = fit.noise;
   std::vector<Vector6d> differences;
   for (const Unit& unit : units) {
@@ -130,18 +144,40 @@ std::vector<Vector6d> stepped(const SampleSet& set, const std::vector<std::size_
   return differences;
 }
 
+/// What the answer may be off along hidden directions, in the directions that these lean into a little.
+Vector6d leaked_variance(const DirectionBasis& hidden, const DualQuaternion& X) {
+  // a turn about a hidden axis may have any angle; a translation is as little known as what is claimed of it
+  constexpr double any_angle = std::numbers::pi / std::numbers::sqrt3;  // mathematics: uniform, +-pi [rad]
+  Vector6d variance = Vector6d::Zero();
+  const Eigen::Vector3d t = to_pose(X).translation;
+  for (Eigen::Index k = 0; k < hidden.basis.cols(); ++k) {
+    const Eigen::Vector3d shift = hidden.basis.col(k).head<3>(), turn = hidden.basis.col(k).tail<3>();
+    const double claimed = std::hypot(hidden.length, shift.dot(t));
+    variance.head<3>() += claimed * claimed * shift.cwiseAbs2();
+    variance.tail<3>() += any_angle * any_angle * turn.cwiseAbs2();
+  }
+  return variance;
+}
+
 }  // namespace
 
 std::array<double, 6> spread_without_each(const SampleSet& set, const std::vector<std::size_t>& chosen,
-                                          const SampleFit& fit, std::size_t most_solved) {
+                                          const SampleFit& fit, const DirectionBasis& hidden,
+                                          std::size_t most_solved) {
   std::array<double, 6> spread;
   spread.fill(std::numeric_limits<double>::infinity());
   constexpr double samples_worth = 2;  // mathematics: X and Y have twelve numbers, a sample six
-  const std::vector<Unit> units = units_of_chosen(set, chosen);
-  const auto n = static_cast<double>(units.size());
+  std::vector<Unit> units = units_of_chosen(set, chosen);
   if (units.size() < 4) return spread;
+  // Along a hidden direction the curvature is that of noise, which goes with the units: one Newton step says
+  // next to nothing of how far the answer swings.
+  const bool in_groups = hidden.basis.cols() > 0 && units.size() > most_solved;
+  if (in_groups) units = groups_of(units, most_solved);
+  const auto n = static_cast<double>(units.size());
   const std::vector<Vector6d> differences =
-      units.size() <= most_solved ? solved(set, chosen, units, fit) : stepped(set, chosen, units, fit);
+      in_groups || units.size() <= most_solved
+          ? solved(set, chosen, units, fit, in_groups ? FitPrecision::on_the_way : FitPrecision::exact)
+          : stepped(set, chosen, units, fit);
   Vector6d mean = Vector6d::Zero();
   for (const Vector6d& difference : differences) mean += difference / n;
   // The jack-knife's (n - 1) / n counts one parameter a number; a difference is the residual over one minus
@@ -150,7 +186,9 @@ std::array<double, 6> spread_without_each(const SampleSet& set, const std::vecto
   for (const Vector6d& difference : differences) squares += (difference - mean).cwiseAbs2();
   const double dof = n - samples_worth;
   const double student = student_factor(dof);
-  for (int i = 0; i < 6; ++i) spread[static_cast<std::size_t>(i)] = student * std::sqrt(squares[i] * dof / n);
+  const Vector6d leaked = leaked_variance(hidden, fit.X);
+  for (int i = 0; i < 6; ++i)
+    spread[static_cast<std::size_t>(i)] = student * std::sqrt(squares[i] * dof / n + leaked[i]);
   return spread;
 }
 

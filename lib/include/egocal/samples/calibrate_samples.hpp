@@ -41,7 +41,8 @@ struct SampleOptions {
   /// Motions that the fit is judged on, at most: its medians are good to a tenth. All pairs of 25 samples.
   std::size_t most_motions = 300;
   /// Up to this many samples the answer without one is solved for; beyond, it is one Newton step away: what
-  /// that misses is of second order in a step that is a thirtieth of the noise.
+  /// that misses is of second order in a step that is a thirtieth of the noise. Where a direction is not
+  /// shown the step is no small one: then as many groups of samples are left out and solved for.
   std::size_t most_solved = 30;
 };
 
@@ -69,11 +70,11 @@ struct SampleCalibration {
 };
 
 /// Solves a X = Y b for X = T_a_b and Y from at least 3 samples in any order; the order changes no bit of the
-/// answer. Minimises the sum over all motions between two samples of the squared differences of their
-/// targets, rotation and position each weighted by the inverse of its variance, which is maximum likelihood
-/// for independent noise of both; the minimum of the weighted cost is global, with the certificate of every
-/// other solve. The unit of length changes nothing, nor do samples that repeat others exactly. Throws Error
-/// where there are fewer than 3 samples. Thread-safe.
+/// answer, only the finding mount_moved takes it for that in time. Minimises the sum over all motions between
+/// two samples of the squared differences of their targets, rotation and position each weighted by the
+/// inverse of its variance, which is maximum likelihood for independent noise of both; the minimum of the
+/// weighted cost is global, with the certificate of every other solve. The unit of length changes nothing,
+/// nor do samples that repeat others exactly. Throws Error where there are fewer than 3 samples. Thread-safe.
 SampleCalibration calibrate_samples(std::span<const PoseSample> samples, const SampleOptions& options = {});
 
 }  // namespace egocal

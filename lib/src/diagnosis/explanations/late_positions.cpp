@@ -87,7 +87,7 @@ LatePositions fitted(const Explained& given, const Changes& changes, Side side,
   return late;
 }
 
-/// "The positions of b are about 0.30 s later than its rotations".
+/// "he positions of b are about 0.30 s later than its rotations": a T or a t comes before it.
 std::string claim_of(const LatePositions& found) {
   return format("he positions of %s are about %.2f s %s than its rotations",
                 mark(found.side == Side::a ? 'a' : 'b'), std::abs(found.delay),
@@ -103,7 +103,7 @@ Finding worded_one(const LatePositions& found, const LatePositions* other, const
   finding.T_a_b = to_pose(found.explained.fit.T);
   finding.value = found.delay;
   const std::string open =
-      other ? format(", or those of %s %s by as much", mark(other->side == Side::a ? 'a' : 'b'),
+      other ? format(", or those of %s are %s by as much", mark(other->side == Side::a ? 'a' : 'b'),
                      other->delay > 0 ? "later" : "earlier")
             : "";
   say(finding, (clock.empty() ? "T" : clock + " t") + claim_of(found),
@@ -131,7 +131,7 @@ std::optional<LateOfEither> best_late_positions(const Instants& instants, const 
   if (!best) return std::nullopt;
   if (other && other->comparison.gain > best->comparison.gain) std::swap(best, other);
   if (other && better(compare(other->explained, best->explained), options.alike, options)) other.reset();
-  const bool other_first = other && (behind ? other->side == *behind : other->delay > 0);
+  const bool other_first = other && (behind ? other->side == *behind : other->delay > 0 && best->delay <= 0);
   return LateOfEither{*std::move(best), std::move(other), other_first};
 }
 

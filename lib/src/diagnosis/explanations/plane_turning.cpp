@@ -23,12 +23,14 @@ struct TurnSums {
   Eigen::Matrix3d squares_a = Eigen::Matrix3d::Zero(), squares_b = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();          ///< a b', without outliers
   Eigen::Matrix3d weighted_squares = Eigen::Matrix3d::Zero();  ///< b b', without outliers
+  double weighted_a = 0;                                       ///< |a|^2, without outliers
 
   TurnSums& operator+=(const TurnSums& other) {
     squares_a += other.squares_a;
     squares_b += other.squares_b;
     products += other.products;
     weighted_squares += other.weighted_squares;
+    weighted_a += other.weighted_a;
     return *this;
   }
 };
@@ -96,7 +98,10 @@ Eigen::Matrix3d turned_alike(const TurnSums& sums, Eigen::Matrix3d R) {
 
 NormalsApart apart_by_turns(const std::vector<TurnSums>& parts, const Eigen::Matrix3d& R_best,
                             const Eigen::Vector3d& normal_a, const Eigen::Vector3d& normal_b) {
-  const Eigen::Matrix3d R = turned_alike(sum_without(parts, parts.size()), R_best);
+  const TurnSums all = sum_without(parts, parts.size());
+  const Eigen::Matrix3d R = turned_alike(all, R_best);
+  const double size = std::sqrt(all.weighted_a * all.weighted_squares.trace());
+  const double alike = size > 0 ? all.products.cwiseProduct(R).sum() / size : 0;
   const double angle = angle_between(R * normal_b, normal_a);
   // of the angle, not of the direction: how both sensors are turned about the axis may be unknown
   double sum = 0;
@@ -106,7 +111,7 @@ NormalsApart apart_by_turns(const std::vector<TurnSums>& parts, const Eigen::Mat
     sum += change * change;
   }
   const auto n = static_cast<double>(parts.size());
-  return {angle, std::sqrt(sum * (n - 1) / n)};
+  return {angle, std::sqrt(sum * (n - 1) / n), alike};
 }
 
 }  // namespace
@@ -123,6 +128,7 @@ PlaneTurning plane_turning(const Explained& given, const Eigen::Vector3d& normal
     part.squares_b += b * b.transpose();
     part.products += weight * a * b.transpose();
     part.weighted_squares += weight * b * b.transpose();
+    part.weighted_a += weight * a.squaredNorm();
   }
   const Eigen::Matrix3d R = to_pose(given.fit.T).rotation.toRotationMatrix();
   return {axis_of(parts, &TurnSums::squares_a, normal_a), axis_of(parts, &TurnSums::squares_b, normal_b),

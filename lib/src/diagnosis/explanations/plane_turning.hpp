@@ -22,6 +22,9 @@ struct TurningAxis {
 /// Angle between the normal of a and that of b turned into the frame of a as the turns of both say [rad].
 struct NormalsApart {
   double angle = 0, stddev = 0;
+  /// Correlation of the turns of both sensors: 1 without noise, near 0 where they turn by noise alone. There
+  /// the angle is of chance, and its standard deviation too small.
+  double alike = 0;
 };
 
 struct PlaneTurning {

@@ -38,7 +38,7 @@ std::optional<Finding> wrong_height(char which, double distance, bool metres, co
         format("{solve}--plane-%c with the normal up and D = -%.4g (minus the mounting height)", which,
                distance));
   if (!metres || !(-distance > tilt.most_height)) return std::nullopt;
-  // heights from 2 cm to the limit: in millimetres, or in centimetres
+  // heights from 3 cm to the limit: in millimetres, or in centimetres
   const double unit = -distance > 10 * tilt.most_height ? 1000 : 100;
   return plane_finding(which,
                        format("The ground plane of %s lies %.4g m below the sensor: no vehicle is that high.",
@@ -90,11 +90,12 @@ std::string normal_to_check(char which, const TurningAxis& turns) {
 }
 
 bool apart_by_more(const NormalsApart& apart, const PlaneTiltOptions& tilt) {
-  return apart.angle > tilt.apart + tilt.sigmas * apart.stddev;
+  return apart.alike > tilt.least_alike && apart.angle > tilt.apart + tilt.sigmas * apart.stddev;
 }
 
-/// A normal that is not what its own sensor turns about. Where both are off alike, the body may lean.
-std::vector<Finding> off_axis(const PlaneTurning& turning, const PlaneTiltOptions& tilt) {
+/// A normal that is not what its own sensor turns about. Where both are off alike, the body may lean:
+/// by some degrees, not beyond `aligned`.
+std::vector<Finding> off_axis(const PlaneTurning& turning, double aligned, const PlaneTiltOptions& tilt) {
   std::vector<Finding> findings;
   for (const auto& [which, turns] : {std::pair{'a', turning.a}, std::pair{'b', turning.b}})
     if (turns.off > tilt.alone + tilt.sigmas * turns.stddev)
@@ -104,7 +105,8 @@ std::vector<Finding> off_axis(const PlaneTurning& turning, const PlaneTiltOption
                  "ground plane.",
                  mark(which), turns.axis.x(), turns.axis.y(), turns.axis.z(), turns.off / degree,
                  turns.stddev / degree),
-          normal_to_check(which, turns), apart_by_more(turning.apart, tilt)));
+          normal_to_check(which, turns),
+          apart_by_more(turning.apart, tilt) || std::cos(turns.off) < aligned));
   return findings;
 }
 
@@ -154,7 +156,7 @@ std::vector<Finding> check_planes(const Explained& given, const GroundPlane& a, 
       add(exchanged_planes());
       return findings;
     }
-    add(off_axis(turning, tilt));
+    add(off_axis(turning, options.aligned, tilt));
     if (!findings.empty()) return findings;
     if (sense.opposite) return opposite_planes();
   }

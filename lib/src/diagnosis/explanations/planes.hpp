@@ -23,6 +23,10 @@ struct PlaneTiltOptions {
   /// of KITTI, below 0.1 in the simulation. Within it the answer keeps to a degree
   /// (DiagnosisOptions::tolerance_rotation).
   double apart = 0.75 * std::numbers::pi / 180;
+  /// Correlation of the turns of both sensors from which they say how far the normals are apart: two thirds
+  /// of their squares are no noise. Straight drives have 0.0 to 0.3, and called honest planes 112 degrees
+  /// apart.
+  double least_alike = 0.7;
   /// How far a normal may be from the axis that its sensor turns about [rad]. A body leans out of curves, by
   /// up to 3 degrees where it is driven hard and one way round; both sensors see that alike. KITTI: 0.2 to
   /// 0.6 degrees, hills 0.9.
