@@ -507,14 +507,14 @@ inline std::vector<Mistake> mistakes() {
        [](Streams& s) {
          s.b = with_angles(s.b, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(0, 0, x[2]); });
        }},
-      {"positions of b a row late", "", [](Streams& s) { s.b = with_late_positions(s.b, 1); }},
       {"rotations of b a row late", "", [](Streams& s) { s.b = with_late_rotations(s.b, 1); }},
       {"positions of b held for three rows", "held_b", [](Streams& s) { s.b = with_held_positions(s.b, 3); }},
       {"rotations of b held for three rows", "held_b",
        [](Streams& s) { s.b = with_held_rotations(s.b, 3); }}};
 }
 
-/// The last of these, of rows: a few seconds, and a drive at one speed, do not show them.
-inline constexpr std::size_t mistakes_of_rows = 4;
+/// The last of these, of rows: a few seconds do not show them. Late positions are none of them: at the one
+/// speed of simulated cars they are another lever arm (docs/trust.md, "What no verdict can detect").
+inline constexpr std::size_t mistakes_of_rows = 3;
 
 }  // namespace egocal::testing
