@@ -88,9 +88,9 @@ std::vector<PlacedUnit> units_in(const SampleSet& set, const std::vector<bool>& 
 struct Slip {
   std::size_t at = 0;  ///< first unit after it
   bool of_target = false;
-  double gain = 0;                                               ///< of the cost, in variances
-  Vector6d before = Vector6d::Zero(), after = Vector6d::Zero();  ///< changes of X
-  double shift = 0, turn = 0;                                    ///< [m, rad]
+  double gain = 0;                    ///< of the cost, in variances
+  Vector6d after = Vector6d::Zero();  ///< change of X
+  double shift = 0, turn = 0;         ///< [m, rad]
 };
 
 constexpr double ridge = 1e-9;  // rounding: along a direction that nothing shows nothing slips
@@ -132,13 +132,7 @@ Slip best_division(const std::vector<PlacedUnit>& units, const std::vector<std::
       const double gain = h.dot(moved);
       if (!(gain > best.gain)) continue;
       const Vector12d rest = of_all - factor.solve(across * moved);
-      best = {at,
-              of_target,
-              gain,
-              rest.head<6>(),
-              rest.head<6>(),
-              moved.head<3>().norm(),
-              moved.tail<3>().norm()};
+      best = {at, of_target, gain, rest.head<6>(), moved.head<3>().norm(), moved.tail<3>().norm()};
       if (!of_target) best.after += moved;
     }
   }
