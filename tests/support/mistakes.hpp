@@ -309,44 +309,50 @@ inline Trajectory held(Trajectory trajectory, std::size_t n) {
   return trajectory;
 }
 
-/// Positions as they were some poses before: of another sensor than the rotations, with a delay.
-inline Trajectory with_late_positions(const Trajectory& trajectory, std::size_t poses) {
+enum class Half { positions, rotations };
+
+/// With that half of each pose as it was the given number of poses before.
+template <typename PosesBefore>
+Trajectory with_half_of_earlier(const Trajectory& trajectory, Half half, const PosesBefore& poses_before) {
   Trajectory result = trajectory;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const Pose pose = to_pose(trajectory[i].pose), before = to_pose(trajectory[i - std::min(i, poses)].pose);
-    result[i].pose = canonical_sign(to_dual_quaternion({pose.rotation, before.translation}));
+    Pose pose = to_pose(trajectory[i].pose);
+    const Pose earlier = to_pose(trajectory[i - poses_before(i)].pose);
+    if (half == Half::positions)
+      pose.translation = earlier.translation;
+    else
+      pose.rotation = earlier.rotation;
+    result[i].pose = canonical_sign(to_dual_quaternion(pose));
   }
   return result;
+}
+
+inline Trajectory with_late(const Trajectory& trajectory, Half half, std::size_t poses) {
+  return with_half_of_earlier(trajectory, half, [poses](std::size_t i) { return std::min(i, poses); });
+}
+
+/// Positions as they were some poses before: of another sensor than the rotations, with a delay.
+inline Trajectory with_late_positions(const Trajectory& trajectory, std::size_t poses) {
+  return with_late(trajectory, Half::positions, poses);
 }
 
 /// The same of the rotations.
 inline Trajectory with_late_rotations(const Trajectory& trajectory, std::size_t poses) {
-  Trajectory result = trajectory;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const Pose pose = to_pose(trajectory[i].pose), before = to_pose(trajectory[i - std::min(i, poses)].pose);
-    result[i].pose = canonical_sign(to_dual_quaternion({before.rotation, pose.translation}));
-  }
-  return result;
+  return with_late(trajectory, Half::rotations, poses);
+}
+
+inline Trajectory with_held(const Trajectory& trajectory, Half half, std::size_t n) {
+  return with_half_of_earlier(trajectory, half, [n](std::size_t i) { return i % n; });
 }
 
 /// Positions of a slow receiver, each held for n rows of fast rotations.
 inline Trajectory with_held_positions(const Trajectory& trajectory, std::size_t n) {
-  Trajectory result = trajectory;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const Pose pose = to_pose(trajectory[i].pose), new_one = to_pose(trajectory[i - i % n].pose);
-    result[i].pose = canonical_sign(to_dual_quaternion({pose.rotation, new_one.translation}));
-  }
-  return result;
+  return with_held(trajectory, Half::positions, n);
 }
 
 /// The same of the rotations.
 inline Trajectory with_held_rotations(const Trajectory& trajectory, std::size_t n) {
-  Trajectory result = trajectory;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const Pose pose = to_pose(trajectory[i].pose), new_one = to_pose(trajectory[i - i % n].pose);
-    result[i].pose = canonical_sign(to_dual_quaternion({new_one.rotation, pose.translation}));
-  }
-  return result;
+  return with_held(trajectory, Half::rotations, n);
 }
 
 /// A causal filter of first order; each pose keeps this part of the one before.

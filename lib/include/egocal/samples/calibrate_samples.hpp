@@ -41,8 +41,9 @@ struct SampleOptions {
   /// Motions that the fit is judged on, at most: its medians are good to a tenth. All pairs of 25 samples.
   std::size_t most_motions = 300;
   /// Up to this many samples the answer without one is solved for; beyond, it is one Newton step away: what
-  /// that misses is of second order in a step that is a thirtieth of the noise. Where a direction is not
-  /// shown the step is no small one: then as many groups of samples are left out and solved for.
+  /// that misses is of second order in a step that is a thirtieth of the noise. Where the samples do
+  /// not show a direction, that step is not small. Then the samples are divided into this many groups, and
+  /// the answer without each group is solved for.
   std::size_t most_solved = 30;
 };
 

@@ -35,7 +35,7 @@ struct TurnSums {
   }
 };
 
-/// All parts but one; none is left out where `without` is not a part.
+/// The sum of all parts except one. Where `without` is no part, it is the sum of all.
 TurnSums sum_without(const std::vector<TurnSums>& parts, std::size_t without) {
   TurnSums sum;
   for (std::size_t k = 0; k < parts.size(); ++k)

@@ -33,7 +33,8 @@ struct PlaneTurning {
 };
 
 /// given: the motions with the extrinsic that suits them best, in all six directions; at least two motions.
-/// blocks: parts of the drive that are left out, one at a time; at most as many as there are motions.
+/// blocks: number of parts of the drive for the jack-knife, which omits one at a time. More than there are
+/// motions count as that many.
 PlaneTurning plane_turning(const Explained& given, const Eigen::Vector3d& normal_a,
                            const Eigen::Vector3d& normal_b, std::size_t blocks);
 

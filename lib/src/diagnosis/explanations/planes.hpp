@@ -15,8 +15,8 @@ namespace egocal::detail {
 /// two lidar odometries, raw 0930_27), and simulated cars on flat, rolling and hilly ground, ramps and
 /// circles with sensors mounted rolled and pitched.
 struct PlaneTiltOptions {
-  /// Parts of the drive that are left out, one at a time, for the spread of what the turns say: known to a
-  /// fifth. Changes little between 8 and 32.
+  /// Number of parts of the drive. The jack-knife omits one at a time, for the spread of what the turns say,
+  /// which is then known to a fifth. Between 8 and 32 it changes little.
   std::size_t blocks = 16;
   double sigmas = 3;  ///< of that spread, beyond the limits below
   /// How far the normals may be apart by the turns of both sensors [rad]: 0.32 to 0.48 degrees for the planes
