@@ -39,7 +39,8 @@ constexpr milliseconds longest_turn{2000};
 struct Child {
   Program program;
   Restarts restarts;
-  pid_t pid = -1;  ///< -1: not running
+  pid_t pid = -1;         ///< -1: not running
+  int first_output = -1;  ///< its output until it has started; -1: where ours goes
   Clock::time_point started{}, start_at{};
   bool has_started = false;  ///< at least once
   bool finished = false;     ///< ended as it should
@@ -81,6 +82,8 @@ class Supervisor {
   Supervisor& operator=(const Supervisor&) = delete;
 
   int run() {
+    // all of them before the first program: a folder that is gone once one runs ends nothing
+    for (Child& child : children_) child.first_output = output_of(child);
     try {
       while (!ending_ || any_running()) turn();
     } catch (...) {
@@ -165,7 +168,7 @@ class Supervisor {
   }
 
   void start(Child& child) {
-    const int output = output_of(child);
+    const int output = child.has_started ? output_of(child) : child.first_output;
     child.started = awake();
     child.pid = spawn(child.program, command_of(child), output, programs_mask_);
     const int reason = errno;

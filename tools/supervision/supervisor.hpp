@@ -45,9 +45,10 @@ struct SupervisorOptions {
 /// fails, end all, where that comes before it has once started well: no restart helps there. A Ctrl-C reaches
 /// each process once: only foreground programs share our terminal's process group. Whatever happens to us,
 /// SIGKILL included, the others get SIGTERM. Returns 0 when they ended because they should, 1 when something
-/// could not be started (reported on standard error). Throws Error where an output file cannot be written at
-/// the first start; nothing is left running then. Later the output of a process whose file cannot be written
-/// goes to /dev/null. The caller ignores SIGPIPE, or a report that nobody reads ends us; the programs do not.
+/// could not be started (reported on standard error). Throws Error where an output file cannot be written
+/// before the first program starts; none is started then. Later the output of a process whose file cannot be
+/// written goes to /dev/null. The caller ignores SIGPIPE, or a report that nobody reads ends us; the programs
+/// do not.
 int supervise(const std::vector<Program>& programs, const SupervisorOptions& options);
 
 }  // namespace egocal::tools
