@@ -206,6 +206,33 @@ TEST(OtherContents, RadiansThatWereTakenAsDegreesAreNamedOnARoad) {
   EXPECT_NE(finding.message.find("radians that were taken as degrees"), std::string::npos) << finding.message;
 }
 
+/// A drone that hovers; a has its positions from a receiver, in coordinates whose origin is kilometres away.
+/// Turned by its rotations they are long motions, of which any residual is a small part.
+TEST(OtherContents, PositionsFarFromTheOriginAreNotTakenToBeInTheAxesOfTheSensor) {
+  const Pose mount{rotation_exp({0.3, -1.2, 0.8}), {-0.4, 0.2, 0.3}};
+  const Eigen::Vector3d origin(3000, 2000, 50);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    testing::Random random(seed);
+    testing::Streams streams;
+    Eigen::Vector3d turned = Eigen::Vector3d::Zero(), position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d wandering = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 900; ++i) {
+      const std::int64_t time_us = static_cast<std::int64_t>(i) * 50'000;
+      turned += 0.03 * random.normal3() - 0.02 * turned;
+      position += 0.03 * random.normal3() - 0.01 * position;
+      wandering += 0.01 * random.normal3() - 0.02 * wandering;
+      const Pose a{rotation_exp(turned), position};
+      Pose measured = a;
+      measured.translation += origin + wandering + 0.03 * random.normal3();
+      streams.a.push_back({time_us, to_dual_quaternion(measured)});
+      streams.b.push_back({time_us, to_dual_quaternion(a * mount)});
+    }
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(find(calibration, "axes_a"), nullptr) << seed << ": " << calibration.reason;
+    EXPECT_NE(calibration.verdict, Verdict::contradictory) << seed << ": " << calibration.reason;
+  }
+}
+
 TEST(OtherContents, AHeightInFeetIsNotCalledAnotherFrame) {
   const testing::Streams right = testing::noisy_drive(Terrain::rough, 0.001, 301);
   const Eigen::Matrix3d in_feet = Eigen::Vector3d(1, 1, 3.2808).asDiagonal();

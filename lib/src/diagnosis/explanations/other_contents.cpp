@@ -249,6 +249,8 @@ std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOpt
     if (!explains(here, options) || !better(with_given, options.gain, options) ||
         !better(compare(evidence.scaled.explained, here), options.gain, options))
       continue;
+    // positions far from the origin, turned, are long motions: any residual is a small part of them
+    if (candidate.contents->summed == Summed::none && loss_in_metres(given, here) > 0) continue;
     found.push_back({candidate, std::move(here), with_given.gain});
   }
   std::stable_sort(found.begin(), found.end(),
