@@ -3,7 +3,6 @@
 #include "egocal/estimation/attenuation.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
 #include "egocal/uncertainty/observability.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -55,13 +55,13 @@ std::optional<NoiseCurvatures> curvatures(const Problem& problem) {
   // r i, r j, r k span what is across r
   Eigen::Matrix<double, 4, 3> basis;
   for (int i = 0; i < 3; ++i) basis.col(i) = quaternion_product(Eigen::Vector4d::Unit(i + 1), r);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(basis.transpose() * D * basis);
-  result.across = basis * eigen.eigenvectors();
-  result.curvature = eigen.eigenvalues();
+  const detail::SymmetricEigen<3> eigen = detail::symmetric_eigen<3>(basis.transpose() * D * basis);
+  result.across = basis * eigen.vectors;
+  result.curvature = eigen.values;
   if (!(result.noise > 0) || !(result.curvature[0] > 0)) return std::nullopt;
   result.coupling = result.across.transpose() * (D * r);
   result.length = result.across.transpose() * d;
-  result.ways = eigen.eigenvectors();  // as the basis is the unit vectors times r
+  result.ways = eigen.vectors;  // as the basis is the unit vectors times r
   return result;
 }
 

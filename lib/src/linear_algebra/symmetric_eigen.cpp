@@ -14,21 +14,44 @@ using UpToTen = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Col
 
 /// What every answer needs (4, 6), or compiles fast (3), is compiled for its size.
 template <int n>
-using Solver = Eigen::SelfAdjointEigenSolver<
-    std::conditional_t<n == 3 || n == 4 || n == 6, Eigen::Matrix<double, n, n>, UpToTen>>;
+using Matrix = std::conditional_t<n == 3 || n == 4 || n == 6, Eigen::Matrix<double, n, n>, UpToTen>;
+
+template <int size, int most>
+using Column = Eigen::Matrix<double, size, 1, Eigen::ColMajor, most, 1>;
 
 }  // namespace
 
+}  // namespace egocal::detail
+
+// Eigen applies 48 reflections and more in blocks, by its products of large matrices. There are nine at most
+// here, so that this is never called: to compile it for each size took a third of this file.
+#define EGOCAL_FEW_REFLECTIONS(Square, size, most)                                                       \
+  template <>                                                                                            \
+  template <>                                                                                            \
+  inline void                                                                                            \
+  Eigen::HouseholderSequence<Square, egocal::detail::Column<size == most ? size - 1 : size, most - 1>>:: \
+      applyThisOnTheLeft(Square&, egocal::detail::Column<size, most>&, bool) const {                     \
+    eigen_assert(false);                                                                                 \
+  }
+EGOCAL_FEW_REFLECTIONS(egocal::detail::Matrix<4>, 4, 4)
+EGOCAL_FEW_REFLECTIONS(egocal::detail::Matrix<6>, 6, 6)
+EGOCAL_FEW_REFLECTIONS(egocal::detail::UpToTen, Eigen::Dynamic, 10)
+#undef EGOCAL_FEW_REFLECTIONS
+
+namespace egocal::detail {
+
 template <int n>
 SymmetricEigen<n> symmetric_eigen(const Eigen::Matrix<double, n, n>& matrix) {
-  Solver<n> eigen(matrix.rows());
-  eigen.compute(matrix);
+  const Matrix<n>& of_type = matrix;
+  Eigen::SelfAdjointEigenSolver<Matrix<n>> eigen(matrix.rows());
+  eigen.compute(of_type);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
 template <int n>
 Eigen::Matrix<double, n, 1> symmetric_eigenvalues(const Eigen::Matrix<double, n, n>& matrix) {
-  return Solver<n>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  const Matrix<n>& of_type = matrix;
+  return Eigen::SelfAdjointEigenSolver<Matrix<n>>(of_type, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 template SymmetricEigen<2> symmetric_eigen<2>(const Eigen::Matrix<double, 2, 2>&);

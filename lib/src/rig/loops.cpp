@@ -3,12 +3,12 @@
 #include "rig/loops.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "problem/without_part.hpp"
 #include "solvers/minimiser.hpp"
 #include "statistics/distributions.hpp"
@@ -86,16 +86,14 @@ Known known_part(const Matrix6d& C, const RigOptions& options) {
   const Matrix6d in_units = inverse.asDiagonal() * C * inverse.asDiagonal();
   if (!in_units.allFinite()) return known;
   // a translation is turned by what is not known of the rotation
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(in_units.bottomRightCorner<3, 3>());
-  if (rotation.info() != Eigen::Success || !(rotation.eigenvalues()[2] <= 1)) return known;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> all(in_units);
-  if (all.info() != Eigen::Success) return known;
-  while (known.directions < 6 && all.eigenvalues()[static_cast<Eigen::Index>(known.directions)] <= 1)
+  if (!(symmetric_eigen<3>(in_units.bottomRightCorner<3, 3>()).values[2] <= 1)) return known;
+  const SymmetricEigen<6> all = symmetric_eigen<6>(in_units);
+  while (known.directions < 6 && all.values[static_cast<Eigen::Index>(known.directions)] <= 1)
     ++known.directions;
   const auto columns = static_cast<Eigen::Index>(known.directions);
-  known.basis = all.eigenvectors().leftCols(columns);
+  known.basis = all.vectors.leftCols(columns);
   // rounding: variances of perfect motions
-  known.variances = all.eigenvalues().head(columns).cwiseMax(1e-18);
+  known.variances = all.values.head(columns).cwiseMax(1e-18);
   return known;
 }
 
