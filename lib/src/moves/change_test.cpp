@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moves/change_test.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "linear_algebra/small_factor.hpp"
 #include "moves/division.hpp"
 
 namespace egocal::detail {
@@ -29,7 +29,7 @@ class Gains {
   double of(std::size_t from, std::size_t to) const {
     const ParameterMatrix H = H_[to] - H_[from] + borrowed_ * H_.back();
     const Parameters g = g_[to] - g_[from];
-    return g.dot(H.ldlt().solve(g));
+    return g.dot(SmallFactor(H).solve(g));
   }
 
  private:
@@ -55,11 +55,11 @@ EvenChange fit_even_change(Blocks blocks, const ParameterMatrix& H, const Change
     Ht += block.time * block.H;
     Htt += block.time * block.time * block.H;
   }
-  const Eigen::LDLT<ParameterMatrix> whole(ParameterMatrix(H + borrowed));
+  const SmallFactor whole(H + borrowed);
   EvenChange fit;
   fit.mean = whole.solve(Ht);
   fit.slope = Htt - Ht * fit.mean + borrowed;
-  const Eigen::LDLT<ParameterMatrix> slope(fit.slope);
+  const SmallFactor slope(fit.slope);
   std::vector<Parameters> gradients;
   for (const LinearBlock& block : blocks) gradients.push_back(block.g);
   for (int pass = 0; pass < 3; ++pass) {
@@ -99,13 +99,13 @@ void test_even_change(Blocks blocks, const EvenChange& fit, const ChangeTestOpti
     V += weight * (block.root * C * block.root) * weight.transpose();
   }
   const double correlation = correlation_of(fit.residuals, options);
-  const Eigen::LDLT<ParameterMatrix> factor(V);
-  if (factor.info() != Eigen::Success || !factor.isPositive()) return;
+  const SmallFactor factor(V);
+  if (!factor.positive()) return;
   const double t2 = fit.S.dot(factor.solve(fit.S)) / correlation;
   if (!std::isfinite(t2)) return;
   test.even_false_alarm = chance_of(t2, fit.S.size(), blocks.size(), options);
-  const Eigen::LDLT<ParameterMatrix> slope(fit.slope);
-  test.even_covariance = 4 * correlation * slope.solve(slope.solve(V).transpose());
+  const SmallFactor slope(fit.slope);
+  test.even_covariance = 4 * correlation * slope.solve(ParameterMatrix(slope.solve(V).transpose()));
 }
 
 /// What one unknown reduces the cost by, by chance: from the differences of neighbouring residuals, as those

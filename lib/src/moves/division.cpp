@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moves/division.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/minimiser.hpp"
 #include "statistics/distributions.hpp"
@@ -71,8 +71,8 @@ Division divide(Blocks blocks, Part second, const ChangeTestOptions& options) {
   d.H1 = d.H2 = zero_matrix(blocks);
   for (std::size_t i = 0; i < blocks.size(); ++i) (second.has(i) ? d.H2 : d.H1) += blocks[i].H;
   d.H = d.H1 + d.H2;
-  const Eigen::LDLT<ParameterMatrix> before(ParameterMatrix(d.H1 + options.borrowed_curvature * d.H));
-  const Eigen::LDLT<ParameterMatrix> after(ParameterMatrix(d.H2 + options.borrowed_curvature * d.H));
+  const SmallFactor before(d.H1 + options.borrowed_curvature * d.H);
+  const SmallFactor after(d.H2 + options.borrowed_curvature * d.H);
   for (const LinearBlock& block : blocks) d.gradients.push_back(block.g);
   d.residuals.resize(blocks.size());
   std::array<std::size_t, 2> all{}, shortened{};  // blocks of each side
@@ -131,7 +131,7 @@ double chance_of(double t2, Eigen::Index parameters, std::size_t blocks, const C
 }
 
 Evidence evidence(Blocks blocks, Part second, const Division& d, const ParameterMatrix& whiten) {
-  const Eigen::LDLT<ParameterMatrix> whole(d.H);
+  const SmallFactor whole(d.H);
   const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
   const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
   const ParameterMatrix C = residual_covariance(blocks, d.residuals, whiten);
@@ -144,9 +144,8 @@ Evidence evidence(Blocks blocks, Part second, const Division& d, const Parameter
   Evidence result;
   result.S = from_after * g2 - from_before * g1;
   result.V = from_before * C1 * from_before.transpose() + from_after * C2 * from_after.transpose();
-  const Eigen::LDLT<ParameterMatrix> factor(result.V);
-  if (factor.info() == Eigen::Success && factor.isPositive())
-    result.t2 = result.S.dot(factor.solve(result.S));
+  const SmallFactor factor(result.V);
+  if (factor.positive()) result.t2 = result.S.dot(factor.solve(result.S));
   if (!std::isfinite(result.t2) || !d.fits) result.t2 = 0;
   return result;
 }
@@ -172,10 +171,10 @@ double correlation_of(const std::vector<Parameters>& residuals, const ChangeTest
 ParameterMatrix covariance_of_change(const Division& d, const ParameterMatrix& V,
                                      const ChangeTestOptions& options) {
   // S = M change with M = H1 inv(H) H2
-  const ParameterMatrix M = d.H.ldlt().solve(d.H2);
+  const ParameterMatrix M = SmallFactor(d.H).solve(d.H2);
   const ParameterMatrix harmonic = d.H1 * M + options.borrowed_curvature * d.H;
-  const Eigen::LDLT<ParameterMatrix> inverse(harmonic);
-  return inverse.solve(inverse.solve(V).transpose());
+  const SmallFactor inverse(harmonic);
+  return inverse.solve(ParameterMatrix(inverse.solve(V).transpose()));
 }
 
 }  // namespace egocal::detail

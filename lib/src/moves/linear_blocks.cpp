@@ -9,6 +9,7 @@
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
+#include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/minimiser.hpp"
 #include "statistics/median.hpp"
@@ -130,7 +131,7 @@ Parameters local_optimum(const std::vector<LinearBlock>& blocks, std::size_t k,
     g += blocks[i].g;
     H += blocks[i].H;
   }
-  return -H.ldlt().solve(g);
+  return -SmallFactor(H).solve(g);
 }
 
 /// Q of statistics, without the noise of their own rotations.
@@ -181,8 +182,8 @@ std::vector<ParameterMatrix> noise_of_blocks(std::vector<ParameterMatrix> noise,
   for (const ParameterMatrix& own : noise) mean += own / static_cast<double>(noise.size());
   // in units of the curvature, in which the test compares costs
   const double unit = mean.diagonal().cwiseQuotient(H_mean.diagonal()).mean();
-  const Eigen::LDLT<ParameterMatrix> whole(mean);
-  const bool known = unit > 0 && std::isfinite(unit) && whole.info() == Eigen::Success && whole.isPositive();
+  const SmallFactor whole(mean);
+  const bool known = unit > 0 && std::isfinite(unit) && whole.positive();
   for (std::size_t k = 0; k < noise.size(); ++k) {
     const ParameterMatrix shape = stretch.blocks[k].H + options.raised_curvature * H_mean;
     const double size = whole.solve(noise[k]).trace() / whole.solve(shape).trace();

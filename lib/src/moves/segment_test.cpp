@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "linear_algebra/small_factor.hpp"
+
 namespace egocal::detail {
 
 namespace {
@@ -99,7 +101,7 @@ double chance_at(Blocks blocks, Part part, const ChangeTestOptions& options, Par
 }
 
 double squared_length(const Parameters& change, const ParameterMatrix& covariance) {
-  return change.dot(covariance.ldlt().solve(change));
+  return change.dot(SmallFactor(covariance).solve(change));
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "uncertainty/surroundings.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 
 namespace egocal::detail {
@@ -86,9 +86,10 @@ Vector6d variance_of_hidden(const Surroundings& around, bool has_prior, const Ob
   Vector6d precision;
   precision << Eigen::Vector3d::Constant(1 / (translation * translation)),
       Eigen::Vector3d::Constant(1 / (rotation * rotation));
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> confined =
-      hidden.transpose() * precision.asDiagonal() * hidden;
-  return (hidden * confined.ldlt().solve(hidden.transpose())).diagonal();
+  const SmallFactor confined(hidden.transpose() * precision.asDiagonal() * hidden);
+  const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> across =
+      confined.solve(SquareUpToSix(hidden.transpose()));
+  return (hidden * across).diagonal();
 }
 
 Vector6d pull_of_noise(const Surroundings& around, const Eigen::Vector3d& t,
@@ -97,11 +98,9 @@ Vector6d pull_of_noise(const Surroundings& around, const Eigen::Vector3d& t,
   slope.head<3>() = 0.25 * around.noise * t;
   Matrix6d clean = around.H;
   clean.diagonal().head<3>().array() -= 0.25 * around.noise;
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> curvature =
-      seen.transpose() * clean * seen;
-  const auto factor = curvature.ldlt();
-  if (factor.info() != Eigen::Success || !factor.isPositive()) return Vector6d::Zero();
-  return seen * factor.solve(seen.transpose() * slope);
+  const SmallFactor curvature(seen.transpose() * clean * seen);
+  if (!curvature.positive()) return Vector6d::Zero();
+  return seen * curvature.solve(UpToSix(seen.transpose() * slope));
 }
 
 Eigen::Vector3d translation_of(const DualQuaternion& q) {
