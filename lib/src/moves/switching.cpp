@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moves/switching.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "egocal/microseconds.hpp"
+#include "linear_algebra/small_factor.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "moves/division.hpp"
 #include "moves/moving_pairs.hpp"
 #include "problem/tangent.hpp"
@@ -26,6 +26,37 @@ double squared_residual(const LinearBlock& block, const Parameters& x) {
   return (block.inverse_root * (block.g + block.H * x)).squaredNorm();
 }
 
+/// M = inv(L) M for a lower triangle L.
+void solve_below(const ParameterMatrix& L, ParameterMatrix& M) {
+  for (Eigen::Index column = 0; column < M.cols(); ++column)
+    for (Eigen::Index i = 0; i < L.rows(); ++i) {
+      for (Eigen::Index k = 0; k < i; ++k) M(i, column) -= L(i, k) * M(k, column);
+      M(i, column) /= L(i, i);
+    }
+}
+
+/// The v with the largest v'Gv of those with v'Nv = 1; both symmetric, N positive definite. By loops: Eigen's
+/// solver of this took half of this file's compilation.
+Parameters largest_direction(ParameterMatrix G, const ParameterMatrix& N) {
+  const Eigen::Index n = N.rows();
+  ParameterMatrix L = ParameterMatrix::Zero(n, n);  // L L' = N
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = j; i < n; ++i) {
+      double left = N(i, j);
+      for (Eigen::Index k = 0; k < j; ++k) left -= L(i, k) * L(j, k);
+      L(i, j) = i == j ? std::sqrt(left) : left / L(j, j);
+    }
+  solve_below(L, G);
+  G.transposeInPlace();
+  solve_below(L, G);
+  Parameters v = symmetric_eigen<Eigen::Dynamic>(G).vectors.rightCols<1>();
+  for (Eigen::Index i = n - 1; i >= 0; --i) {  // v = inv(L') v
+    for (Eigen::Index k = i + 1; k < n; ++k) v[i] -= L(k, i) * v[k];
+    v[i] /= L(i, i);
+  }
+  return v;
+}
+
 /// Blocks on either side of the direction in which their gradients differ most from their noise.
 std::vector<bool> first_sides(Blocks blocks) {
   ParameterMatrix gradients = zero_matrix(blocks), noise = gradients;
@@ -34,8 +65,7 @@ std::vector<bool> first_sides(Blocks blocks) {
     noise += block.root * block.root;
   }
   noise.diagonal().array() += 1e-12 * noise.trace();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(gradients, noise);
-  const Eigen::VectorXd direction = solver.eigenvectors().rightCols<1>();
+  const Parameters direction = largest_direction(gradients, noise);
   std::vector<bool> sides;
   for (const LinearBlock& block : blocks) sides.push_back(direction.dot(block.g) > 0);
   return sides;
@@ -52,7 +82,7 @@ Places optima(Blocks blocks, const std::vector<bool>& sides, const ChangeTestOpt
       H += blocks[k].H;
       g += blocks[k].g;
     }
-    places[side ? 1 : 0] = -H.ldlt().solve(g);
+    places[side ? 1 : 0] = -SmallFactor(H).solve(g);
   }
   return places;
 }
@@ -74,11 +104,9 @@ TwoPlaces two_places(Blocks blocks, const SwitchingOptions& options) {
     if (sides == two.sides) break;
     two.sides = std::move(sides);
   }
-  const Parameters one = -curvature(blocks).ldlt().solve([&] {
-    Parameters g = zero_vector(blocks);
-    for (const LinearBlock& block : blocks) g += block.g;
-    return g;
-  }());
+  Parameters g = zero_vector(blocks);
+  for (const LinearBlock& block : blocks) g += block.g;
+  const Parameters one = -SmallFactor(curvature(blocks)).solve(g);
   std::vector<double> squares;
   for (const LinearBlock& block : blocks) squares.push_back(squared_residual(block, one));
   const double most = options.longest_square * median(squares);
