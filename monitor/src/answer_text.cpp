@@ -112,6 +112,10 @@ std::string words(const std::vector<std::string>& directions) {
 
 }  // namespace
 
+bool verdict_is_old(const PairState& pair) {
+  return pair.verdict && (pair.verdict->old > 0 || departure_of(pair));
+}
+
 Label verdict_of(const PairState& pair, Charset charset) {
   const Symbols& s = symbols(charset);
   const calibration_t* answer = pair.answer();
@@ -121,7 +125,7 @@ Label verdict_of(const PairState& pair, Charset charset) {
   const Verdict verdict = pair.verdict->diagnosis.verdict;
   // what came since may contradict it; what is contradictory stays that
   if (verdict <= Verdict::incomplete && pair.old > 0) return {"? old answer", Style::warning};
-  if (verdict <= Verdict::incomplete && pair.verdict->old > 0) return {"? old verdict", Style::warning};
+  if (verdict <= Verdict::incomplete && verdict_is_old(pair)) return {"? old verdict", Style::warning};
   // the answer is right as far as it goes, and no longer follows what comes
   if (verdict <= Verdict::incomplete && pair.standing > 0 && !pair.why_standing.empty())
     return {"? no motion", Style::warning};
@@ -193,6 +197,8 @@ Label advice_of(const PairState& pair) {
     return {"nothing has been judged for " + age(std::max(1.0, pair.verdict->old)) +
                 ": is egocal-diagnosis running?" + before_that(pair).substr(1),
             Style::warning};
+  if (const std::optional<bus::Departure> moved = departure_of(pair))
+    return {bus::in_words(*moved) + before_that(pair), Style::warning};
   const Style style = style_of(diagnosis.verdict);
   for (const Finding& finding : diagnosis.findings)
     if (finding.certain) return {with_cure(finding), style};

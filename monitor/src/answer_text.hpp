@@ -50,6 +50,8 @@ struct Label {
 /// "good", "contradictory": whether the answer can be used, with a mark, at most 15 cells. Until there is a
 /// verdict: how far the pair is.
 Label verdict_of(const PairState& pair, Charset charset);
+/// What came since was not judged in time, or has moved the answer away from the one that was judged.
+bool verdict_is_old(const PairState& pair);
 /// "optimal (proven)" or why not: whether another extrinsic explains the same motions better.
 Label proof_of(const calibration_t& answer);
 /// What to do about it, or why, in one line: the first finding with its cure, else the goal, else the reason.

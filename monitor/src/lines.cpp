@@ -91,7 +91,7 @@ void verdict_into(json& p, const PairState& pair) {
   p["findings"] = bus::findings_json(diagnosis.findings);
   if (diagnosis.goal) p["goal"] = bus::goal_json(*diagnosis.goal);
   p["verdict_seq"] = pair.verdict->seq;
-  p["verdict_old"] = pair.verdict->old > 0;
+  p["verdict_old"] = verdict_is_old(pair);
 }
 
 /// Null where no scale is looked for, or none was received.

@@ -71,6 +71,11 @@ void Model::watch_verdict(const PairState& pair, const PairVerdict& verdict, Now
     note(Severity::good, name, "the goal is reached", now);
 }
 
+std::optional<bus::Departure> departure_of(const PairState& pair) {
+  if (!pair.verdict || !pair.shown.valid) return std::nullopt;
+  return bus::departure(pair.verdict->diagnosis.verdict, pair.verdict->judged, pair.shown.T_a_b);
+}
+
 /// A diagnosis that hangs leaves a verdict behind, and the mount may move after it.
 void Model::watch_age_of_verdict(PairState& pair, Now now) {
   if (!pair.verdict || !pair.verdict->behind_mono_us) return;

@@ -46,9 +46,9 @@ void draw_verdict(const Pane& pane, const PairState& pair, Charset charset) {
     if (x < pane.width()) pane.text(x, y, clean(text, static_cast<std::size_t>(pane.width() - x)), style);
   };
   row(0, "verdict", verdict_of(pair, charset),
-      pair.old > 0 || (pair.verdict && pair.verdict->old > 0) ? advice_of(pair).text
-      : !pair.verdict                                         ? "is egocal-diagnosis running?"
-                                                              : pair.verdict->diagnosis.reason,
+      pair.old > 0 || verdict_is_old(pair) ? advice_of(pair).text
+      : !pair.verdict                      ? "is egocal-diagnosis running?"
+                                           : pair.verdict->diagnosis.reason,
       Style::normal);
   row(1, "proof", proof_of(*answer),
       "by " + answer->solver + ", gap " + compact(answer->scaled_gap, charset) + " of 1", Style::dim);

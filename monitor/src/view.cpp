@@ -276,6 +276,11 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
     extrinsic.reason = pair.verdict->diagnosis.reason;
     extrinsic.usable = pair.verdict->diagnosis.verdict != Verdict::contradictory;
   }
+  if (const std::optional<bus::Departure> moved = departure_of(pair)) {
+    extrinsic.verdict.clear();
+    extrinsic.reason = bus::in_words(*moved);
+    extrinsic.usable = false;
+  }
   if (pair.old > 0) extrinsic.usable = false;
   extrinsic.stddev.emplace();
   std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "egocal/bus/departure.hpp"
 #include "egocal/bus/verdict.hpp"
 
 namespace egocal::bus::test_verdict_message {
@@ -119,6 +120,28 @@ TEST(VerdictMessage, IsRefusedWhereAnyFieldMakesNoSense) {
     EXPECT_FALSE(received) << damage.what;
     EXPECT_FALSE(received.reason.empty()) << damage.what;
   }
+}
+
+TEST(VerdictMessage, IsAboutAnAnswerNearby) {
+  const Pose at{rotation_exp({0.3, -0.2, 0.9}), {1, 2, 3}};
+  const Judged judged{to_dual_quaternion(at), 0, 0, 0};
+  const auto moved = [&](double rotation, double translation, Verdict verdict = Verdict::good) {
+    return departure(
+        verdict, judged,
+        {at.rotation * rotation_exp({0, rotation, 0}), at.translation + Eigen::Vector3d(0, 0, translation)});
+  };
+  EXPECT_FALSE(moved(0, 0));
+  EXPECT_FALSE(moved(0.0174, 0.59));
+  ASSERT_TRUE(moved(0.0176, 0));
+  EXPECT_NEAR(moved(0.0176, 0.02)->rotation, 0.0176, 1e-9);
+  ASSERT_TRUE(moved(0, -0.61));
+  EXPECT_NEAR(moved(0, -0.61)->translation, 0.61, 1e-9);
+  EXPECT_TRUE(moved(0, std::nan("")));
+  for (const Verdict verdict : {Verdict::incomplete, Verdict::doubtful, Verdict::contradictory})
+    EXPECT_FALSE(moved(1, 10, verdict));
+  EXPECT_EQ(in_words(*moved(0.0349, 1.2)), "the answer has moved by 2.00 deg and 120 cm since it was judged");
+  EXPECT_TRUE(departure(Verdict::good, judged, {at.rotation, at.translation + Eigen::Vector3d(0.1, 0, 0)},
+                        {.rotation = 0.01, .translation = 0.05}));
 }
 
 }  // namespace

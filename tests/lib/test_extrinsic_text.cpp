@@ -91,6 +91,9 @@ TEST(ExtrinsicText, WhatTheNumbersRestOnIsNamed) {
   NamedExtrinsic extrinsic = example();
   const auto words = [&] { return extrinsic_text(extrinsic, ExtrinsicFormat::ros); };
   EXPECT_THAT(words(), HasSubstr("# not judged: no verdict; certified globally optimal"));
+  extrinsic.reason = "The answer has moved.";
+  EXPECT_THAT(words(), HasSubstr("# not judged: The answer has moved; certified globally optimal"));
+  extrinsic.reason.clear();
   EXPECT_EQ(not_shown_in_words(extrinsic), "");
   extrinsic.stddev = {1, 1, std::numeric_limits<double>::infinity(), 1, 1, 1};
   EXPECT_EQ(not_shown_in_words(extrinsic), "NOT OBSERVABLE, not a measurement: z");

@@ -75,11 +75,11 @@ inline problem_t problem_at(const std::string& a, const std::string& b, std::int
   return p;
 }
 
-/// Of the lidar and the camera.
+/// Of the lidar and the camera, about the answer to the problem with this number.
 inline verdict_t verdict_at(const Diagnosis& diagnosis, std::int64_t utime, std::int64_t session,
                             std::int64_t seq) {
-  verdict_t message =
-      bus::to_message(diagnosis, {DualQuaternion{}, begin_utime, begin_utime + 1'000'000, 100});
+  const DualQuaternion judged = to_dual_quaternion(extrinsic_at(static_cast<double>(seq)));
+  verdict_t message = bus::to_message(diagnosis, {judged, begin_utime, begin_utime + 1'000'000, 100});
   message.utime = utime;
   message.session = session;
   message.seq = seq;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "egocal/monitor/lines.hpp"
 #include "egocal/monitor/view.hpp"
@@ -37,14 +38,23 @@ class AnswerAge : public ::testing::Test {
       model.tick(now);
     }
   }
-  void judge(Now now) {
+  void judge(Now now, Verdict verdict = Verdict::good) {
     Diagnosis diagnosis;
-    diagnosis.verdict = Verdict::good;
+    diagnosis.verdict = verdict;
     diagnosis.reason = "The motions agree.";
     const verdict_t message = test::verdict_at(diagnosis, problem.utime, problem.session, problem.seq);
     const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
     ASSERT_TRUE(received) << received.reason;
     model.on_verdict(message, *received.value, now);
+  }
+  /// The newest problem, answered anew.
+  void answer_moved_by(double degrees, double metres) {
+    calibration_t answer = test::calibration_at(problem, false);
+    Pose T = test::extrinsic_at(static_cast<double>(problem.seq));
+    T.rotation = T.rotation * rotation_exp({0, 0, degrees * std::numbers::pi / 180});
+    T.translation.y() += metres;
+    bus::set_pose(to_dual_quaternion(T), answer.pos, answer.quat);
+    model.on_calibration(answer, at(1));
   }
   std::string shown(Screen screen) {
     view.screen = screen;
@@ -91,6 +101,32 @@ TEST_F(AnswerAge, SolversThatHangLeaveAnOldOne) {
       1);
   drive(40, 41, true);
   expect_good();
+}
+
+// At full speed a mount was knocked within the second between two verdicts.
+TEST_F(AnswerAge, OneThatHasMovedSinceItWasJudgedHasAnOldVerdict) {
+  drive(0, 1, true);
+  answer_moved_by(0.9, 0.5);
+  expect_good();  // as far as a good answer may be off
+  answer_moved_by(1.7, 0.02);
+  const std::string why = "the answer has moved by 1.70 deg and 2 cm since it was judged. Before: good.";
+  for (const Screen screen : {Screen::overview, Screen::detail}) {
+    EXPECT_THAT(shown(screen), Not(HasSubstr("✓ good")));
+    EXPECT_THAT(shown(screen), HasSubstr("? old verdict"));
+    EXPECT_THAT(shown(screen), HasSubstr(why));
+  }
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("0 of 1 good"));
+  EXPECT_THAT(pair_lines(model, Charset::ascii), HasSubstr("lidar -> camera: ? old verdict: " + why));
+  EXPECT_EQ(nlohmann::json::parse(json_line(model))["pairs"][0]["verdict_old"], true);
+  const std::optional<NamedExtrinsic> exported = extrinsic_of(model.pairs()[0]);
+  ASSERT_TRUE(exported);
+  EXPECT_FALSE(exported->usable);
+  EXPECT_EQ(exported->verdict, "");
+  EXPECT_THAT(exported->reason, HasSubstr("since it was judged"));
+  answer_moved_by(0, 0.7);
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("? old verdict"));
+  judge(at(1), Verdict::incomplete);
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("incomplete")) << "it does not say where the answer is";
 }
 
 TEST_F(AnswerAge, ASolverThatSkipsProblemsFollows) {

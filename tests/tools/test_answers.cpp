@@ -247,6 +247,40 @@ TEST(VerdictLine, NamesWhatIsPossibleWithItsCure) {
   EXPECT_EQ(verdict_line(diagnosis), "good: The mounting changed. Cure: Reset the pair.");
 }
 
+// A `good` beside an answer that nobody has judged was exported as good.
+TEST_F(AnswersTest, AGoodVerdictIsNotThatOfAnAnswerThatHasMoved) {
+  const std::string log = folder / "moved.log";
+  const problem_t first = problem(5);
+  const DualQuaternion judged = *bus::to_dual_quaternion(answer(first).pos, answer(first).quat).value;
+  Pose moved = to_pose(T);
+  moved.rotation = moved.rotation * rotation_exp({0, 0, 0.09});  // 5 degrees
+  T = to_dual_quaternion(moved);
+  const problem_t last = problem(6);
+  {
+    bus::LogWriter writer(log);
+    const auto write = [&](const std::string& channel, const auto& message) {
+      writer.write(message.utime, channel, bus::encode(message));
+    };
+    write(bus::problem_channel("left", "right"), first);
+    write(bus::verdict_channel("left", "right"), verdict(Verdict::good, first.session, 5, judged));
+    write(bus::problem_channel("left", "right"), last);
+    write(bus::calibration_channel("left", "right"), answer(last));
+    writer.close();
+  }
+  const std::string out = folder / "moved.yaml", said = folder / "moved.err";
+  const int status = std::system(
+      (paths::bin_dir() + "/egocal export --log " + log + " --out " + out + " 2>" + said).c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  const auto text_of = [](const std::string& file) {
+    std::ifstream stream(file);
+    return std::string{std::istreambuf_iterator<char>(stream), {}};
+  };
+  EXPECT_THAT(text_of(out), HasSubstr("usable: false"));
+  EXPECT_THAT(text_of(out), HasSubstr("DO NOT USE; not judged: the answer has moved by "));
+  EXPECT_THAT(text_of(out), Not(HasSubstr("verdict: good")));
+  EXPECT_THAT(text_of(said), HasSubstr("since it was judged. Before: good: "));
+}
+
 TEST_F(AnswersTest, TheVerdictOfTheSessionGoesWithTheAnswer) {
   const std::string log = folder / "session.log";
   const problem_t last = problem(5);

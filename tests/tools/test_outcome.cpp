@@ -90,6 +90,25 @@ TEST_F(OutcomeTest, WithoutTheEndThatNoSolverAnsweredIsUnusable) {
   EXPECT_THAT(outcome().text, StartsWith("left -> right: the last 5.0 s are not judged. Before: good: "));
 }
 
+// The mount was knocked in the part that the diagnosis had no time for.
+TEST_F(OutcomeTest, WhoseAnswerHasMovedSinceItWasJudgedIsUnusable) {
+  Pose moved = to_pose(T);
+  moved.translation.x() += 0.9;
+  T = to_dual_quaternion(moved);
+  const problem_t later = problem(150);
+  answers.hear(later);
+  answers.hear(answer(later));
+  ASSERT_TRUE(answers.departure(pair_name));
+  EXPECT_NEAR(answers.departure(pair_name)->translation, 0.9, 0.1);
+  EXPECT_TRUE(outcome().unusable);
+  EXPECT_THAT(outcome().text, StartsWith("left -> right: the last 5.0 s are not judged, and the answer has "
+                                         "moved by "));
+  EXPECT_THAT(outcome().text, HasSubstr(" since it was judged. Before: good: "));
+  answers.hear(verdict(Verdict::good, begin_us, 150, answers.best(pair_name)->checked.answer.T_a_b));
+  EXPECT_FALSE(answers.departure(pair_name));
+  EXPECT_FALSE(outcome().unusable);
+}
+
 TEST_F(OutcomeTest, WithoutTheEndThatPairingDidNotReadIsUnusable) {
   read_until["RIGHT"] -= 4 * second;
   EXPECT_TRUE(outcome().unusable);

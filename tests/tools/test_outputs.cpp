@@ -76,6 +76,10 @@ TEST_F(Commands, OutputThatCannotBeWrittenIsAFailure) {
   for (const auto& entry : fs::directory_iterator(path("")))
     left += entry.path().filename().string().rfind("report", 0) == 0 ? 1 : 0;
   EXPECT_EQ(left, 0u);
+  // the drive was left without its rig
+  expect_refusal(egocal("simulate --poses 60 --out " + path("left.log") + " --rig-out /dev/full"), 1,
+                 "/dev/full");
+  EXPECT_FALSE(fs::exists(path("left.log")));
 }
 
 // The one that lost was dropped silently

@@ -214,9 +214,55 @@ TEST_F(RigOfFiles, TwoSensorsThatShareNoTimeLeaveTheOthers) {
       << "sensors by name, not a and b: " << object["unsolved"][0]["reason"];
   EXPECT_EQ(object["joint"]["tree"].size(), 2u);
   // without the one that connects them
-  const Result apart = run("solve " + first + " " + last + " " + last);
-  EXPECT_EQ(apart.code, 1);
+  const Result apart = run("solve --json " + first + " " + last + " " + last);
+  EXPECT_EQ(apart.code, 3);
   EXPECT_NE(apart.error.find("first"), std::string::npos) << apart.error;
+  EXPECT_EQ(apart.object()["joint"]["apart"], json::array({first}));
+  EXPECT_EQ(run("solve " + first + " " + last).code, 1) << "no pair has an answer";
+}
+
+// It ended with an error, without the answers of the others.
+TEST_F(RigOfFiles, ASensorThatIsFrozenLeavesTheOthers) {
+  const std::vector<std::string> files = words_of(rig("drive"));
+  for (std::size_t frozen = 0; frozen < 3; ++frozen) {
+    std::vector<std::string> three = files;
+    three[frozen] = folder.path("frozen.tum");
+    std::ifstream moving(files[frozen]);
+    std::ofstream still(three[frozen]);
+    for (std::string line; std::getline(moving, line);)
+      if (!line.starts_with('#')) still << line.substr(0, line.find(' ')) << " 1 2 3 0 0 0 1\n";
+    still.close();
+    const std::string names = three[0] + " " + three[1] + " " + three[2];
+    const Result result = run("solve --json " + names);
+    EXPECT_EQ(result.code, 3) << "a sensor has no answer: " << result.error;
+    const json object = result.object();
+    EXPECT_EQ(object["unsolved"].size(), 2u);
+    for (const json& pair : object["unsolved"]) {
+      EXPECT_TRUE(pair["a"] == "frozen" || pair["b"] == "frozen") << pair;
+      EXPECT_NE(pair["reason"].get<std::string>().find("the poses of frozen are all the same"),
+                std::string::npos)
+          << pair;
+    }
+    ASSERT_EQ(object["extrinsics"].size(), 1u);
+    EXPECT_EQ(object["extrinsics"][0]["verdict"], "good");
+    EXPECT_EQ(object["joint"]["apart"], json::array({"frozen"}));
+    EXPECT_EQ(object["joint"]["tree"].size(), 1u);
+    const Result offset = run("solve --json --time-offset auto " + names);
+    EXPECT_EQ(offset.code, 3) << offset.error;
+    EXPECT_EQ(offset.object()["extrinsics"].size(), 1u);
+    EXPECT_EQ(offset.object()["joint"]["apart"], json::array({"frozen"}));
+    const Result printed = run("solve " + names);
+    EXPECT_EQ(printed.code, 3);
+    EXPECT_NE(printed.out.find("not in it, without an answer that connects them: frozen\n"),
+              std::string::npos)
+        << printed.out;
+    const Result written = run("solve " + names + " --format urdf");
+    EXPECT_EQ(written.code, 3);
+    EXPECT_EQ(written.out.find("frozen"), std::string::npos);
+    EXPECT_NE(written.error.find("not in the tree, as no answer connects them with the others: frozen"),
+              std::string::npos)
+        << written.error;
+  }
 }
 
 TEST_F(RigOfFiles, TheConsistentSetIsWrittenAsOneTree) {

@@ -115,7 +115,8 @@ void Answers::hear(const verdict_t& message) {
   if (known != judgements_.end() && known->second.session == message.session &&
       known->second.seq > message.seq)
     return;
-  judgements_[pair] = {message.session, message.seq, message.utime, std::move(received.value->diagnosis)};
+  judgements_[pair] = {message.session, message.seq, message.utime, std::move(received.value->diagnosis),
+                       received.value->judged};
 }
 
 void Answers::hear(const scale_problem_t& message) {
@@ -155,6 +156,12 @@ const Answers::Judgement* Answers::judgement(const PairName& pair) const {
 const Diagnosis* Answers::diagnosis(const PairName& pair) const {
   const Judgement* const known = judgement(pair);
   return known ? &known->diagnosis : nullptr;
+}
+
+std::optional<bus::Departure> Answers::departure(const PairName& pair) const {
+  const Judgement* const known = judgement(pair);
+  if (!known) return std::nullopt;
+  return bus::departure(known->diagnosis.verdict, known->judged, to_pose(best(pair)->checked.answer.T_a_b));
 }
 
 bool Answers::judged_to_the_end(const PairName& pair) const {

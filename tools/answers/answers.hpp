@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/bus/departure.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
@@ -48,6 +49,8 @@ class Answers {
   const Best* best(const PairName& pair) const;
   /// The newest verdict about the session of the answer that counts; null: none.
   const Diagnosis* diagnosis(const PairName& pair) const;
+  /// How far the answer that counts is from the one that this verdict calls good; empty: it holds for it.
+  std::optional<bus::Departure> departure(const PairName& pair) const;
   /// That verdict is about the newest problem that was heard.
   bool judged_to_the_end(const PairName& pair) const;
   /// How much of the drive came after what that verdict is about [s]; nothing: there is no verdict.
@@ -84,6 +87,7 @@ class Answers {
   struct Judgement {
     std::int64_t session = 0, seq = 0, utime = 0;
     Diagnosis diagnosis;
+    bus::Judged judged;
   };
   /// The newest problem of a pair. Numbers may go back: another pairing process took over for a while, or the
   /// disk had no room for the newest session. Problems that arrive again and again are believed then.

@@ -94,7 +94,7 @@ Found heard(const ExportOptions& options) {
     const bool waits = judged_here || std::chrono::steady_clock::now() < heard_all;
     return std::all_of(found.pairs.begin(), found.pairs.end(), [&](const PairName& pair) {
       return found.answers.certified(pair) && found.answers.answered_to_the_end(pair) &&
-             (!waits || found.answers.diagnosis(pair));
+             (!waits || (found.answers.diagnosis(pair) && !found.answers.departure(pair)));
     });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
@@ -112,11 +112,27 @@ bool is_current(const PairName& pair, const Answers& answers, bool live) {
                    answers.seconds_not_answered(pair) <= longest_not_judged);
 }
 
+/// What the verdict makes of an answer, and that none does where it is about another one.
+void judge(const PairName& pair, const Answers& answers, NamedExtrinsic& extrinsic) {
+  const Diagnosis* const diagnosis = answers.diagnosis(pair);
+  if (!diagnosis) return;
+  if (const std::optional<bus::Departure> moved = answers.departure(pair)) {
+    extrinsic.usable = false;
+    extrinsic.reason = bus::in_words(*moved);
+    say(fmt::format("egocal: {}: {}. Before: {}", text(pair), extrinsic.reason, verdict_line(*diagnosis)));
+    return;
+  }
+  if (diagnosis->verdict != Verdict::good)
+    say(fmt::format("egocal: {}: {}", text(pair), verdict_line(*diagnosis)));
+  extrinsic.usable = extrinsic.usable && diagnosis->verdict != Verdict::contradictory;
+  extrinsic.verdict = to_string(diagnosis->verdict);
+  extrinsic.reason = diagnosis->reason;
+}
+
 /// Of a pair that has an answer; warns of what is missing for it to be certified.
 NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
   const Answers& answers = found.answers;
   const Answers::Best& best = *answers.best(pair);
-  const Diagnosis* const diagnosis = answers.diagnosis(pair);
   const bus::CheckedScale* const scale = answers.scale(pair);
   const Answer& answer = best.checked.answer;
   if (best.checked.standing == bus::Standing::unverified)
@@ -134,20 +150,14 @@ NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
                     rest));
   if (const double rest = answers.seconds_not_judged(pair).value_or(0); rest > longest_not_judged)
     say(fmt::format("egocal: warning: {}: the last {:.0f} s of the drive are not judged", text(pair), rest));
-  if (diagnosis && diagnosis->verdict != Verdict::good)
-    say(fmt::format("egocal: {}: {}", text(pair), verdict_line(*diagnosis)));
   NamedExtrinsic extrinsic{pair.first,
                            pair.second,
                            to_pose(answer.T_a_b),
                            answers.certified(pair),
                            best.message.pairs,
                            answer.observability.stddev};
-  extrinsic.usable =
-      is_current(pair, answers, live) && (!diagnosis || diagnosis->verdict != Verdict::contradictory);
-  if (diagnosis) {
-    extrinsic.verdict = to_string(diagnosis->verdict);
-    extrinsic.reason = diagnosis->reason;
-  }
+  extrinsic.usable = is_current(pair, answers, live);
+  judge(pair, answers, extrinsic);
   extrinsic.backing = bus::backing_of(best.checked, best.message.method, found.with_nominal.contains(pair));
   if (const std::string not_shown = not_shown_in_words(extrinsic); !not_shown.empty())
     say(fmt::format("egocal: {}: {}", text(pair), not_shown));
@@ -181,7 +191,8 @@ void run_export(const ExportOptions& options) {
   for (const PairName& pair : found.pairs)
     if (found.answers.best(pair)) {
       const Diagnosis* diagnosis = found.answers.diagnosis(pair);
-      refused = refused || (diagnosis && unusable(*diagnosis)) || !is_current(pair, found.answers, live);
+      refused = refused || (diagnosis && unusable(*diagnosis)) || found.answers.departure(pair) ||
+                !is_current(pair, found.answers, live);
       extrinsics.push_back(named(pair, found, live));
     } else if (options.all)
       say(fmt::format("egocal: warning: there is no answer for the pair {}", text(pair)));

@@ -166,25 +166,26 @@ std::vector<MountedSensor> understood(const std::vector<std::string>& texts) {
   return sensors;
 }
 
-/// The rig file takes its name when the drive is written, and is known to be writable before.
+/// The rig file takes its name when the drive is written, and is known to be writable before. A device takes
+/// the text at once: one that refuses it must not leave a drive without its rig.
 class WrittenRig {
  public:
-  WrittenRig(const std::string& file, const std::string& text) : file_(file), text_(text) {
+  WrittenRig(const std::string& file, const std::string& text) {
     std::error_code none;
     const bool written_as_it_is = !can_be_replaced(file) && !std::filesystem::is_directory(file, none);
-    if (file.empty() || written_as_it_is) return;
+    if (file.empty()) return;
+    if (written_as_it_is) {
+      write_whole_file(file, text);
+      return;
+    }
     whole_.emplace(file);
     whole_->write(text);
   }
   void commit() {
-    if (whole_)
-      whole_->commit();
-    else if (!file_.empty())
-      write_whole_file(file_, text_);
+    if (whole_) whole_->commit();
   }
 
  private:
-  std::string file_, text_;
   std::optional<WholeFile> whole_;
 };
 

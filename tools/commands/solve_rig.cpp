@@ -144,7 +144,8 @@ void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, 
   if (written) write_tree(report, output);
   if (!written || !output.out.empty())
     fmt::print("{}\n", output.json ? json_text(report, request, common, output) : rig_text(report));
-  if (report.contradictory || report.short_of_goal) throw cli::Exit{3};
+  // a tree without a sensor that was asked for must not look like the rig's
+  if (report.contradictory || report.short_of_goal || !report.apart.empty()) throw cli::Exit{3};
 }
 
 }  // namespace egocal::tools

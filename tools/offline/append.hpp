@@ -23,6 +23,12 @@ class Drives {
   /// further evidence and is omitted; one that shares poses with it is not. `notes` report both.
   void append(std::vector<Trajectory> drive, std::vector<std::string> names, std::vector<std::string>& notes);
 
+  std::size_t size() const { return drives_.size(); }
+  /// The file of the first sensor.
+  const std::string& name(std::size_t drive) const { return drives_[drive].names.front(); }
+  /// What this drive gave to the stream of a sensor, with as many poses as were read.
+  Trajectory part(const Trajectory& stream, std::size_t drive, std::size_t sensor) const;
+
   /// Where a time since the first pose of the first sensor is [s]: "12.3 s into b.tum", "that is
   /// between a.tum and b.tum". Empty of a single drive.
   std::string place_of(double seconds) const;
@@ -48,8 +54,6 @@ class Drives {
   /// Whether all of the drive is in already.
   bool is_repeated(const std::vector<Trajectory>& drive, const std::vector<std::string>& names,
                    std::vector<std::string>& notes) const;
-  Trajectory part(const Trajectory& stream, std::size_t drive, std::size_t sensor) const;
-
   std::vector<Trajectory*> sensors_;
   std::vector<Drive> drives_;
 };

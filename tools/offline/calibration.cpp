@@ -29,6 +29,7 @@
 #include "offline/beside.hpp"
 #include "offline/log_trajectory.hpp"
 #include "offline/median.hpp"
+#include "offline/mounts_of_drives.hpp"
 #include "offline/remedies.hpp"
 #include "offline/samples.hpp"
 #include "offline/scale_report.hpp"
@@ -299,6 +300,7 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
   word_for_options(options, request.scale_option, result.calibration);
   if (std::string warning = scale_warning(request, result); !warning.empty())
     result.warnings.push_back(std::move(warning));
+  name_mounts_of_drives(drives, motions.a, motions.b, options, result.calibration);
   for (Finding& finding : result.calibration.findings) {
     finding.remedy = remedy_in_terms(finding, terms);
     // a slow change has no one time

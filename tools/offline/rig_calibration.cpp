@@ -82,6 +82,8 @@ void put_rival_offset(const ClockOfSensor& clock, const std::string& name, Calib
 Calibration calibrate_pair(const RigPairSettings& pair, const std::vector<Trajectory>& trajectories,
                            const std::vector<ClockOfSensor>& clocks, const std::vector<std::string>& names) {
   Calibration calibration = calibrate(trajectories[pair.a], trajectories[pair.b], pair.calibration);
+  if (clocks[pair.a].group != clocks[pair.b].group)
+    throw Error("time offset: cannot be estimated, the streams are too short or never turn");
   calibration.time_offset_applied = clocks[pair.b].offset - clocks[pair.a].offset;
   for (const std::size_t k : {pair.a, pair.b}) put_rival_offset(clocks[k], names[k], calibration);
   return calibration;
@@ -126,15 +128,24 @@ std::vector<PairOutcome> calibrate_all(const RigSettings& settings,
   return outcomes;
 }
 
-/// Throws the reason of a pair without an answer where the others do not connect its sensors.
-void require_connected(const RigReport& report) {
-  std::vector<std::size_t> group(report.names.size());
+std::string without_answer(const RigReport& report, const UnsolvedPair& pair) {
+  return report.names[pair.a] + ", " + report.names[pair.b] + ": " + pair.reason;
+}
+
+/// Those outside of the largest group that the answers connect; of two that are as large the first one
+/// counts.
+std::vector<std::size_t> sensors_apart(const RigReport& report) {
+  const std::size_t n = report.names.size();
+  std::vector<std::size_t> group(n), size(n, 0), apart;
   std::iota(group.begin(), group.end(), std::size_t{0});
   for (const RigPairAnswer& pair : report.solution.pairs)
     std::replace(group.begin(), group.end(), std::size_t{group[pair.b]}, std::size_t{group[pair.a]});
-  for (const UnsolvedPair& pair : report.unsolved)
-    if (group[pair.a] != group[pair.b])
-      throw Error(report.names[pair.a] + ", " + report.names[pair.b] + ": " + pair.reason);
+  for (const std::size_t g : group) ++size[g];
+  const auto most = *std::max_element(group.begin(), group.end(),
+                                      [&](std::size_t g, std::size_t h) { return size[g] < size[h]; });
+  for (std::size_t s = 0; s < n; ++s)
+    if (group[s] != most) apart.push_back(s);
+  return apart;
 }
 
 void put_outcomes(std::vector<PairOutcome> outcomes, const RigSettings& settings, RigReport& report) {
@@ -156,7 +167,8 @@ void put_outcomes(std::vector<PairOutcome> outcomes, const RigSettings& settings
     report.truths.push_back(pair.truth);
     report.pairs.push_back(std::move(calibration));
   }
-  require_connected(report);
+  if (report.pairs.empty()) throw Error(without_answer(report, report.unsolved.front()));
+  report.apart = sensors_apart(report);
   for (const UnsolvedPair& pair : report.unsolved)
     report.warnings.push_back(report.names[pair.a] + ", " + report.names[pair.b] +
                               ": this pair has no answer of its own: " + pair.reason);

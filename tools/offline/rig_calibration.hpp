@@ -51,6 +51,9 @@ struct RigReport {
   std::vector<Calibration> pairs;           ///< each with the answer of its own two streams
   std::vector<std::optional<Pose>> truths;  ///< of each of them, where the rig file has one
   std::vector<UnsolvedPair> unsolved;       ///< the others
+  /// Sensors that no answer connects with the most of them, in ascending order: one that does not work has no
+  /// answer at all. They are not in the tree.
+  std::vector<std::size_t> apart;
   /// pairs: sensors, answer and certificate of those above, in their order. The rest is of the motions that
   /// several sensors have in common.
   RigSolution solution;
@@ -63,8 +66,7 @@ struct RigReport {
   std::vector<std::string> warnings;
 };
 
-/// Throws Error where a source cannot be read, or the pairs that have motions do not connect all sensors;
-/// UsageError where options contradict.
+/// Throws Error where a source cannot be read, or no pair has an answer; UsageError where options contradict.
 RigReport calibrate_rig(const RigRequest& request);
 
 }  // namespace egocal::tools

@@ -22,6 +22,13 @@ constexpr double least_contradiction = 5e-3;
 struct Clocks {
   std::vector<ClockOfSensor> of_sensor;
   std::vector<bool> known;
+  std::vector<bool> not_found;  ///< from none of those that it was compared with
+  std::size_t groups = 1;
+
+  void begin_group(std::size_t sensor) {
+    known[sensor] = true;
+    of_sensor[sensor].group = groups++;
+  }
 };
 
 void put(std::size_t sensor, double offset, std::vector<Trajectory>& trajectories, Clocks& clocks) {
@@ -34,7 +41,9 @@ void put(std::size_t sensor, double offset, std::vector<Trajectory>& trajectorie
 bool find(std::size_t known, std::size_t sensor, double max_gap, std::vector<Trajectory>& trajectories,
           Clocks& clocks) {
   const auto offset = estimate_time_offset(trajectories[known], trajectories[sensor], {.max_gap = max_gap});
+  clocks.not_found[sensor] = !offset;
   if (!offset) return false;
+  clocks.of_sensor[sensor].group = clocks.of_sensor[known].group;
   trajectories[sensor] = on_clock_of_a(*offset, std::move(trajectories[sensor]));
   clocks.of_sensor[sensor].offset = offset->seconds;
   if (offset->rival) clocks.of_sensor[sensor].period = std::abs(*offset->rival - offset->seconds);
@@ -42,15 +51,12 @@ bool find(std::size_t known, std::size_t sensor, double max_gap, std::vector<Tra
   return true;
 }
 
-[[noreturn]] void refuse_unknown(const RigSettings& settings, std::size_t a, std::size_t b) {
-  throw Error(settings.names[a] + ", " + settings.names[b] +
-              ": time offset: cannot be estimated, the streams are too short or never turn");
-}
-
 /// Along pairs whose offset is a number. False where there is none of a known and an unknown sensor.
 bool put_by_numbers(const RigSettings& settings, std::vector<Trajectory>& trajectories, Clocks& clocks) {
   for (const RigPairSettings& pair : settings.pairs) {
     if (!pair.listed || !pair.time_offset || clocks.known[pair.a] == clocks.known[pair.b]) continue;
+    const auto [known, other] = clocks.known[pair.a] ? std::pair{pair.a, pair.b} : std::pair{pair.b, pair.a};
+    clocks.of_sensor[other].group = clocks.of_sensor[known].group;
     if (clocks.known[pair.a])
       put(pair.b, clocks.of_sensor[pair.a].offset + *pair.time_offset, trajectories, clocks);
     else
@@ -65,9 +71,7 @@ bool put_by_motion(const RigSettings& settings, std::vector<Trajectory>& traject
   for (const RigPairSettings& pair : settings.pairs) {
     if (!pair.listed || pair.time_offset || clocks.known[pair.a] == clocks.known[pair.b]) continue;
     const auto [known, other] = clocks.known[pair.a] ? std::pair{pair.a, pair.b} : std::pair{pair.b, pair.a};
-    if (!find(known, other, pair.calibration.pairing.max_gap, trajectories, clocks))
-      refuse_unknown(settings, pair.a, pair.b);
-    return true;
+    if (find(known, other, pair.calibration.pairing.max_gap, trajectories, clocks)) return true;
   }
   return false;
 }
@@ -89,7 +93,7 @@ void require_one_clock_each(const RigRequest& request, const RigSettings& settin
 std::vector<ClockOfSensor> synchronise(const RigRequest& request, const RigSettings& settings,
                                        std::vector<Trajectory>& trajectories) {
   Clocks clocks{std::vector<ClockOfSensor>(trajectories.size()),
-                std::vector<bool>(trajectories.size(), false)};
+                std::vector<bool>(trajectories.size(), false), std::vector<bool>(trajectories.size(), false)};
   clocks.known.front() = true;
   if (request.calibration.estimate_time_offset) {
     // the first that is known may have no time in common with this one
@@ -103,14 +107,19 @@ std::vector<ClockOfSensor> synchronise(const RigRequest& request, const RigSetti
           found = clocks.known[known] &&
                   find(known, k, settings.pairs.front().calibration.pairing.max_gap, trajectories, clocks);
       }
-      if (!found) refuse_unknown(settings, 0, first);
+      if (!found) clocks.begin_group(first);
     }
     return clocks.of_sensor;
   }
   while (std::find(clocks.known.begin(), clocks.known.end(), false) != clocks.known.end()) {
     if (put_by_numbers(settings, trajectories, clocks) || put_by_motion(settings, trajectories, clocks))
       continue;
-    *std::find(clocks.known.begin(), clocks.known.end(), false) = true;  // of no pair with these
+    const auto unknown = std::find(clocks.known.begin(), clocks.known.end(), false);
+    const auto sensor = static_cast<std::size_t>(unknown - clocks.known.begin());
+    if (clocks.not_found[sensor])
+      clocks.begin_group(sensor);
+    else
+      clocks.known[sensor] = true;  // of no pair with these
   }
   require_one_clock_each(request, settings, clocks);
   return clocks.of_sensor;

@@ -14,11 +14,13 @@ namespace egocal::tools {
 /// offset fits as well [s]; 0: none does.
 struct ClockOfSensor {
   double offset = 0, period = 0;
+  std::size_t group = 0;  ///< sensors of one group are on one clock: between two no offset was found
 };
 
 /// All sensors on the clock of the first one: by the offsets of the rig file's pairs, and by those that are
-/// found from the streams where the file or the request asks for them. Throws Error where an offset cannot be
-/// found, or those of the file contradict each other.
+/// found from the streams where the file or the request asks for them. A sensor whose offset cannot be found,
+/// as one that is frozen, begins a group of its own. Throws Error where those of the file contradict each
+/// other.
 std::vector<ClockOfSensor> synchronise(const RigRequest& request, const RigSettings& settings,
                                        std::vector<Trajectory>& trajectories);
 

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "degrees.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/rig/rig_moves.hpp"
 #include "offline/rig_words.hpp"
@@ -61,11 +62,6 @@ struct PairFinding {
 };
 
 using PairFindings = std::vector<PairFinding>;
-
-/// Late positions of either of two streams are uncertain each, but one of the two has them.
-bool certain_of_either(const Finding& finding) {
-  return finding.certain || finding.code.starts_with("late_positions_");
-}
 
 /// The certain or the uncertain findings by code, without the _a and _b that name a sensor already.
 std::map<std::string, PairFindings> findings_by_code(const RigReport& report, bool certain) {

@@ -215,9 +215,15 @@ void choose_tree(RigReport& report) {
 }
 
 ExtrinsicTree tree_of(const RigReport& report) {
+  const auto is_apart = [&report](std::size_t sensor) {
+    return std::find(report.apart.begin(), report.apart.end(), sensor) != report.apart.end();
+  };
+  std::size_t root = 0;
+  while (is_apart(root)) ++root;
   std::vector<NamedExtrinsic> edges;
   for (std::size_t i = 0; i < report.pairs.size(); ++i) {
     const RigPairAnswer& pair = report.solution.pairs[i];
+    if (is_apart(pair.a)) continue;
     NamedExtrinsic edge = named_extrinsic(report.names[pair.a], report.names[pair.b], report.pairs[i]);
     if (report.joint) {
       if (pair.a != 0) continue;
@@ -230,7 +236,7 @@ ExtrinsicTree tree_of(const RigReport& report) {
     edges.push_back(std::move(edge));
   }
   if (report.joint) return {report.names[0], std::move(edges), {}};
-  return extrinsic_tree(edges, report.names[0]);
+  return extrinsic_tree(edges, report.names[root]);
 }
 
 }  // namespace egocal::tools

@@ -191,6 +191,12 @@ std::string largest_stddev(const NamedExtrinsic& edge, std::size_t from, double 
   return fmt::format("{:.3f} {}", unit * largest, name);
 }
 
+std::string names_apart(const RigReport& report) {
+  std::string names;
+  for (const std::size_t sensor : report.apart) names += (names.empty() ? "" : ", ") + report.names[sensor];
+  return names;
+}
+
 std::string set_text(const RigReport& report, std::size_t width) {
   const ConsistentSet& set = report.solution.set;
   std::string text = report.joint ? fmt::format("\none consistent set, the joint answer of all pairs, {}\n",
@@ -198,6 +204,8 @@ std::string set_text(const RigReport& report, std::size_t width) {
                                                               : "optimality UNDECIDED")
                                   : fmt::format("\none consistent set, of the most certain pairs: {}\n",
                                                 report.why_not_joint);
+  if (!report.apart.empty())
+    text += fmt::format("not in it, without an answer that connects them: {}\n", names_apart(report));
   for (const NamedExtrinsic& edge : tree_of(report).edges)
     text += fmt::format("{:<{}}  {}  {:>10}  {:>10}  {}, {}\n", edge.parent + " -> " + edge.child, width,
                         pose_numbers(edge.T_parent_child, edge.backing.value_or(std::array<Backing, 6>{})),
@@ -251,6 +259,8 @@ Json rig_json(const RigReport& report) {
   json["joint"]["lower_bound"] = set.lower_bound;
   json["joint"]["pairwise_bound"] = set.pairwise_bound;
   json["joint"]["tree"] = tree_json(report);
+  json["joint"]["apart"] = Json::array();
+  for (const std::size_t sensor : report.apart) json["joint"]["apart"].push_back(report.names[sensor]);
   json["noise"] = solution.noise;
   return json;
 }
@@ -295,6 +305,8 @@ std::vector<std::string> tree_remarks(const RigReport& report) {
     lines.push_back("contradictory: " + contradiction(report) + " Do not use these extrinsics.");
   lines.push_back(report.joint ? "the tree is the joint answer of all pairs"
                                : "the tree is that of the most certain pairs: " + report.why_not_joint);
+  if (!report.apart.empty())
+    lines.push_back("not in the tree, as no answer connects them with the others: " + names_apart(report));
   for (const NamedExtrinsic& edge : tree_of(report).edges) {
     const auto is_of = [&](const RigPairAnswer& pair) {
       const std::string &a = report.names[pair.a], &b = report.names[pair.b];

@@ -124,7 +124,9 @@ std::string judgement_of(const PairName& pair, const Answers& answers, const std
   const Diagnosis* const diagnosis = answers.diagnosis(pair);
   const double rest = answers.judged_to_the_end(pair) ? 0 : answers.seconds_not_judged(pair).value_or(0);
   const std::string unjudged = rest > 0 ? fmt::format("the last {:.1f} s are not judged", rest) : "";
-  const std::string end = missing + (missing.empty() || unjudged.empty() ? "" : ", and ") + unjudged;
+  std::string end = missing + (missing.empty() || unjudged.empty() ? "" : ", and ") + unjudged;
+  if (const std::optional<bus::Departure> moved = answers.departure(pair))
+    end += (end.empty() ? "" : ", and ") + bus::in_words(*moved);
   return end + (end.empty() ? "" : ". Before: ") + (diagnosis ? verdict_line(*diagnosis) : "not judged");
 }
 
@@ -203,7 +205,8 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
     const Diagnosis* const diagnosis = answers.diagnosis(pair);
     const std::string missing = missing_end(pair, answers, not_read(rig, pair, extent, read_until, options));
     outcome.answered = true;
-    outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis));
+    outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis)) ||
+                       answers.departure(pair);
     outcome.text +=
         line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options),
                 hole_in(rig, config, extent, answers, options),

@@ -16,8 +16,9 @@ namespace egocal::tools {
 /// What was calibrated while somebody watched.
 struct Outcome {
   bool answered = false;  ///< any solver, for any pair
-  bool unusable =
-      false;  ///< some pair's motions contradict each other, miss the goal, or are not in its answer
+  /// Some pair's motions contradict each other, miss the goal, or are not in its answer, or nobody has judged
+  /// the answer that they moved it to.
+  bool unusable = false;
   /// Of each pair verdict, proof and transform, or that there is no answer. Of a bus that was watched and on
   /// which nothing was answered: why, in one line, or empty.
   std::string text;

@@ -251,7 +251,6 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
 std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOptions& options) {
   const Explanation& scaled = evidence.scaled;
   const double size = std::abs(std::log(scaled.scale));
-  if (!(size >= options.scale_check.least)) return std::nullopt;
   if (!explains(scaled.explained, options)) return std::nullopt;
   // a scale fitted to outliers leaves the other motions worse off
   const Comparison comparison = compare(evidence.given.explained, scaled.explained);
@@ -263,22 +262,46 @@ std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOpti
   return shown_by_few(evidence, comparison, size / *stddev, options);
 }
 
-std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
-                                            const DiagnosisOptions& options) {
-  const ScaleCheckOptions& check = options.scale_check;
-  const double size = std::log(evidence.scaled.scale);
-  if (!(std::abs(size) >= check.least) || !explains(evidence.scaled.explained, options)) return std::nullopt;
+namespace {
+
+/// By how many of its standard deviations the scale of motions of all lengths differs from one; 0 where it is
+/// not shown, or another one than that of the long motions.
+double sigmas_of_drive(const Evidence& evidence, const PairingOptions& pairing,
+                       const DiagnosisOptions& options) {
+  const double of_long = std::log(evidence.scaled.scale);
   DriveScaleOptions of_b;
   of_b.scale.side = Side::b;
   const std::optional<ScaleSolution> drive =
       estimate_scale(evidence.streams.a, evidence.streams.b, pairing, of_b);
-  if (!drive || !drive->observable || !drive->certified) return std::nullopt;
-  const double of_drive = std::log(drive->scale), stddev = drive->stddev / drive->scale;
-  if (!(std::abs(of_drive) >= check.least) || !(std::abs(of_drive) >= check.sigmas_of_drive * stddev) ||
-      !(std::abs(of_drive - size) <= check.agree * std::abs(size)))
+  if (!drive || !drive->observable || !drive->certified) return 0;
+  const double size = std::log(drive->scale), stddev = drive->stddev / drive->scale;
+  const bool large = std::abs(of_long) >= options.scale_check.least;
+  if ((large && !(std::abs(size) >= options.scale_check.least)) || !(stddev > 0) ||
+      !(std::abs(size - of_long) <= options.scale_check.agree * std::abs(of_long)))
+    return 0;
+  return std::abs(size) / stddev;
+}
+
+}  // namespace
+
+std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
+                                            const DiagnosisOptions& options) {
+  if (!(std::abs(std::log(evidence.scaled.scale)) >= options.scale_check.least) ||
+      !explains(evidence.scaled.explained, options))
     return std::nullopt;
-  return shown_by_few(evidence, compare(evidence.given.explained, evidence.scaled.explained),
-                      std::abs(of_drive) / stddev, options);
+  const double sigmas = sigmas_of_drive(evidence, pairing, options);
+  if (!(sigmas >= options.scale_check.sigmas_of_drive)) return std::nullopt;
+  return shown_by_few(evidence, compare(evidence.given.explained, evidence.scaled.explained), sigmas,
+                      options);
+}
+
+std::optional<Finding> possible_scale(const Evidence& evidence, const PairingOptions& pairing,
+                                      const DiagnosisOptions& options) {
+  const Comparison comparison = compare(evidence.given.explained, evidence.scaled.explained);
+  if (!explains(evidence.scaled.explained, options) || !(comparison.gain > 0) ||
+      !(sigmas_of_drive(evidence, pairing, options) >= options.scale_check.sigmas))
+    return std::nullopt;
+  return scale_finding(evidence.scaled, comparison, false, evidence, options);
 }
 
 }  // namespace egocal::detail

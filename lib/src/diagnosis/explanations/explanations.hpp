@@ -40,7 +40,8 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
 std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& options);
 
 /// The scale of b differs from one by much more than its own standard deviation, whatever the single motions
-/// say. Only where nothing else explains the streams: any contradiction has some best scale.
+/// say, by however little. Only where nothing else explains the streams: any contradiction has some best
+/// scale.
 std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOptions& options);
 
 /// The same by motions of all lengths together, where the long ones seem to have a scale: on a machine that
@@ -48,5 +49,10 @@ std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOpti
 /// as for the answer.
 std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
                                             const DiagnosisOptions& options);
+
+/// A scale that motions of all lengths show, however small it is; uncertain: right odometries differ by as
+/// much. Of use where the answer at it is another one.
+std::optional<Finding> possible_scale(const Evidence& evidence, const PairingOptions& pairing,
+                                      const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

@@ -56,7 +56,4 @@ bool certain(const LateOfEither& found, const DiagnosisOptions& options,
 /// where either may be the one. clock: of what the delay is seen, as "At this clock"; may be empty.
 std::vector<Finding> worded(const LateOfEither& found, const char* clock = "");
 
-/// Something is wrong for certain, although it may be open with which stream.
-bool certain_of_either(const Finding& finding);
-
 }  // namespace egocal::detail

@@ -12,6 +12,7 @@
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/pairing/time_offset.hpp"
 
 namespace egocal::detail {

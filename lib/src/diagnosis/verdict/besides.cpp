@@ -3,11 +3,14 @@
 #include "diagnosis/verdict/besides.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "diagnosis/explanations/askew_rotations.hpp"
 #include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/verdict/far_off.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 
 namespace egocal::detail {
 
@@ -16,13 +19,26 @@ bool explains(const Finding& finding, const DiagnosisOptions& options) {
          (finding.code != "inverted_both" && finding.improvement > options.overwhelming);
 }
 
-void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing,
+void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, const Answered& answered,
                       const DiagnosisOptions& options, std::vector<Finding>& findings) {
   for (const Finding& finding : findings)
     if (explains(finding, options) || finding.code == "mount_moved") return;
-  std::optional<Finding> scale = wrong_scale(evidence, options);
+  // right odometries differ, too; that counts where the answer is another one
+  const bool small = std::abs(std::log(evidence.scaled.scale)) < options.scale_check.least;
+  Finding at_scale;
+  at_scale.T_a_b = to_pose(evidence.scaled.explained.fit.T);
+  const bool another_answer = far_off(at_scale, answered, options) > 1;
+  std::optional<Finding> scale;
+  if (!small || another_answer) scale = wrong_scale(evidence, options);
   if (!scale) scale = wrong_scale_of_drive(evidence, pairing, options);
-  if (!scale) return;
+  if (!scale) {
+    const bool named =
+        std::any_of(findings.begin(), findings.end(), [](const Finding& one) { return one.code == "scale"; });
+    if (another_answer && !named)
+      if (std::optional<Finding> possible = possible_scale(evidence, pairing, options))
+        findings.push_back(*std::move(possible));
+    return;
+  }
   // the same with less certainty, and what its motions were taken for
   std::erase_if(findings, [](const Finding& one) {
     return one.code == "scale" || one.code == "units" || one.code == "inverted_both";

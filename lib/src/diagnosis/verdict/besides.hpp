@@ -14,8 +14,10 @@ namespace egocal::detail {
 /// of them is right.
 bool explains(const Finding& finding, const DiagnosisOptions& options);
 
-/// A wrong scale that few motions show, where nothing else is certain.
-void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing,
+/// A wrong scale that few motions show, where nothing else is certain. One that is no larger than right
+/// odometries differ by is named where the answer at it is farther away than the tolerance: a drone tilts as
+/// it accelerates, and moves slowly, so that its lengths are hundreds of times those that a lever arm adds.
+void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, const Answered& answered,
                       const DiagnosisOptions& options, std::vector<Finding>& findings);
 
 /// What no part of the drive shows by itself, where nothing else explains the streams.

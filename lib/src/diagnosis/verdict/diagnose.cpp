@@ -23,6 +23,7 @@
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/streams/interpolated_stream.hpp"
+#include "diagnosis/streams/mixed_frames.hpp"
 #include "diagnosis/streams/pace.hpp"
 #include "diagnosis/streams/stamps_in_bursts.hpp"
 #include "diagnosis/streams/stream_check.hpp"
@@ -34,6 +35,7 @@
 #include "diagnosis/verdict/known_directions.hpp"
 #include "diagnosis/verdict/look_further.hpp"
 #include "diagnosis/verdict/timing.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 
 namespace egocal {
 
@@ -104,6 +106,10 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   const auto is_explanation = [&](const Finding& one) {
     return explains(one, options) && !(more_than_frozen && of_frozen_stream(one));
   };
+  // single steps show it; longer motions may all begin and end in one of the frames
+  if (std::optional<Finding> mixed =
+          mixed_frames(evidence.instants, to_pose(answered.T_a_b), options.unit == LengthUnit::metres))
+    result.findings.insert(result.findings.begin(), *std::move(mixed));
   WrongStream wrong_stream(evidence, answered.problem.mode, options);
   replace_by_contents(options, wrong_stream, result.findings);
   const bool explained =
@@ -114,7 +120,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained)
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
-  name_wrong_scale(evidence, pairing, options, result.findings);
+  name_wrong_scale(evidence, pairing, answered, options, result.findings);
   StreamCheckOptions checks;
   checks.metres = options.unit == LengthUnit::metres;
   if (options.unit == LengthUnit::unknown) {

@@ -9,8 +9,11 @@
 
 #include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/goal/goal.hpp"
+#include "diagnosis/verdict/far_off.hpp"
+#include "diagnosis/verdict/nominal.hpp"
 #include "diagnosis/verdict/stability.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/directions.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -25,19 +28,6 @@ constexpr double degrees = 180 / std::numbers::pi;
 constexpr double confidence_one_sided = 1.645;
 /// 95 % of the length of three equal, independent components (mathematics).
 constexpr double length_of_three = 2.79;
-
-/// How far another answer is, as a part of the tolerance, in the directions that are known.
-double shift(const Finding& finding, const Answered& answered, const DiagnosisOptions& options) {
-  if (!finding.T_a_b) return finding.certain ? INFINITY : 0;
-  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
-  double rotation = 0, translation = 0;
-  for (int i = 0; i < 6; ++i) {
-    if (!answered.observability.observable[static_cast<std::size_t>(i)]) continue;
-    (i < 3 ? translation : rotation) += difference[i] * difference[i];
-  }
-  return std::max(std::sqrt(rotation) / options.tolerance_rotation,
-                  std::sqrt(translation) / options.tolerance_translation);
-}
 
 /// A wrong scale that moves the answer by more than it states to be uncertain.
 bool significant_scale(const Finding& finding, const Answered& answered, const ScaleCheckOptions& options) {
@@ -133,12 +123,17 @@ bool undersampling(const Finding& finding) {
   return finding.code.starts_with("undersampled_");
 }
 
+/// A direction that is taken from it is not known; the motions are as good as without it.
+bool wrong_nominal(const Finding& finding) {
+  return finding.code == "nominal";
+}
+
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.
 bool misread(const Finding& finding) {
-  return finding.certain && finding.code != "scale" && finding.code != "clock_offset" &&
-         finding.code != "clock_drift" && finding.code != "mount_moved" && finding.code != "scale_change" &&
-         !finding.code.starts_with("late_positions_") && !finding.code.starts_with("held_") &&
-         !stream_fault(finding) && !undersampling(finding);
+  return finding.certain && !wrong_nominal(finding) && finding.code != "scale" &&
+         finding.code != "clock_offset" && finding.code != "clock_drift" && finding.code != "mount_moved" &&
+         finding.code != "scale_change" && !finding.code.starts_with("late_positions_") &&
+         !finding.code.starts_with("held_") && !stream_fault(finding) && !undersampling(finding);
 }
 
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
@@ -156,6 +151,11 @@ bool refutes(const Finding& finding, double far, const DiagnosisOptions& options
   return reading && far > 1 && finding.improvement > options.overwhelming;
 }
 
+bool shows_all(const Observability& observability) {
+  const auto& seen = observability.observable;
+  return std::all_of(seen.begin(), seen.end(), [](bool one) { return one; });
+}
+
 struct Opinion {
   Verdict verdict = Verdict::good;
   std::string reason;
@@ -165,12 +165,14 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
   Opinion worst;
   for (const Finding& finding : diagnosis.findings) {
     Verdict verdict = Verdict::good;
-    const double far = shift(finding, answered, options);
+    const double far = far_off(finding, answered, options);
     const bool certain = certain_of_either(finding);
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
     else if (undersampling(finding))
       verdict = Verdict::good;  // what is unknown by it counts as unknown
+    else if (wrong_nominal(finding))
+      verdict = shows_all(answered.observability) ? Verdict::good : Verdict::doubtful;
     else if (stream_fault(finding))
       verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
     else if (misread(finding) || refutes(finding, far, options) ||
@@ -216,6 +218,11 @@ DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options) {
 
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
+  // streams that are misread, or noise, contradict a right nominal value
+  if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                   [](const Finding& one) { return misread(one) || one.code == "too_little_motion"; }))
+    if (std::optional<Finding> nominal = contradicted_nominal(answered, options))
+      diagnosis.findings.push_back(*std::move(nominal));
   const Opinion of_explanations = of_findings(diagnosis, answered, options),
                 fit = of_fit(misfit, answered, options);
   if (options.goal) diagnosis.goal = goal_of(answered, *options.goal, options.goal_spread);

@@ -12,6 +12,7 @@
 #include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/streams/undersampling.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

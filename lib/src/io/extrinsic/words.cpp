@@ -66,10 +66,11 @@ std::string verdict_in_words(const NamedExtrinsic& named, bool mixed) {
   std::string text;
   if (!named.usable)
     text = named.verdict == "contradictory" ? "DO NOT USE, the motions contradict each other" : "DO NOT USE";
-  add_part(text, named.verdict.empty()
-                     ? "not judged: no verdict"
-                     : "verdict " + one_line(named.verdict) + (named.reason.empty() ? "" : ": ") +
-                           unfinished(one_line(named.reason)));
+  add_part(text,
+           named.verdict.empty()
+               ? "not judged: " + (named.reason.empty() ? "no verdict" : unfinished(one_line(named.reason)))
+               : "verdict " + one_line(named.verdict) + (named.reason.empty() ? "" : ": ") +
+                     unfinished(one_line(named.reason)));
   add_part(text, not_shown(named, mixed));
   add_part(text, std::string(named.certified ? "certified globally optimal" : "not certified") + ", from " +
                      std::to_string(named.pairs) + " motion pairs");

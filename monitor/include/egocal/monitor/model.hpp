@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "egocal/bus/answer_age.hpp"
+#include "egocal/bus/departure.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/bus/scale.hpp"
 #include "egocal/bus/stream_watch.hpp"
@@ -291,7 +292,9 @@ bool pair_is_paused(const Model& model, const PairState& pair);
 /// There are answers, and the pairing process whose problems they answer sends nothing, though it has not
 /// reported its end: it hangs or is gone. It repeats its problems once a second.
 bool pairing_is_silent(const PairState& pair);
-/// The answer is verified and proven, its verdict is good, and both are of the present.
+/// How far the answer that counts is from the one that was called good; empty: the verdict holds for it.
+std::optional<bus::Departure> departure_of(const PairState& pair);
+/// The answer is verified and proven, its verdict is good and about it, and both are of the present.
 bool is_good(const PairState& pair);
 /// "lidar -> camera", for events and lines.
 std::string pair_name(const std::string& a, const std::string& b);

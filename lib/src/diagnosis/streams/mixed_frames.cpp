@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/streams/mixed_frames.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
+#include "statistics/median.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Median of a rotation [rad] and of a translation [m].
+struct Typical {
+  double rotation = 0, translation = 0;
+};
+
+Typical typical(std::vector<double> rotations, std::vector<double> translations) {
+  return {median(std::move(rotations)), median(std::move(translations))};
+}
+
+double angle_of(const Pose& pose) {
+  return rotation_angle(to_dual_quaternion(pose));
+}
+
+class Steps {
+ public:
+  Steps(const Instants& instants, const MixedFramesOptions& options)
+      : instants_(instants), each_(std::max<std::size_t>(1, instants.size() / options.most)) {
+    // begins that meet every phase of a pattern of two and of three
+    while (each_ % 2 == 0 || each_ % 3 == 0) ++each_;
+  }
+
+  /// What motions of so many instants leave at the answer.
+  Typical residual(std::size_t span, const Pose& T_a_b) const {
+    std::vector<double> rotations, translations;
+    for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
+      const Pose left = inverse(motion(Side::a, i, span) * T_a_b) * (T_a_b * motion(Side::b, i, span));
+      rotations.push_back(angle_of(left));
+      translations.push_back(left.translation.norm());
+    }
+    return typical(std::move(rotations), std::move(translations));
+  }
+  /// How far motions of so many instants move.
+  Typical size(Side side, std::size_t span) const {
+    std::vector<double> rotations, translations;
+    for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
+      const Pose here = motion(side, i, span);
+      rotations.push_back(angle_of(here));
+      translations.push_back(here.translation.norm());
+    }
+    return typical(std::move(rotations), std::move(translations));
+  }
+  /// How far a single step is from the one so many instants later.
+  Typical change(Side side, std::size_t later) const {
+    std::vector<double> rotations, translations;
+    for (std::size_t i = 0; i + later + 1 < instants_.size(); i += each_) {
+      const Pose here = motion(side, i, 1), there = motion(side, i + later, 1);
+      rotations.push_back(angle_of(inverse(here) * there));
+      translations.push_back((there.translation - here.translation).norm());
+    }
+    return typical(std::move(rotations), std::move(translations));
+  }
+
+ private:
+  Pose motion(Side side, std::size_t begin, std::size_t span) const {
+    return inverse(pose(side, begin)) * pose(side, begin + span);
+  }
+  Pose pose(Side side, std::size_t i) const {
+    const PosePair both = instants_.at(i);
+    return to_pose(side == Side::a ? both.a : both.b);
+  }
+
+  const Instants& instants_;
+  std::size_t each_;
+};
+
+/// The half of the poses that is of two frames.
+using Half = double Typical::*;
+
+struct Pattern {
+  std::size_t length = 0;  ///< [instants]
+  double single = 0, longer = 0;
+};
+
+/// The length whose motions leave least, where single steps leave far more.
+std::optional<Pattern> pattern_of(const Steps& steps, const std::vector<Typical>& residuals, Half half,
+                                  const MixedFramesOptions& options) {
+  const auto least =
+      std::min_element(residuals.begin() + 1, residuals.end(),
+                       [half](const Typical& x, const Typical& y) { return x.*half < y.*half; });
+  const Pattern pattern{static_cast<std::size_t>(least - residuals.begin()) + 1, residuals.front().*half,
+                        (*least).*half};
+  const double moved =
+      std::max(steps.size(Side::a, options.longest).*half, steps.size(Side::b, options.longest).*half);
+  if (!(pattern.single > options.times * pattern.longer) || !(pattern.single > options.least_part * moved))
+    return std::nullopt;
+  return pattern;
+}
+
+Finding worded(Side side, Half half, const Pattern& pattern, bool metres) {
+  const char which = side == Side::a ? 'a' : 'b';
+  const auto words = [&](double value) {
+    return half == &Typical::rotation ? format("%.3g deg", 180 / std::numbers::pi * value)
+                                      : length_in_words(value, metres);
+  };
+  Finding finding;
+  finding.code = std::string("mixed_frames_") + which;
+  finding.certain = true;
+  finding.improvement = std::pow(pattern.single / std::max(pattern.longer, 1e-9 * pattern.single), 2);
+  say(finding, format("The poses of %s are of two frames in turn", mark(which)),
+      format("Give the poses of one frame, of one publisher, as %s.", mark(which)),
+      format(": single steps contradict the answer by %s, motions of %zu poses by %s.",
+             words(pattern.single).c_str(), pattern.length, words(pattern.longer).c_str()));
+  return finding;
+}
+
+}  // namespace
+
+std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b, bool metres,
+                                    const MixedFramesOptions& options) {
+  if (instants.size() < options.least + options.longest) return std::nullopt;
+  const Steps steps(instants, options);
+  std::vector<Typical> residuals;
+  for (std::size_t span = 1; span <= options.longest; ++span)
+    residuals.push_back(steps.residual(span, T_a_b));
+  for (const Half half : {&Typical::translation, &Typical::rotation}) {
+    const std::optional<Pattern> pattern = pattern_of(steps, residuals, half, options);
+    if (!pattern) continue;
+    std::array<double, 2> alternating{};
+    for (const Side side : {Side::a, Side::b}) {
+      const double later = steps.change(side, pattern->length).*half, next = steps.change(side, 1).*half;
+      alternating[side == Side::a ? 0 : 1] = next / std::max(later, 1e-12);
+    }
+    return worded(alternating[0] > alternating[1] ? Side::a : Side::b, half, *pattern, metres);
+  }
+  return std::nullopt;
+}
+
+}  // namespace egocal::detail

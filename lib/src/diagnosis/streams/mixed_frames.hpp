@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses of two frames in turn: of two publishers on one topic, or two children of one tree in one file.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "diagnosis/motions/motions.hpp"
+#include "egocal/diagnosis/diagnose.hpp"
+
+namespace egocal::detail {
+
+struct MixedFramesOptions {
+  /// Motions of so many instants at most are compared with single steps: the longest pattern that is seen.
+  std::size_t longest = 6;
+  std::size_t most = 600;  ///< motions of each length that are looked at, for time
+  std::size_t least = 24;  ///< instants: fewer motions have no typical residual
+  /// Single steps leave this many times what longer motions leave. Noise cannot: of motions it grows with
+  /// their number, and that of poses is the same (1.0 to 1.1).
+  double times = 4;
+  /// A single step leaves at least this part of what typical motions of the longest pattern move by, lest
+  /// rounding counts where nothing is left.
+  double least_part = 1e-3;
+};
+
+/// Single steps contradict the answer, motions of a few steps do not. The stream is the one whose steps
+/// differ from their neighbours, but not from those one pattern later. Finding mixed_frames_a or
+/// mixed_frames_b.
+std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b, bool metres,
+                                    const MixedFramesOptions& options = {});
+
+}  // namespace egocal::detail

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/verdict/nominal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
+#include "egocal/directions.hpp"
+#include "egocal/uncertainty/observability.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// How far a nominal value is from the motions in the directions of one kind that they show.
+struct Departure {
+  double size = 0, limit = 1;  ///< [m or rad]
+  std::string names{};         ///< of the directions, "x, y"
+  double part() const { return size / limit; }
+};
+
+/// Of translation and rotation.
+struct Departures {
+  Departure translation, rotation;
+  double part() const { return std::max(translation.part(), rotation.part()); }
+};
+
+Departure departure(const Vector6d& difference, std::size_t first, double tolerance,
+                    const Observability& shown, const NominalCheckOptions& check) {
+  Departure result;
+  double squares = 0, variance = 0;
+  for (std::size_t k = first; k < first + 3; ++k) {
+    if (!shown.observable[k] || !std::isfinite(shown.stddev[k])) continue;
+    squares += std::pow(difference[static_cast<Eigen::Index>(k)], 2);
+    variance += shown.stddev[k] * shown.stddev[k];
+    result.names += (result.names.empty() ? "" : ", ") + std::string(direction_names[k]);
+  }
+  result.size = std::sqrt(squares);
+  result.limit = tolerance + check.sigmas * std::sqrt(variance);
+  return result;
+}
+
+/// The answer is taken from the nominal value along the hidden directions, so what is left between the two is
+/// in the others. Both in the frame of a.
+Departures departures_of(const Pose& nominal, const Answered& answered, const DiagnosisOptions& options,
+                         const NominalCheckOptions& check) {
+  Problem problem = answered.minimised.blocks.empty() ? answered.problem : answered.minimised;
+  problem.prior = to_dual_quaternion(nominal);
+  const Vector6d difference = frame_a_difference(solve(problem, Method::dual).T_a_b, *problem.prior);
+  const ObservabilityOptions known;
+  Departures result;
+  // lengths of an unknown unit cannot be compared with metres
+  if (options.unit != LengthUnit::unknown)
+    result.translation = departure(
+        difference, 0, std::max(options.tolerance_translation, check.sigmas * known.prior_translation),
+        answered.observability, check);
+  result.rotation =
+      departure(difference, 3, std::max(options.tolerance_rotation, check.sigmas * known.prior_rotation),
+                answered.observability, check);
+  return result;
+}
+
+/// "30 deg (roll, pitch, yaw) and 2.83 m (x, y)": those beyond their limits.
+std::string in_words(const Departures& departures) {
+  constexpr double in_degrees = 180 / std::numbers::pi;
+  std::string text;
+  const Departure &turn = departures.rotation, &shift = departures.translation;
+  if (turn.part() > 1) text = format("%.3g deg (%s)", turn.size * in_degrees, turn.names.c_str());
+  if (shift.part() > 1)
+    text += (text.empty() ? "" : " and ") + length_in_words(shift.size) + " (" + shift.names + ")";
+  return text;
+}
+
+/// The quaternion x y z w that was taken for w x y z.
+Pose with_scalar_last(const Pose& T) {
+  const auto& q = T.rotation;
+  return {Rotation(q.z(), q.w(), q.x(), q.y()), T.translation};
+}
+
+/// What would make the nominal value agree; empty: nothing that is known.
+std::string agreeing_reading(const Pose& nominal, double part, const Answered& answered,
+                             const DiagnosisOptions& options, const NominalCheckOptions& check) {
+  std::vector<std::pair<Pose, const char*>> readings = {
+      {inverse(nominal), "whose inverse agrees: give the pose of {b} in {a}, not that of {a} in {b}"},
+      {with_scalar_last(nominal), "whose quaternion agrees as x y z w: give w x y z"}};
+  if (nominal.translation.norm() > check.least_millimetres)
+    readings.push_back(
+        {{nominal.rotation, nominal.translation / 1000}, "which agrees in millimetres: give metres"});
+  for (const auto& [reading, words] : readings) {
+    const double left = departures_of(reading, answered, options, check).part();
+    if (left <= 1 && left < check.much_nearer * part) return words;
+  }
+  return "";
+}
+
+/// ", so z, which is taken from it, is not known": of the directions that are hidden.
+std::string what_is_taken(const Observability& shown) {
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 6; ++k)
+    if (!shown.observable[k]) {
+      names += (names.empty() ? "" : ", ") + std::string(direction_names[k]);
+      ++count;
+    }
+  if (count == 0) return "";
+  return ", so " + names + ", which " + (count > 1 ? "are" : "is") + " taken from it, " +
+         (count > 1 ? "are" : "is") + " not known";
+}
+
+Finding worded(const std::string& claim, const std::string& cure) {
+  Finding finding;
+  finding.code = "nominal";
+  finding.certain = true;
+  say(finding, claim, cure);
+  return finding;
+}
+
+}  // namespace
+
+std::optional<Finding> contradicted_nominal(const Answered& answered, const DiagnosisOptions& options,
+                                            const NominalCheckOptions& check) {
+  if (!answered.problem.prior || answered.problem.mode == Mode::planar) return std::nullopt;
+  const Pose nominal = to_pose(*answered.problem.prior);
+  const Departures departures = departures_of(nominal, answered, options, check);
+  const std::string taken = what_is_taken(answered.observability);
+  const double length = nominal.translation.norm();
+  const bool is_long = options.unit != LengthUnit::unknown && length > check.longest;
+  const std::string in_metres =
+      "Give the nominal value in metres: it is " + length_in_words(length) + " long; is it in millimetres?";
+  if (departures.part() > 1) {
+    const std::string agrees = agreeing_reading(nominal, departures.part(), answered, options, check);
+    return worded(
+        "The nominal value is " + in_words(departures) + " from what the motions show" + taken + ".",
+        !agrees.empty() ? "Correct the nominal value, " + agrees + "."
+        : is_long       ? in_metres
+                        : "Correct the nominal value, the pose of {b} in {a}. Where only a part of it "
+                          "is measured, give what this answer has in the other directions.");
+  }
+  if (taken.empty() || !is_long) return std::nullopt;
+  return worded("The nominal value is " + length_in_words(length) + " long" + taken + ".", in_metres);
+}
+
+}  // namespace egocal::detail
