@@ -69,14 +69,24 @@ GroundPlane plane(const std::string& option, const std::string& text) {
   }
 }
 
+namespace {
+
+/// With less the costs are so small that nothing can be proven of them.
+bool weighs_translation(double weight) {
+  constexpr double most = limits::translation_weight.most;
+  return weight >= 1 / most && weight <= most;
+}
+
+}  // namespace
+
 Balance balance(const std::string& option, const std::string& text) {
   const auto wrong = [&](const char* expected) {
     return UsageError(option + ": expected " + expected + ", got '" + text + "'");
   };
   if (text.find(':') == std::string::npos) throw wrong("equal, or R:T of rotation and translation");
   const std::vector<double> v = numbers(option, text, 2, ':');
-  if (!limits::rotation_weight.contains(v[0]) || !limits::translation_weight.contains(v[1]) || v[1] == 0)
-    throw wrong("R:T with R from 0 to 1e12 and T above 0, up to 1e12");
+  if (!limits::rotation_weight.contains(v[0]) || !weighs_translation(v[1]))
+    throw wrong("R:T with R from 0 to 1e12 and T from 1e-12 to 1e12");
   return {v[0], v[1]};
 }
 

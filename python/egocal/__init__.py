@@ -7,7 +7,7 @@
     calibration.verdict, calibration.T_a_b, calibration.stddev
 
 An answer that is not good gives an EgocalWarning with the verdict and its reason, and so do data that were
-repaired or lost while reading. To stop there instead: warnings.simplefilter("error", egocal.EgocalWarning).
+repaired or lost while reading, and what is wrong for certain although the verdict is good. To stop there instead: warnings.simplefilter("error", egocal.EgocalWarning).
 """
 import json as _json
 import math as _math
@@ -32,6 +32,7 @@ def _to_dict(self):
     return {
         "verdict": self.verdict,
         "reason": self.reason,
+        "findings": self.findings,
         "translation": self.translation.tolist(),
         "rotation_wxyz": self.rotation_wxyz.tolist(),
         "pairs": self.pairs,

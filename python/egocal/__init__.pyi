@@ -20,6 +20,7 @@ class Calibration:
     rotation_wxyz: NDArray[float64]
     verdict: str
     reason: str
+    findings: List[Dict[str, Any]]
     statistics: "Statistics"
     certified: bool
     status: str

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "findings.hpp"
 #include "python_words.hpp"
 #include "warn.hpp"
 
@@ -65,12 +66,8 @@ CalibrationOptions options_of(const std::string& method, const py::object& plane
   }
   options.pairing.max_gap = max_gap;
   if (!nominal.is_none()) {
-    const Array matrix = to_array(nominal, "nominal", "a (4, 4) matrix");
-    if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
-      throw py::value_error("nominal: expected a (4, 4) matrix");
-    using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-    const Eigen::Matrix4d pose = Eigen::Map<const Rows>(matrix.data());
-    options.pairing.prior = to_dual_quaternion(to_pose(pose, "nominal"));
+    options.pairing.prior = to_dual_quaternion(to_pose(to_matrix4(nominal, "nominal"), "nominal"));
+    if (a) throw py::value_error("nominal: does not go with plane_a, plane_b, which take nothing from it");
   }
   return options;
 }
@@ -119,7 +116,8 @@ max_gap: poses further apart are never interpolated between [s].
 nominal: (4, 4), taken where the motions show nothing.
 
 Returns a Calibration. Its verdict tells whether it can be used: an EgocalWarning is given where that is not
-'good', and for what was assumed, repaired or lost while reading (Calibration.notes). Raises egocal.Error where nothing can be paired, ValueError for arguments that cannot be
+'good', for certain findings (Calibration.findings) of one that is, and for what was assumed, repaired or lost while
+reading (Calibration.notes). Raises egocal.Error where nothing can be paired, ValueError for arguments that cannot be
 understood. Releases the GIL.)";
 
 /// The verdict first: the numbers are those of a mount only where it is good.
@@ -133,18 +131,7 @@ std::string in_brackets(const NotedCalibration& c) {
   return text + "] m, " + std::string(to_string(c.certificate.optimality)) + ">";
 }
 
-constexpr int state_version = 1;  // of what is pickled
-
-py::tuple numbers_of(const Pose& pose) {
-  const Eigen::Vector3d& t = pose.translation;
-  const Eigen::Quaterniond& q = pose.rotation;
-  return py::make_tuple(t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
-}
-
-Pose pose_of(const py::handle& numbers) {
-  const auto x = numbers.cast<std::array<double, 7>>();
-  return {Eigen::Quaterniond(x[3], x[4], x[5], x[6]), {x[0], x[1], x[2]}};
-}
+constexpr int state_version = 2;  // of what is pickled
 
 /// All that Python can ask for.
 py::tuple state_of(const NotedCalibration& c) {
@@ -160,11 +147,11 @@ py::tuple state_of(const NotedCalibration& c) {
                      sum_blocks(c.problem.blocks)),
       py::make_tuple(c.counts.outliers, c.counts.rejected),
       py::make_tuple(c.choice.stride, c.choice.balance.rotation, c.choice.balance.translation),
-      c.time_offset_applied, c.notes);
+      c.time_offset_applied, c.notes, states_of(c.findings));
 }
 
 NotedCalibration from_state(const py::tuple& state) {
-  if (state.size() != 11 || state[0].cast<int>() != state_version)
+  if (state.size() != 12 || state[0].cast<int>() != state_version)
     throw py::value_error("Calibration: pickled by another version of egocal");
   const auto part = [&](std::size_t i) { return state[i].cast<py::tuple>(); };
   NotedCalibration c;
@@ -190,6 +177,7 @@ NotedCalibration from_state(const py::tuple& state) {
   c.choice.balance = {choice[1].cast<double>(), choice[2].cast<double>()};
   c.time_offset_applied = state[9].cast<double>();
   c.notes = state[10].cast<std::vector<std::string>>();
+  c.findings = findings_from(state[11]);
   return c;
 }
 
@@ -215,6 +203,11 @@ void bind_answer(py::class_<NotedCalibration>& type) {
       .def_property_readonly(
           "reason", [](const NotedCalibration& c) { return in_python_words(c.reason); },
           "of the verdict, one sentence")
+      .def_property_readonly(
+          "findings", [](const NotedCalibration& c) { return findings_of(c.findings); },
+          "what was found, the most important first: dicts with the keys of `egocal solve --json`, code, "
+          "certain, "
+          "message, remedy, improvement and, where there is one, value, time [s], translation, rotation_wxyz")
       .def_property_readonly(
           "statistics", [](const NotedCalibration& c) { return sum_blocks(c.problem.blocks); },
           "Statistics of all motions: those of several drives of one rig add up")

@@ -125,6 +125,32 @@ Pose pose_of_rigid(const Eigen::Matrix4d& matrix) {
   return {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()};
 }
 
+template <int size>
+Eigen::Matrix<double, size, size> square_of(const py::handle& object, const char* name,
+                                            const char* expected) {
+  const Array matrix = to_array(object, name, expected);
+  if (matrix.ndim() != 2 || matrix.shape(0) != size || matrix.shape(1) != size)
+    refuse(name, std::string("expected ") + expected);
+  return Eigen::Map<const Eigen::Matrix<double, size, size, Eigen::RowMajor>>(matrix.data());
+}
+
+/// Of a str or a path-like object. The library reads files and writes messages in UTF-8.
+std::string to_file_name(const py::handle& object, const char* name) {
+  const py::module_ os = py::module_::import("os");
+  const py::object path = os.attr("fsdecode")(os.attr("fspath")(object));
+  Py_ssize_t size = 0;
+  const char* const utf8 = PyUnicode_AsUTF8AndSize(path.ptr(), &size);
+  if (!utf8) {
+    PyErr_Clear();
+    refuse(name, "the file name is not in UTF-8: " + py::repr(path).cast<std::string>());
+  }
+  std::string file(utf8, static_cast<std::size_t>(size));
+  if (file.empty()) refuse(name, "the file name is empty");
+  if (file.find('\0') != std::string::npos)
+    refuse(name, "the file name has a null character: " + py::repr(path).cast<std::string>());
+  return file;
+}
+
 double largest_time(const Array& numbers, py::ssize_t step) {
   double largest = 0;
   for (py::ssize_t i = 0; i < numbers.size(); i += step)
@@ -152,6 +178,14 @@ double to_number(const py::handle& object, const char* name, const char* expecte
   }
 }
 
+Eigen::Matrix4d to_matrix4(const py::handle& object, const char* name) {
+  return square_of<4>(object, name, "a (4, 4) matrix");
+}
+
+Eigen::Matrix<double, 8, 8> to_matrix8(const py::handle& object, const char* name) {
+  return square_of<8>(object, name, "an (8, 8) matrix");
+}
+
 Eigen::Matrix4d to_matrix(const Pose& T) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = T.rotation.toRotationMatrix();
@@ -171,8 +205,7 @@ Pose to_pose(const Eigen::Matrix4d& matrix, const char* name, std::size_t number
 
 Trajectory to_trajectory(const py::handle& object, const char* name, std::vector<std::string>& notes) {
   if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__")) {
-    const std::string file = py::str(object).cast<std::string>();
-    if (file.empty()) refuse(name, "the file name is empty");
+    const std::string file = to_file_name(object, name);
     const py::gil_scoped_release release;
     TrajectoryReading reading = read_trajectory_file(file);
     for (const std::string& note : reading.notes) notes.push_back(file + ": " + in_python_words(note));

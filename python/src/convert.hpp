@@ -28,6 +28,10 @@ Array to_array(const py::handle& object, const char* name, const char* expected)
 /// One number; throws ValueError likewise.
 double to_number(const py::handle& object, const char* name, const char* expected);
 
+/// (4, 4) and (8, 8) numbers; throw ValueError likewise.
+Eigen::Matrix4d to_matrix4(const py::handle& object, const char* name);
+Eigen::Matrix<double, 8, 8> to_matrix8(const py::handle& object, const char* name);
+
 /// A 4 x 4 homogeneous matrix.
 Eigen::Matrix4d to_matrix(const Pose& T);
 /// Throws ValueError where the matrix is not a rigid displacement: not finite, last row not 0 0 0 1, a

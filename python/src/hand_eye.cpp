@@ -8,6 +8,7 @@
 
 #include "convert.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
+#include "findings.hpp"
 #include "warn.hpp"
 
 namespace egocal::python {
@@ -46,6 +47,22 @@ class Rows {
   std::vector<std::size_t> begins_, widths_;
 };
 
+void require_rotation_vector(const Eigen::Vector3d& axis, const char* list, std::size_t i) {
+  constexpr double most = 1e6;  // [rad], limit: a double holds the angle of the last turn to 1e-10 there
+  if (axis.allFinite() && axis.norm() < most) return;
+  throw py::value_error(std::string(list) + " " + std::to_string(i) +
+                        ": expected a rotation vector of finite numbers, less than 1e6 rad long");
+}
+
+/// What the tuple of R and t does not tell.
+void warn_of_wrong(const std::vector<std::size_t>& wrong, std::size_t poses) {
+  if (wrong.empty()) return;
+  std::string numbers;
+  for (const std::size_t i : wrong) numbers += (numbers.empty() ? "" : ", ") + std::to_string(i);
+  warn("calibrate_hand_eye: " + std::to_string(wrong.size()) + " of " + std::to_string(poses) +
+       " poses contradict the others and do not count: " + numbers + " (the first is 0)");
+}
+
 /// A rotation as a matrix (3, 3) or as a rotation vector of three numbers [rad]; a translation of three.
 Pose pose_of(const Rows& rotations, const Rows& translations, std::size_t i, const char* list) {
   const std::size_t width = rotations.width(i);
@@ -53,15 +70,15 @@ Pose pose_of(const Rows& rotations, const Rows& translations, std::size_t i, con
     throw py::value_error(std::string(list) + " " + std::to_string(i) +
                           ": expected a 3 x 3 rotation or a rotation vector, and 3 numbers of translation");
   const Eigen::Map<const Eigen::Vector3d> vector(translations[i]);
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topRightCorner<3, 1>() = vector;
   if (width == 3) {
     const Eigen::Vector3d axis = Eigen::Map<const Eigen::Vector3d>(rotations[i]);
-    if (!axis.allFinite() || !vector.allFinite())
-      throw py::value_error(std::string(list) + " " + std::to_string(i) + ": not finite");
+    require_rotation_vector(axis, list, i);
+    to_pose(matrix, list, i);  // the translation
     return {rotation_exp(axis), vector};
   }
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotations[i]);
-  matrix.topRightCorner<3, 1>() = vector;
   return to_pose(matrix, list, i);
 }
 
@@ -95,18 +112,20 @@ py::object calibrate_hand_eye(const py::sequence& R_gripper2base, const py::sequ
   }
   const Calibration& calibration = found.calibration;
   warn_of(calibration, {});
+  std::vector<std::size_t> wrong;
+  for (std::size_t i = 0; i < found.residuals.size(); ++i)
+    if (found.residuals[i].wrong) wrong.push_back(i);
+  warn_of_wrong(wrong, found.residuals.size());
   const Pose& X = calibration.T_a_b;
   const Eigen::Matrix3d R = X.rotation.toRotationMatrix();
   const Eigen::Vector3d t = X.translation;
   if (!details) return py::make_tuple(R, t);
   const Observability& observability = calibration.observability;
   const bool all = observability.observable == std::array<bool, 6>{true, true, true, true, true, true};
-  std::vector<std::size_t> wrong;
-  for (std::size_t i = 0; i < found.residuals.size(); ++i)
-    if (found.residuals[i].wrong) wrong.push_back(i);
   return py::make_tuple(
       R, t,
       py::dict("verdict"_a = std::string(to_string(calibration.verdict)), "reason"_a = calibration.reason,
+               "findings"_a = findings_of(calibration.findings),
                "certified"_a = calibration.certificate.optimality == Optimality::certified,
                "observable"_a = observability.observable, "all_observable"_a = all,
                "stddev"_a = Eigen::Matrix<double, 6, 1>(observability.stddev.data()),
@@ -123,10 +142,11 @@ void bind_hand_eye(py::module_& module) {
 
 The arguments are those of cv2.calibrateHandEye: sequences of n rotations ((3, 3), or rotation vectors) and of n
 translations. Returns (R_cam2gripper (3, 3), t_cam2gripper (3,)); with details=True also a dict of verdict,
-reason, certified, observable (six booleans), all_observable, stddev [m, rad], hint, wrong (indices of poses that
+reason, findings (as Calibration.findings), certified, observable (six booleans), all_observable, stddev [m, rad], hint, wrong (indices of poses that
 contradict the others and do not count), spread (median distance of the target over the poses [m]),
 R_target2base and t_target2base. For a camera beside the arm pass base2gripper instead. Where the motions do not show a direction
-the answer there is not a measurement: look at all_observable. An EgocalWarning is given where the verdict is not good.)",
+the answer there is not a measurement: look at all_observable. An EgocalWarning is given where the verdict is
+not good, and names the poses that do not count.)",
              "R_gripper2base"_a, "t_gripper2base"_a, "R_target2cam"_a, "t_target2cam"_a, py::kw_only(),
              "details"_a = false);
 }

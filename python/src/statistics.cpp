@@ -24,24 +24,30 @@ void require_weight(double weight, const char* name) {
 }
 
 /// What a cost matrix always is; without it there is no minimum to be found.
-void require_cost_matrix(const Matrix8d& Q) {
+Matrix8d to_cost_matrix(const py::object& object) {
+  const Matrix8d Q = to_matrix8(object, "Q");
   constexpr double rounding = 1e-9;  // of sums in another order
   if (!Q.allFinite()) throw py::value_error("Q: expected finite numbers");
   if (!((Q - Q.transpose()).cwiseAbs().maxCoeff() <= rounding * Q.cwiseAbs().maxCoeff()))
     throw py::value_error("Q: expected a symmetric matrix");
+  return Q;
 }
 
 /// An identity that nothing was found for looks like an answer.
-void warn_of_status(SolverStatus status) {
+void warn_of_status(SolverStatus status, const Matrix8d& Q) {
   if (status == SolverStatus::iteration_limit)
     warn("solve_dual: not converged: the best point that was found; verify() tells what it is worth");
   else if (status != SolverStatus::converged)
     warn("solve_dual: degenerate: Q shows no motion, and what is returned is no answer");
+  else if (!(Q.bottomRightCorner<4, 4>().trace() > 0))  // (14): the translation is weighed by it alone
+    warn(
+        "solve_dual: Q shows no translation (its weight is 0, or nothing turned): the one returned is no "
+        "answer");
 }
 
-py::dict verified(const Matrix8d& Q, const Eigen::Matrix4d& T_a_b) {
-  require_cost_matrix(Q);
-  const Certificate certificate = verify(Q, to_dual_quaternion(to_pose(T_a_b, "T_a_b")));
+py::dict verified(const py::object& cost, const py::object& T_a_b) {
+  const Matrix8d Q = to_cost_matrix(cost);
+  const Certificate certificate = verify(Q, to_dual_quaternion(to_pose(to_matrix4(T_a_b, "T_a_b"), "T_a_b")));
   return py::dict("certified"_a = certificate.optimality == Optimality::certified,
                   "cost"_a = certificate.cost, "lower_bound"_a = certificate.lower_bound,
                   "gap"_a = certificate.gap, "rounding"_a = certificate.rounding,
@@ -57,11 +63,10 @@ void bind_statistics(py::module_& module) {
       .def(py::init<>())
       .def(
           "add",
-          [](Statistics& statistics, const Eigen::Matrix4d& motion_a, const Eigen::Matrix4d& motion_b,
-             double weight) {
+          [](Statistics& statistics, const py::object& motion_a, const py::object& motion_b, double weight) {
             require_weight(weight, "weight");
-            statistics.add(to_dual_quaternion(to_pose(motion_a, "motion_a")),
-                           to_dual_quaternion(to_pose(motion_b, "motion_b")), weight);
+            statistics.add(to_dual_quaternion(to_pose(to_matrix4(motion_a, "motion_a"), "motion_a")),
+                           to_dual_quaternion(to_pose(to_matrix4(motion_b, "motion_b"), "motion_b")), weight);
           },
           "Adds one pair of motions over the same time, (4, 4) each: the later pose in the earlier one.",
           "motion_a"_a, "motion_b"_a, "weight"_a = 1.0)
@@ -92,10 +97,10 @@ void bind_statistics(py::module_& module) {
 
   module.def(
       "solve_dual",
-      [](const Eigen::Matrix<double, 8, 8>& Q) {
-        require_cost_matrix(Q);
+      [](const py::object& cost) {
+        const Matrix8d Q = to_cost_matrix(cost);
         const Solution solution = solve_dual(Q);
-        warn_of_status(solution.status);
+        warn_of_status(solution.status, Q);
         return to_matrix(egocal::to_pose(solution.q));
       },
       "(4, 4): the global minimum of (18) for the cost matrix Q (8, 8). verify() proves it. An EgocalWarning "

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "warn.hpp"
 
+#include "egocal/diagnosis/certain_of_either.hpp"
 #include "python_words.hpp"
 
 namespace egocal::python {
@@ -27,6 +28,10 @@ void warn_of(const Calibration& calibration, const std::vector<std::string>& not
   for (const std::string& note : notes) warn(note);
   if (calibration.verdict != Verdict::good)
     warn(std::string(to_string(calibration.verdict)) + ": " + in_python_words(calibration.reason));
+  else
+    for (const Finding& finding : calibration.findings)
+      if (certain_of_either(finding))
+        warn("good, but: " + in_python_words(finding.message + " " + finding.remedy));
 }
 
 }  // namespace egocal::python

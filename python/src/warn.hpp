@@ -16,7 +16,8 @@ void bind_warning(pybind11::module_& module);
 
 /// Warns at the line that called this module. Throws where the filters make an exception of it.
 void warn(const std::string& text);
-/// Of each note of reading, and of a verdict that is not good, with its reason.
+/// Of each note of reading, and of a verdict that is not good, with its reason; of one that is, of what is
+/// wrong for certain all the same.
 void warn_of(const Calibration& calibration, const std::vector<std::string>& notes);
 
 }  // namespace egocal::python

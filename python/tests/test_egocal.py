@@ -113,12 +113,35 @@ def test_what_is_no_trajectory_is_refused_with_its_reason(drive):
     assert egocal.solve(relative.astype(np.float32), relative).pairs > 0  # fine enough
 
 
+def test_file_names_are_those_of_the_file_system(drive):
+    class Named:
+        def __init__(self, name):
+            self.name = name
+
+        def __fspath__(self):
+            return self.name
+
+    expected = egocal.solve(*drive).T_a_b
+    with os.scandir(pathlib.Path(drive[0]).parent) as entries:
+        entry = [entry for entry in entries if entry.path == str(drive[0])][0]
+    for name in (entry, Named(str(drive[0])), Named(os.fsencode(drive[0]))):
+        assert (egocal.solve(name, drive[1]).T_a_b == expected).all()
+    with pytest.raises(ValueError, match=r"a: the file name is not in UTF-8: '/nowhere/.udcff'"):
+        egocal.solve("/nowhere/\udcff", drive[1])
+    with pytest.raises(ValueError, match="b: the file name has a null character"):
+        egocal.solve(drive[0], str(drive[1]) + "\0x")
+
+
 def test_options_that_cannot_be_understood_are_value_errors(drive):
     rows = np.loadtxt(drive[0])
     for option, value in [("weights", (1, 1, 1)), ("weights", None), ("time_offset", None), ("nominal", np.eye(3)),
                           ("nominal", 2 * np.eye(4)), ("plane_a", "flat"), ("plane_a", (0, 0, 1))]:
         with pytest.raises(ValueError, match=option):
             egocal.solve(rows, rows, **{option: value})
+    with pytest.raises(ValueError, match="nominal: does not go with plane_a, plane_b"):
+        egocal.solve(rows, rows, nominal=np.eye(4), plane_a=(0, 0, 1, -1.8), plane_b=(0, -1, 0, -1.5))
+    with pytest.raises(egocal.Error, match="translation weight: expected 1e-12 to 1e.12, got 1e-300"):
+        egocal.solve(rows, rows, weights=(1e-300, 1e-300))
 
 
 def test_no_number_that_is_none_reaches_the_statistics():
@@ -138,6 +161,21 @@ def test_no_number_that_is_none_reaches_the_statistics():
     far[0, 3] = 1e200
     with pytest.raises(ValueError, match="motion_a: not a rigid displacement"):
         statistics.add(far, np.eye(4))
+    # what lies under a mask, and the real part of a complex number, were taken without a word
+    for make, why in [(lambda M: np.ma.masked_array(M, mask=np.eye(len(M), dtype=bool)), "has masked entries"),
+                      (lambda M: M * (1 + 2j), "expected real numbers")]:
+        for name, call in [("motion_a", lambda: statistics.add(make(np.eye(4)), np.eye(4))),
+                           ("motion_b", lambda: statistics.add(np.eye(4), make(np.eye(4)))),
+                           ("Q", lambda: egocal.solve_dual(make(np.eye(8)))),
+                           ("Q", lambda: egocal.verify(make(np.eye(8)), np.eye(4))),
+                           ("T_a_b", lambda: egocal.verify(np.eye(8), make(np.eye(4))))]:
+            with pytest.raises(ValueError, match=f"{name}: {why}"):
+                call()
+    assert len(statistics) == 0
+    with pytest.raises(ValueError, match="Q: expected an .8, 8. matrix"):
+        egocal.solve_dual(np.zeros((8, 7)))
+    statistics.add(np.eye(4).tolist(), np.eye(4, dtype=int))
+    assert len(statistics) == 1
 
 
 def test_reading_files_releases_the_lock(drive):
@@ -219,12 +257,27 @@ def test_hand_eye_finds_the_wrong_pose_and_the_target():
     gripper = [random_pose(rng) for _ in range(10)]
     seen = [np.linalg.inv(G @ X) @ target for G in gripper]
     seen[3] = seen[3] @ random_pose(rng)
-    R, t, details = egocal.calibrate_hand_eye([G[:3, :3] for G in gripper], [G[:3, 3] for G in gripper],
-                                              [S[:3, :3] for S in seen], [S[:3, 3] for S in seen], details=True)
+    poses = ([G[:3, :3] for G in gripper], [G[:3, 3] for G in gripper], [S[:3, :3] for S in seen],
+             [S[:3, 3] for S in seen])
+    with pytest.warns(egocal.EgocalWarning, match="1 of 10 poses contradict the others and do not count: 3 .the first"):
+        egocal.calibrate_hand_eye(*poses)
+    with pytest.warns(egocal.EgocalWarning, match="do not count"):
+        R, t, details = egocal.calibrate_hand_eye(*poses, details=True)
+    assert "wrong_samples" in [finding["code"] for finding in details["findings"]]
     assert details["wrong"] == [3] and details["spread"] < 1e-9
     assert np.allclose(R, X[:3, :3], atol=1e-9) and np.allclose(t, X[:3, 3], atol=1e-9)
     assert np.allclose(details["R_target2base"], target[:3, :3], atol=1e-9)
     assert np.allclose(details["t_target2base"], target[:3, 3], atol=1e-9)
+
+
+def test_hand_eye_names_the_pose_that_is_none():
+    turns, places = [np.array([0.1 * i, 0.2, 0.3]) for i in range(5)], [np.ones(3)] * 5
+    far = places[:3] + [np.full(3, 1e200)] + places[4:]
+    with pytest.raises(ValueError, match="gripper2base 3: not a rigid displacement"):
+        egocal.calibrate_hand_eye(turns, far, turns, places)
+    huge = turns[:2] + [np.full(3, 1e300)] + turns[3:]
+    with pytest.raises(ValueError, match="target2cam 2: expected a rotation vector of finite numbers, less than 1e6"):
+        egocal.calibrate_hand_eye(turns, places, huge, places)
 
 
 def test_messages_name_arguments_instead_of_options(drive):
@@ -297,6 +350,40 @@ def test_hand_eye_warns_without_details():
 def test_an_identity_that_nothing_was_found_for_warns():
     with pytest.warns(egocal.EgocalWarning, match="solve_dual: degenerate"):
         egocal.solve_dual(np.zeros((8, 8)))
+    rng, statistics = np.random.default_rng(1), egocal.Statistics()
+    X = random_pose(rng)
+    for _ in range(10):
+        A = random_pose(rng)
+        statistics.add(A, np.linalg.inv(X) @ A @ X)
+    with pytest.warns(egocal.EgocalWarning, match="solve_dual: Q shows no translation"):
+        egocal.solve_dual(statistics.cost_matrix(1, 0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", egocal.EgocalWarning)
+        egocal.solve_dual(statistics.cost_matrix(1, 1e-6))
+
+
+def test_findings_are_those_of_the_command_line(drive):
+    """Inverse poses, and a nominal value that a good drive does not need but contradicts."""
+    with pytest.warns(egocal.EgocalWarning, match="^contradictory: "):
+        found = egocal.solve(*mixed_up(drive))
+    first = found.findings[0]
+    assert first["certain"] and first["improvement"] > 7 and len(first["translation"]) == 3
+    assert set(first) >= {"code", "certain", "message", "remedy", "improvement", "rotation_wxyz"}
+    assert found.to_dict()["findings"] == found.findings == json.loads(found.to_json())["findings"]
+    assert pickle.loads(pickle.dumps(found)).findings == found.findings
+    assert egocal.solve(*drive).findings == command_line(*drive)["findings"]
+    far = np.eye(4)
+    far[:3, 3] = 20, 30, 40
+    with pytest.warns(egocal.EgocalWarning, match="good, but: The nominal value is .* from what the motions show"):
+        assert [finding["code"] for finding in egocal.solve(*drive, nominal=far).findings] == ["nominal"]
+
+
+def mixed_up(drive):
+    """The drive with inverse poses of b."""
+    rows = np.loadtxt(drive[1])
+    poses = np.linalg.inv(matrices(rows))
+    return drive[0], (rows[:, 0], poses)
+
 
 
 def test_what_was_lost_while_reading_is_reported(drive, tmp_path):

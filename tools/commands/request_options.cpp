@@ -71,6 +71,15 @@ void refuse_options_of_streams(const RequestOptions& options) {
   refuse(options.max_gap != RequestOptions().max_gap, "--max-gap");
 }
 
+/// The ground planes, and the baselines of the paper, leave no direction to a nominal value.
+void refuse_unused_nominal(const RequestOptions& options) {
+  const auto refuse = [](const std::string& option) {
+    throw UsageError("--nominal: does not go with " + option + ", which takes nothing from it");
+  };
+  if (options.planar) refuse("--planar");
+  if (!method_from_name(options.method)) refuse("--method " + options.method);
+}
+
 /// Further drives, and sets of still poses.
 void add_options_of_other_sources(cli::App command, RequestOptions& options) {
   command.add_option("--append", options.append,
@@ -143,8 +152,10 @@ SolveRequest understood(const RequestOptions& options) {
   read_scale("--scale-a", options.scale_a, Side::a, result);
   read_scale("--scale-b", options.scale_b, Side::b, result);
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
-  if (!options.nominal.empty())
+  if (!options.nominal.empty()) {
     result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
+    refuse_unused_nominal(options);
+  }
   read_samples(options, result);
   return result;
 }

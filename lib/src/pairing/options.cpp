@@ -102,8 +102,9 @@ PairingOptions validated(PairingOptions options) {
   if (options.stride) require("stride", *options.stride, limits::stride, " steps");
   if (options.balance) {
     require("rotation weight", options.balance->rotation, limits::rotation_weight, "");
-    require("translation weight", options.balance->translation, limits::translation_weight, "");
-    require("translation weight", options.balance->translation > 0, "more than 0");
+    // with less the costs are so small that nothing can be proven of them
+    constexpr double most = limits::translation_weight.most;
+    require("translation weight", options.balance->translation, {1 / most, most}, "");
   }
   require("time_offset", options.time_offset, limits::time_offset, " s");
   require("max_gap", options.max_gap, limits::max_gap, " s");
