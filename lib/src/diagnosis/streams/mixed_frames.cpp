@@ -30,9 +30,9 @@ double angle_of(const Pose& pose) {
   return rotation_angle(to_dual_quaternion(pose));
 }
 
-class Steps {
+class Patterns {
  public:
-  Steps(const Instants& instants, const MixedFramesOptions& options)
+  Patterns(const Instants& instants, const MixedFramesOptions& options)
       : instants_(instants), each_(std::max<std::size_t>(1, instants.size() / options.most)) {
     // begins that meet every phase of a pattern of two and of three
     while (each_ % 2 == 0 || each_ % 3 == 0) ++each_;
@@ -91,7 +91,7 @@ struct Pattern {
 };
 
 /// The length whose motions leave least, where single steps leave far more.
-std::optional<Pattern> pattern_of(const Steps& steps, const std::vector<Typical>& residuals, Half half,
+std::optional<Pattern> pattern_of(const Patterns& patterns, const std::vector<Typical>& residuals, Half half,
                                   const MixedFramesOptions& options) {
   const auto least =
       std::min_element(residuals.begin() + 1, residuals.end(),
@@ -99,7 +99,7 @@ std::optional<Pattern> pattern_of(const Steps& steps, const std::vector<Typical>
   const Pattern pattern{static_cast<std::size_t>(least - residuals.begin()) + 1, residuals.front().*half,
                         (*least).*half};
   const double moved =
-      std::max(steps.size(Side::a, options.longest).*half, steps.size(Side::b, options.longest).*half);
+      std::max(patterns.size(Side::a, options.longest).*half, patterns.size(Side::b, options.longest).*half);
   if (!(pattern.single > options.times * pattern.longer) || !(pattern.single > options.least_part * moved))
     return std::nullopt;
   return pattern;
@@ -127,16 +127,17 @@ Finding worded(Side side, Half half, const Pattern& pattern, bool metres) {
 std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b, bool metres,
                                     const MixedFramesOptions& options) {
   if (instants.size() < options.least + options.longest) return std::nullopt;
-  const Steps steps(instants, options);
+  const Patterns patterns(instants, options);
   std::vector<Typical> residuals;
   for (std::size_t span = 1; span <= options.longest; ++span)
-    residuals.push_back(steps.residual(span, T_a_b));
+    residuals.push_back(patterns.residual(span, T_a_b));
   for (const Half half : {&Typical::translation, &Typical::rotation}) {
-    const std::optional<Pattern> pattern = pattern_of(steps, residuals, half, options);
+    const std::optional<Pattern> pattern = pattern_of(patterns, residuals, half, options);
     if (!pattern) continue;
     std::array<double, 2> alternating{};
     for (const Side side : {Side::a, Side::b}) {
-      const double later = steps.change(side, pattern->length).*half, next = steps.change(side, 1).*half;
+      const double later = patterns.change(side, pattern->length).*half,
+                   next = patterns.change(side, 1).*half;
       alternating[side == Side::a ? 0 : 1] = next / std::max(later, 1e-12);
     }
     return worded(alternating[0] > alternating[1] ? Side::a : Side::b, half, *pattern, metres);
