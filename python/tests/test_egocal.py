@@ -385,7 +385,6 @@ def mixed_up(drive):
     return drive[0], (rows[:, 0], poses)
 
 
-
 def test_what_was_lost_while_reading_is_reported(drive, tmp_path):
     cut = tmp_path / "cut.tum"
     cut.write_bytes(pathlib.Path(drive[1]).read_bytes()[:-20])

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../support/findings.hpp"
+#include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
 #include "egocal/calibrate.hpp"
 
@@ -57,6 +58,24 @@ TEST(MixedFrames, NoiseOnPosesIsNoOtherFrame) {
                                                                 random.normal3(noise)}));
       EXPECT_FALSE(names_mixed_frames(calibrate(streams.a, streams.b))) << noise << " " << seed;
     }
+}
+
+/// Single steps leave a part of the way then.
+TEST(MixedFrames, StampsThatAlternateAndHeldValuesAreNoOtherFrame) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free}) {
+    testing::Streams late = testing::drive(terrain);
+    for (std::size_t i = 0; i < late.b.size(); i += 2) late.b[i].time_us += 40'000;
+    const Calibration of_late = calibrate(late.a, late.b);
+    for (const Finding& finding : of_late.findings)
+      EXPECT_FALSE(finding.certain && finding.code.starts_with("mixed_frames_")) << finding.message;
+    EXPECT_NE(of_late.verdict, Verdict::contradictory) << of_late.reason;
+    for (const std::size_t n : {2, 3}) {
+      const testing::Streams right = testing::drive(terrain);
+      for (const Trajectory& held :
+           {testing::with_held_positions(right.b, n), testing::with_held_rotations(right.b, n)})
+        EXPECT_FALSE(names_mixed_frames(calibrate(right.a, held))) << n;
+    }
+  }
 }
 
 /// A slow stream that is interpolated at the stamps of a fast one.

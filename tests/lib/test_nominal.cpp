@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "../support/findings.hpp"
+#include "../support/mistakes.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
 
@@ -132,6 +133,19 @@ TEST(Nominal, ThatStreamsAsTheyAreReadContradictIsNotBlamed) {
   const Calibration calibration = with_nominal(streams, mounting());
   EXPECT_EQ(calibration.verdict, Verdict::contradictory);
   EXPECT_EQ(testing::find(calibration, "nominal"), nullptr);
+}
+
+TEST(Nominal, ThatIsRightIsNotBlamedForWhatElseIsWrong) {
+  const Pose bump{rotation_exp({0, 0, 40 * degree}), Eigen::Vector3d::Zero()};
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough}) {
+    const testing::Streams right = drive(terrain, 1);
+    for (const Trajectory& wrong : {testing::knocked(right.b, 0.25, bump), testing::lengthened(right.b, 1.5),
+                                    testing::late(right.b, 0.5)}) {
+      const Calibration calibration = with_nominal({right.T, right.a, wrong, {}}, mounting());
+      EXPECT_EQ(testing::find(calibration, "nominal"), nullptr) << calibration.reason;
+      EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+    }
+  }
 }
 
 }  // namespace

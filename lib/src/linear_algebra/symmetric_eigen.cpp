@@ -3,6 +3,7 @@
 #include "linear_algebra/symmetric_eigen.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <cstdlib>
 #include <type_traits>
 
 namespace egocal::detail {
@@ -25,18 +26,20 @@ using Column = Eigen::Matrix<double, size, 1, Eigen::ColMajor, most, 1>;
 
 // Eigen applies 48 reflections and more in blocks, by its products of large matrices. There are nine at most
 // here, so that this is never called: to compile it for each size took a third of this file.
+#if EIGEN_VERSION_AT_LEAST(3, 4, 0) && !EIGEN_VERSION_AT_LEAST(3, 4, 90)
 #define EGOCAL_FEW_REFLECTIONS(Square, size, most)                                                       \
   template <>                                                                                            \
   template <>                                                                                            \
   inline void                                                                                            \
   Eigen::HouseholderSequence<Square, egocal::detail::Column<size == most ? size - 1 : size, most - 1>>:: \
       applyThisOnTheLeft(Square&, egocal::detail::Column<size, most>&, bool) const {                     \
-    eigen_assert(false);                                                                                 \
+    std::abort();                                                                                        \
   }
 EGOCAL_FEW_REFLECTIONS(egocal::detail::Matrix<4>, 4, 4)
 EGOCAL_FEW_REFLECTIONS(egocal::detail::Matrix<6>, 6, 6)
 EGOCAL_FEW_REFLECTIONS(egocal::detail::UpToTen, Eigen::Dynamic, 10)
 #undef EGOCAL_FEW_REFLECTIONS
+#endif
 
 namespace egocal::detail {
 

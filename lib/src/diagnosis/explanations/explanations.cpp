@@ -286,21 +286,13 @@ double sigmas_of_drive(const Evidence& evidence, const PairingOptions& pairing,
 
 std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
                                             const DiagnosisOptions& options) {
-  if (!(std::abs(std::log(evidence.scaled.scale)) >= options.scale_check.least) ||
-      !explains(evidence.scaled.explained, options))
-    return std::nullopt;
+  const ScaleCheckOptions& check = options.scale_check;
+  if (!explains(evidence.scaled.explained, options)) return std::nullopt;
   const double sigmas = sigmas_of_drive(evidence, pairing, options);
-  if (!(sigmas >= options.scale_check.sigmas_of_drive)) return std::nullopt;
-  return shown_by_few(evidence, compare(evidence.given.explained, evidence.scaled.explained), sigmas,
-                      options);
-}
-
-std::optional<Finding> possible_scale(const Evidence& evidence, const PairingOptions& pairing,
-                                      const DiagnosisOptions& options) {
   const Comparison comparison = compare(evidence.given.explained, evidence.scaled.explained);
-  if (!explains(evidence.scaled.explained, options) || !(comparison.gain > 0) ||
-      !(sigmas_of_drive(evidence, pairing, options) >= options.scale_check.sigmas))
-    return std::nullopt;
+  if (std::abs(std::log(evidence.scaled.scale)) >= check.least && sigmas >= check.sigmas_of_drive)
+    return shown_by_few(evidence, comparison, sigmas, options);
+  if (!(comparison.gain > 0) || !(sigmas >= check.sigmas)) return std::nullopt;
   return scale_finding(evidence.scaled, comparison, false, evidence, options);
 }
 

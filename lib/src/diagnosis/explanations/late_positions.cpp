@@ -12,7 +12,6 @@
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
-#include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
@@ -151,11 +150,3 @@ std::vector<Finding> worded(const LateOfEither& found, const char* clock) {
 }
 
 }  // namespace egocal::detail
-
-namespace egocal {
-
-bool certain_of_either(const Finding& finding) {
-  return finding.certain || finding.code.starts_with("late_positions_");
-}
-
-}  // namespace egocal

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -30,21 +31,38 @@ double angle_of(const Pose& pose) {
   return rotation_angle(to_dual_quaternion(pose));
 }
 
+Typical of(const Pose& pose) {
+  return {angle_of(pose), pose.translation.norm()};
+}
+
+/// The half of the poses that is of two frames.
+using Half = double Typical::*;
+
+struct Scatter {
+  double of_residuals = 0, of_parts = 0;
+};
+
+double scatter_of(std::vector<double> values) {
+  const double typical = median(values);
+  for (double& value : values) value = std::abs(value - typical);
+  return median(std::move(values)) / std::max(typical, 1e-12);
+}
+
 class Patterns {
  public:
   Patterns(const Instants& instants, const MixedFramesOptions& options)
       : instants_(instants), each_(std::max<std::size_t>(1, instants.size() / options.most)) {
-    // begins that meet every phase of a pattern of two and of three
-    while (each_ % 2 == 0 || each_ % 3 == 0) ++each_;
+    // begins that meet every phase of a pattern of two to six
+    while (std::gcd(each_, std::size_t{60}) != 1) ++each_;
   }
 
   /// What motions of so many instants leave at the answer.
   Typical residual(std::size_t span, const Pose& T_a_b) const {
     std::vector<double> rotations, translations;
     for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
-      const Pose left = inverse(motion(Side::a, i, span) * T_a_b) * (T_a_b * motion(Side::b, i, span));
-      rotations.push_back(angle_of(left));
-      translations.push_back(left.translation.norm());
+      const Typical here = of(left(i, span, T_a_b));
+      rotations.push_back(here.rotation);
+      translations.push_back(here.translation);
     }
     return typical(std::move(rotations), std::move(translations));
   }
@@ -52,9 +70,9 @@ class Patterns {
   Typical size(Side side, std::size_t span) const {
     std::vector<double> rotations, translations;
     for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
-      const Pose here = motion(side, i, span);
-      rotations.push_back(angle_of(here));
-      translations.push_back(here.translation.norm());
+      const Typical here = of(motion(side, i, span));
+      rotations.push_back(here.rotation);
+      translations.push_back(here.translation);
     }
     return typical(std::move(rotations), std::move(translations));
   }
@@ -68,8 +86,31 @@ class Patterns {
     }
     return typical(std::move(rotations), std::move(translations));
   }
+  /// How unlike single steps' residuals are, and how unlike they are as parts of what motions of so many
+  /// instants move by: median deviations from the median, as parts of it.
+  Scatter scatter(Side side, std::size_t span, const Pose& T_a_b, Half half) const {
+    std::vector<double> residuals, parts;
+    for (std::size_t i = 0; i + std::max<std::size_t>(span, 1) < instants_.size(); i += each_) {
+      residuals.push_back(of(left(i, 1, T_a_b)).*half);
+      parts.push_back(residuals.back() / std::max(of(motion(side, i, span)).*half, 1e-12));
+    }
+    return {scatter_of(residuals), scatter_of(parts)};
+  }
+  /// What single steps leave across the way of b over so many instants [m].
+  double across(std::size_t span, const Pose& T_a_b) const {
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
+      const Eigen::Vector3d way = motion(Side::b, i, span).translation.normalized(),
+                            residual = left(i, 1, T_a_b).translation;
+      lengths.push_back((residual - way.dot(residual) * way).norm());
+    }
+    return median(std::move(lengths));
+  }
 
  private:
+  Pose left(std::size_t i, std::size_t span, const Pose& T_a_b) const {
+    return inverse(motion(Side::a, i, span) * T_a_b) * (T_a_b * motion(Side::b, i, span));
+  }
   Pose motion(Side side, std::size_t begin, std::size_t span) const {
     return inverse(pose(side, begin)) * pose(side, begin + span);
   }
@@ -81,9 +122,6 @@ class Patterns {
   const Instants& instants_;
   std::size_t each_;
 };
-
-/// The half of the poses that is of two frames.
-using Half = double Typical::*;
 
 struct Pattern {
   std::size_t length = 0;  ///< [instants]
@@ -105,7 +143,7 @@ std::optional<Pattern> pattern_of(const Patterns& patterns, const std::vector<Ty
   return pattern;
 }
 
-Finding worded(Side side, Half half, const Pattern& pattern, bool metres) {
+Finding worded(Side side, Half half, const Pattern& pattern, bool certain, bool metres) {
   const char which = side == Side::a ? 'a' : 'b';
   const auto words = [&](double value) {
     return half == &Typical::rotation ? format("%.3g deg", 180 / std::numbers::pi * value)
@@ -113,7 +151,7 @@ Finding worded(Side side, Half half, const Pattern& pattern, bool metres) {
   };
   Finding finding;
   finding.code = std::string("mixed_frames_") + which;
-  finding.certain = true;
+  finding.certain = certain;
   finding.improvement = std::pow(pattern.single / std::max(pattern.longer, 1e-9 * pattern.single), 2);
   say(finding, format("The poses of %s are of two frames in turn", mark(which)),
       format("Give the poses of one frame, of one publisher, as %s.", mark(which)),
@@ -131,18 +169,25 @@ std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b,
   std::vector<Typical> residuals;
   for (std::size_t span = 1; span <= options.longest; ++span)
     residuals.push_back(patterns.residual(span, T_a_b));
+  std::optional<Finding> possible;
   for (const Half half : {&Typical::translation, &Typical::rotation}) {
     const std::optional<Pattern> pattern = pattern_of(patterns, residuals, half, options);
     if (!pattern) continue;
-    std::array<double, 2> alternating{};
-    for (const Side side : {Side::a, Side::b}) {
-      const double later = patterns.change(side, pattern->length).*half,
-                   next = patterns.change(side, 1).*half;
-      alternating[side == Side::a ? 0 : 1] = next / std::max(later, 1e-12);
-    }
-    return worded(alternating[0] > alternating[1] ? Side::a : Side::b, half, *pattern, metres);
+    const auto alternating = [&](Side side) {
+      return patterns.change(side, 1).*half / std::max(patterns.change(side, pattern->length).*half, 1e-12);
+    };
+    const Side side = alternating(Side::a) > alternating(Side::b) ? Side::a : Side::b;
+    // stamps that alternate, and values that are held, leave a part of the way
+    const Scatter scatter = patterns.scatter(side, pattern->length, T_a_b, half);
+    if (scatter.of_residuals > scatter.of_parts) continue;
+    const bool across_the_way = half == &Typical::translation &&
+                                patterns.across(pattern->length, T_a_b) > options.times * pattern->longer;
+    const bool certain = across_the_way || options.clearly_constant * scatter.of_residuals < scatter.of_parts;
+    Finding finding = worded(side, half, *pattern, certain, metres);
+    if (certain) return finding;
+    if (!possible) possible = std::move(finding);
   }
-  return std::nullopt;
+  return possible;
 }
 
 }  // namespace egocal::detail

@@ -22,11 +22,16 @@ struct MixedFramesOptions {
   /// A single step leaves at least this part of what typical motions of the longest pattern move by, lest
   /// rounding counts where nothing is left.
   double least_part = 1e-3;
+  /// Residuals of single steps, which are the distance of the frames, scatter this many times less than they
+  /// do as parts of the way: those of stamps that alternate, and of held values, are a part of the way. At
+  /// one speed the two are alike.
+  double clearly_constant = 2;
 };
 
-/// Single steps contradict the answer, motions of a few steps do not. The stream is the one whose steps
-/// differ from their neighbours, but not from those one pattern later. Finding mixed_frames_a or
-/// mixed_frames_b.
+/// Single steps contradict the answer, motions of a few steps do not, and not by a part of the way. Uncertain
+/// where the speed hardly changes and what they leave is along the way: stamps that alternate would leave the
+/// same. The stream is the one whose steps differ from their neighbours, but not from those one pattern
+/// later. Finding mixed_frames_a or mixed_frames_b.
 std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b, bool metres,
                                     const MixedFramesOptions& options = {});
 

@@ -25,18 +25,15 @@ void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, c
     if (explains(finding, options) || finding.code == "mount_moved") return;
   // right odometries differ, too; that counts where the answer is another one
   const bool small = std::abs(std::log(evidence.scaled.scale)) < options.scale_check.least;
-  Finding at_scale;
-  at_scale.T_a_b = to_pose(evidence.scaled.explained.fit.T);
-  const bool another_answer = far_off(at_scale, answered, options) > 1;
+  const bool another_answer = far_off(evidence.scaled.explained.fit.T, answered, options) > 1;
   std::optional<Finding> scale;
   if (!small || another_answer) scale = wrong_scale(evidence, options);
-  if (!scale) scale = wrong_scale_of_drive(evidence, pairing, options);
-  if (!scale) {
+  if (!scale && (!small || another_answer)) scale = wrong_scale_of_drive(evidence, pairing, options);
+  if (!scale) return;
+  if (!scale->certain) {
     const bool named =
         std::any_of(findings.begin(), findings.end(), [](const Finding& one) { return one.code == "scale"; });
-    if (another_answer && !named)
-      if (std::optional<Finding> possible = possible_scale(evidence, pairing, options))
-        findings.push_back(*std::move(possible));
+    if (another_answer && !named) findings.push_back(*std::move(scale));
     return;
   }
   // the same with less certainty, and what its motions were taken for

@@ -156,6 +156,9 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
   }
   name_held_streams(evidence, pairing.max_gap, options, result.findings);
+  // their single steps contradict each other, too
+  if (has(result.findings, "held_a") || has(result.findings, "held_b"))
+    std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("mixed_frames_"); });
   // what else was found may be of the stamps alone
   const std::vector<Finding> bursts = stamps_in_bursts(foreseen.a, foreseen.b, result.fit);
   result.findings.insert(result.findings.begin(), bursts.begin(), bursts.end());

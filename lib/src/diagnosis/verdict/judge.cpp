@@ -218,13 +218,17 @@ DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options) {
 
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
-  // streams that are misread, or noise, contradict a right nominal value
-  if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(),
-                   [](const Finding& one) { return misread(one) || one.code == "too_little_motion"; }))
+  const Opinion fit = of_fit(misfit, answered, options);
+  // an answer that is wrong itself, or noise, contradicts a right nominal value
+  const auto contradicts_itself = [](const Finding& one) {
+    return one.code == "too_little_motion" || one.code == "mount_moved" || one.code == "scale_change" ||
+           (certain_of_either(one) && !stream_fault(one) && !undersampling(one));
+  };
+  if (fit.verdict < Verdict::doubtful &&
+      std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), contradicts_itself))
     if (std::optional<Finding> nominal = contradicted_nominal(answered, options))
       diagnosis.findings.push_back(*std::move(nominal));
-  const Opinion of_explanations = of_findings(diagnosis, answered, options),
-                fit = of_fit(misfit, answered, options);
+  const Opinion of_explanations = of_findings(diagnosis, answered, options);
   if (options.goal) diagnosis.goal = goal_of(answered, *options.goal, options.goal_spread);
   const Opinion& worse = fit.verdict > of_explanations.verdict ? fit : of_explanations;
   diagnosis.verdict = worse.verdict;
