@@ -218,7 +218,11 @@ TEST_F(RigOfFiles, TwoSensorsThatShareNoTimeLeaveTheOthers) {
   EXPECT_EQ(apart.code, 3);
   EXPECT_NE(apart.error.find("first"), std::string::npos) << apart.error;
   EXPECT_EQ(apart.object()["joint"]["apart"], json::array({first}));
-  EXPECT_EQ(run("solve " + first + " " + last).code, 1) << "no pair has an answer";
+  // no pair has an answer
+  const std::string middle = part_of(folder, files[1], "middle.tum", 31, 34);
+  const Result none = run("solve " + first + " " + middle + " " + last);
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.error.find("first, middle: no motion pairs"), std::string::npos) << none.error;
 }
 
 // It ended with an error, without the answers of the others.
@@ -251,6 +255,10 @@ TEST_F(RigOfFiles, ASensorThatIsFrozenLeavesTheOthers) {
     EXPECT_EQ(offset.code, 3) << offset.error;
     EXPECT_EQ(offset.object()["extrinsics"].size(), 1u);
     EXPECT_EQ(offset.object()["joint"]["apart"], json::array({"frozen"}));
+    for (const json& pair : offset.object()["unsolved"])
+      EXPECT_NE(pair["reason"].get<std::string>().find("the poses of frozen are all the same"),
+                std::string::npos)
+          << pair;
     const Result printed = run("solve " + names);
     EXPECT_EQ(printed.code, 3);
     EXPECT_NE(printed.out.find("not in it, without an answer that connects them: frozen\n"),
@@ -263,6 +271,54 @@ TEST_F(RigOfFiles, ASensorThatIsFrozenLeavesTheOthers) {
               std::string::npos)
         << written.error;
   }
+}
+
+// The cure was what had been tried: --time-offset auto.
+TEST_F(RigOfFiles, AnOffsetThatIsNotFoundIsTheReason) {
+  const std::vector<std::string> files = words_of(rig("drive"));
+  const std::string other = folder.path("other.tum");  // of another epoch, and too short
+  std::ifstream given(part_of(folder, files[2], "short.tum", 0, 3));
+  std::ofstream out(other);
+  for (std::string line; std::getline(given, line);)
+    out << std::to_string(std::stod(line) - 1e6) << line.substr(line.find(' ')) << "\n";
+  out.close();
+  const Result result = run("solve --json --time-offset auto " + files[0] + " " + files[1] + " " + other);
+  EXPECT_EQ(result.code, 3) << result.error;
+  const json unsolved = result.object()["unsolved"];
+  EXPECT_EQ(unsolved.size(), 2u);
+  for (const json& pair : unsolved)
+    EXPECT_THAT(pair["reason"].get<std::string>(),
+                ::testing::StartsWith("time offset: cannot be estimated, the streams are too short"));
+}
+
+// The lidar, which both pairs have in common, was blamed.
+TEST_F(RigOfFiles, AWrongNominalValueBlamesNoSensor) {
+  const std::vector<std::string> files = words_of(rig("flat", "", 700, "flat"));
+  const std::string of_rig = folder.path("rig.toml");
+  std::ofstream out(of_rig);
+  std::string from;
+  const char* names[] = {"lidar", "camera", "radar"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    out << "[[sensor]]\nname = \"" << names[k] << "\"\nchannel = \"" << names[k] << "\"\n";
+    from += std::string(" --from ") + names[k] + "=" + files[k];
+  }
+  const char* in_millimetres[] = {"1500, 200, -300, 0.5, -0.5, 0.5, -0.5", "2000, 0, -1300, 1, 0, 0, 0"};
+  for (std::size_t k = 0; k < 2; ++k)
+    out << "[[pair]]\na = \"lidar\"\nb = \"" << names[k + 1] << "\"\nnominal = [" << in_millimetres[k]
+        << "]\n";
+  out.close();
+  const Result result = run("solve --json --rig " + of_rig + from);
+  EXPECT_EQ(result.code, 3) << "z is taken from them: " << result.error;
+  const json object = result.object();
+  EXPECT_TRUE(object["blamed"].is_null()) << object["blamed"];
+  std::vector<std::string> messages;
+  for (const json& finding : object["findings"]) {
+    if (finding["code"] != "nominal") continue;
+    EXPECT_TRUE(finding["sensor"].is_null()) << finding;
+    messages.push_back(finding["message"]);
+  }
+  EXPECT_THAT(messages, ::testing::ElementsAre(::testing::StartsWith("lidar, camera: The nominal value is "),
+                                               ::testing::StartsWith("lidar, radar: The nominal value is ")));
 }
 
 TEST_F(RigOfFiles, TheConsistentSetIsWrittenAsOneTree) {

@@ -20,7 +20,7 @@ namespace egocal::tools {
 
 namespace {
 
-/// The answers of the drives by themselves; empty: one has none.
+/// What each drive answers by itself; empty for a drive without an answer of its own.
 std::vector<std::optional<Calibration>> each_alone(const Drives& drives, const Trajectory& a,
                                                    const Trajectory& b, const CalibrationOptions& options) {
   std::vector<std::optional<Calibration>> alone(drives.size());
@@ -36,8 +36,9 @@ bool is_usable(const std::optional<Calibration>& alone) {
   return alone && alone->verdict <= Verdict::incomplete;
 }
 
-/// The second drive's extrinsic against the first one's, in the frame of a.
-Move difference(const Calibration& first, const Calibration& second) {
+/// The second drive's extrinsic against the first one's, in the frame of a. Lengths that are not metres have
+/// no limit in metres, and may be in another unit in each drive: without `metres` no translation is known.
+Move difference(const Calibration& first, const Calibration& second, bool metres) {
   Move move;
   move.before = to_dual_quaternion(first.T_a_b);
   move.after = to_dual_quaternion(second.T_a_b);
@@ -46,7 +47,8 @@ Move difference(const Calibration& first, const Calibration& second) {
   for (std::size_t i = 0; i < 6; ++i) {
     const auto axis = static_cast<Eigen::Index>(i % 3);
     move.change[i] = i < 3 ? shifted[axis] : turned[axis];
-    const bool known = first.observability.observable[i] && second.observability.observable[i];
+    const bool known =
+        (metres || i >= 3) && first.observability.observable[i] && second.observability.observable[i];
     move.stddev[i] = known ? std::hypot(first.observability.stddev[i], second.observability.stddev[i])
                            : std::numeric_limits<double>::infinity();
   }
@@ -94,12 +96,14 @@ void name_mounts_of_drives(const Drives& drives, const Trajectory& a, const Traj
                            const CalibrationOptions& options, Calibration& calibration,
                            const MountsOfDrivesOptions& mounts) {
   if (drives.size() < 2 || calibration.verdict < Verdict::doubtful) return;
+  const double scale = calibration.scale ? calibration.scale->scale : 1;
+  const bool metres = unit_of_scaled(options.diagnosis.unit, scale) == LengthUnit::metres;
   const std::vector<std::optional<Calibration>> alone = each_alone(drives, a, b, options);
   std::vector<Finding> findings;
   bool beyond_tolerance = false;
   for (std::size_t k = 0; k + 1 < drives.size(); ++k) {
     if (!is_usable(alone[k]) || !is_usable(alone[k + 1])) continue;
-    const Move move = difference(*alone[k], *alone[k + 1]);
+    const Move move = difference(*alone[k], *alone[k + 1], metres);
     if (!shows(move, mounts)) continue;
     const ShownChange shown = shown_change(move);
     findings.push_back(worded(drives, k, shown));
@@ -108,9 +112,11 @@ void name_mounts_of_drives(const Drives& drives, const Trajectory& a, const Traj
   }
   if (findings.empty()) return;
   if (beyond_tolerance) calibration.verdict = Verdict::contradictory;
-  calibration.reason = findings.front().message;
+  // a drive that is not usable by itself may have a fault of its own, of which these say nothing
+  const bool explains_all = std::all_of(alone.begin(), alone.end(), is_usable);
+  if (explains_all || beyond_tolerance) calibration.reason = findings.front().message;
   for (Finding& finding : calibration.findings)
-    if (is_shown_by(alone, finding)) findings.push_back(std::move(finding));
+    if (!explains_all || is_shown_by(alone, finding)) findings.push_back(std::move(finding));
   calibration.findings = std::move(findings);
 }
 

@@ -17,7 +17,9 @@ struct MountsOfDrivesOptions {
 /// Where the drives together are doubtful or contradictory, two consecutive ones that are not so by
 /// themselves are compared. A mount that differs between them is a finding without a time, "The mounts of
 /// drive 1 (a.tum) and drive 2 (a2.tum) differ by 5.00 deg.", in place of what only all drives together show:
-/// a creep, or wrong axes. a, b, options: as they were calibrated; calibration: the answer to all of them.
+/// a creep, or wrong axes. Where some drive is not usable by itself, all former findings stay beside it: they
+/// may be of that drive. Where the lengths are not metres, only rotations are compared. a, b, options: as
+/// they were calibrated; calibration: the answer to all of them.
 void name_mounts_of_drives(const Drives& drives, const Trajectory& a, const Trajectory& b,
                            const CalibrationOptions& options, Calibration& calibration,
                            const MountsOfDrivesOptions& mounts = {});

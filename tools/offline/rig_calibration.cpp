@@ -78,12 +78,31 @@ void put_rival_offset(const ClockOfSensor& clock, const std::string& name, Calib
   calibration.findings.push_back(std::move(finding));
 }
 
+/// A sensor that does not work: each pose is the first one.
+bool is_still(const Trajectory& poses) {
+  return std::all_of(poses.begin(), poses.end(), [&](const StampedPose& one) {
+    return one.pose.real == poses.front().pose.real && one.pose.dual == poses.front().pose.dual;
+  });
+}
+
+/// Why two streams are on clocks of their own.
+std::string no_offset_in_words(const RigPairSettings& pair, const std::vector<Trajectory>& trajectories,
+                               const std::vector<std::string>& names) {
+  for (const std::size_t k : {pair.a, pair.b})
+    if (is_still(trajectories[k]))
+      return "time offset: cannot be estimated, the poses of " + names[k] +
+             " are all the same: it does not work, or other columns are its poses";
+  return "time offset: cannot be estimated, the streams are too short or never turn";
+}
+
 /// One pair by itself, as if there were no others.
 Calibration calibrate_pair(const RigPairSettings& pair, const std::vector<Trajectory>& trajectories,
                            const std::vector<ClockOfSensor>& clocks, const std::vector<std::string>& names) {
-  Calibration calibration = calibrate(trajectories[pair.a], trajectories[pair.b], pair.calibration);
+  // first: without the offset calibrate() fails as well where the times do not overlap, and advises to have
+  // it found, which was tried
   if (clocks[pair.a].group != clocks[pair.b].group)
-    throw Error("time offset: cannot be estimated, the streams are too short or never turn");
+    throw Error(no_offset_in_words(pair, trajectories, names));
+  Calibration calibration = calibrate(trajectories[pair.a], trajectories[pair.b], pair.calibration);
   calibration.time_offset_applied = clocks[pair.b].offset - clocks[pair.a].offset;
   for (const std::size_t k : {pair.a, pair.b}) put_rival_offset(clocks[k], names[k], calibration);
   return calibration;

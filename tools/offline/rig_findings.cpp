@@ -102,6 +102,11 @@ bool makes_bad(const RigReport& report, const PairFinding& found) {
          (code != "held" || is_the_reason(pair, *found.finding));
 }
 
+/// A wrong nominal value is a fault of what was given for the pair: no sensor has it, whatever pairs show it.
+bool is_of_the_pair(const std::string& code) {
+  return code == "nominal";
+}
+
 /// Whether it is of this sensor, or may be.
 bool may_be_of(const RigReport& report, const PairFinding& found, std::size_t sensor) {
   const RigPairAnswer& answer = report.solution.pairs[found.pair];
@@ -140,7 +145,7 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
                     const RigRequest& request, const RigSettings& settings) {
   RigFinding finding;
   finding.code = code;
-  finding.sensor = common_sensor(report, of_code);
+  if (!is_of_the_pair(code)) finding.sensor = common_sensor(report, of_code);
   const PairFinding& best = best_of(report, of_code, finding.sensor);
   finding.pair = best.pair;
   const bool several = std::any_of(of_code.begin(), of_code.end(),
@@ -158,7 +163,9 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
   std::optional<bool> of_b;
   if (finding.sensor) of_b = *finding.sensor == answer.b;
   word_for_rig(*best.finding, of_b, words, finding);
-  finding.message = fmt::format("{}: {}", who(report, finding.sensor, best.pair), finding.message);
+  const std::string of =
+      is_of_the_pair(code) ? words.name_a + ", " + words.name_b : who(report, finding.sensor, best.pair);
+  finding.message = fmt::format("{}: {}", of, finding.message);
   return finding;
 }
 
@@ -241,6 +248,12 @@ void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& tr
     if (code == "mount_moved") {
       for (RigFinding& move : moves_in_rig(report, of_code, motions, trajectories))
         bad.push_back(std::move(move));
+      continue;
+    }
+    if (is_of_the_pair(code)) {
+      for (const PairFinding& found : of_code)
+        (makes_bad(report, found) ? bad : others)
+            .push_back(of_pairs(report, code, {found}, request, settings));
       continue;
     }
     const bool is_bad = std::any_of(of_code.begin(), of_code.end(),
