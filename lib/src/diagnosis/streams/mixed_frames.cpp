@@ -179,7 +179,7 @@ std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b,
     const Side side = alternating(Side::a) > alternating(Side::b) ? Side::a : Side::b;
     // stamps that alternate, and values that are held, leave a part of the way
     const Scatter scatter = patterns.scatter(side, pattern->length, T_a_b, half);
-    if (scatter.of_residuals > scatter.of_parts) continue;
+    if (scatter.of_residuals > std::min(options.most_scatter, scatter.of_parts)) continue;
     const bool across_the_way = half == &Typical::translation &&
                                 patterns.across(pattern->length, T_a_b) > options.times * pattern->longer;
     const bool certain = across_the_way || options.clearly_constant * scatter.of_residuals < scatter.of_parts;
