@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A verdict comes seconds after the answer that it is about. Whoever shows it beside a newer answer asks
-// here.
+// A verdict arrives seconds after the answer that it judges. Programs that show it beside a newer answer
+// check here whether it still holds.
 #pragma once
 
 #include <optional>

@@ -23,10 +23,6 @@ struct Typical {
   double rotation = 0, translation = 0;
 };
 
-Typical typical(std::vector<double> rotations, std::vector<double> translations) {
-  return {median(std::move(rotations)), median(std::move(translations))};
-}
-
 double angle_of(const Pose& pose) {
   return rotation_angle(to_dual_quaternion(pose));
 }
@@ -56,38 +52,23 @@ class Patterns {
     while (std::gcd(each_, std::size_t{60}) != 1) ++each_;
   }
 
-  /// What motions of so many instants leave at the answer.
+  /// Residual at the answer of motions over `span` instants.
   Typical residual(std::size_t span, const Pose& T_a_b) const {
-    std::vector<double> rotations, translations;
-    for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
-      const Typical here = of(left(i, span, T_a_b));
-      rotations.push_back(here.rotation);
-      translations.push_back(here.translation);
-    }
-    return typical(std::move(rotations), std::move(translations));
+    return typical_of(span, [&](std::size_t i) { return of(left(i, span, T_a_b)); });
   }
-  /// How far motions of so many instants move.
+  /// Size of the motions of one stream over `span` instants.
   Typical size(Side side, std::size_t span) const {
-    std::vector<double> rotations, translations;
-    for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
-      const Typical here = of(motion(side, i, span));
-      rotations.push_back(here.rotation);
-      translations.push_back(here.translation);
-    }
-    return typical(std::move(rotations), std::move(translations));
+    return typical_of(span, [&](std::size_t i) { return of(motion(side, i, span)); });
   }
-  /// How far a single step is from the one so many instants later.
+  /// Difference between a single step and the one `later` instants after it.
   Typical change(Side side, std::size_t later) const {
-    std::vector<double> rotations, translations;
-    for (std::size_t i = 0; i + later + 1 < instants_.size(); i += each_) {
+    return typical_of(later + 1, [&](std::size_t i) {
       const Pose here = motion(side, i, 1), there = motion(side, i + later, 1);
-      rotations.push_back(angle_of(inverse(here) * there));
-      translations.push_back((there.translation - here.translation).norm());
-    }
-    return typical(std::move(rotations), std::move(translations));
+      return Typical{angle_of(inverse(here) * there), (there.translation - here.translation).norm()};
+    });
   }
-  /// How unlike single steps' residuals are, and how unlike they are as parts of what motions of so many
-  /// instants move by: median deviations from the median, as parts of it.
+  /// Scatter of the residuals of single steps, in metres or radians, and divided by the size of the motion
+  /// over `span` instants: the median deviation from the median, divided by the median.
   Scatter scatter(Side side, std::size_t span, const Pose& T_a_b, Half half) const {
     std::vector<double> residuals, parts;
     for (std::size_t i = 0; i + std::max<std::size_t>(span, 1) < instants_.size(); i += each_) {
@@ -96,7 +77,7 @@ class Patterns {
     }
     return {scatter_of(residuals), scatter_of(parts)};
   }
-  /// What single steps leave across the way of b over so many instants [m].
+  /// Residual of single steps perpendicular to the motion of b over `span` instants [m].
   double across(std::size_t span, const Pose& T_a_b) const {
     std::vector<double> lengths;
     for (std::size_t i = 0; i + span < instants_.size(); i += each_) {
@@ -108,6 +89,17 @@ class Patterns {
   }
 
  private:
+  /// Medians over the begins that have `reach` instants after them.
+  template <typename Measure>
+  Typical typical_of(std::size_t reach, const Measure& measure) const {
+    std::vector<double> rotations, translations;
+    for (std::size_t i = 0; i + reach < instants_.size(); i += each_) {
+      const Typical here = measure(i);
+      rotations.push_back(here.rotation);
+      translations.push_back(here.translation);
+    }
+    return {median(std::move(rotations)), median(std::move(translations))};
+  }
   Pose left(std::size_t i, std::size_t span, const Pose& T_a_b) const {
     return inverse(motion(Side::a, i, span) * T_a_b) * (T_a_b * motion(Side::b, i, span));
   }

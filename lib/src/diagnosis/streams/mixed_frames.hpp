@@ -12,7 +12,7 @@
 namespace egocal::detail {
 
 struct MixedFramesOptions {
-  /// Motions of so many instants at most are compared with single steps: the longest pattern that is seen.
+  /// The longest pattern that is found [instants]: longer motions are not compared with single steps.
   std::size_t longest = 6;
   std::size_t most = 600;  ///< motions of each length that are looked at, for time
   std::size_t least = 24;  ///< instants: fewer motions have no typical residual
