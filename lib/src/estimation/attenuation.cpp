@@ -24,7 +24,8 @@ using detail::Vector6d;
 /// Of the noise, along the rotation: far above rounding.
 constexpr double least_left = 1e-6;
 
-/// The eigenvectors of D across r (columns of `across`, ascending) and what the noise is of each.
+/// The eigenvectors of D orthogonal to r (columns of `across`, ascending), and the part of each eigenvalue
+/// that is noise.
 struct NoiseCurvatures {
   DualQuaternion q;
   double noise = 0;      ///< r'Dr
@@ -65,9 +66,9 @@ std::optional<NoiseCurvatures> curvatures(const Problem& problem) {
   return result;
 }
 
-/// How much of the noise must be left along r, as a part of it. D stays positive semidefinite with `needed`;
-/// and a dual part along r, which only rotations far from r may have, must not pay for them: what it can gain
-/// there, |Br|^2 / noise, is to be a part of the least cost.
+/// How much of the noise must be left along r, as a part of it. With `needed` D stays positive semidefinite.
+/// A dual part along r, which only rotations far from r have, must not pay for them: its gain |Br|^2 / noise
+/// must be a part of the least cost.
 double left_along_rotation(const NoiseCurvatures& all, double reserve) {
   double needed = all.dual_gain / (all.noise * all.cost);
   for (int i = 0; i < 3; ++i)
@@ -80,7 +81,7 @@ bool positive_definite(const Matrix8d& Q) {
   return factors.info() == Eigen::Success;
 }
 
-/// Empty where no noise left along the rotation keeps Q positive definite.
+/// Empty: whatever noise is left along the rotation, Q is not positive definite.
 std::optional<Attenuation> taking_off(const Problem& problem, const NoiseCurvatures& all,
                                       const std::array<bool, 3>& corrected,
                                       const AttenuationOptions& options) {
@@ -89,7 +90,7 @@ std::optional<Attenuation> taking_off(const Problem& problem, const NoiseCurvatu
   Eigen::Matrix4d across = Eigen::Matrix4d::Zero();
   for (int i = 0; i < 3; ++i)
     if (corrected[static_cast<std::size_t>(i)]) across += all.across.col(i) * all.across.col(i).transpose();
-  // what is left of the noise is seen along r: all of it where a direction keeps its own
+  // the noise that is left appears along r: all of it if a direction keeps its own
   const Eigen::Matrix4d along = result.r * result.r.transpose();
   const bool everywhere = std::all_of(corrected.begin(), corrected.end(), [](bool one) { return one; });
   double left = everywhere ? left_along_rotation(all, options.reserve) : 1;
@@ -101,7 +102,8 @@ std::optional<Attenuation> taking_off(const Problem& problem, const NoiseCurvatu
   }
 }
 
-/// By leaving out blocks, in sensor a's frame with the translation along the columns of `ways`.
+/// Standard deviations by leaving out blocks, in the frame of sensor a with the translation along the columns
+/// of `ways`.
 Vector6d standard_deviations(const Problem& problem, const DualQuaternion& T_a_b,
                              const Eigen::Matrix3d& ways) {
   std::vector<Vector6d> differences = leave_out_differences(problem, cost_matrix(problem), T_a_b);

@@ -58,7 +58,7 @@ struct Quartiles {
 double smaller_angle(const Step& step) {
   const double sine_a = step.a.real.tail<3>().norm(), sine_b = step.b.real.tail<3>().norm();
   const DualQuaternion& smaller = sine_a < sine_b ? step.a : step.b;
-  // the sine of half an angle grows with the angle as long as that is below a half turn
+  // below half a turn the sine of half an angle grows with the angle
   if (step.a.real[0] > 0.5 && step.b.real[0] > 0.5)
     return 2 * std::atan2(std::min(sine_a, sine_b), smaller.real[0]);
   return std::min(screw_of(step.a).angle, screw_of(step.b).angle);
@@ -145,7 +145,7 @@ class Judge {
     return largest;
   }
 
-  /// Geman-McClure weights. False: the steps that count in what is typical are still the same.
+  /// Sets Geman-McClure weights. False: the steps that count in what is typical have not changed.
   bool weigh(double mu) {
     bool other = false;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -158,7 +158,7 @@ class Judge {
     return other;
   }
 
-  /// Of rotations in units of the typical residuals; the dual rows see half of a translation.
+  /// Weight of rotations, by the typical residuals. The dual rows contain half of a translation.
   double rotation_weight() const {
     if (!(rotation_.typical > 0) || !(translation_.typical > 0)) return 1;
     const double ratio = translation_.typical / rotation_.typical;
@@ -211,7 +211,7 @@ class Judge {
   Component rotation_, translation_;
 };
 
-/// Verdicts by a given extrinsic: what is typical is learnt again without what has been found.
+/// Verdicts by a given extrinsic. The typical residuals are estimated again without the jumps found.
 std::vector<StepVerdict> settle(Judge& judge, const DualQuaternion& q, int most_rounds) {
   std::vector<Jump> jumps;
   for (int round = 0; round < most_rounds; ++round) {

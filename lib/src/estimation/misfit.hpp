@@ -9,9 +9,9 @@
 
 namespace egocal::detail {
 
-/// The logarithm of the product of the mean squared residuals of rotations and of translations at q (planar
-/// mode: T_p). The smaller it is, the more likely is q: Gaussian noise of unknown sizes has that likelihood.
-/// rounding_rotation, rounding_translation: residuals below these are alike [rad, m]. Zero without motions.
+/// Logarithm of the product of the mean squared residuals of rotations and of translations at q (planar mode:
+/// T_p). Smaller is more likely: it is the likelihood of Gaussian noise of unknown sizes. rounding_rotation,
+/// rounding_translation: smaller residuals count as these [rad, m]. Zero without motions.
 inline double misfit(const Statistics& motions, const DualQuaternion& q, double rounding_rotation,
                      double rounding_translation) {
   if (!(motions.weight > 0)) return 0;

@@ -13,7 +13,8 @@ double missed_noise(const std::vector<double>& strides, const std::vector<double
   const auto longest = static_cast<std::size_t>(strides.back());
   if (!(growth > 0) || 2 * block_length >= longest) return 1;
   const auto length = static_cast<std::size_t>(block_length);
-  // What each pose and each step adds to the motions with an end in the block; steps by their differences.
+  // The noise that each pose and each step adds to the motions with an end in the block; for steps its
+  // differences.
   const std::size_t begin = longest, end = longest + length, size = 2 * longest + length;
   std::vector<double> poses(size, 0.0), steps(size, 0.0);
   double spanning = 0;  // what a step adds to all motions

@@ -11,7 +11,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Squares of the logarithms that a growth leaves, about their mean.
+/// What this growth leaves of the logarithms of the variances: their weighted squares about the mean.
 double squares_left(const StrideVariances& seen, double growth) {
   double total = 0, mean = 0, squares = 0;
   for (std::size_t i = 0; i < seen.strides.size(); ++i) {

@@ -7,8 +7,8 @@
 
 namespace egocal::detail {
 
-/// What the mean squared residuals of many strides say of the noise. Noise on poses and on motions together
-/// gives motions of s steps the variance 2 + growth * s, up to a common factor.
+/// Mean squared residuals of many strides. Noise on poses and on motions together gives motions of s steps
+/// the variance 2 + growth * s, up to a common factor.
 struct StrideVariances {
   std::vector<double> strides;      ///< [steps]
   std::vector<double> variances;    ///< mean squared residuals of one motion
@@ -21,15 +21,15 @@ std::optional<double> best_growth(const StrideVariances& seen, const std::vector
 /// The smallest of these growths (ascending) that fits within `errors` standard errors of the best one.
 double least_growth(const StrideVariances& seen, const std::vector<double>& growths, double errors);
 
-/// How well the noise is of this kind, by the strides that have at least `least_independent` motions.
+/// How well such noise explains the residuals, for the strides with at least `least_independent` motions.
 struct NoiseFit {
   StrideVariances used;
   double least = 0;  ///< chi-square of the best growth
-  /// The same per degree of freedom: about one or less where the noise is of this kind. Infinite where less
-  /// than three strides are used.
+  /// The same per degree of freedom: about one or less if the noise is of this kind. Infinite with less than
+  /// three strides.
   double misfit = 0;
 
-  /// Whether this growth is off by more standard errors than this.
+  /// Whether this growth is farther from the best one than this many standard errors.
   bool refutes(double growth, double errors) const;
 };
 NoiseFit fit_noise(const StrideVariances& seen, const std::vector<double>& growths, double least_independent);

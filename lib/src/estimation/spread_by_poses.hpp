@@ -14,8 +14,8 @@ using SeenDirections = std::array<bool, 6>;
 
 SeenDirections seen_directions(const Problem& problem);
 
-/// How far the answers scatter when blocks of instants are omitted, each with all motions that touch it.
-/// Over the directions that are seen.
+/// Scatter of the answers when blocks of instants are omitted, each with all motions that have an end in it.
+/// Over the directions that the motions show.
 struct SpreadByPoses {
   DualQuaternion T_a_b;            ///< minimiser of (18) over all
   double score = 0;                ///< sum of the logarithms of rotation's and translation's spread
@@ -28,7 +28,7 @@ struct SpreadByPoses {
   void widen(double of_rotation, double of_translation);
 };
 
-/// problem: touching blocks, as WeightedBlocks make them. The score is not finite where a block cannot be
+/// problem: touching blocks, as WeightedBlocks makes them. The score is not finite if a block cannot be
 /// omitted.
 SpreadByPoses spread_by_poses(const Problem& problem, const SeenDirections& seen);
 

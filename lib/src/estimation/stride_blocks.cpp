@@ -36,14 +36,14 @@ void add_weighted_rotations(Statistics& sum, const Statistics& rotations, double
   sum.weight += translation * rotations.weight;
 }
 
-/// To one of the sums by block, which are made when there is something to add.
+/// Adds to one of the sums by block, which are allocated when first used.
 void add(std::vector<Statistics>& sums, std::size_t blocks, std::size_t block, const Statistics& more) {
   if (more.count == 0) return;
   if (sums.empty()) sums.resize(blocks);
   sums[block] += more;
 }
 
-/// Blocks between the ends of a motion of `stride` steps, at least.
+/// Least number of blocks between the ends of a motion of `stride` steps.
 std::size_t offset(int stride, std::uint64_t block_length) {
   return detail::block_of(static_cast<std::uint64_t>(stride), block_length);
 }
@@ -91,7 +91,7 @@ void StrideBlocks::add(std::size_t stride, std::uint64_t first_index, const deta
   ++sum_of_cell.count;
 }
 
-/// In place, as the blocks of hours would leave holes in the heap.
+/// Merges in place: new vectors after hours of driving would leave holes in the heap.
 void StrideBlocks::merge() {
   const std::uint64_t length = 2 * state_.block_length;
   const std::size_t count = (state_.instants.size() + 1) / 2;

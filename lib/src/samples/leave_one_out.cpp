@@ -33,7 +33,7 @@ std::vector<Unit> units_of_chosen(const SampleSet& set, const std::vector<std::s
   return units;
 }
 
-/// As many groups of units as that, each of units far apart in the order.
+/// Divides the units into this many groups, each of units far apart in the order.
 std::vector<Unit> groups_of(const std::vector<Unit>& units, std::size_t number) {
   constexpr std::size_t least = 8;  // fewer differences show no spread
   std::vector<Unit> groups(std::min(std::max(number, least), units.size()));

@@ -71,8 +71,8 @@ std::vector<PoseSample> some(std::span<const PoseSample> samples, const std::vec
   return result;
 }
 
-/// Cannot this reading of some samples be better than the given one by least_improvement? Rotations do not
-/// tell quaternions of another order in both lists: they exchange X and Y.
+/// Whether this reading of some samples cannot be better than the given one by least_improvement. Rotations
+/// do not show quaternions of another order in both lists, which only exchanges X and Y.
 bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given,
               const SampleReadingOptions& search) {
   if (rotation_variance(few, search.rounds_of_signs) > search.most_worse_rotation * given.noise.rotation)
@@ -128,7 +128,7 @@ PoseReading full(const Reading& reading) {
   return result;
 }
 
-/// What the user has to type, given that --eye-to-hand and --invert-a do the same to a.
+/// The options to type, as --eye-to-hand and --invert-a do the same to a.
 Finding worded(Finding finding, const Alternative& other) {
   finding = worded_reading(std::move(finding), full(other.a), full(other.b));
   const bool of_a = finding.code == "inverted_a";

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/single_stride_rival.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/misfit.hpp"
+#include "solvers/minimiser.hpp"
+#include "uncertainty/frame_a.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Whether the sum's answer is where motions of one stride, judged one by one,
+/// allow it to be. shorter: the sum's motions are shorter than those.
+bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, bool shorter, const SeenDirections& seen,
+           const WeightingOptions& options) {
+  const auto difference = frame_a_difference(single.T_a_b, sum.T_a_b);
+  double translation = 0, rotation = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!seen[i]) continue;
+    const double here = std::abs(difference[static_cast<Eigen::Index>(i)]);
+    const double least =
+        i < 3 ? options.residuals.least_translation_spread : options.residuals.least_rotation_spread;
+    if (shorter && here > options.contradicts * single.stddev[i] + least) return false;
+    (i < 3 ? translation : rotation) += here * here;
+  }
+  return std::sqrt(translation) <=
+             options.agreement * single.translation + options.residuals.least_translation_spread &&
+         std::sqrt(rotation) <= options.agreement * single.rotation + options.residuals.least_rotation_spread;
+}
+
+/// The part of the neighbouring steps' weight that was taken off as their
+/// residuals are far from typical.
+double weight_taken_off(const StrideLadder& ladder) {
+  const Statistics& steps = ladder.sums.front().motions;
+  return steps.count > 0 ? 1 - steps.weight / static_cast<double>(steps.count) : 0;
+}
+
+}  // namespace
+
+SingleStrideRival::SingleStrideRival(const SingleStride& rival, const WeightingOptions& options)
+    : rival_(rival), options_(options), sum_(sum_blocks(rival.problem.blocks)) {
+  if (sum_.weight > 0) own_misfit_ = misfit_of(minimiser(cost_matrix(rival.problem), rival.problem.mode));
+}
+
+bool SingleStrideRival::is_refuted_by(const DualQuaternion& q) const {
+  return own_misfit_ - misfit_of(q) > std::log(options_.less_likely);
+}
+
+bool SingleStrideRival::refutes(const DualQuaternion& q) const {
+  return misfit_of(q) - own_misfit_ > std::log(options_.less_likely);
+}
+
+double SingleStrideRival::misfit_of(const DualQuaternion& q) const {
+  return misfit(sum_, q, options_.residuals.least_rotation_spread,
+                options_.residuals.least_translation_spread);
+}
+
+bool SingleStrideRival::is_beaten_by(const SpreadByPoses& sum, double mean_stride, bool in_force,
+                                     const StrideLadder& ladder, TrialSpread& trial,
+                                     const SeenDirections& seen) const {
+  std::optional<SpreadByPoses> own;  // the rival as it is, in its own blocks
+  if (rival_.problem.blocks.size() >= options_.least_blocks) own = spread_by_poses(rival_.problem, seen);
+  const auto place = std::find(ladder.strides.begin(), ladder.strides.end(), rival_.stride);
+  const bool shorter = mean_stride < rival_.stride;
+  if (place == ladder.strides.end() || (own && !agree(sum, *own, shorter, seen, options_))) return false;
+  if (own && std::isfinite(own->score) && weight_taken_off(ladder) > options_.taken_off &&
+      own->score - sum.score >= (in_force ? 0 : options_.clearly_unpaired))
+    return true;
+
+  StrideWeights alone{std::vector<double>(ladder.size(), 0.0), std::vector<double>(ladder.size(), 0.0)};
+  const auto i = static_cast<std::size_t>(place - ladder.strides.begin());
+  alone.rotation[i] = rival_.balance.rotation;
+  alone.translation[i] = rival_.balance.translation;
+  if (!trial.set(alone)) return false;
+  const SpreadByPoses single = trial.spread(seen);
+  if (!std::isfinite(single.score)) return true;
+  if (single.influence.size() != sum.influence.size()) return false;
+  if (single.rotation < options_.residuals.least_rotation_spread &&
+      single.translation < options_.residuals.least_translation_spread)
+    return false;
+  const double gain = single.score - sum.score;
+  if (in_force) return gain > 0;
+  return gain >= std::max(options_.clearly, options_.single_evidence * standard_error(single, sum));
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Motions of one stride, as the rival of a weighted sum over many.
+#pragma once
+
+#include "estimation/trial_spread.hpp"
+
+namespace egocal::detail {
+
+/// What the motions of the rival say of its own answer and of others.
+class SingleStrideRival {
+ public:
+  /// rival and options must outlive it.
+  SingleStrideRival(const SingleStride& rival, const WeightingOptions& options);
+
+  /// Its own answer leaves far more of its motions than q does: it is at a
+  /// wrong minimum.
+  bool is_refuted_by(const DualQuaternion& q) const;
+  /// q leaves far more of its motions than its own answer does.
+  bool refutes(const DualQuaternion& q) const;
+  /// Whether the sum's spread is clearly smaller. mean_stride: of the sum
+  /// [steps]. in_force: the sum has the place already. trial: changed, the
+  /// rival's stride is put on trial.
+  bool is_beaten_by(const SpreadByPoses& sum, double mean_stride, bool in_force, const StrideLadder& ladder,
+                    TrialSpread& trial, const SeenDirections& seen) const;
+
+ private:
+  double misfit_of(const DualQuaternion& q) const;
+
+  const SingleStride& rival_;
+  const WeightingOptions& options_;
+  Statistics sum_;
+  double own_misfit_ = 0;
+};
+
+}  // namespace egocal::detail
