@@ -29,8 +29,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Of the stream that has fewer: poses that are there while the other one has some. None where the clock of
-/// one sensor was set in between.
+/// The number of poses of the slower stream at common times. 0 if the clock of one sensor was set meanwhile.
 std::size_t at_common_times(const Trajectory& a, const Trajectory& b, double time_offset) {
   if (a.empty() || b.empty()) return 0;
   const std::int64_t offset = to_microseconds(time_offset);
@@ -44,7 +43,7 @@ std::size_t at_common_times(const Trajectory& a, const Trajectory& b, double tim
   return std::min(between(a, begin, end), between(b, begin - offset, end - offset));
 }
 
-/// Time until which both streams have poses, by the clock of a; 0: one has none.
+/// Time until which both streams have poses, on the clock of a; 0: one of them has none.
 std::int64_t common_end(const DriveSample& sample, double time_offset) {
   const Trajectory &a = sample.poses(Side::a), &b = sample.poses(Side::b);
   if (a.empty() || b.empty()) return 0;
@@ -117,8 +116,8 @@ void Diagnosing::take(std::size_t index, const bus::Arrival& arrival) {
       }
 }
 
-/// At the first pose of a stream since the restart: what came after the saved state and before this pose is
-/// never judged.
+/// At the first pose of a stream after a restart: poses between the saved state and this one are never
+/// judged.
 void Diagnosing::note_what_was_missed(Pair& pair, Side side, const StampedPose& pose) {
   if (!std::exchange(pair.continues[side == Side::b], false) || pair.sample.poses(side).empty()) return;
   const std::int64_t missed = pose.time_us - pair.sample.poses(side).back().time_us;
@@ -137,16 +136,18 @@ Memory Diagnosing::memory() const {
   for (const auto& pair : pairs_) {
     memory.pairs.push_back(pair->known);
     memory.pairs.back().sample = pair->sample.state();
+    memory.pairs.back().offsets = pair->clock.offsets();
   }
   return memory;
 }
 
-/// Throws Error where it is not of this rig; what has been taken over by then is replaced.
+/// Throws Error if the memory is of another rig, or no drive can have it; nothing is taken over then.
 void Diagnosing::restore(Memory memory) {
   if (memory.streams.size() != sensors_.size() || memory.pairs.size() != pairs_.size())
     throw Error("is of another rig");
   std::vector<Stream> streams(sensors_.size(), Stream(bus::stream_options(rig_)));
   std::vector<DriveSample> samples(pairs_.size(), DriveSample(options_.sample));
+  std::vector<FollowedClock> clocks(pairs_.size());
   for (std::size_t i = 0; i < streams.size(); ++i) streams[i].restore(std::move(memory.streams[i]));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const PairMemory& known = memory.pairs[i];
@@ -154,16 +155,18 @@ void Diagnosing::restore(Memory memory) {
          {known.matched, known.matched_before, known.matched_between, known.missed_us})
       if (!plausible_count(count)) throw Error("holds counts that no drive can have");
     samples[i].restore(std::exchange(memory.pairs[i].sample, {}));
+    clocks[i].restore(std::exchange(memory.pairs[i].offsets, {}));
   }
   for (std::size_t i = 0; i < streams.size(); ++i) sensors_[i].stream = std::move(streams[i]);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     pairs_[i]->sample = std::move(samples[i]);
+    pairs_[i]->clock = std::move(clocks[i]);
     pairs_[i]->known = std::move(memory.pairs[i]);
     pairs_[i]->continues[0] = pairs_[i]->continues[1] = true;
   }
 }
 
-/// Continues without it where the disk does not take it, and tries again.
+/// If the disk refuses the state, the diagnosis continues without it and tries again.
 void Diagnosing::save() {
   std::int64_t poses = 0;
   for (const Sensor& sensor : sensors_) poses += sensor.in;
@@ -204,8 +207,9 @@ void Diagnosing::take_problems() {
     if (!same_session || !pair->newest || pair->newest->message.seq != message.seq)
       pair->newest_mono_us = loop_.mono_us();
     if (!same_session) {
-      // where times ran backwards the number of the session is no time, and the streams have begun again
+      // if times ran backwards, the session number is no time, and the streams have started again
       if (message.session <= message.utime) pair->sample.begin_session(message.session);
+      pair->clock.clear();
       pair->judged_seq = -1;
       pair->known.matched_before = message.matched;
       forget_what_was_missed(*pair);
@@ -219,6 +223,7 @@ void Diagnosing::take_problems() {
     pair->known.session = message.session;
     pair->known.matched = message.matched;
     pair->sample.set_time_offset(message.time_offset);
+    pair->clock.add(message.utime, to_microseconds(message.time_offset));
     pair->newest = std::move(received);
   }
 }
@@ -227,8 +232,8 @@ bool Diagnosing::idle(const Pair& pair) const {
   return to_seconds(loop_.mono_us() - pair.newest_mono_us) >= options_.idle;
 }
 
-/// At full speed many motions are there before the first problem is heard, but not before the first pose; and
-/// where one sensor begins later, poses come late but no motions.
+/// At full speed many motions precede the first problem that is heard, but none precedes the first pose. If
+/// one sensor starts later, its poses come late, but no motions are missed.
 Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
   const problem_t& message = pair.newest->message;
   std::int64_t begin = message.session;
@@ -248,7 +253,7 @@ Unseen Diagnosing::unseen_of(const Pair& pair, std::size_t poses) {
           to_seconds(unseen_us), poses, known.missed_us > 0};
 }
 
-/// By a new problem, or by poses alone; without waiting where nothing more comes.
+/// Because of a new problem, or of poses alone. early: without waiting, if nothing more comes.
 bool Diagnosing::to_be_judged(const Pair& pair, bool early) const {
   if (!pair.newest) return false;
   if (pair.newest->message.seq != pair.judged_seq) return !early || idle(pair);
@@ -283,7 +288,8 @@ void Diagnosing::look() {
     hurried_ = hurried;
     const std::int64_t began = loop_.mono_us(), began_processor_us = processor_us();
     judge(pair);
-    // on a busy machine most of the time is not spent here; a simulation has a clock of its own
+    // processor time, as a busy machine spends most of the elapsed time elsewhere; a simulation has its own
+    // clock
     const auto took =
         static_cast<double>(std::min(loop_.mono_us() - began, processor_us() - began_processor_us));
     not_before_mono_us_ =
@@ -296,7 +302,7 @@ void Diagnosing::judge(Pair& pair) {
   EGOCAL_CHECK(pair.newest.has_value(), "a problem is there when it is judged");
   const problem_t& message = pair.newest->message;
   const Problem& problem = pair.newest->problem;
-  // the scale that the problem was made with comes in a message of its own
+  // the scale of the problem comes in a separate message
   const std::optional<double> scale =
       pair.unscaled ? pair.scale.in_force(pair.config.a, pair.config.b, message.session) : 1;
   if (!scale) return;
@@ -312,7 +318,7 @@ void Diagnosing::judge(Pair& pair) {
   const auto poses_of = [&](Side side) {
     return pair.unscaled == side ? scaled(pair.sample.poses(side), *scale) : pair.sample.poses(side);
   };
-  const Trajectory a = poses_of(Side::a), b = poses_of(Side::b);
+  const Trajectory a = poses_of(Side::a), b = pair.clock.at_newest_offset(poses_of(Side::b));
   const std::size_t poses = at_common_times(a, b, message.time_offset);
   try {
     const Answer answer = solve(problem, Method::dual);
@@ -358,7 +364,8 @@ void Diagnosing::judge(Pair& pair) {
   report();
 }
 
-/// The motions of both mounts have no common answer. Once a session: the next one begins without them.
+/// The motions before and after a move have no common answer, so the next session starts without those
+/// before. Once a session.
 void Diagnosing::restart_after_move(Pair& pair, const Diagnosis& diagnosis) {
   const std::int64_t session = pair.newest->message.session;
   const bool moved =
@@ -384,14 +391,14 @@ void Diagnosing::repeat() {
 }
 
 void Diagnosing::obey(Verb verb, const command_t& command) {
-  // told to all it is pairing's; told to this process alone it would change nothing
+  // pairing obeys a reset that is sent to all; one that is sent to this process alone would change nothing
   if (verb == Verb::reset && command.to != "*") return heartbeat_.reject(not_understood);
   bool any = false;
   for (const auto& pair : pairs_) {
     const std::int64_t session = pair->newest ? pair->newest->message.session : 0;
     if (!means(command, verb, pair->config.a, pair->config.b, session)) continue;
     any = true;
-    // a reset begins a session with the next pose; its first problem states it
+    // a reset starts a session with the next pose, and the first problem of that session announces it
     if (verb != Verb::reset) pair->paused = verb == Verb::pause;
   }
   if (!any) heartbeat_.reject(not_meant);

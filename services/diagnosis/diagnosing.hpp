@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/drive_sample.hpp"
+#include "diagnosis/followed_clock.hpp"
 #include "diagnosis/judged_answer.hpp"
 #include "diagnosis/memory.hpp"
 #include "diagnosis/saved_memory.hpp"
@@ -26,41 +27,42 @@
 namespace egocal::services {
 
 struct DiagnosingOptions {
-  /// Part of a core that diagnoses may take: the next one waits until the last one's time on the processor is
-  /// this part of the time since it began.
+  /// Part of a core that diagnoses may take. The next diagnosis waits until the processor time of the last
+  /// one is at most this part of the time since that began.
   double share = 0.04;
-  /// An answer that is further than this from the one that was judged, in the standard deviations stated
-  /// then, is judged once without waiting: a good verdict stood beside answers metres away for seconds.
-  /// Study: docs/processes.md, "The diagnosis".
+  /// A new answer farther from the judged one than this is judged once without waiting. In standard
+  /// deviations stated with the judged answer. Without it a good verdict stood beside answers metres away for
+  /// seconds. Study: docs/processes.md, "The diagnosis".
   double far_from_judged = 6;
   double least_distance = 1;  ///< [s] between two diagnoses, however quick
-  /// A pair without a new problem for this time [s] is judged once without waiting: a drive has ended.
+  /// A pair without a new problem for this time [s] is judged once without waiting, because the drive has
+  /// ended.
   double idle = 0.6;
-  /// Poses without a new problem are judged in steps of this [s]: where all motions are rejected, as after a
-  /// sensor was lost, nothing else says so. Short beside what a finding needs, long beside a pose.
+  /// Poses without a new problem are judged in steps of this [s]. If all motions are rejected, as after a
+  /// sensor was lost, nothing else reports it. Shorter than a finding needs, much longer than a period of a
+  /// sensor.
   double pose_step = 2;
-  /// Chance that one diagnosis calls a mount moved that did not, and how long before its end [s] the drive
-  /// must have shown it already (MountCheckOptions): an hour has 2,000 diagnoses. Study: docs/moves.md,
-  /// "Live".
+  /// Chance of a false alarm of a moved mount in one diagnosis, and how long before its end [s] the drive
+  /// must have shown the move (MountCheckOptions). An hour has 2,000 diagnoses. Study: docs/moves.md, "Live".
   double false_alarms = 4e-4;
   double shown_before = 2;
   /// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
   int queue_capacity = 1024;
   DriveSampleOptions sample;
   UnseenOptions unseen;
-  /// Time between two states on the disk [s], and the part of the time that writing them may take: a disk
-  /// that is slow is written to less often, and messages wait for no longer than one state takes.
+  /// Time between two saved states [s], and the part of the time that saving may take. A slow disk is written
+  /// to less often, and messages wait no longer than one save.
   double save_distance = 2;
   double save_share = 0.02;
-  /// The library's; a test hands in one that fails.
+  /// The diagnosis of the library; tests pass one that fails.
   using Diagnose = Diagnosis(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                              const Answered& answered, const DiagnosisOptions& options);
   std::function<Diagnose> diagnose = static_cast<Diagnose*>(&egocal::diagnose);
 };
 
-/// egocal-diagnosis: from the sensors' poses and the problems to verdict_t. Judges the certified optimum of
-/// the newest problem, so it needs no solver process and believes none. It judges what it has received; with
-/// a saved memory that is what a process before it had received, too.
+/// egocal-diagnosis: from the poses of the sensors and the problems to verdict_t. Judges the certified
+/// optimum of the newest problem, which it computes itself, so it needs and trusts no solver process. It
+/// judges the poses that it has received; a saved memory adds those of an earlier process.
 class Diagnosing {
  public:
   Diagnosing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig,
@@ -89,9 +91,10 @@ class Diagnosing {
     bus::Newest<scale_problem_t> scales;
     bus::ScaleCheck scale;
     DriveSample sample;
+    FollowedClock clock;
     std::optional<ReceivedProblem> newest;
     std::int64_t newest_mono_us = 0;       ///< when its number was new
-    PairMemory known;                      ///< without its sample
+    PairMemory known;                      ///< without its sample and offsets
     bool continues[2] = {};                ///< of each side: no pose has come since the restart
     std::int64_t judged_seq = -1;          ///< of the newest problem's session; -1: none
     std::int64_t judged_until_us = 0;      ///< time of the last poses that were judged

@@ -16,7 +16,7 @@ namespace egocal::services {
 
 namespace {
 
-/// A limit on the shift: 2^30 stretches of ten seconds are three centuries.
+/// Limit of the shift: 2^30 stretches of ten seconds are three centuries.
 constexpr int highest_level = 30;
 
 }  // namespace
@@ -86,7 +86,7 @@ void DriveSample::set_time_offset(double seconds) {
 void DriveSample::thin() {
   for (thin(Side::a), thin(Side::b); full() && state_.level < highest_level; thin(Side::a), thin(Side::b))
     ++state_.level;
-  // more in the newest stretch than there is room for, which least_distance_us rules out for sane options
+  // only with options in which least_distance_us does not bound the poses of the newest stretch
   if (!full()) return;
   for (Trajectory* poses : {&state_.a, &state_.b})
     if (poses->size() > options_.most_poses)

@@ -11,19 +11,19 @@
 namespace egocal::services {
 
 struct DriveSampleOptions {
-  /// Of the stream that has fewer: at its stamps motions are judged. A diagnosis of this number takes some 50
-  /// ms.
+  /// Poses of the slower stream, at whose stamps motions are judged. A diagnosis of this number takes about
+  /// 50 ms.
   std::size_t most_poses = 1200;
-  /// Of the other one, which is interpolated there: this many times as much. With fewer a sensor of 20 Hz
-  /// beside one of 10 Hz would cost half of the motions; a sensor of 4 Hz may be beside one of 1 kHz, whose
-  /// poses are no closer than least_distance_us.
+  /// Poses of the faster stream, which is interpolated there: this many times most_poses. A smaller factor
+  /// would cost half of the motions of a sensor of 20 Hz beside one of 10 Hz. The factor covers a sensor of 4
+  /// Hz beside one of 1 kHz, whose poses are least_distance_us apart.
   std::size_t most_of_faster = 6;
   /// Poses closer than this are skipped [us]: motions are compared over tenths of seconds and more.
   std::int64_t least_distance_us = 45'000;
   /// Poses are kept or dropped in stretches of this length [us], so that neighbours stay neighbours: several
   /// motions of any stride that is of use.
   std::int64_t stretch_us = 5'000'000;
-  /// The newest poses are kept in any case [us], so that what goes wrong now is seen now.
+  /// Newer poses than this are always kept [us], so that a fault shows as soon as it happens.
   std::int64_t recent_us = 20'000'000;
 };
 
@@ -32,7 +32,7 @@ struct DriveSampleState {
   Trajectory a, b;
   std::int64_t time_offset_us = 0;
   std::optional<std::int64_t> origin_us;  ///< the first stretch begins here and is always kept
-  std::int32_t level = 0;                 ///< of 2^level stretches one is kept
+  std::int32_t level = 0;                 ///< one stretch in 2^level is kept
   std::optional<Side> begun_anew;
 };
 
@@ -44,12 +44,12 @@ class DriveSample {
   explicit DriveSample(const DriveSampleOptions& options = {}) : options_(options) {}
 
   void push(Side side, const StampedPose& pose);
-  /// The stream's time ran backwards: what came before belongs to another timeline, of the other stream too
-  /// unless that one has just started again itself.
+  /// The time of the stream ran backwards: its earlier poses belong to another timeline. So do those of the
+  /// other stream, unless that one has just started again itself.
   void begin_anew(Side side);
-  /// A session that began at this time: older poses are not of it.
+  /// A session starts at this time: drops older poses.
   void begin_session(std::int64_t time_us);
-  /// Added to the stamps of b: both streams are thinned at the same instants [s].
+  /// Offset added to the stamps of b [s], so that both streams are thinned at the same instants.
   void set_time_offset(double seconds);
 
   const Trajectory& poses(Side side) const { return side == Side::a ? state_.a : state_.b; }

@@ -14,8 +14,8 @@ struct JudgedAnswer {
   Observability observability;
 };
 
-/// How far an answer is from one that was judged: the largest difference in a direction that was observable,
-/// in its standard deviations as they were stated then. 0 where none was.
+/// How far an answer is from a judged one: the largest difference in an observable direction, in standard
+/// deviations stated with the judged answer. 0 if no direction was observable.
 double deviations_from(const JudgedAnswer& judged, const DualQuaternion& T_a_b);
 
 }  // namespace egocal::services

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "diagnosis/drive_sample.hpp"
+#include "diagnosis/followed_clock.hpp"
 #include "egocal/pairing/stream.hpp"
 
 namespace egocal::services {
 
-/// What a diagnosis knows of one pair's session, apart from the problem, which pairing sends again.
+/// What a diagnosis knows of the session of one pair, except the problem, which pairing sends again.
 struct PairMemory {
   DriveSampleState sample;
   std::int64_t session = -1;            ///< of the newest problem; -1: none was received
@@ -19,6 +20,7 @@ struct PairMemory {
   std::int64_t matched_between = 0;     ///< motions while no diagnosis ran
   std::int64_t missed_us = 0;           ///< their time
   std::int64_t restarted_session = -1;  ///< for which a reset was sent
+  std::vector<OffsetSince> offsets;     ///< of the clock of b, see FollowedClock
 };
 
 /// What the next diagnosis process continues from.

@@ -15,14 +15,14 @@ std::string number(double value) {
   return text;
 }
 
-/// Of the two sensors one has the wrong unit; which one, the motions do not say.
+/// One of the two sensors has the wrong unit; the motions do not show which one.
 std::string scale_remedy(const bus::Rig& rig, const bus::PairConfig& pair, double factor) {
   return "In the rig file: scale = " + number(factor * bus::sensor(rig, pair.b).scale) + " for " + pair.b +
          ", or scale = " + number(bus::sensor(rig, pair.a).scale / factor) + " for " + pair.a +
          " if that one is not in metres.";
 }
 
-/// Of a sensor with scale = "auto" no other change of scale can be found live.
+/// A change of the scale can only be found live for a sensor with scale = "auto".
 std::string or_its_scale(const bus::Rig& rig, const bus::PairConfig& pair) {
   const std::optional<Side> unscaled = bus::unscaled_side(rig, pair);
   if (!unscaled) return {};
@@ -50,7 +50,7 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
     return "Live, a session has one scale: reset the pair (key r in the monitor) after it has changed. In a "
            "recording egocal solve --scale-b auto finds the factors, --scale auto where " +
            pair.b + " is in metres.";
-  // what creeps goes on after a reset: the cure is that of a recording
+  // a creeping mount goes on creeping after a reset, so the remedy is that of a recording
   if (code == "mount_moved" && finding.change == MountingChange::slowly)
     return finding.remedy + or_its_scale(rig, pair);
   if (code == "mount_moved")

@@ -9,8 +9,8 @@
 
 namespace egocal::services {
 
-/// The library's remedies are options of the command line. Live, what can be cured in the rig file is worded
-/// as its fields, the rest is for the sender.
+/// Words remedies for live use. The remedies of the library name options of the command line; here those that
+/// the rig file can apply name its fields, and the others are for the sender of the stream.
 void word_remedies(const bus::Rig& rig, const bus::PairConfig& pair, std::vector<Finding>& findings);
 
 }  // namespace egocal::services

@@ -13,8 +13,8 @@ namespace egocal::services {
 
 namespace {
 
-/// Of the fields below and of those that they hold: a change of either raises it.
-constexpr int memory_layout = 1000 * 1 + state_layout;
+/// Version of the fields below and of those that they hold. Raise it whenever either changes.
+constexpr int memory_layout = 1000 * 2 + state_layout;
 
 }  // namespace
 
@@ -23,9 +23,15 @@ void fields(auto& archive, Is<DriveSampleState> auto& value) {
   archive(a, b, time_offset_us, origin_us, level, begun_anew);
 }
 
+void fields(auto& archive, Is<OffsetSince> auto& value) {
+  auto& [time_us, offset_us] = value;
+  archive(time_us, offset_us);
+}
+
 void fields(auto& archive, Is<PairMemory> auto& value) {
-  auto& [sample, session, matched, matched_before, matched_between, missed_us, restarted_session] = value;
-  archive(sample, session, matched, matched_before, matched_between, missed_us, restarted_session);
+  auto& [sample, session, matched, matched_before, matched_between, missed_us, restarted_session, offsets] =
+      value;
+  archive(sample, session, matched, matched_before, matched_between, missed_us, restarted_session, offsets);
 }
 
 void fields(auto& archive, Is<Memory> auto& value) {

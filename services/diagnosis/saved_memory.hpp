@@ -20,12 +20,12 @@ class SavedMemory {
   SavedMemory(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time,
               const StateOptions& options = {});
 
-  /// Hands what is on disk to take, which throws Error where it cannot be its own. False: there is nothing,
-  /// or it is refused.
+  /// Passes the saved memory to `take`, which throws Error if it cannot be its own. False: there is none, or
+  /// it was refused.
   bool restore(const std::function<void(Memory)>& take);
   /// One line: why what was there is refused; empty: it is not.
   const std::string& refused() const { return file_.refused(); }
-  /// Throws Error where the disk does not take it; the old content is then still there.
+  /// Throws Error if the disk refuses it; the old content is then still there.
   void save(const Memory& memory);
 
  private:

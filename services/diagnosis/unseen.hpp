@@ -9,25 +9,25 @@
 namespace egocal::services {
 
 struct UnseenOptions {
-  /// A verdict may be `good` while at most this part of the motions was not judged. That many wrong motions
-  /// are found as outliers (docs/accuracy.md, "Gross outliers").
+  /// A verdict may be `good` while at most this part of the motions was not judged: up to that part, wrong
+  /// motions are found as outliers (docs/accuracy.md, "Gross outliers").
   double largest_share = 0.2;
-  /// Fewer poses of a stream say nothing about a drive: it is judged by the statistics alone, which do not
-  /// say whether the motions agree.
+  /// With fewer poses of a stream the motions cannot be judged. The verdict is then based on the statistics
+  /// alone, which do not show whether the motions agree.
   std::size_t least_poses = 30;
 };
 
-/// What a process that was started within a session has not seen of it, or had to forget: poses of before the
-/// clock of a sensor was set back belong to another timeline.
+/// The part of a session that a diagnosis process cannot judge: motions before its start, and poses from
+/// before a clock was set back, which belong to another timeline.
 struct Unseen {
   double share = 0;       ///< of the motions behind the answer
   double seconds = 0;     ///< from the session's start
-  std::size_t poses = 0;  ///< that it knows of each stream, at common times
-  bool within = false;    ///< some of it is not at the start: the process was killed and started again
+  std::size_t poses = 0;  ///< poses at common times that the process has of each stream
+  bool within = false;    ///< a part in the middle is missing: the process was killed and restarted
 };
 
-/// Motions that were not judged may contradict the later ones, for instance where a mount moved before. The
-/// answer is not called good until the part that was not judged is small.
+/// Motions that were not judged may contradict the judged ones, for instance if a mount moved before. So the
+/// verdict is not `good` until the part that was not judged is small.
 void limit_to_what_was_seen(const Unseen& unseen, Diagnosis& diagnosis, const UnseenOptions& options = {});
 
 }  // namespace egocal::services

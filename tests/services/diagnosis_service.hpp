@@ -102,6 +102,7 @@ class DiagnosisService : public ::testing::Test {
     message.sensor_a = "left";
     message.sensor_b = "right";
     message.stride = pairing.choice().stride;
+    message.time_offset = pairing.time_offset().value_or(0);
     message.matched = static_cast<std::int64_t>(pairing.counts().matched);
     observer.publish(bus::problem_channel("left", "right"), message);
     sent = message;

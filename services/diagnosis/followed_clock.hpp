@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "egocal/pairing/trajectory.hpp"
+
+namespace egocal::services {
+
+struct FollowedClockOptions {
+  /// A smaller change of the offset [us] is none: what the estimate of a clock that does not drift does.
+  std::int64_t least_change_us = 50;
+  /// Offsets that are kept. Where there are more, every second one is dropped; a drift is straight in
+  /// between.
+  std::size_t most = 512;
+};
+
+/// An offset of clock b from clock a, and since when it has been in force, on the clock of a.
+struct OffsetSince {
+  std::int64_t time_us = 0;
+  std::int64_t offset_us = 0;
+};
+
+/// The offsets by which pairing followed the clock of b in this session. With one offset for all of a drive,
+/// the poses of a clock that drifts contradict an answer whose motions were paired by the offsets of their
+/// own times.
+class FollowedClock {
+ public:
+  explicit FollowedClock(const FollowedClockOptions& options = {}) : options_(options) {}
+
+  /// The offset in force at a time of a [us]. Times that do not ascend are ignored.
+  void add(std::int64_t time_us, std::int64_t offset_us);
+  void clear() { offsets_.clear(); }
+  /// The poses of b with stamps such that the newest offset holds for all of them. Before the first offset
+  /// the first one holds, between two it is interpolated.
+  Trajectory at_newest_offset(Trajectory b) const;
+
+  const std::vector<OffsetSince>& offsets() const { return offsets_; }
+  /// Throws Error where no clock can have been followed so.
+  void restore(std::vector<OffsetSince> offsets);
+
+ private:
+  std::int64_t at(std::int64_t time_us) const;
+
+  FollowedClockOptions options_;
+  std::vector<OffsetSince> offsets_;
+};
+
+}  // namespace egocal::services
