@@ -144,6 +144,31 @@ TEST_F(OutcomeTest, AfterAClockWentBackSaysSo) {
   EXPECT_THAT(outcome().text, says_so);
 }
 
+// A camera restarted with times of its own, of which no motion can be made: its first half was the answer,
+// and the line said that this half was missing.
+TEST_F(OutcomeTest, OfTheTimeBeforeAClockWentBackIsOld) {
+  extent.sensors["left"].begin_us = begin_us;
+  extent.sensors["right"].begin_us = begin_us + second / 10;
+  extent.sensors["right"].earlier_us = 10 * second;
+  extent.sensors["right"].first_us = second;
+  extent.sensors["right"].last_us = 56 * second;
+  EXPECT_TRUE(outcome().unusable);
+  EXPECT_THAT(outcome().text,
+              StartsWith("left -> right: old answer, the last 55.0 s of the log are not in it (a sensor's "
+                         "clock went back, and no motion was found after that). Before: good: "));
+  EXPECT_THAT(outcome().text, Not(HasSubstr("the first")));
+}
+
+TEST_F(OutcomeTest, OfASensorThatWasSilentSaysSo) {
+  extent.sensors["right"].messages = 301;
+  extent.sensors["right"].silent_from_us = 30 * second;
+  extent.sensors["right"].silent_until_us = 90 * second;
+  EXPECT_FALSE(outcome().unusable) << "the answer holds all that there is";
+  EXPECT_THAT(outcome().text, HasSubstr("\nright: no pose from 30.0 to 90.0 s of the log\n"));
+  extent.sensors["right"].messages = 2;
+  EXPECT_THAT(outcome().text, Not(HasSubstr("no pose"))) << "a message in 10 s";
+}
+
 // All processes were restarted with another rig: pairing read the rest, for a pair of another name.
 TEST_F(OutcomeTest, WhoseLastMotionIsFarFromTheEndSaysSo) {
   for (auto& [name, stream] : extent.sensors) stream.last_us += 30 * second;
@@ -261,6 +286,26 @@ TEST_F(OutcomeTest, TheExtentOfALogWhoseClockWentBackIsThatOfTheLastTimeline) {
   EXPECT_EQ(left.last_us, begin_us - 3570 * second + 29 * second + 900'000);
   EXPECT_EQ(left.earlier_us, 29 * second + 900'000);
   EXPECT_EQ(left.poses.between(begin_us - 3580 * second, begin_us), 300);
+}
+
+TEST_F(OutcomeTest, TheExtentKnowsTheLongestSilence) {
+  const std::string log = folder / "silent.log";
+  {
+    bus::LogWriter writer(log);
+    for (int i = 0; i < 90; ++i)
+      for (const char* channel : {"LEFT", "RIGHT"})
+        if (channel[0] == 'L' ? i < 30 || i >= 60 : i >= 5 && i < 70)
+          writer.write(i * second, channel, bus::encode(bus::to_message(StampedPose{i * second, {}}, i)));
+    writer.close();
+  }
+  bus::LogReader reader(log);
+  LogExtent found = log_extent(reader, rig);
+  const LogExtent::Stream &left = found.sensors.at("left"), &right = found.sensors.at("right");
+  EXPECT_EQ(left.silent_from_us, 29 * second);
+  EXPECT_EQ(left.silent_until_us, 60 * second);
+  EXPECT_EQ(left.messages, 60);
+  EXPECT_EQ(right.silent_from_us, 69 * second) << "at the end, which is longer than at the begin";
+  EXPECT_EQ(right.silent_until_us, 89 * second);
 }
 
 // It was "no solver answered".

@@ -41,6 +41,33 @@ class Counting {
   std::optional<std::int64_t> newest_us_;
 };
 
+/// When the messages of a log were recorded, by sensor.
+class Silences {
+ public:
+  void add(const std::string& name, std::int64_t time_us, LogExtent::Stream& stream) {
+    if (!begin_us_) begin_us_ = end_us_ = time_us;
+    end_us_ = std::max(end_us_, time_us);
+    ++stream.messages;
+    keep_longest(last_us_.try_emplace(name, *begin_us_).first->second, time_us, stream);
+  }
+  void finish(LogExtent& extent) {
+    for (auto& [name, stream] : extent.sensors) keep_longest(last_us_.at(name), end_us_, stream);
+  }
+
+ private:
+  void keep_longest(std::int64_t& last_us, std::int64_t time_us, LogExtent::Stream& stream) const {
+    if (time_us - last_us > stream.silent_until_us - stream.silent_from_us) {
+      stream.silent_from_us = last_us - *begin_us_;
+      stream.silent_until_us = time_us - *begin_us_;
+    }
+    last_us = std::max(last_us, time_us);
+  }
+
+  std::optional<std::int64_t> begin_us_;
+  std::int64_t end_us_ = 0;
+  std::map<std::string, std::int64_t> last_us_;  ///< by sensor
+};
+
 }  // namespace
 
 void PoseCounts::add(std::int64_t time_us) {
@@ -70,6 +97,7 @@ std::int64_t PoseCounts::between(std::int64_t from_us, std::int64_t to_us) const
 LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig) {
   LogExtent extent;
   std::map<std::string, Counting> countings;
+  Silences silences;
   log.rewind();
   while (const std::optional<bus::LogEvent> event = log.next())
     for (const bus::Sensor& sensor : rig.sensors) {
@@ -81,12 +109,15 @@ LogExtent log_extent(bus::LogReader& log, const bus::Rig& rig) {
       }
       const StampedPose& pose = *odometry.pose.value;
       LogExtent::Stream& stream =
-          extent.sensors.try_emplace(sensor.name, LogExtent::Stream{pose.time_us, pose.time_us, {}, 0})
+          extent.sensors
+              .try_emplace(sensor.name, LogExtent::Stream{pose.time_us, pose.time_us, {}, 0, pose.time_us})
               .first->second;
       stream.last_us = pose.time_us;
+      silences.add(sensor.name, event->time_us, stream);
       countings[sensor.name].push(pose, stream);
     }
   for (auto& [name, counting] : countings) counting.finish(extent.sensors.at(name));
+  silences.finish(extent);
   extent.damage = log.damage();
   return extent;
 }

@@ -39,6 +39,11 @@ struct LogExtent {
     std::int64_t first_us = 0, last_us = 0;  ///< in the sensor's own time, in the log's order [us]
     PoseCounts poses;
     std::int64_t earlier_us = 0;  ///< on earlier timelines: its clock went back. All else is of the last one
+    std::int64_t begin_us = 0;    ///< the first pose of all timelines, in the time of the first one [us]
+    std::int64_t messages = 0;
+    /// The longest time without a message, from the first pose of the rig to the last one, as recorded [us
+    /// since that first pose].
+    std::int64_t silent_from_us = 0, silent_until_us = 0;
   };
   std::map<std::string, Stream> sensors;           ///< by name; one whose channel holds no pose is missing
   std::map<std::string, std::int64_t> unreadable;  ///< messages of a sensor that hold no pose, by its name

@@ -31,6 +31,22 @@ double not_read(const bus::Rig& rig, const PairName& pair, const LogExtent& exte
   return most > options.least_missing ? most : 0;
 }
 
+/// The log after a sensor's clock went back [s], where the answer is of a session before that: such a session
+/// begins with the first pose of the log.
+double after_clock_went_back(const PairName& pair, const LogExtent& extent, std::int64_t session,
+                             const OutcomeOptions& options) {
+  double after = 0;
+  bool first_session = false;
+  for (const std::string& name : {pair.first, pair.second}) {
+    const auto stream = extent.sensors.find(name);
+    if (stream == extent.sensors.end()) continue;
+    first_session = first_session || session == stream->second.begin_us;
+    if (to_seconds(stream->second.earlier_us) > options.least_missing)
+      after = std::max(after, to_seconds(stream->second.last_us - stream->second.first_us));
+  }
+  return first_session && after > options.least_missing ? after : 0;
+}
+
 /// What comes before the answer's statistics.
 struct Begin {
   double seconds = 0;
@@ -66,6 +82,20 @@ double without_motion(const PairName& pair, const LogExtent& extent, const Answe
   const double of_a = to_seconds(a->second.last_us - motions->first),
                of_b = to_seconds(b->second.last_us - motions->first) + motions->second;
   return std::min(of_a, of_b) > options.standing ? std::min(of_a, of_b) : 0;
+}
+
+/// The longest time without a message of each sensor, where it is much longer than the time between two.
+std::string silences_in_words(const LogExtent& extent, const OutcomeOptions& options) {
+  std::string text;
+  for (const auto& [name, stream] : extent.sensors) {
+    const double silent = to_seconds(stream.silent_until_us - stream.silent_from_us);
+    const double period = to_seconds(stream.last_us - stream.first_us + stream.earlier_us) /
+                          static_cast<double>(std::max<std::int64_t>(1, stream.messages - 1));
+    if (silent > std::max(options.standing, options.silent_periods * period))
+      text += fmt::format("{}: no pose from {:.1f} to {:.1f} s of the log\n", name,
+                          to_seconds(stream.silent_from_us), to_seconds(stream.silent_until_us));
+  }
+  return text;
 }
 
 /// What is missing between the first and the last motion of a pair.
@@ -131,7 +161,13 @@ std::string judgement_of(const PairName& pair, const Answers& answers, const std
 }
 
 /// Empty: the answer knows the end of the log.
-std::string missing_end(const PairName& pair, const Answers& answers, double unread) {
+std::string missing_end(const PairName& pair, const Answers& answers, double unread, double after_clock) {
+  if (after_clock > 0)
+    return fmt::format(
+        "old answer, the last {:.1f} s of the log are not in it (a sensor's clock went back, and no motion "
+        "was "
+        "found after that)",
+        after_clock);
   const double unanswered = answers.seconds_not_answered(pair);
   if (answers.answered_to_the_end(pair) && unread == 0) return {};
   return fmt::format(
@@ -203,16 +239,20 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
       continue;
     }
     const Diagnosis* const diagnosis = answers.diagnosis(pair);
-    const std::string missing = missing_end(pair, answers, not_read(rig, pair, extent, read_until, options));
+    const std::int64_t session = best->message.session;
+    const double after_clock = after_clock_went_back(pair, extent, session, options);
+    const std::string missing =
+        missing_end(pair, answers, not_read(rig, pair, extent, read_until, options), after_clock);
     outcome.answered = true;
     outcome.unusable = outcome.unusable || !missing.empty() || (diagnosis && unusable(*diagnosis)) ||
                        answers.departure(pair);
-    outcome.text +=
-        line_of(pair, answers, missing, not_in_session(pair, extent, best->message.session, options),
-                hole_in(rig, config, extent, answers, options),
-                missing.empty() ? without_motion(pair, extent, answers, options) : 0);
+    outcome.text += line_of(pair, answers, missing,
+                            after_clock > 0 ? Begin{} : not_in_session(pair, extent, session, options),
+                            hole_in(rig, config, extent, answers, options),
+                            missing.empty() ? without_motion(pair, extent, answers, options) : 0);
   }
   outcome.text += possible_of_all(rig, answers);
+  outcome.text += silences_in_words(extent, options);
   for (const auto& [name, count] : extent.unreadable)
     outcome.text +=
         fmt::format("{}: {} of the log {} no pose that can be read\n", name,

@@ -32,6 +32,9 @@ struct OutcomeOptions {
   /// The end of a log is reported as missing in an answer where the pair's last motion is farther from it
   /// [s], and so is a hole in its middle that is longer. As BusNewsOptions::standing.
   double standing = 5;
+  /// A sensor is reported as silent where it sends nothing for longer than `standing`, and than so many times
+  /// the mean time between two of its messages: slow sensors are not silent.
+  double silent_periods = 10;
   /// What is missing in many short pieces is reported from this part of the drive on: single messages may be
   /// lost or late.
   double least_part = 0.1;
