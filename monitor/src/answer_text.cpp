@@ -123,16 +123,16 @@ Label verdict_of(const PairState& pair, Charset charset) {
   if (!pair.shown.valid) return {std::string(s.no) + " unusable", Style::bad};
   if (!pair.verdict) return {"not judged yet", Style::dim};
   const Verdict verdict = pair.verdict->diagnosis.verdict;
-  // what came since may contradict it; what is contradictory stays that
+  // newer motions may contradict the answer; a contradictory one stays contradictory
   if (verdict <= Verdict::incomplete && pair.old > 0) return {"? old answer", Style::warning};
   if (verdict <= Verdict::incomplete && verdict_is_old(pair)) return {"? old verdict", Style::warning};
-  // the answer is right as far as it goes, and no longer follows what comes
+  // the answer is right for its motions, but no new ones are found
   if (verdict <= Verdict::incomplete && pair.standing > 0 && !pair.why_standing.empty())
     return {"? no motion", Style::warning};
   // a monitor that came when pairing was gone already
   if (verdict <= Verdict::incomplete && !pair.counted_solver()->verified)
     return {"? not verified", Style::warning};
-  // the verdict is about the optimum; what is not proven to be the optimum does not share it
+  // a verdict is about the optimum, so it does not hold for an answer that is not proven to be it
   if (verdict <= Verdict::incomplete && answer->status != 0) return {"? not proven", Style::warning};
   return {std::string(mark_of(verdict, s)) + " " + std::string(to_string(verdict)), style_of(verdict)};
 }
@@ -184,9 +184,10 @@ std::string standing_text(const PairState& pair) {
 
 Label advice_of(const PairState& pair) {
   if (pair.old > 0)
-    return {(pair.no_network           ? "no network, nothing received for " + age(pair.old)
-             : pairing_is_silent(pair) ? "pairing is silent for " + age(pair.old)
-                                       : "no solver answers what came in the last " + age(pair.old)) +
+    return {(pair.no_network               ? "no network, nothing received for " + age(pair.old)
+             : session_has_no_motion(pair) ? "no new motion for " + age(pair.old) + ": " + pair.why_standing
+             : pairing_is_silent(pair)     ? "pairing is silent for " + age(pair.old)
+                                           : "no solver answers what came in the last " + age(pair.old)) +
                 before_that(pair),
             Style::warning};
   if (pair.standing > 0 && !pair.why_standing.empty())

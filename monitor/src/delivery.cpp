@@ -17,7 +17,7 @@ void Delivery::deliver(const std::string& channel, std::span<const std::byte> by
     model_.note(Severity::warning, channel, "a message that could not be decoded: another version?", now);
     return false;
   };
-  // damaged names, or somebody else's: they must not show as another pair
+  // names that are damaged or sent by another program must not appear as another pair
   const auto of_channel = [&](const auto& message) {
     if (channel == bus::channel_of(message)) return true;
     model_.note(Severity::warning, channel, "a message of another pair is refused", now);

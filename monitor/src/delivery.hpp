@@ -13,8 +13,8 @@
 
 namespace egocal::monitor {
 
-/// Messages on their way into the model, live or from a log: decoded, checked by the rules that every process
-/// uses, and each answer verified against its problem.
+/// Delivers messages to the model, live or from a log: decodes them, checks them by the rules of all
+/// processes, and verifies each answer against its problem.
 class Delivery {
  public:
   explicit Delivery(Model& model) : model_(model) {}

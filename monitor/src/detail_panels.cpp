@@ -74,7 +74,7 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     pane.text(2, y, direction_names[i], Style::normal);
     const bool ground = from_ground(pair, i);
     const bool known = shown_by_motion(*answer, i);
-    // from a metre (10 degrees) of doubt, an empty bar, to a millimetre (a hundredth of a degree), a full one
+    // full bar: a millimetre or a hundredth of a degree; empty bar: a metre or 10 degrees
     const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : degrees_per_radian / 10.0);
     double filled =
         known && doubt >= 0 ? std::clamp(-std::log10(std::max(doubt, 1e-9)) / 3.0, 0.0, 1.0) : 0.0;
@@ -112,7 +112,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
       std::min<int>({static_cast<int>(pair.solvers.size()), std::max(1, room / narrow_width), 3});
   const int w = std::min(20, room / columns);
   const int indent = w >= 14 ? 2 : 0;
-  // always in the same place; where there is no room for all, the freshest
+  // always in the same place; without room for all, the most recent ones
   std::vector<const SolverTrack*> order;
   for (const SolverTrack& solver : pair.solvers) order.push_back(&solver);
   std::sort(order.begin(), order.end(),
@@ -121,7 +121,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     std::sort(order.begin(), order.end(),
               [](const SolverTrack* x, const SolverTrack* y) { return x->at.mono_us > y->at.mono_us; });
 
-  // the transform itself where there is room: what both agree on, or not
+  // the transforms too, if there is room: do both solvers agree?
   const bool transforms = pane.height() >= 2 + 11 + 6;
   const bool spread_rows = pair.shown.reference == ReferenceKind::none;
   std::vector<std::string> labels{"method", "optimal", "gap",
@@ -165,7 +165,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     value(verify_time(answer, charset));
     value(latency(answer, charset));
     value(count(answer.pairs));
-    // of an answer that is sent again every second: since the motions that it is about
+    // age since the motions of the answer, as the same answer is sent again every second
     value(age(std::max(seconds_between(solver.at.mono_us, now.mono_us), pair.standing)),
           solver.silent ? Style::bad : Style::dim);
   }
@@ -241,7 +241,8 @@ void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewSt
       plot.scale = centimetres_per_metre;
       break;
     case scaled_gap:
-      // the global solution's gap is zero; what matters is how far the fast one is from needing it
+      // the gap of the global solution is zero; the interesting one is how close the fast solver is to asking
+      // for it
       plot.title =
           pane.width() >= 44
               ? "scaled gap of the " + std::string(fast_alone ? "fast" : "global") + " solution (limit 1)"
@@ -269,7 +270,7 @@ void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewSt
     plot.begin = view.window_s > 0 ? std::max(first, last - view.window_s) : first;
     if (plot.end - plot.begin < 1) plot.end = plot.begin + 1;
   }
-  // the fast solver is what remains: its curve is drawn last, on top
+  // the fast solver lasts, so its curve is drawn last, on top
   std::stable_sort(plot.series.begin(), plot.series.end(), [](const auto& x, const auto& y) {
     return x.style == Style::global && y.style != Style::global;
   });

@@ -8,8 +8,8 @@
 
 namespace egocal::monitor {
 
-/// The open dialog, if there is one, in the middle of the screen. On a small screen its lines are wrapped,
-/// and the help keeps to the keys.
+/// Draws the open dialog, if there is one, in the middle of the screen. A small screen wraps its lines, and
+/// help shows only the keys.
 void draw_dialog(Canvas& canvas, const PairState* pair, const ViewState& view);
 
 }  // namespace egocal::monitor

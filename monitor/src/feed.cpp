@@ -9,7 +9,7 @@ namespace egocal::monitor {
 
 namespace {
 
-/// All pairs share a queue: some tenths of a second of a large rig at full speed.
+/// Capacity of the queue that all pairs share: some tenths of a second of a large rig at full speed.
 constexpr int queue_capacity = 2000;
 
 std::chrono::nanoseconds nanoseconds(double seconds) {
@@ -42,7 +42,7 @@ Feed::Feed(Model& model, const FeedOptions& options)
   heartbeat_.set_state(bus::State::running);
 }
 
-/// Only the sensors' own channels, unless one of them is missed: then whatever else is on the bus.
+/// Watches the channels of the sensors, and all other channels while one of them is missing.
 void Feed::watch_streams() {
   const auto hear = [this](const bus::Arrival& arrival) {
     if (const std::optional<bus::Refusal> first =
@@ -62,7 +62,7 @@ void Feed::watch_streams() {
   });
 }
 
-/// Where a log is played, its sensors send when the player does, and that waits for pairing.
+/// Why sensors may be silent: in a log they send only when the player does, and the player waits for pairing.
 std::string Feed::why_silent() const {
   const ProcessState* player = nullptr;
   for (const ProcessState& process : model_.processes())
@@ -73,7 +73,9 @@ std::string Feed::why_silent() const {
   if (!player) return {};
   if (player->state == bus::State::ended) return "the player has ended";
   if (player->state == bus::State::paused) return "the player is paused";
-  const bool waits = std::any_of(model_.pairs().begin(), model_.pairs().end(), pairing_is_silent);
+  const bool waits = std::any_of(model_.pairs().begin(), model_.pairs().end(), [](const PairState& pair) {
+    return pairing_is_silent(pair) && !session_has_no_motion(pair);
+  });
   return player->alive && waits ? "the player waits for pairing, which is silent" : "";
 }
 

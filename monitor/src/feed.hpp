@@ -21,23 +21,23 @@ struct FeedOptions {
   std::vector<bus::Sensor> sensors;  ///< of the rig; empty: no rig is known, and streams are not watched
 };
 
-/// The monitor on the bus: the loop and the heartbeat of every process, and the channels of all pairs.
+/// Connects the monitor to the bus: loop and heartbeat, as every process has, and the channels of all pairs.
 class Feed {
  public:
-  /// Throws Error where the URL is not understood. A network that is away is shown and waited for.
+  /// Throws Error if the URL is not understood. A missing network is shown and awaited.
   Feed(Model& model, const FeedOptions& options);
   Feed(const Feed&) = delete;
   Feed& operator=(const Feed&) = delete;
 
   /// Also returns when one of these is readable.
   void watch(const std::vector<int>& fds);
-  /// Waits at most this long for something to happen [ms], and hands on what has arrived.
+  /// Waits for something to happen, at most this long [ms], and delivers what has arrived.
   void wait(int milliseconds);
   Now now() const;
   /// False: not sent, see error().
   bool send(const command_t& command) { return loop_.publish(bus::command_channel, command); }
   const std::string& error() const { return loop_.send_error(); }
-  /// Why the network is away, and the cure; empty where it is there.
+  /// Why the network is away, with the remedy; empty: it is there.
   const std::string& network_error() const { return loop_.network_error(); }
 
  private:

@@ -23,7 +23,7 @@ double session_length(const PairState* pair) {
   return answer ? seconds_between(pair->session, answer->utime) : 0;
 }
 
-/// step > 0: less of the session, from all of it through the windows that are shorter than it.
+/// step > 0: shows less of the session. The choices are the windows shorter than the session, and all of it.
 void zoom(ViewState& view, const Model& model, int step) {
   const double length = session_length(selected_pair(model, view));
   std::vector<double> windows;
@@ -103,7 +103,7 @@ class Cursor {
   void page_down() { list_ ? scroll(-page_) : select(view_.selected + 10); }
   void home() { list_ ? scroll(events_) : select(0); }
   void end() { list_ ? scroll(-events_) : select(pairs_ - 1); }
-  /// To the next pair, or the one before; from the last to the first.
+  /// Selects the next pair or the one before, cyclically.
   void next(int step) { select(pairs_ ? (view_.selected + pairs_ + step) % pairs_ : 0); }
 
  private:
@@ -160,7 +160,7 @@ void press_special(ViewState& view, Cursor cursor, Key key) {
   }
 }
 
-/// Characters that change what is shown. False: it is none of them.
+/// Keys that change the view. False: this is none of them.
 bool press_to_show(ViewState& view, const Model& model, Cursor cursor, char character) {
   switch (character) {
     case '?':
@@ -212,7 +212,7 @@ bool press_to_show(ViewState& view, const Model& model, Cursor cursor, char char
   }
 }
 
-/// Characters that ask before a command is sent or a file is written.
+/// Keys that open a question before a command is sent or a file is written.
 void press_to_ask(ViewState& view, const Model& model, char character) {
   if (character == 'r') ask(view, model, Dialog::reset);
   if (character == 'x') ask(view, model, Dialog::export_format);

@@ -44,7 +44,7 @@ OverviewLayout layout_overview(int width, int height, int pairs, int processes, 
     }
     return layout;
   }
-  // as many processes as there are while the pairs keep the larger half
+  // all processes, as long as the pairs keep the larger half
   const int table_rows = 2 + pairs;
   const int process_rows =
       std::clamp(processes + 1, 2, std::max(2, std::min(rows / 3, rows - std::min(table_rows, rows / 2))));

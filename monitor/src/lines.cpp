@@ -136,7 +136,9 @@ std::string pair_lines(const Model& model, Charset charset) {
     if (pair.problem.left_out > 0) text += std::to_string(pair.problem.left_out) + " outliers, ";
     if (pair.problem.rejected > 0) text += std::to_string(pair.problem.rejected) + " rejected, ";
     if (pair_is_paused(model, pair)) text += "paused, ";
-    if (pairing_is_silent(pair))
+    if (session_has_no_motion(pair))
+      text += "no new motion, ";
+    else if (pairing_is_silent(pair))
       text +=
           pair.has_problem ? "pairing is silent, " : "pairing is silent: not verified without its problem, ";
     if (pair.shown.valid) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model knows at all, and what happens while time passes.
+// The state of the model, and what happens as time passes.
 #include "egocal/monitor/model.hpp"
 
 #include <algorithm>
@@ -19,6 +19,10 @@ bool pair_is_paused(const Model& model, const PairState& pair) {
 
 bool pairing_is_silent(const PairState& pair) {
   return pair.answer() && (!pair.has_problem || pair.silent) && !pair.ended;
+}
+
+bool session_has_no_motion(const PairState& pair) {
+  return pairing_is_silent(pair) && pair.pairing_runs && !pair.why_standing.empty();
 }
 
 std::string pair_name(const std::string& a, const std::string& b) {
@@ -53,7 +57,7 @@ void Model::note(Severity severity, const std::string& full_subject, const std::
       ++event.repeated;
       return;
     }
-    // what was good and is bad now, or the other way round, is listed in its order
+    // a change between good and bad stays in the list of events, in its order
     if (severity == Severity::good || severity == Severity::bad) break;
   }
   ++events_seen_;
@@ -83,8 +87,14 @@ void Model::tick(Now now) {
   watch_processes(now);
   watch_interruptions(now);
   const bool ended = pairing_has_ended();
+  const bool pairing_runs =
+      std::any_of(processes_.begin(), processes_.end(), [](const ProcessState& process) {
+        return process.alive && process.status.role == bus::role_name(Role::pairing) &&
+               process.state == bus::State::running;
+      });
   for (PairState& pair : pairs_) {
     pair.ended = ended;
+    pair.pairing_runs = pairing_runs;
     const std::int64_t heard = std::max(pair.problem_at.mono_us, network_mono_us_);
     const bool silent = seconds_between(heard, now.mono_us) > options_.stream_timeout;
     if (network_away_)

@@ -18,11 +18,11 @@ void Model::note_unanswered(PairState& pair, Now now) {
     pair.unanswered.forget();
 }
 
-/// Solvers that hang leave an answer behind, and so does a pairing process.
+/// Marks an answer as old: solvers that hang leave one behind, and so does a pairing process.
 void Model::watch_age_of_answer(PairState& pair, Now now) {
   if (pair.no_network || pair_is_paused(*this, pair)) pair.unanswered.forget();
   const double unanswered = pair.unanswered.old(now.mono_us, options_.answer_age);
-  // where no problem was ever received, the answer is not verified, which is shown as well
+  // without any received problem the answer is not verified, which is shown as well
   const double since = seconds_between(pair.problem_at.mono_us, now.mono_us);
   const bool is_silent = pairing_is_silent(pair) || (pair.no_network && since > options_.stream_timeout);
   const double silent = is_silent && pair.answer() && pair.has_problem ? since : 0;
@@ -33,7 +33,7 @@ void Model::watch_age_of_answer(PairState& pair, Now now) {
          "the answer is old: no solver answers the motions that came since", now);
 }
 
-/// Pairing sends its problem every second, with new motions or without.
+/// Notices that no new motions come: pairing sends its problem every second, with new motions or without.
 void Model::watch_motions(PairState& pair, Now now) {
   const double since = seconds_between(std::max(pair.motion_mono_us, pair.idle_mono_us), now.mono_us);
   const bool stands = pair.has_problem && !pair.silent && !pair.no_network && !pair_is_paused(*this, pair) &&

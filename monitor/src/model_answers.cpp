@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model makes of the solvers' answers: which one counts, its certificate, and who solves.
+// How the model handles answers of the solvers: which one counts, its certificate, and who solves.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,7 +28,7 @@ bus::StandingRank rank_of(const SolverTrack& track) {
           {answer.session, answer.seq, optimality_of(answer), answer.cost}};
 }
 
-/// The answer with texts of limited length; what is no transform is not certified.
+/// The answer with texts of limited length. An answer that is no transform is not certified.
 calibration_t bounded_answer(const calibration_t& message, const PairState& pair) {
   calibration_t answer = message;
   answer.sensor_a = pair.a;
@@ -49,7 +49,7 @@ std::array<double, curve_count> curve_values(const Shown& own, const calibration
     values[translation_error] = std::max({message.stddev[0], message.stddev[1], message.stddev[2]});
     values[rotation_error] = std::max({message.stddev[3], message.stddev[4], message.stddev[5]});
   }
-  // where the fast process solved globally itself, its own solution is not known
+  // if the fast process solved globally itself, its own solution is unknown
   const bool own_solution = role != Role::fast || (message.method != "dual" && message.method != "sdp");
   values[scaled_gap] = own_solution ? message.scaled_gap : not_a_number;
   values[execution_time] =
@@ -131,8 +131,7 @@ void Model::watch_certificate(PairState& pair, Now now) {
   }
 }
 
-/// The solver that sent an answer. A new one, one that is heard again or solves by another method is an
-/// event.
+/// The solver that sent an answer. It is an event when it is new, heard again, or uses another method.
 SolverTrack& Model::track_of(PairState& pair, const calibration_t& message, Now now) {
   const std::string name = pair_name(pair.a, pair.b), solver = bounded(message.solver),
                     method = bounded(message.method);
@@ -140,7 +139,7 @@ SolverTrack& Model::track_of(PairState& pair, const calibration_t& message, Now 
                                   [&](const SolverTrack& track) { return track.name == solver; });
   if (known == pair.solvers.end()) {
     if (pair.solvers.size() == max_solvers) {
-      // a long session of swapped solvers: the one that has been silent the longest makes room
+      // in a long session of swapped solvers, the one that has been silent longest is dropped
       pair.solvers.erase(
           std::min_element(pair.solvers.begin(), pair.solvers.end(),
                            [](const auto& x, const auto& y) { return x.at.mono_us < y.at.mono_us; }));
@@ -152,7 +151,8 @@ SolverTrack& Model::track_of(PairState& pair, const calibration_t& message, Now 
     return track;
   }
   if (known->answer.method != method) {
-    // a fast solver's first answers are of another method: until it knows of the global solver, or is near
+    // the first answers of a fast solver are of another method, until it knows of the global solver or is
+    // near the optimum
     if (known->settled || known->role != Role::fast)
       note(Severity::info, name,
            "solver swapped: " + solver + " changed from " + known->answer.method + " to " + method, now);
@@ -195,7 +195,8 @@ void Model::on_calibration(const calibration_t& message, Now now, bool verified)
   count_answer(*pair, now);
 }
 
-/// A fast solver that starts has no answer to start from, and asks for one: no fallback.
+/// Notices a fallback. A fast solver that starts has no answer to start from and asks for one; that is no
+/// fallback.
 void Model::watch_fallback(PairState& pair, SolverTrack& track, const calibration_t& message, Now now) {
   const std::string name = pair_name(pair.a, pair.b);
   if (track.role == Role::fast) {
@@ -223,7 +224,7 @@ void Model::watch_fallback(PairState& pair, SolverTrack& track, const calibratio
     track.settled = true;
 }
 
-/// A solver is missed only where there is something to solve, and only after it has had time to.
+/// Notices missing solvers: only if there is a problem to solve, and after a solver has had time for it.
 void Model::watch_solvers(PairState& pair, Now now) {
   if (!pair.has_problem || pair.silent || pair.no_network || pair_is_paused(*this, pair))
     pair.idle_mono_us = now.mono_us;

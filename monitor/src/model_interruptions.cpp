@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model makes of motions that do not follow each other in time, and of what processes count then: a
-// fault of a stream, or a pause or a seek that a user asked for.
+// How the model explains motions that do not follow each other in time, and the counts that rise meanwhile:
+// by a fault of a stream, or by a pause or a seek of the user.
 #include <algorithm>
 #include <cstdio>
 #include <set>
@@ -16,7 +16,7 @@ namespace egocal::monitor {
 
 namespace {
 
-// bounds on what a hostile status says: sums of such counts do not overflow
+// bounds for a forged status, so that sums of its counts do not overflow
 constexpr std::int64_t most_counted = std::int64_t{1} << 50, most_jumps = 100;
 
 std::string tenths(double seconds) {
@@ -25,8 +25,8 @@ std::string tenths(double seconds) {
   return buffer;
 }
 
-/// The mean distance of the motions between two problems shows whether the stream had a gap: problems that
-/// were skipped are no gap.
+/// Whether the stream had a gap, by the mean distance of the motions between two problems. Problems that were
+/// skipped are no gap.
 bool is_gap(const problem_t& before, const problem_t& message, double max_gap) {
   if (message.seq <= before.seq) return false;
   const double motions = static_cast<double>(message.seq) - static_cast<double>(before.seq);
@@ -55,7 +55,8 @@ void Model::interrupt(PairState& pair, Interruption::Kind kind, int jumps, Now n
   excused_mono_us_ = now.mono_us + to_microseconds(options_.excused);
 }
 
-/// A pause lasts, and so does a seek of a player that is paused: nothing of it has been sent yet.
+/// Keeps an interruption up: a pause lasts, and so does a seek of a paused player, which has not sent
+/// anything yet.
 void Model::watch_interruptions(Now now) {
   const bool player_paused = std::any_of(processes_.begin(), processes_.end(), [](const ProcessState& p) {
     return p.alive && p.status.role == bus::role_name(Role::player) && p.state == bus::State::paused;
@@ -75,7 +76,7 @@ void Model::watch_time(PairState& pair, const problem_t& message, Now now) {
   const double step = seconds_between(pair.problem.utime, message.utime);
   std::optional<Interruption>& interruption = pair.interruption;
   const bool paused = pair_is_paused(*this, pair), back = step < 0;
-  // behind a seek the first problem has no new motion: that across it was rejected
+  // the first problem after a seek has no new motion, as the motion across the seek was rejected
   const bool jump =
       interruption && !paused && step > options_.max_gap * std::clamp<double>(message.stride, 1, 1000);
   const bool gap = !back && (jump || is_gap(pair.problem, message, options_.max_gap));
@@ -126,7 +127,8 @@ void Model::watch_seeks(ProcessState& process, const status_t& message, bool is_
     interrupt(pair, Interruption::Kind::seek, static_cast<int>(std::min(more, most_jumps)), now);
 }
 
-/// Sums without what a pause or a seek explains, and the reasons of the rest.
+/// Sums of lost and rejected messages, without those that a pause or a seek explains, and the reasons of the
+/// others.
 void Model::count_messages(ProcessState& process, const status_t& message, bool is_new, Now now) {
   process.in = process.out = process.lost = process.rejected = 0;
   for (const counter_t& counter : message.counters) {

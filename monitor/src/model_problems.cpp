@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model makes of the problems that pairing sends: sessions, motions, outliers and clocks.
+// How the model handles problems from pairing: sessions, motions, outliers and clocks.
 #include <algorithm>
 #include <cmath>
 
@@ -37,9 +37,9 @@ void Model::begin_session(PairState& pair, std::int64_t session) {
   pair.reported_left_out = 0;
 }
 
-/// Pairing continues from an older state (a power cut, an old state that was put back): what was received
-/// about problems that are no longer there says nothing of those to come. One problem may be late, three in a
-/// row are not.
+/// Pairing continues from an older state, after a power cut or when a backup was restored: what is known of
+/// problems that no longer exist says nothing about new ones. One problem may be late, three in a row are
+/// not.
 void Model::follow_back(PairState& pair, const problem_t& message, Now now) {
   constexpr int confirmations = 3;  // as of tools::Answers: one or two may have been overtaken
   const calibration_t* const answer = pair.answer();
@@ -70,7 +70,7 @@ void Model::note_outliers(PairState& pair, Now now) {
   }
 }
 
-/// Where it has changed by a millisecond and by what is known of it.
+/// Notes the time offset if it has changed by a millisecond and by three of its standard deviations.
 void Model::note_time_offset(PairState& pair, Now now) {
   const double offset = pair.problem.time_offset;  // [s]
   if (!std::isfinite(offset)) return;

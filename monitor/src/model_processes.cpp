@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model makes of the processes: their states, errors, counts and rates, and the commands to them.
+// How the model handles the processes: states, errors, counts and rates, and the commands to them.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,7 +14,7 @@ namespace egocal::monitor {
 
 namespace {
 
-/// What the monitor uses of a status, with texts of limited length; without its counters.
+/// The part of a status that the monitor uses, without its counters, with texts of limited length.
 status_t bounded_status(const status_t& message) {
   status_t status{};
   status.utime = message.utime;
@@ -123,8 +123,8 @@ void Model::on_status(const status_t& message, Now now) {
   if (!process->alive) process->rate_in = process->rate_out = -1;
 }
 
-/// Processes that resume, or that have a network again, hear of each other one after the other: what they
-/// miss for a moment is not missing.
+/// Reports errors that last. Processes that resume, or have a network again, hear of each other one after the
+/// other, so a process that they miss for a moment is not missing.
 void Model::watch_error(ProcessState& process, const std::string& error, Now now) {
   if (error.empty()) process.reported_error.clear();
   if (error == process.reported_error || network_away_) return;

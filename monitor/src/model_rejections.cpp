@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model makes of the reasons for which processes reject messages, poses and motions.
+// How the model handles the reasons for which processes reject messages, poses and motions.
 #include <algorithm>
 
 #include "egocal/monitor/model.hpp"

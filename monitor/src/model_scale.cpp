@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model makes of a scale that is found together with the extrinsic.
+// How the model handles a scale that is found together with the extrinsic.
 #include <optional>
 
 #include "egocal/monitor/model.hpp"

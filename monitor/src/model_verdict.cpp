@@ -76,7 +76,7 @@ std::optional<bus::Departure> departure_of(const PairState& pair) {
   return bus::departure(pair.verdict->diagnosis.verdict, pair.verdict->judged, pair.shown.T_a_b);
 }
 
-/// A diagnosis that hangs leaves a verdict behind, and the mount may move after it.
+/// Marks a verdict as old: a diagnosis that hangs leaves one behind, and the mount may move after it.
 void Model::watch_age_of_verdict(PairState& pair, Now now) {
   if (!pair.verdict || !pair.verdict->behind_mono_us) return;
   const auto is_pairing = [](const ProcessState& process) {

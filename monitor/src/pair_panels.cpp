@@ -11,18 +11,19 @@ namespace egocal::monitor {
 
 namespace {
 
-/// At the right edge of a card's first row: as much as there is room for behind x.
+/// Draws counts at the right edge of the first row of a card, as many as fit to the right of x.
 void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool paused) {
   const calibration_t* answer = pair.answer();
   const std::string motions = count(answer             ? answer->pairs
                                     : pair.has_problem ? pair.problem.matched
                                                        : 0) +
                               " motions";
-  const std::string mode = paused                    ? "PAUSED  "
-                           : pair.ended              ? "ENDED  "
-                           : pairing_is_silent(pair) ? "PAIRING IS SILENT  "
-                           : pair.has_problem        ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
-                                                     : "";
+  const std::string mode = paused                        ? "PAUSED  "
+                           : pair.ended                  ? "ENDED  "
+                           : session_has_no_motion(pair) ? "NO MOTION  "
+                           : pairing_is_silent(pair)     ? "PAIRING IS SILENT  "
+                           : pair.has_problem            ? (pair.problem.mode == 1 ? "planar  " : "3-D  ")
+                                                         : "";
   const std::string left_out =
       pair.has_problem && pair.problem.left_out > 0 ? "  " + count(pair.problem.left_out) + " outliers" : "";
   const std::string rejected =
@@ -44,7 +45,7 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
   }
 }
 
-/// The proof and what it took, as many as fit, the most important first.
+/// Draws the proof and its times, the most important first, as many as fit.
 void draw_proof(const Pane& pane, int y, const PairState& pair, const calibration_t& answer, bool with_error,
                 Charset charset) {
   const Label proof = proof_of(answer);

@@ -34,7 +34,7 @@ bool right_aligned(PairColumn column) {
   }
 }
 
-/// What the two columns of errors hold, by the references of all pairs.
+/// What the two columns of errors show, by the references that the pairs have.
 struct ErrorKind {
   bool spread = false, nominal = false;
 };
@@ -120,7 +120,7 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
     case PairColumn::gap:
       return {compact(answer.scaled_gap, charset), answer.scaled_gap <= 1 ? Style::normal : Style::warning};
     case PairColumn::age:
-      // of an answer that is sent again every second: since the motions that it is about
+      // age since the motions of the answer, as the same answer is sent again every second
       return {age(std::max(seconds_between(pair.counted_solver()->at.mono_us, now.mono_us), pair.standing)),
               pair.silent || pair.standing > 0 ? Style::warning : Style::dim};
     case PairColumn::solve:

@@ -19,7 +19,8 @@ void draw_title(const Pane& pane, const std::string& title, Charset charset) {
 
 namespace {
 
-/// Where there is no room for all: those that are gone must be seen, other people's monitors need not.
+/// The order in which processes are listed when there is no room for all: those that are gone first, monitors
+/// of other users last.
 std::vector<const ProcessState*> in_order(const std::vector<ProcessState>& processes) {
   std::vector<const ProcessState*> order;
   for (const ProcessState& process : processes) order.push_back(&process);

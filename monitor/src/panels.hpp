@@ -8,7 +8,7 @@
 
 namespace egocal::monitor {
 
-// The parts that the screens are put together from. Each fills the pane that the layout gave it.
+// The panels of the screens. Each fills the pane that the layout gave it.
 
 /// A title with a rule to the right edge.
 void draw_title(const Pane& pane, const std::string& title, Charset charset);

@@ -106,7 +106,7 @@ struct Axis {
 Axis axis_of(const Plot& plot, const Range& range, int rows) {
   Axis axis{range.low, range.high, 1, rows};
   if (plot.logarithmic) {
-    // the courses are kept in single precision: 0.01 may be a little less
+    // values are kept in single precision, where 0.01 may be slightly less
     axis.low = std::max(std::floor(std::log10(axis.low) + 1e-6), std::log10(axis.high) - 15);
     axis.high = std::ceil(std::log10(axis.high) - 1e-6);
     if (axis.high - axis.low < 1) axis.high = axis.low + 1;
@@ -157,7 +157,7 @@ void draw_time_axis(const Pane& pane, const Plot& plot, int w, int h, Charset ch
     pane.text(scale_width + 1 + (w - width_of(middle)) / 2, 1 + h, middle, Style::dim);
 }
 
-/// The threshold, the mark with its meaning beside the title, and the moves of the mount.
+/// Draws the threshold, its meaning beside the title, and the moves of the mount.
 void draw_marks(const Pane& pane, const Pane& field, const Plot& plot, const Axis& axis, int w,
                 Charset charset) {
   const double span = plot.end - plot.begin;

@@ -65,7 +65,7 @@ class Source {
     if (feed_) feed_->watch(fds);
     fds_ = std::move(fds);
   }
-  /// Waits at most this long [ms]; what arrives live is handed to the model at once.
+  /// Waits at most this long [ms]. Live messages are handed to the model at once.
   void wait(int milliseconds) {
     if (feed_) {
       feed_->wait(milliseconds);
@@ -89,7 +89,7 @@ class Source {
   std::vector<int> fds_;
 };
 
-// A name that no file has yet, so that no earlier export is lost.
+// A name that no file has yet, so that no earlier export is overwritten.
 std::string free_file_name(const std::string& a, const std::string& b, ExtrinsicFormat format) {
   const char* ending = format == ExtrinsicFormat::urdf     ? ".urdf"
                        : format == ExtrinsicFormat::ros    ? ".ros.sh"
@@ -232,7 +232,7 @@ void handle_stop() {
   signal(SIGPIPE, SIG_IGN);  // a reader that has seen enough ends us through print()
 }
 
-/// Throws Error where nothing was received: what this process sends comes back to it, and does not count.
+/// Throws Error if nothing was received. Messages of this process return to it and do not count.
 void require_messages(const Model& model, const Source& source) {
   if (model.heard_others()) return;
   if (!source.network_error().empty()) throw Error(source.network_error());
@@ -251,7 +251,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
     const bool answered =
         !model.pairs().empty() && std::all_of(model.pairs().begin(), model.pairs().end(),
                                               [](const PairState& p) { return p.answer() != nullptr; });
-    // heartbeats come once a second: every process has sent one by then
+    // after this time each process has sent a heartbeat, one a second
     if (source.live() && ((answered && waited > 1.2) || waited > options.timeout_s)) break;
     source.wait(20);
   }

@@ -43,7 +43,7 @@ Now Recording::advance(std::int64_t mono_us) {
   const double due_us = static_cast<double>(mono_us - *s.started_mono_us) * s.speed;
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
   while (s.next) {
-    // a log stitched together from two may step back in time; the session continues where it was
+    // a log made of two may step back in time; the session then continues at its time
     const std::int64_t stamp = std::max(s.next->time_us, s.time_us);
     if (s.speed > 0 && static_cast<double>(stamp - s.first_us) > due_us) break;
     s.time_us = stamp;

@@ -13,13 +13,13 @@ namespace egocal::monitor {
 /// A recorded session, played into the model in the log's own time.
 class Recording {
  public:
-  /// speed: times real time; 0: all at once. Throws Error where the file is no log.
+  /// speed: times real time; 0: all at once. Throws Error if the file is no log.
   Recording(Model& model, const std::string& file, double speed);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
-  /// Delivers what is due and returns the log's time. A long log is read in slices, so that keys work
-  /// meanwhile.
+  /// Delivers what is due, and returns the time of the log. A long log is read in slices, so that keys still
+  /// work.
   Now advance(std::int64_t mono_us);
   bool at_end() const;
 

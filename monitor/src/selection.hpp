@@ -17,7 +17,7 @@ inline const PairState* selected_pair(const Model& model, const ViewState& view)
   return &model.pairs()[static_cast<std::size_t>(std::clamp(view.selected, 0, last))];
 }
 
-/// Rows of a list of this height: a title takes one where there is room.
+/// Rows of a list of this height; the title takes one row if there is room.
 inline int event_rows(int height) {
   return height < 3 ? std::max(1, height) : height - 1;
 }

@@ -35,7 +35,7 @@ std::size_t room(int width) {
   return static_cast<std::size_t>(std::max(1, width - 3));
 }
 
-/// all: with what processes reject, and whole, whatever rows that takes.
+/// all: also what processes reject, and whole lines, however many rows they take.
 std::vector<Line> lines_of(const Model& model, bool all, int width) {
   std::vector<Line> lines;
   for (const bus::StreamLine& line : model.streams()) lines.push_back({line.text, style_of(line.severity)});

@@ -25,7 +25,7 @@
 namespace egocal::monitor {
 namespace {
 
-// What signal handlers may touch: plain memory, set up before the handlers are.
+// Data for signal handlers: plain memory, set up before the handlers are installed.
 constexpr std::size_t sequence_length = 250;
 struct Rescue {
   struct termios modes {};
@@ -91,8 +91,8 @@ bool can(const char* capability) {
   return text != nullptr && text != reinterpret_cast<const char*>(-1);
 }
 
-// Back to the shell. Where there is no second screen the last picture stays, and the prompt wants a line of
-// its own below it.
+// Returns to the shell. On a terminal without a second screen the last picture stays, with the prompt on a
+// new line below it.
 void leave() {
   if (!can("rmcup")) {
     move(getmaxy(stdscr) - 1, 0);
@@ -179,7 +179,7 @@ std::string why_no_terminal() {
   return "";
 }
 
-/// What puts the terminal back into its state, for the moment when nothing else can be called any more.
+/// Prepares the bytes that restore the terminal, for a crash in which no function may be called any more.
 void prepare_rescue() {
   for (const char* name : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_capability(name);
   if (can("rmcup")) return;
@@ -219,7 +219,7 @@ void start_input() {
   curs_set(0);
 }
 
-/// What is written to standard error would tear the screen: it becomes events.
+/// Captures standard error, which would tear the screen. Its lines become events.
 void capture_errors(std::array<int, 2>& capture) {
   if (pipe2(capture.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
   std::fflush(stderr);

@@ -25,12 +25,12 @@ struct Interrupts {
   bool resized = false;  ///< also after a suspension: everything is to be drawn again
 };
 
-/// The screen under ncurses from construction to destruction. Standard error is captured meanwhile, as other
-/// people's messages would tear the screen. Whatever ends the process, but SIGKILL, leaves the terminal as it
-/// was.
+/// The screen under ncurses from construction to destruction. Standard error is captured meanwhile, because
+/// lines of others would tear the screen. The terminal is restored however the process ends, except by
+/// SIGKILL.
 class Terminal {
  public:
-  /// Empty, with the reason, where there is no terminal that could be drawn on.
+  /// Null, with the reason: there is no terminal to draw on.
   static std::unique_ptr<Terminal> open(const TerminalOptions& options, std::string& why_not);
   ~Terminal();
   Terminal(const Terminal&) = delete;
@@ -43,7 +43,7 @@ class Terminal {
   void show(const Canvas& canvas);
   void draw_anew();
   std::optional<KeyPress> key();
-  /// Readable when a key or captured text is there. A signal interrupts any wait.
+  /// Descriptors that are readable when a key or captured text is there. A signal interrupts any wait.
   std::vector<int> fds() const;
   Interrupts interrupts();
   /// Complete lines that were written to standard error.

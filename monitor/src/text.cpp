@@ -13,7 +13,7 @@ namespace {
 constexpr Symbols ascii_glyphs{"->", "+-", "deg", "u", "+", "!", "*", "x", ">", "|", "-", "#", ".", "inf"};
 constexpr Symbols unicode_glyphs{"→", "±", "°", "µ", "✓", "✗", "●", "○", "▸", "·", "─", "█", "░", "∞"};
 
-// Characters that every terminal draws one cell wide; the rest is not worth a torn screen.
+// Whether every terminal draws the character one cell wide. Others could tear the screen.
 bool is_safe(char32_t c) {
   if (c < 0x20) return false;
   if (c < 0x7f) return true;
@@ -53,7 +53,7 @@ std::u32string decode(std::string_view text) {
       valid = (next >> 6) == 2;
       glyph = (glyph << 6) | (next & 0x3fu);
     }
-    // an overlong form would smuggle a control character past the check
+    // an overlong form could hide a control character from the check
     valid = valid && !(length == 2 && glyph < 0x80) && !(length == 3 && glyph < 0x800) &&
             !(length == 4 && (glyph < 0x10000 || glyph > 0x10ffff));
     glyphs += valid ? glyph : U'?';
@@ -88,7 +88,7 @@ constexpr std::size_t longest_name = 1000;  // a limit [characters]: several lin
 std::string clean(std::string_view text, std::size_t max) {
   std::string result;
   std::size_t cells = 0;
-  // four bytes a character at most: nothing beyond can be shown, so nothing beyond is looked at
+  // a character has at most four bytes, so later bytes cannot be shown and are not decoded
   const std::u32string glyphs = decode(text.substr(0, 4 * max + 4));
   for (char32_t glyph : glyphs) {
     if (++cells > max) break;

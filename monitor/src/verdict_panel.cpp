@@ -15,7 +15,7 @@ struct LabelledLine {
   Style style;
 };
 
-/// Most important first: the first ones are drawn where there is no room for all.
+/// The most important lines first: without room for all only the first ones are drawn.
 std::vector<LabelledLine> lines_of(const PairVerdict& verdict, Charset charset) {
   const Diagnosis& diagnosis = verdict.diagnosis;
   std::vector<LabelledLine> lines;

@@ -16,7 +16,7 @@
 namespace egocal::monitor {
 namespace {
 
-/// Items from left to right, as far as there is room before the clock.
+/// The items of the header from left to right, as many as fit before the clock.
 class HeaderLine {
  public:
   HeaderLine(const Pane& pane, const ViewState& view, std::int64_t wall_us)
@@ -35,7 +35,7 @@ class HeaderLine {
   }
   /// Also where the clock would have been.
   void must(const std::string& text, Style style, int gap = 0) { x_ = pane_.text(x_, 0, text, style) + gap; }
-  /// Before the clock: nothing else of this line is of the present then.
+  /// Says before the clock that the network is away: nothing else in this line is current then.
   void say_away() {
     constexpr const char* no_network = "NO NETWORK";
     if (!view_.network_error.empty() && x_ + width_of(no_network) <= width()) must(no_network, Style::bad, 2);
@@ -158,7 +158,7 @@ void draw_keys(const Pane& pane, const ViewState& view) {
   }
 }
 
-/// On the overview only what is not as it should be; all of it has a screen of its own.
+/// On the overview only streams with a fault; all streams have a screen of their own.
 int streams_to_say(const Model& model) {
   const auto& lines = model.streams();
   const bool well = std::all_of(lines.begin(), lines.end(), [](const bus::StreamLine& line) {

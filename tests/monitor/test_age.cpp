@@ -146,6 +146,20 @@ TEST_F(AnswerAge, APairingThatHangsLeavesAnOldOne) {
   expect_good();
 }
 
+// A camera started again with times of its own: pairing runs, and finds no motion in its new session. The
+// monitor said that pairing is silent, and nothing of the cause.
+TEST_F(AnswerAge, ASessionWithoutMotionLeavesAnOldOneAndTheCause) {
+  drive(0, 10, true);
+  model.set_why_standing(0, "the stamps of the two streams do not overlap: those of lidar are 34.0 s ahead");
+  for (int second = 10; second < 20; ++second) {
+    model.on_status(test::status_of("egocal-pairing", "pairing", second), at(second));
+    model.tick(at(second));
+  }
+  expect_old("no new motion for 9");
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("the stamps of the two streams do not"));
+  EXPECT_THAT(shown(Screen::overview), Not(HasSubstr("SILENT")));
+}
+
 TEST_F(AnswerAge, AMonitorThatCameLaterKnowsNoProblemAndVerifiesNothing) {
   problem = test::problem_at("lidar", "camera", 100, 10);
   model.on_calibration(test::calibration_at(problem, false), at(0), false);

@@ -9,8 +9,8 @@
 
 namespace egocal::monitor {
 
-// Sizes in, rectangles out. Rectangles never overlap and never leave the screen; an empty one is not drawn.
-// What matters most is given room first: the answers, then the rest.
+// Computes rectangles from sizes. Rectangles never overlap and never leave the screen; an empty one is not
+// drawn. The answers get room first.
 
 struct OverviewLayout {
   Rect header, pairs, processes, events, keys;

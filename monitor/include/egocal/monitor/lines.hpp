@@ -9,7 +9,7 @@
 
 namespace egocal::monitor {
 
-// The same model without a terminal: for pipes, logs and bug reports.
+// The model as text, without a terminal: for pipes, logs and bug reports.
 
 /// A line per pair.
 std::string pair_lines(const Model& model, Charset charset);

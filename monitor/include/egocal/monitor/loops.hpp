@@ -12,16 +12,15 @@
 namespace egocal::monitor {
 
 struct LoopOptions {
-  /// A loop is open where its misfit exceeds this many times the sum of the three answers' standard
-  /// deviations. Their errors are dependent, and the sum bounds the standard deviation of the loop however
-  /// they are.
+  /// A loop is open if its misfit exceeds this many times the sum of the standard deviations of its three
+  /// answers. Their errors are dependent; the sum is an upper bound for any dependence.
   double sigmas = 3;
-  /// And by these: odometry has systematic errors that repeat in every part of a drive (docs/rigs.md).
+  /// And these minima, because systematic errors of odometry repeat in every part of a drive (docs/rigs.md).
   double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
   double least_translation = 0.01;                        ///< [m]
 };
 
-/// T_ab T_bc T_ca of the answers that count for three pairs: the identity where they agree.
+/// T_ab T_bc T_ca of the answers that count for three pairs. The identity if they agree.
 struct Loop {
   std::array<std::string, 3> sensors;
   double rotation = 0, translation = 0;              ///< misfit [rad, m]
@@ -32,8 +31,7 @@ struct Loop {
 /// All loops of three pairs that have an answer, in the order of the pairs.
 std::vector<Loop> loops_of(const Model& model, const LoopOptions& options = {});
 
-/// The sensor that all open loops have in common and no closed one has; empty: there is none, or more than
-/// one.
+/// The sensor that is in all open loops and in no closed one; empty: there is none, or more than one.
 std::string sensor_to_blame(const std::vector<Loop>& loops);
 
 }  // namespace egocal::monitor

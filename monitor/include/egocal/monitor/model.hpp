@@ -160,7 +160,8 @@ struct PairState {
   std::optional<std::int64_t> reset_asked;  ///< the session that a command asked to forget
   /// The monitor has no network, or nothing of pairing has come since: the silence is not pairing's.
   bool no_network = false;
-  bool ended = false;  ///< every pairing process that was heard has reported its end
+  bool ended = false;         ///< every pairing process that was heard has reported its end
+  bool pairing_runs = false;  ///< one of them is alive
 
   const calibration_t* answer() const {
     return counted < 0 ? nullptr : &solvers[static_cast<std::size_t>(counted)].answer;
@@ -292,6 +293,9 @@ bool pair_is_paused(const Model& model, const PairState& pair);
 /// There are answers, and the pairing process whose problems they answer sends nothing, though it has not
 /// reported its end: it hangs or is gone. It repeats its problems once a second.
 bool pairing_is_silent(const PairState& pair);
+/// Pairing is silent about this pair alone, for a known cause: a session has begun in which it finds no
+/// motion, and so sends no problem.
+bool session_has_no_motion(const PairState& pair);
 /// How far the answer that counts is from the one that was called good; empty: the verdict holds for it.
 std::optional<bus::Departure> departure_of(const PairState& pair);
 /// The answer is verified and proven, its verdict is good and about it, and both are of the present.
