@@ -61,6 +61,8 @@ void expect_all_types(const std::string& file, const Trajectory& trajectory) {
     EXPECT_FALSE(reading.losses.any()) << file << topic << losses_in_words(reading.losses);
   }
   expect_equal(read_trajectory(file + ":/TFMessage:odom/base/link"), trajectory, "frames with slashes");
+  for (const char* frames : {"/odom/base/link", "odom//base/link", "/odom//base/link"})
+    expect_equal(read_trajectory(file + ":/TFMessage:" + frames), trajectory, "frames as of tf1");
   expect_equal(read_trajectory(file + ":Odometry"), trajectory, "topic without its slash");
 }
 
@@ -80,6 +82,22 @@ TEST(Bags, McapIsReadHoweverItIsPacked) {
   expect_all_types(
       folder.file("ros1.mcap", testing::mcap_file(all_types(trajectory, MessageEncoder::Kind::ros1), ros1)),
       trajectory);
+}
+
+// It was "which egocal reads no poses from", of a type that it reads.
+TEST(Bags, AnEncodingThatIsNotKnownIsNamed) {
+  const testing::ScratchFolder folder;
+  BagOptions json;
+  json.message_encoding = "json";
+  const std::string file = folder.file(
+      "json.mcap", testing::mcap_file(all_types(some_trajectory(20), MessageEncoder::Kind::cdr), json));
+  std::string refusal;
+  try {
+    read_trajectory(file + ":/Odometry");
+  } catch (const Error& error) {
+    refusal = error.what();
+  }
+  EXPECT_THAT(refusal, HasSubstr("is of type nav_msgs/Odometry in the encoding json, expected cdr or ros1"));
 }
 
 TEST(Bags, Rosbag1IsReadHoweverItIsPacked) {

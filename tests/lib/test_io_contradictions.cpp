@@ -133,6 +133,18 @@ TEST_F(Contradictions, FramesThatAreMixedOnOneTopicAreCounted) {
   }
 }
 
+TEST_F(Contradictions, TypesThatAreMixedOnOneTopicAreCounted) {
+  std::vector<WrittenMessage> messages;
+  for (std::int64_t i = 0; i < 30; ++i)
+    messages.push_back(
+        pose(i % 3 == 0 ? "geometry_msgs/PoseStamped" : "nav_msgs/Odometry", i, "odom", "cam"));
+  const std::string name = file(messages) + ":/p";
+  const std::string expected = "/p: messages of several types are mixed: ";
+  EXPECT_THAT(read_trajectory_file(name).notes,
+              Contains(HasSubstr(expected + "geometry_msgs/PoseStamped (10), nav_msgs/Odometry (20)")));
+  EXPECT_THAT(refusal(name, true), HasSubstr(expected));
+}
+
 TEST_F(Contradictions, ATopicOfAnotherTypeIsNamedAsOne) {
   auto messages = drive();
   for (const auto& [type, cure] :

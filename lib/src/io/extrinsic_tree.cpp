@@ -82,7 +82,7 @@ std::string json_tree(const ExtrinsicTree& tree) {
   return text + "]\n}\n";
 }
 
-/// Names that differ only in characters that no format holds would become one frame.
+/// Refuses names that would become one frame, as they differ only in characters that no format allows.
 void refuse_equal_names(const std::vector<NamedExtrinsic>& pairs) {
   std::map<std::string, std::string> names;
   for (const NamedExtrinsic& pair : pairs)

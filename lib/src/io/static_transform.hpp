@@ -9,18 +9,19 @@
 
 namespace egocal::detail {
 
-/// What a recording says of one static transform, in the order of the recording. As in tf2 it holds for all
-/// time and the newest value counts. Senders repeat it; one that changes is a contradiction.
+/// The values of one static transform in the order of the recording. As in tf2 a value holds for all time,
+/// and the newest one counts. Senders repeat it; a change is a contradiction.
 class StaticTransform {
  public:
   StaticTransform() = default;
   explicit StaticTransform(const RecordedStream& stream) : stream_(stream) {}
 
-  /// Takes a value of any static stream; those of other transforms are passed over.
+  /// Takes a value of any static stream; values of other transforms are ignored.
   void add(const RecordedStream& stream, const StampedPose& value);
   /// The newest one. Empty: none was sent.
   const Trajectory& value() const { return newest_; }
-  /// How often the value changes, when and by how much first, and which one is used; empty: it does not.
+  /// How often the value changes, when and by how much first, and which value is used; empty: it does not
+  /// change.
   std::string contradiction() const;
 
  private:

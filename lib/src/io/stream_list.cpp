@@ -28,7 +28,8 @@ constexpr OtherType other_types[] = {
 
 constexpr std::size_t longest_type = 60;  // limit of what people read [bytes]
 
-/// Of a topic with transforms, each of which is a stream of its own. Empty: of any other topic.
+/// Why a topic with transforms, each of which is a stream of its own, has no poses; empty: it is another
+/// topic.
 std::string why_no_transform(const std::vector<RecordedStream>& streams, const RecordedStream& topic) {
   std::size_t moving = 0, fixed = 0;
   for (const RecordedStream& stream : streams)
@@ -50,6 +51,9 @@ std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::
     if (stream.poses) return "none of its messages holds a pose that can be used";
     if (std::string text = why_no_transform(streams, stream); !text.empty()) return text;
     std::string text = "is of type " + printable(stream.type, longest_type);
+    if (!stream.unknown_encoding.empty())
+      return text + " in the encoding " + printable(stream.unknown_encoding, longest_type) +
+             ", expected cdr or ros1";
     for (const OtherType& other : other_types)
       if (stream.type == other.type) return text + ", " + std::string(other.problem);
     return text + ", which egocal reads no poses from";

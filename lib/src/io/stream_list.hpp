@@ -13,8 +13,8 @@ namespace egocal::detail {
 /// what there is instead. At most some 700 characters.
 std::string topics_in_words(const std::vector<RecordedStream>& streams);
 
-/// Of a topic that is there and has no poses: "is of type nav_msgs/Path, whose ...", "holds 2 transforms that
-/// move: ...". Empty for any other name.
+/// Why an existing topic has no poses: "is of type nav_msgs/Path, whose ...", "holds 2 transforms that move:
+/// ...". Empty for any other name.
 std::string why_no_poses(const std::vector<RecordedStream>& streams, const std::string& name);
 
 }  // namespace egocal::detail

@@ -21,7 +21,7 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
-/// Rows of a file that a program wrote: searching for one character takes half of the time.
+/// For rows written by a program: searching for one character takes half of the time.
 void split_at_spaces(std::string_view text, std::vector<std::string_view>& fields) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -30,8 +30,8 @@ void split_at_spaces(std::string_view text, std::vector<std::string_view>& field
   }
 }
 
-/// Of a field that begins with a double quote: behind the closing one. Two quotes stand for one in the text.
-/// Where none closes it, its begin: it is a field like any other.
+/// The end of a field that begins with a double quote: after the closing quote. Two quotes stand for one in
+/// the text. Without a closing quote it is the beginning: the field is then like any other.
 std::size_t behind_quotes(std::string_view text, std::size_t begin) {
   std::size_t at = begin;
   while (at < text.size() && blank(text[at])) ++at;

@@ -30,11 +30,18 @@ void read_stream(Recording& recording, const std::string& topic, TrajectoryReadi
   });
 }
 
+/// tf1 wrote frames with a leading slash: "/odom/lidar" and "/odom//lidar" are "odom/lidar".
+std::string without_slashes_of_tf1(std::string frames) {
+  if (const std::size_t at = frames.find("//"); at != std::string::npos) frames.erase(at, 1);
+  if (frames.starts_with('/')) frames.erase(0, 1);
+  return frames;
+}
+
 /// FILE:/tf:PARENT/CHILD over several transforms; the streams are known from a first pass.
 void read_chain(Recording& recording, const std::string& topic, TrajectoryReading& reading) {
   const std::vector<RecordedStream> streams = recording.streams();
   const std::string tf = topic.substr(0, topic.find(':'));
-  const auto frames = detail::split_frames(streams, topic.substr(tf.size() + 1));
+  const auto frames = detail::split_frames(streams, without_slashes_of_tf1(topic.substr(tf.size() + 1)));
   const auto links = frames ? detail::find_chain(streams, tf, frames->first, frames->second) : std::nullopt;
   if (!links)
     throw error_at(recording.file(), 0, printable(topic),
@@ -93,6 +100,19 @@ std::string full_name(const std::vector<RecordedStream>& streams, const std::str
   if (!known(topic) && known("/" + topic)) return "/" + topic;
   const std::string head = topic.substr(0, topic.find(':'));
   return !topic.empty() && !known(head) && known("/" + head) ? "/" + topic : topic;
+}
+
+/// "/lidar: messages of several types are mixed: nav_msgs/Odometry (600), geometry_msgs/PoseStamped (300)";
+/// empty: all are of one type.
+std::string mixed_types(const std::vector<RecordedStream>& streams, const std::string& name) {
+  std::string text;
+  std::size_t types = 0;
+  for (const RecordedStream& stream : streams) {
+    if (stream.name != name || !stream.poses || stream.fixed || stream.messages == 0) continue;
+    text +=
+        (types++ == 0 ? "" : ", ") + printable(stream.type) + " (" + std::to_string(stream.messages) + ")";
+  }
+  return types > 1 ? printable(name) + ": messages of several types are mixed: " + text : "";
 }
 
 /// name: what was asked for; empty: the only stream. Text has one without a name.
@@ -187,6 +207,8 @@ TrajectoryReading read_trajectory_of(Recording& recording, const std::string& to
   for (const RecordedStream& stream : recording.streams())
     if (stream.name == name && !stream.mixed.empty())
       reading.contradictions.push_back(printable(name) + ": " + stream.mixed);
+  if (std::string mixed = mixed_types(streams, name); !mixed.empty())
+    reading.contradictions.push_back(std::move(mixed));
   reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
   reading.notes.insert(reading.notes.end(), reading.contradictions.begin(), reading.contradictions.end());
   if (reading.out_of_order > 0)

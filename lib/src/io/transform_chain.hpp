@@ -18,8 +18,8 @@ struct ChainLink {
   bool inverted = false;  ///< walked from child to parent
 };
 
-/// The transforms that lead from `parent` to `child`, fewest first; empty where none do. Those of `topic` and
-/// all static ones are known.
+/// The shortest chain of transforms from `parent` to `child`, over those of `topic` and all static ones;
+/// empty: there is none.
 std::optional<std::vector<ChainLink>> find_chain(const std::vector<RecordedStream>& streams,
                                                  const std::string& topic, const std::string& parent,
                                                  const std::string& child);

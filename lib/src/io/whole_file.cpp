@@ -34,7 +34,7 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// The name itself must reach the disk, too. Not every file system can.
+/// Syncs the folder: the name must reach the disk as well. Not every file system can do it.
 void sync_folder(const std::string& file) {
   const int fd = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;
@@ -42,7 +42,7 @@ void sync_folder(const std::string& file) {
   close(fd);
 }
 
-/// The links of /proc look like links to files, and are what a process has open.
+/// Whether the path is in /proc, whose links look like links to files but are the open files of a process.
 bool in_proc(const fs::path& file) {
   struct statfs system {};
   return statfs(folder_of(file).c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;

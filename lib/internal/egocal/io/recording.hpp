@@ -25,6 +25,7 @@ struct RecordedStream {
   bool fixed = false;                ///< a static transform
   /// "poses of several frames are mixed: map (600), odom (600)"; empty: all are of one frame.
   std::string mixed;
+  std::string unknown_encoding;  ///< of messages that cannot be decoded, e.g. "json"; empty: they can
 };
 
 /// What messages of a bag or log do not need: they name their fields and have times.

@@ -13,12 +13,12 @@ struct BagFolder {
     std::string name;  ///< as metadata.yaml names it, without folders
     std::string path;  ///< empty: the file is not there
   };
-  /// In order. Of a packed file and its unpacked copy only the copy.
+  /// The parts in order. If a packed file and its unpacked copy are there, only the copy.
   std::vector<Part> parts;
   std::vector<std::string> strangers;  ///< bags in the folder that metadata.yaml does not name
 };
 
-/// Looks at the names only. Without a metadata.yaml that names files, all bags in the folder are its parts.
+/// Finds the parts by names only. Without a metadata.yaml that names files, all bags in the folder are parts.
 BagFolder look_into(const std::string& folder);
 
 /// Whether this is the metadata.yaml of such a folder.

@@ -69,8 +69,8 @@ void BagRecording::read_part(MessageReader& part, const std::string& topic, cons
     const std::size_t stream = stream_of_topic[message.topic];
     ++streams_[stream].messages;
     const BagTopic& from = part.topics()[message.topic];
-    if (!is_pose_type(from.type)) continue;
-    // of a chain of transforms, the static ones come on another topic
+    if (!is_pose_type(from.type) || !streams_[stream].unknown_encoding.empty()) continue;
+    // the static transforms of a chain come on another topic
     const bool wanted = topic.empty() || from.name == topic || is_transforms_type(from.type);
     if (wanted) take_message(part, message, stream, take);
   }
@@ -86,6 +86,7 @@ std::size_t BagRecording::stream_of(const BagTopic& topic) {
   stream.name = stream.topic = topic.name;
   stream.type = topic.type;
   stream.poses = decodable && is_pose_type(topic.type) && !is_transforms_type(topic.type);
+  if (!decodable) stream.unknown_encoding = topic.encoding;
   streams_.push_back(std::move(stream));
   topics_[{topic.name, topic.type}] = index;
   return index;

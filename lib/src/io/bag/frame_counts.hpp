@@ -12,9 +12,9 @@ namespace egocal::detail {
 /// The frames that the messages of one topic name. Poses of several frames are no trajectory of one sensor.
 class FrameCounts {
  public:
-  /// Empty names count as no other frame: many senders leave them away.
+  /// Empty names do not count as another frame, as many senders omit them.
   void add(std::string_view parent, std::string_view child);
-  /// "poses of several frames are mixed: map (600), odom (600)"; empty: they are all of one frame.
+  /// "poses of several frames are mixed: map (600), odom (600)"; empty: all are of one frame.
   std::string mixed() const;
 
  private:

@@ -37,7 +37,7 @@ struct McapRecord {
 /// chunks or messages (attachments) are passed over.
 class McapRecords {
  public:
-  /// Throws Error where the file does not begin with the magic bytes.
+  /// Throws Error if the file does not begin with the magic bytes.
   explicit McapRecords(std::unique_ptr<ByteSource> source);
 
   bool next(McapRecord& record);

@@ -12,7 +12,7 @@
 
 namespace egocal::detail {
 
-/// No chunk, record or message of a bag is held in memory beyond this; larger ones count as damaged. [bytes]
+/// Largest chunk, record or message that is held in memory [bytes]; larger ones count as damaged.
 inline constexpr std::size_t largest_record = 64 << 20;
 
 struct BagTopic {

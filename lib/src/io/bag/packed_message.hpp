@@ -15,8 +15,8 @@ namespace egocal::detail {
 /// first bytes, as files are: CDR begins with a zero byte, which no packed message does.
 class PackedMessage {
  public:
-  /// The message, as it is where it is not packed; valid until the next call. Nothing where it is damaged, or
-  /// longer than largest_record.
+  /// The unpacked message, or the message itself if it is not packed; valid until the next call. Empty: it is
+  /// damaged, or longer than largest_record.
   std::optional<ByteSpan> unpacked(std::string_view encoding, ByteSpan message);
 
  private:

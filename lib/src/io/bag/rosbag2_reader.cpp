@@ -184,8 +184,8 @@ void Rosbag2Reader::look_behind(std::int64_t id) {
   sqlite3_bind_int64(messages_.get(), 1, id);
 }
 
-/// Goes on at the first row that can be read behind one that cannot: looks further and further away, then
-/// halves the way back. At most some 130 looks, for a damaged file may name any number as a row.
+/// Continues at the first readable row after an unreadable one: looks farther and farther ahead, then
+/// bisects. At most about 130 looks, as a damaged file may name any number as a row.
 bool Rosbag2Reader::step_over_damage() {
   ++losses_.regions;
   const auto readable = [&](std::int64_t id) {

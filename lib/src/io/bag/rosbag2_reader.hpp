@@ -22,7 +22,7 @@ class Rosbag2Reader : public MessageReader {
  public:
   /// Throws Error where the file is no database, or has no tables of rosbag2.
   explicit Rosbag2Reader(const std::string& file) : Rosbag2Reader(file, file, {}) {}
-  /// A packed one, which is unpacked first. Its unpacked copy is gone when this returns.
+  /// Reads a packed file, which is unpacked into a copy first. The copy is removed before this returns.
   static std::unique_ptr<Rosbag2Reader> unpacked(ByteSource& source);
 
   bool next(BagMessage& message) override;

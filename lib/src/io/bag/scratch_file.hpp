@@ -8,9 +8,8 @@
 
 namespace egocal::detail {
 
-/// All bytes of a source in a file of its own, in the folder for temporary files; it is removed with the
-/// object. For what cannot be read from its beginning to its end. Takes at most nine tenths of the free
-/// space there. Throws Error naming the source where that is too little.
+/// All bytes of a source in a temporary file, for readers that need random access. The destructor removes it.
+/// It takes at most nine tenths of the free space. Throws Error naming the source if that is too little.
 class ScratchFile {
  public:
   explicit ScratchFile(ByteSource& source);

@@ -39,8 +39,8 @@ std::size_t agreement(const ColumnName& one, const ColumnName& other) {
   return static_cast<std::size_t>(end.first - one.words.begin());
 }
 
-/// The first of those with the largest rank; of those of one rank that agrees best with the name `with`.
-/// agreement_first: a name that agrees is better than one of a larger rank.
+/// The best candidate: the largest rank, then the best agreement with the name `with`, then the first.
+/// agreement_first: agreement counts more than rank.
 const Candidate* best_of(const std::vector<Candidate>& candidates, const ColumnName* with,
                          bool agreement_first) {
   const Candidate* best = nullptr;
@@ -56,8 +56,8 @@ const Candidate* best_of(const std::vector<Candidate>& candidates, const ColumnN
   return best;
 }
 
-/// Position and orientation of one thing, where the names tell: first by the orientation, then, where no
-/// position goes with it, by the position.
+/// Position and orientation of one object, if the names tell: chosen by the orientation first, or by the
+/// position if no position goes with that.
 struct Chosen {
   std::array<const Candidate*, quantities> of{};
 

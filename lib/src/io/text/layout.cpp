@@ -56,7 +56,7 @@ void check_columns(const std::vector<std::string_view>& names, const ColumnMap& 
   }
 }
 
-/// Columns of another part of a table may have the same meaning, such as those of a second robot.
+/// Notes columns with the same meaning as a chosen one, such as those of a second robot.
 void note_rivals(TextLayout& layout) {
   std::string text;
   for (std::size_t i = 0; i < quantities; ++i)
@@ -81,7 +81,7 @@ bool is_read(const TextLayout& layout, std::size_t index) {
       [&](const std::optional<ColumnMap::Column>& column) { return column && column->index == index; });
 }
 
-/// A name of --columns that is no quantity may be a mistyped one.
+/// Notes a name of --columns that is no quantity, as it may be misspelt.
 void note_unread(TextLayout& layout) {
   std::string text;
   for (std::size_t k = 0; k < layout.names.size(); ++k) {

@@ -8,8 +8,8 @@
 
 namespace egocal::detail {
 
-/// The lines of a text file, one at a time, without copying them. A byte order mark and line ends are left
-/// away.
+/// Reads the lines of a text file one at a time, without copying them. A byte order mark and line ends are
+/// removed.
 class LineReader {
  public:
   explicit LineReader(ByteSource& source) : source_(source) {}

@@ -183,7 +183,8 @@ std::vector<std::string> TextRecording::unused(const ReadOptions& options) const
   return {"--rate is not used: the poses have times"};
 }
 
-/// A last row without its line end that holds all fields, numbers but perhaps for the last one.
+/// Whether a last row without a line end may be cut off within its last number: it has all fields, and
+/// numbers in all but perhaps the last.
 bool TextRecording::may_end_in_a_cut_number(const TextRows& rows) const {
   const std::size_t n = rows.fields.size();
   if (rows.lines.terminated() || rows.count < 2 || n != std::max(layout_.fields, layout_.names.size()))

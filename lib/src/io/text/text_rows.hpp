@@ -84,7 +84,7 @@ struct TextRows {
     return value;
   }
 
-  /// Whether the row has no number in one of the fields that are read: tracking was lost.
+  /// Whether a field that is read has no number, because tracking was lost.
   bool without_a_number() const {
     const auto missing = [&](std::size_t i) { return i < fields.size() && is_missing_number(fields[i]); };
     if (!numbers.empty()) return missing(stamp);  // the other fields are numbers
