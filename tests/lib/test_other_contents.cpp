@@ -13,6 +13,7 @@
 
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
+#include "../support/random_motion.hpp"
 #include "diagnosis/explanations/turning_of_steps.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"

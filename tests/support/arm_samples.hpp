@@ -31,7 +31,8 @@ inline Pose noisy(const Pose& T, double rotation, double position, Random& rando
   return {(rotation_exp(turn) * T.rotation).normalized(), T.translation + shift};
 }
 
-/// The camera 0.4 to 0.8 m from the target, looking at it, turned about its axis by up to a third of a turn.
+/// A set with the camera 0.4 to 0.8 m from the target, looking at it, turned about its axis by up to a third
+/// of a turn.
 inline SimulatedSamples simulate_arm(const ArmSamples& what, Random& random) {
   constexpr double degree = std::numbers::pi / 180, mm = 1e-3;
   const auto anywhere = [&](double size) {

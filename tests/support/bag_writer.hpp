@@ -19,8 +19,8 @@
 
 #include "egocal/pairing/trajectory.hpp"
 
-/// Bags as other programs write them, for tests of the readers; written from the formats' specifications and
-/// not from the readers.
+/// Bags as other programs write them, for tests of the readers. Written from the specifications of the
+/// formats, not from the readers.
 namespace egocal::testing {
 
 inline std::string little(std::uint64_t value, std::size_t size) {
@@ -186,7 +186,7 @@ inline std::string rosbag1_record(const std::vector<std::pair<std::string, std::
   return with_length(header) + with_length(data);
 }
 
-/// A ROS 1 bag without its index, as a recorder that was killed leaves it.
+/// A ROS 1 bag without an index, as a killed recorder leaves it.
 inline std::string rosbag1_file(const std::vector<WrittenMessage>& messages, const BagOptions& options) {
   std::string file = "#ROSBAG V2.0\n";
   file += rosbag1_record({{"op", "\3"},

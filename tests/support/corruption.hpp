@@ -11,7 +11,7 @@
 
 namespace egocal::testing {
 
-/// What goes grossly wrong with real odometry; each costs about the given part of the poses.
+/// Gross errors of real odometry. Each affects about the given part of the poses.
 enum class Corruption {
   missing,         ///< one long stretch is not there: what no method can do better than
   isolated_jumps,  ///< single poses metres and tens of degrees away
@@ -90,7 +90,7 @@ inline Trajectory corrupted(Trajectory path, Corruption corruption, std::uint64_
         if (random.uniform() < part) pose.pose = normalized(pose.pose * elsewhere());
       break;
     case Corruption::lasting_jumps: {
-      // every fifth pose elsewhere for good would leave no motions at all: one in five seconds
+      // a jump at every fifth pose would leave no motions at all, so one every five seconds
       DualQuaternion since;
       for (StampedPose& pose : path) {
         if (random.uniform() < 0.2 * period) since = normalized(since * elsewhere());

@@ -18,8 +18,7 @@ namespace egocal::test {
 
 constexpr std::size_t log_header_size = 28;
 
-/// A log of two simulated sensors, and now and then a message of changing length; what it looks like in the
-/// file.
+/// A log of two simulated sensors, with a message of changing length now and then, as the bytes of its file.
 struct SmallLog {
   std::string bytes;
   std::vector<std::size_t> begin;  ///< of each event; one more: the end
@@ -81,7 +80,7 @@ struct DamagedLog {
   bool shifted = false;  ///< bytes are missing or elsewhere
 };
 
-/// Made of pieces of the original, in this order, with some bytes touched (places in the result).
+/// A damaged log: pieces of the original in this order, with some bytes changed (places in the result).
 class Accident {
  public:
   explicit Accident(const SmallLog& log) : log_(log) {}

@@ -15,7 +15,7 @@ inline void set_content(int fd, const void* content, std::size_t size) {
   if (ftruncate(fd, 0) != 0 || pwrite(fd, content, size, 0) != static_cast<ssize_t>(size)) std::abort();
 }
 
-/// A file that is never on a disk, with a name that anybody in this process can open.
+/// A file in memory, with a name that any code of this process can open.
 class InMemoryFile {
  public:
   InMemoryFile() : fd_(memfd_create("input", MFD_CLOEXEC)) {
@@ -32,7 +32,7 @@ class InMemoryFile {
   int fd_;
 };
 
-/// The same with a name of its own, for libraries that follow links (sqlite3). Removed at the end.
+/// The same with a name of its own, for libraries that follow links (sqlite3). Removed by the destructor.
 class NamedMemoryFile {
  public:
   NamedMemoryFile() : fd_(mkstemp(name_.data())) {

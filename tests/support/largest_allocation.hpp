@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Replaces operator new and delete of a program: to be included by one of its files only.
+// Replaces operator new and delete of a program. Include it in only one file of the program.
 #pragma once
 
 #include <algorithm>

@@ -16,7 +16,7 @@
 
 namespace egocal::test {
 
-/// What a bad network does to messages, each with its own probability.
+/// Faults of a bad network, each with its own probability.
 struct Losses {
   double dropped = 0.2, doubled = 0.05, reordered = 0.05, flipped = 0.001;
 };
@@ -27,7 +27,7 @@ struct RelayCounts {
   std::int64_t flipped_fingerprint_or_length = 0;  ///< of odometry_t: cannot be decoded any more
 };
 
-/// Hands messages on, or not: every fate drawn from the seed and counted. A reordered message goes out after
+/// Relays messages with faults, which are drawn from the seed and counted. A reordered message goes out after
 /// the next one of its channel; a flipped one has a single wrong bit.
 class LossyRelay {
  public:
@@ -38,7 +38,7 @@ class LossyRelay {
 
   void take(const std::string& channel, bus::Bytes bytes) {
     ++counts_.in;
-    // all fates are drawn for every message, so that one probability does not change the others' choices
+    // all faults are drawn for every message, so that one probability does not change the draws of the others
     const bool drop = random_.uniform() < losses_.dropped;
     const bool twice = random_.uniform() < losses_.doubled;
     const bool late = random_.uniform() < losses_.reordered;

@@ -19,8 +19,8 @@ struct ManoeuvresOptions {
   double noise = 0.01;                            ///< of the root mean square step
 };
 
-/// Manoeuvres of 4 to 25 s in random order, as one drives to calibrate: still, straight, turning on the spot,
-/// a curve; and of a rig that is held by hand rocking, heaving, sliding, anything. Each shows other
+/// Manoeuvres of 4 to 25 s in random order, as in a calibration drive: standing, straight, turning on the
+/// spot, a curve; with a hand-held rig also rocking, heaving, sliding, any motion. Each shows other
 /// directions.
 inline Streams manoeuvres(std::uint64_t seed, bool by_hand, const ManoeuvresOptions& options) {
   constexpr double period = 0.1;

@@ -24,7 +24,7 @@ struct Sensor {
   double noise_angle = 1e-4, noise_step = 2e-3;  ///< of each motion [rad, m]
 };
 
-/// What the odometry of a sensor reports until `seconds`. Each motion has noise, which all later poses keep.
+/// Odometry of a sensor until `seconds`. Each motion has noise, which stays in all later poses.
 inline Trajectory measured(Random& random, const BodyPath& body, double seconds, const Sensor& sensor) {
   Trajectory poses;
   Pose before, at;

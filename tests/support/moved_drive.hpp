@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives whose mounts move, and the moves that are found in them.
+// Drives with moving mounts, and the moves found in them.
 #pragma once
 
 #include <cmath>
@@ -34,7 +34,7 @@ inline MountChange bump(double time, std::uint64_t seed, double size = 1) {
   return {time, time, {rotation_exp(size * 0.5 / degrees * axis), size * 0.03 * axis}};
 }
 
-/// The orientation and the place of a sensor err by 0.3 degrees and 2 cm, remembered for 6 s.
+/// Adds errors of 0.3 degrees and 2 cm to orientation and position, remembered for 6 s.
 inline Trajectory with_wandering_errors(Trajectory poses, std::uint64_t seed) {
   Random random(seed);
   const double keep = std::exp(-0.1 / 6), fresh = std::sqrt(1 - keep * keep);

@@ -7,8 +7,9 @@
 
 namespace egocal::testing {
 
-/// 10 s straight on at 8 m/s with small tilts, and a quarter turn in the last twelfth of it: few motions hold
-/// what is known of most directions. White noise of 2 mrad and 1 cm on every motion of both sensors.
+/// 10 s straight on at 8 m/s with small tilts, and a quarter turn in the last twelfth, so that few motions
+/// hold the information about most directions. White noise of 2 mrad and 1 cm on every motion of both
+/// sensors.
 inline Streams one_turn_drive(std::uint64_t seed) {
   constexpr int motions = 100, first_turning = 88;
   constexpr double tilt = 0.004, yaw = 0.13;                    // [rad]

@@ -7,8 +7,8 @@
 
 namespace egocal::testing {
 
-/// What a simulated drive of 300 poses with 1 % of noise says of the scale of sensor b, whose lengths are
-/// this many times too short.
+/// The scale problem of a simulated drive of 300 poses with 1 % of noise, in which the lengths of b are too
+/// short by this factor.
 inline ScaleProblem scale_problem_of_b(double scale) {
   SimulationOptions options;
   options.terrain = Terrain::free;

@@ -42,8 +42,8 @@ class SeveralHosts {
   }
   ~SeveralHosts() {
     for (std::size_t i = 0; i < holders_.size(); ++i) {
-      // by name, as the kernel takes its time for a namespace without processes: the next object's
-      // interfaces would meet these
+      // by name, because the kernel removes a namespace without processes late, and the next object would
+      // find its interfaces
       std::system(("ip link del " + port_of(static_cast<int>(i))).c_str());
       ::kill(holders_[i], SIGKILL);
       waitpid(holders_[i], nullptr, 0);
@@ -53,10 +53,10 @@ class SeveralHosts {
   SeveralHosts(const SeveralHosts&) = delete;
   SeveralHosts& operator=(const SeveralHosts&) = delete;
 
-  /// The calling thread works on that host's network from here on, and so does what it starts.
+  /// Moves the calling thread, and whatever it starts, to the network of that host.
   void enter(int host) const { set_namespace("/proc/" + std::to_string(holders_[index(host)]) + "/ns/net"); }
 
-  /// Calls on that host and comes back; sockets made there stay there. 0 is success.
+  /// Calls the function on that host and returns to this one; sockets made there stay there. 0: success.
   void in_host(int host, const std::function<int()>& what) const {
     const int home = open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC);
     enter(host);
@@ -67,8 +67,8 @@ class SeveralHosts {
   }
 
  private:
-  SeveralHosts() =
-      default;  // delegated to, so that what is there is taken down where the rest cannot be made
+  /// Delegated to, so that the destructor removes what was made if the rest fails.
+  SeveralHosts() = default;
 
   static std::string port_of(int host) { return "port" + std::to_string(host + 1); }
   static std::size_t index(int host) { return static_cast<std::size_t>(host); }
@@ -81,7 +81,7 @@ class SeveralHosts {
     if (fd >= 0) close(fd);
     if (result != 0) throw std::runtime_error("cannot enter " + file);
   }
-  /// A process that does nothing but keep a network namespace alive.
+  /// A process that only keeps a network namespace alive.
   static pid_t hold_namespace() {
     int ready[2];
     if (pipe2(ready, O_CLOEXEC) != 0) throw std::runtime_error("pipe failed");

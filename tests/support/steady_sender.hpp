@@ -14,8 +14,8 @@
 
 namespace egocal::test {
 
-/// Sends odometry in step with pairing, as egocal-player does: what was lost on the way, or sent to a process
-/// that was killed, is sent again. A busy machine's kernel drops datagrams.
+/// Sends odometry in step with pairing, as egocal-player does: messages that were lost, or sent to a process
+/// that was killed, are sent again. The kernel of a busy machine drops datagrams.
 class SteadySender {
  public:
   explicit SteadySender(bus::Loop& loop)
@@ -25,7 +25,7 @@ class SteadySender {
     heartbeat_.publish();
   }
 
-  /// Pairing is alive, and there is room for one more message on its way.
+  /// Pairing is alive, and one more message may be in flight.
   bool ready() const { return in_flight_.heard() && in_flight_.count() < most_in_flight; }
   bool all_taken() const { return in_flight_.count() == 0; }
   std::size_t on_the_way() const { return in_flight_.count(); }
@@ -37,7 +37,7 @@ class SteadySender {
     in_flight_.sent(event);
   }
 
-  /// To be called now and then while waiting: nothing acknowledged for long was lost.
+  /// Call it now and then while waiting: messages that were not acknowledged for long are sent again.
   void watch_over() {
     if (all_taken() || Clock::now() - progress_ < std::chrono::milliseconds(500)) return;
     progress_ = Clock::now();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives in blocks, some of them wrong, as truncated least squares, and the search through all choices.
+// Truncated least squares of drives with wrong blocks, and the search through all choices of outliers.
 #pragma once
 
 #include <algorithm>
@@ -63,7 +63,7 @@ inline double truncated_cost(const std::vector<TruncatedPart>& parts, const Dual
   return sum;
 }
 
-/// From a first choice to one that agrees with itself; empty where too little is left.
+/// Repeats a choice until it agrees with its own answer; empty: too little is left.
 inline std::optional<std::vector<bool>> settled_choice(const std::vector<TruncatedPart>& parts,
                                                        std::vector<bool> outlier) {
   for (int i = 0; i < 30; ++i) {
@@ -77,7 +77,7 @@ inline std::optional<std::vector<bool>> settled_choice(const std::vector<Truncat
   return std::nullopt;
 }
 
-/// The least truncated cost over all choices of outliers whose limits alone do not cost more than `most`.
+/// Finds the least truncated cost over all choices of outliers whose limits alone cost at most `most`.
 class AllChoices {
  public:
   AllChoices(const std::vector<TruncatedPart>& parts, double most) : parts_(parts), least_(most) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that turn about changing axes: one that floats freely, and one that is held at a point.
+// Bodies that turn about changing axes: one that floats freely, one that is held at a point.
 #pragma once
 
 #include <algorithm>

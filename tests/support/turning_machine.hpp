@@ -11,9 +11,9 @@
 
 namespace egocal::testing {
 
-/// Two sensors on an excavator's cab, three minutes at 10 Hz: it swings, rocks while it digs, and in one of
-/// six turns of work creeps a few metres. A wrong scale and other lever arms explain the same motions, except
-/// while it creeps. Noise: a part of each motion. scale_b: of the positions of b.
+/// Two sensors on the cab of an excavator, three minutes at 10 Hz: it swings, rocks while it digs, and creeps
+/// a few metres in one of six turns of work. Except while it creeps, a wrong scale with other lever arms
+/// explains the same motions. Noise: a part of each motion. scale_b: of the positions of b.
 inline Streams turning_machine(std::uint64_t seed, double scale_b, double noise = 0.003) {
   constexpr int poses = 1801;
   constexpr double period = 0.1, work = 5;  // [s]

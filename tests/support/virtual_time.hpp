@@ -13,7 +13,7 @@
 
 namespace egocal::test {
 
-/// A clock that moves only when a test moves it. Waiting costs no time.
+/// A clock that only the test moves. Waiting takes no time.
 class VirtualClock final : public bus::Clock {
  public:
   std::int64_t mono_ns() const override { return mono_ns_; }
@@ -31,7 +31,7 @@ class VirtualClock final : public bus::Clock {
   std::int64_t wall_step_us_ = 0;
 };
 
-/// A network inside one process: what one of its transports sends reaches all of them, in order, at once.
+/// A network within one process: a message of one transport reaches all of them at once, in order.
 class VirtualNetwork {
  public:
   explicit VirtualNetwork(const bus::Clock& clock) : clock_(clock) {}
@@ -96,7 +96,7 @@ inline std::unique_ptr<bus::Transport> VirtualNetwork::transport() {
   return std::make_unique<End>(*this, inbox);
 }
 
-/// Lets all loops run for this long in virtual time: from timer to timer, without waiting.
+/// Runs all loops for this long in virtual time, from timer to timer.
 inline void run_for(VirtualClock& clock, const std::vector<bus::Loop*>& loops,
                     std::chrono::nanoseconds time) {
   const std::int64_t end = clock.mono_ns() + time.count();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/streams/mixed_frames_jumps.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "statistics/median.hpp"
@@ -135,6 +136,23 @@ std::optional<Pattern> pattern_of(const Patterns& patterns, const std::vector<Ty
   return pattern;
 }
 
+Finding worded(const OtherFrame& frame, bool metres) {
+  const char which = frame.side == Side::a ? 'a' : 'b';
+  Finding finding;
+  finding.code = std::string("mixed_frames_") + which;
+  finding.certain = frame.certain;
+  finding.improvement = std::pow(std::max(frame.noise, 1e-9), -2);
+  say(finding, format("The poses of %s are of two frames", mark(which)),
+      format(
+          "Give the poses of one frame, of one publisher, as %s; or fasten it, where its mount can rattle by "
+          "that much.",
+          mark(which)),
+      format(": %.2g %% of them are of another one than the rest, %s and %.2g deg from it.",
+             100 * frame.share, length_in_words(frame.distance, metres).c_str(),
+             180 / std::numbers::pi * frame.angle));
+  return finding;
+}
+
 Finding worded(Side side, Half half, const Pattern& pattern, bool certain, bool metres) {
   const char which = side == Side::a ? 'a' : 'b';
   const auto words = [&](double value) {
@@ -157,6 +175,8 @@ Finding worded(Side side, Half half, const Pattern& pattern, bool certain, bool 
 std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b, bool metres,
                                     const MixedFramesOptions& options) {
   if (instants.size() < options.least + options.longest) return std::nullopt;
+  if (const std::optional<OtherFrame> frame = jumps_between_frames(instants, T_a_b))
+    return worded(*frame, metres);
   const Patterns patterns(instants, options);
   std::vector<Typical> residuals;
   for (std::size_t span = 1; span <= options.longest; ++span)
@@ -172,8 +192,10 @@ std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b,
     // stamps that alternate, and values that are held, leave a part of the way
     const Scatter scatter = patterns.scatter(side, pattern->length, T_a_b, half);
     if (scatter.of_residuals > std::min(options.most_scatter, scatter.of_parts)) continue;
-    const bool across_the_way = half == &Typical::translation &&
-                                patterns.across(pattern->length, T_a_b) > options.times * pattern->longer;
+    const bool across_the_way =
+        half == &Typical::translation &&
+        patterns.across(pattern->length, T_a_b) >
+            std::max(options.times * pattern->longer, options.across * pattern->single);
     const bool certain = across_the_way || options.clearly_constant * scatter.of_residuals < scatter.of_parts;
     Finding finding = worded(side, half, *pattern, certain, metres);
     if (certain) return finding;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Poses of two frames in turn: of two publishers on one topic, or two children of one tree in one file.
+// Poses of two frames in one stream: of two publishers on one topic, or two children of one tree in one file.
 #pragma once
 
 #include <cstddef>
@@ -30,12 +30,16 @@ struct MixedFramesOptions {
   /// do as parts of the way: those of stamps that alternate, and of held values, are a part of the way. At
   /// one speed the two are alike.
   double clearly_constant = 2;
+  /// Part of what single steps leave that is across the way: of stamps on the ticks of a slower clock 0.5 to
+  /// 4 % (FrameJumpsOptions).
+  double across = 0.2;
 };
 
-/// Single steps contradict the answer, motions of a few steps do not, and not by a part of the way. Uncertain
-/// where the speed hardly changes and what they leave is along the way: stamps that alternate would leave the
-/// same. The stream is the one whose steps differ from their neighbours, but not from those one pattern
-/// later. Finding mixed_frames_a or mixed_frames_b.
+/// Two frames whose jumps are alike (mixed_frames_jumps.hpp), or several by turns: single steps contradict
+/// the answer, motions of a few steps do not, and not by a part of the way. Uncertain where the speed hardly
+/// changes and what the steps leave is along the way: stamps that alternate would leave the same. By turns
+/// the stream is the one whose steps differ from their neighbours, but not from those one pattern later.
+/// Finding mixed_frames_a or mixed_frames_b.
 std::optional<Finding> mixed_frames(const Instants& instants, const Pose& T_a_b, bool metres,
                                     const MixedFramesOptions& options = {});
 
