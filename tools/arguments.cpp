@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arguments.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 
 #include "egocal/error.hpp"
+#include "egocal/online/nominal_part.hpp"
 
 namespace egocal::tools {
 
@@ -46,16 +49,43 @@ double number(const std::string& option, const std::string& text) {
   return numbers(option, text, 1)[0];
 }
 
-Pose pose(const std::string& option, const std::string& text) {
-  const std::vector<double> v = numbers(option, text, 7);
+namespace {
+
+/// Seven numbers as a pose; what is NaN stays so.
+Pose pose_of(const std::string& option, const std::string& text, const std::vector<double>& v) {
   const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
   if (std::abs(rotation.norm() - 1) > 0.01)
     throw UsageError(option + ": expected a quaternion QW,QX,QY,QZ of length 1, got length " +
                      std::to_string(rotation.norm()));
   for (std::size_t i = 0; i < 3; ++i)
-    if (!plausible_distance(v[i]))
+    if (!std::isnan(v[i]) && !plausible_distance(v[i]))
       throw UsageError(option + ": expected X,Y,Z within 1e9 m, got '" + text + "'");
   return {rotation.normalized(), {v[0], v[1], v[2]}};
+}
+
+}  // namespace
+
+Pose pose(const std::string& option, const std::string& text) {
+  return pose_of(option, text, numbers(option, text, 7));
+}
+
+Pose nominal(const std::string& option, const std::string& text) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> v;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string entry = text.substr(at, end - at);
+    v.push_back(entry == "nan" ? unknown : number(option, entry));
+    at = end + 1;
+  }
+  if (v.size() == 3) v.resize(7, unknown);
+  if (v.size() != 7)
+    throw UsageError(option + ": expected X,Y,Z,QW,QX,QY,QZ or X,Y,Z, nan for what is not known, got '" +
+                     text + "'");
+  const Pose part = pose_of(option, text, v);
+  if (const std::string wrong = wrong_with_part(part); !wrong.empty())
+    throw UsageError(option + ": " + wrong + ", got '" + text + "'");
+  return part;
 }
 
 GroundPlane plane(const std::string& option, const std::string& text) {

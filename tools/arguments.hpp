@@ -26,6 +26,9 @@ double number(const std::string& option, const std::string& text);
 double number_in(const std::string& option, const std::string& text, const Range& range);
 /// X,Y,Z,QW,QX,QY,QZ.
 Pose pose(const std::string& option, const std::string& text);
+/// X,Y,Z,QW,QX,QY,QZ or X,Y,Z, with nan for what is not known: then NaN, all of the rotation or nothing of
+/// it.
+Pose nominal(const std::string& option, const std::string& text);
 /// NX,NY,NZ,D: normal . x = D, the unit normal up.
 GroundPlane plane(const std::string& option, const std::string& text);
 /// ROTATION,TRANSLATION with units, as 0.1deg,2cm (deg or rad; mm, cm or m).

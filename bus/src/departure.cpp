@@ -13,7 +13,8 @@ std::optional<Departure> departure(Verdict verdict, const Judged& judged, const 
   const Pose before = to_pose(judged.T_a_b);
   const Departure moved{rotation_log(before.rotation.conjugate() * T_a_b.rotation).norm(),
                         (T_a_b.translation - before.translation).norm()};
-  // written so that what is not finite has moved
+  // lengths on the bus are metres: of each pair a sensor measures them (docs/rig.md, `scale`), and the
+  // diagnosis judged by them. Written so that what is not finite has moved
   const bool holds = moved.rotation <= options.rotation && moved.translation <= options.translation;
   return holds ? std::nullopt : std::optional(moved);
 }

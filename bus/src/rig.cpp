@@ -3,6 +3,7 @@
 #include "egocal/bus/rig.hpp"
 
 #include "egocal/error.hpp"
+#include "egocal/online/nominal_part.hpp"
 
 namespace egocal::bus {
 
@@ -14,7 +15,8 @@ const Sensor& sensor(const Rig& rig, const std::string& name) {
 
 namespace {
 
-/// The pairs of a rig estimate their clocks and choose their weights one after the other.
+/// Spreads the pairs of a rig over time: they estimate their clocks and choose their weights one after the
+/// other.
 double phase_of(const Rig& rig, const PairConfig& pair) {
   double before = 0;
   for (const PairConfig& other : rig.pairs) {
@@ -39,6 +41,10 @@ PairingOptions drive_options(const Rig& rig, const PairConfig& pair) {
   options.track_time_offset = !pair.time_offset;
   options.robust = pair.robust;
   options.max_gap = rig.max_gap;
+  if (pair.nominal && is_part(*pair.nominal))
+    throw error_at(rig.file, 0, "",
+                   "pair \"" + pair.a + "\", \"" + pair.b +
+                       "\": nominal: a part of it (nan) is for solve --rig; live all of it is needed");
   if (pair.nominal) options.prior = to_dual_quaternion(*pair.nominal);
   options.clock.phase = options.accumulator.choice_phase = phase_of(rig, pair);
   return options;

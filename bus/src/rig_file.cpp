@@ -23,10 +23,10 @@ namespace egocal::bus {
 
 namespace {
 
-/// A rig file has a few kilobytes; a log that is named by mistake is refused at once [bytes].
+/// Largest rig file [bytes]. It has a few kilobytes, so a log that is named by mistake is refused at once.
 constexpr std::size_t max_file_size = std::size_t{1} << 20;
-/// toml++ reads dotted keys by recursion and ends with a crash at some 50,000 parts, also where they are
-/// spread over tables within tables. The largest rig has some 4,000 dots.
+/// Most dots, as toml++ reads dotted keys by recursion: it crashes at about 50,000 parts, also if they are
+/// spread over nested tables. The largest rig has about 4,000 dots.
 constexpr std::size_t max_dots_per_line = 1000, max_dots = 20'000;
 
 constexpr Range reorder_window{0, 3600};       // [s]
@@ -82,7 +82,7 @@ bool gives_stride(const TomlTable& in) {
   return in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto");
 }
 
-/// a and b: two of the rig's sensors, one of which at most has a scale that is to be found.
+/// Reads a and b: two sensors of the rig, at most one of which has an unknown scale.
 void read_sensors_of_pair(const TomlTable& in, const Rig& rig, PairConfig& pair) {
   for (const std::string key : {"a", "b"}) {
     const std::string name = in.sensor_name(key);
@@ -100,7 +100,7 @@ void read_sensors_of_pair(const TomlTable& in, const Rig& rig, PairConfig& pair)
     in.fail("stride", "cannot be chosen where a sensor has scale = \"auto\"");
 }
 
-/// stride, weights and time_offset: how the motions are made and weighted.
+/// Reads stride, weights and time_offset: how the motions are made and weighted.
 void read_motion_options(const TomlTable& in, PairConfig& pair) {
   if (gives_stride(in)) {
     const toml::node& node = in.require("stride");
@@ -146,7 +146,7 @@ PairConfig read_pair(const TomlTable& in, const Rig& rig) {
       if (!sensor(rig, name).plane) in.fail("mode", "planar needs the plane of sensor \"" + name + "\"");
   }
   if (in.has("truth")) pair.truth = in.pose("truth");
-  if (in.has("nominal")) pair.nominal = in.pose("nominal");
+  if (in.has("nominal")) pair.nominal = in.nominal("nominal");
   read_motion_options(in, pair);
   if (in.has("on_move") && in.choice("on_move", {"report", "restart"}) == "restart")
     pair.on_move = OnMove::restart;
@@ -246,7 +246,7 @@ Rig parse_rig(const std::string& text, const std::string& file) {
 }
 
 std::string rig_text(const std::string& file) {
-  std::error_code none;  // what cannot be looked at cannot be opened either, which is said below
+  std::error_code none;  // opening the file reports the error
   if (std::filesystem::is_directory(file, none))
     throw error_at(file, 0, "", "is a folder, expected a rig file");
   std::ifstream in(file, std::ios::binary);

@@ -3,10 +3,14 @@
 #include "toml_table.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "egocal/bus/plausible.hpp"
 #include "egocal/error.hpp"
+#include "egocal/online/nominal_part.hpp"
 
 namespace egocal::bus {
 
@@ -99,6 +103,27 @@ std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count
 Pose TomlTable::pose(const std::string& key) const {
   const std::vector<double> v = numbers(key, 7, "[x, y, z, qw, qx, qy, qz]");
   Pose pose{{v[3], v[4], v[5], v[6]}, {v[0], v[1], v[2]}};
+  if (!plausible_norm(pose.rotation.norm()))
+    fail(key, "the quaternion (qw, qx, qy, qz) is not of unit length");
+  pose.rotation.normalize();
+  return pose;
+}
+
+Pose TomlTable::nominal(const std::string& key) const {
+  const std::string meaning = "[x, y, z, qw, qx, qy, qz] or [x, y, z], nan for what is not known";
+  const toml::array* array = require(key).as_array();
+  if (!array || (array->size() != 3 && array->size() != 7)) fail(key, "expected " + meaning);
+  std::array<double, 7> v{};
+  v.fill(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::node& element = *array->get(i);
+    const std::optional<double> value = element.value<double>();
+    if (!element.is_number() || !value || !std::isnan(*value))
+      v[i] = number(element, key, {-limits::largest_distance, limits::largest_distance}, "or nan");
+  }
+  Pose pose{{v[3], v[4], v[5], v[6]}, {v[0], v[1], v[2]}};
+  if (const std::string wrong = wrong_with_part(pose); !wrong.empty()) fail(key, wrong);
+  if (!pose.rotation.coeffs().allFinite()) return pose;
   if (!plausible_norm(pose.rotation.norm()))
     fail(key, "the quaternion (qw, qx, qy, qz) is not of unit length");
   pose.rotation.normalize();

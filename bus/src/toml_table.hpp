@@ -14,8 +14,8 @@
 
 namespace egocal::bus {
 
-/// One table of a TOML file, with its name for error messages. All its methods throw Error at the line of
-/// what they refuse. It refers to the file's parsed table and to the file's name, which must outlive it.
+/// One table of a TOML file, with its name for messages. Each method throws Error with the line of what it
+/// refuses. The parsed file and its name must outlive the object.
 class TomlTable {
  public:
   TomlTable(const toml::table& table, std::string name, const std::string& file)
@@ -34,10 +34,12 @@ class TomlTable {
   /// One of these texts.
   std::string choice(const std::string& key, std::initializer_list<std::string_view> choices) const;
   double number(const std::string& key, const Range& range, const std::string& unit) const;
-  /// As many numbers, none further from zero than limits::largest_distance.
+  /// This many numbers, none larger in magnitude than limits::largest_distance.
   std::vector<double> numbers(const std::string& key, std::size_t count, const std::string& meaning) const;
   /// [x, y, z, qw, qx, qy, qz], metres; the quaternion is normalised.
   Pose pose(const std::string& key) const;
+  /// The same, or [x, y, z]; nan for what is not known (egocal/online/nominal_part.hpp).
+  Pose nominal(const std::string& key) const;
   /// 1 to 40 letters, digits, _ and -.
   std::string sensor_name(const std::string& key) const;
   /// The tables of [[key]], one at least.

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "../support/scratch_folder.hpp"
+#include "../support/tables.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/trajectory_file.hpp"
 
@@ -18,36 +18,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-class Tables : public ::testing::Test {
- protected:
-  TrajectoryReading read(const std::string& content, const ReadOptions& options = {}) const {
-    return read_trajectory_file(folder_.file("table", content), options);
-  }
-  /// Two poses: at 1e9 s and 0.1 s later, x y z = 1 2 3 and 4 5 6, turned by 90 degrees about z.
-  void expect_two_poses(const std::string& content, const ReadOptions& options = {}) const {
-    const TrajectoryReading reading = read(content, options);
-    ASSERT_EQ(reading.trajectory.size(), 2u) << content;
-    EXPECT_EQ(reading.trajectory[0].time_us, 1'000'000'000'000'000) << content;
-    EXPECT_EQ(reading.trajectory[1].time_us, 1'000'000'000'100'000) << content;
-    const Pose first = to_pose(reading.trajectory[0].pose), second = to_pose(reading.trajectory[1].pose);
-    EXPECT_LT((first.translation - Eigen::Vector3d(1, 2, 3)).norm(), 1e-9) << content;
-    EXPECT_LT((second.translation - Eigen::Vector3d(4, 5, 6)).norm(), 1e-9) << content;
-    EXPECT_LT((rotation_log(first.rotation) - Eigen::Vector3d(0, 0, std::numbers::pi / 2)).norm(), 1e-5)
-        << content;
-  }
-  void expect_error(const std::string& content, const std::string& part,
-                    const ReadOptions& options = {}) const {
-    try {
-      read(content, options);
-      ADD_FAILURE() << "accepted: " << content;
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), HasSubstr(part)) << content;
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    }
-  }
-  testing::ScratchFolder folder_;
-};
+using testing::Tables;
 
 TEST_F(Tables, HeadersInManyStylesMeanTheSame) {
   const std::string rows =
@@ -63,26 +34,6 @@ TEST_F(Tables, HeadersInManyStylesMeanTheSame) {
         "\xef\xbb\xbftime,pos_x,pos_y,pos_z,quaternion_x,quaternion_y,quaternion_z,quaternion_w"})
     expect_two_poses(std::string(header) + "\n" + rows);
   expect_two_poses(rows);  // without a header: seconds, w last, as hand-eye tools write it
-}
-
-/// A time under a name that is not known was passed over without a word, and 10 Hz were assumed.
-TEST_F(Tables, AColumnThatIncreasesMayHoldTheTimes) {
-  const std::string rows = "1000.0,1,2,3,0,0,0,1\n1000.1,4,5,6,0,0,0,1\n1000.3,4,5,6,0,0,0,1\n";
-  const TrajectoryReading reading = read("Zeit,x,y,z,qx,qy,qz,qw\n" + rows);
-  ASSERT_EQ(reading.notes.size(), 2u);
-  EXPECT_THAT(reading.notes[0], HasSubstr("column 1 (Zeit) increases as times do"));
-  EXPECT_THAT(reading.notes[1], HasSubstr("10 Hz assumed"));
-  // numbers of rows do as well
-  EXPECT_EQ(read("id,x,y,z,qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n2,4,5,6,0,0,0,1\n3,4,5,6,0,0,0,1\n").notes.size(),
-            1u);
-  EXPECT_THAT(read("t,x,y,z,qx,qy,qz,qw\n" + rows).notes, IsEmpty());
-}
-
-/// In a table such a row was skipped, in TUM's format it refused the file.
-TEST_F(Tables, ARowWithoutATimeIsSkipped) {
-  const TrajectoryReading reading = read("1000.0 1 2 3 0 0 0 1\nnan 4 5 6 0 0 0 1\n1000.1 4 5 6 0 0 0 1\n");
-  EXPECT_EQ(reading.trajectory.size(), 2u);
-  EXPECT_EQ(reading.losses.refused, 1);
 }
 
 /// With its own header EuRoC's csv was a "table" whose nanoseconds were remarked upon.
@@ -163,41 +114,6 @@ TEST_F(Tables, GeodeticPositionsBecomeLocalMetres) {
   EXPECT_NEAR(rotation_log(at(2).rotation).z(), -std::numbers::pi / 2, 1e-4);
 }
 
-TEST_F(Tables, KittiWithoutTimesHasARate) {
-  const std::string rows = "1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 2 0 1 0 2 0 0 1 3\n1 0 0 3 0 1 0 2 0 0 1 3\n";
-  const TrajectoryReading assumed = read(rows);
-  EXPECT_EQ(assumed.trajectory[2].time_us, 200'000);
-  EXPECT_THAT(assumed.notes, ElementsAre(HasSubstr("10 Hz assumed")));
-  ReadOptions options;
-  options.rate = 20;
-  EXPECT_EQ(read(rows, options).trajectory[2].time_us, 100'000);
-  options.rate = -1;
-  expect_error(rows, "--rate", options);
-  // numbers of frames before the matrices, with gaps, as in KITTI-360
-  const TrajectoryReading numbered =
-      read("3 1 0 0 1 0 1 0 2 0 0 1 3\n4 1 0 0 2 0 1 0 2 0 0 1 3\n9 1 0 0 3 0 1 0 2 0 0 1 3\n");
-  EXPECT_EQ(numbered.trajectory[2].time_us - numbered.trajectory[0].time_us, 600'000);
-}
-
-TEST_F(Tables, RowsOutOfOrderAreSortedAndCounted) {
-  const TrajectoryReading reading =
-      read("1 0 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n3 9 0 0 0 0 0 1\n");
-  ASSERT_EQ(reading.trajectory.size(), 3u);
-  EXPECT_EQ(reading.out_of_order, 1u);
-  EXPECT_EQ(reading.duplicates, 1u);
-  EXPECT_EQ(to_pose(reading.trajectory[2].pose).translation.x(), 3);
-  EXPECT_THAT(reading.notes,
-              ElementsAre(HasSubstr("1 pose was out of order"), HasSubstr("the first of each")));
-}
-
-/// Else the whole file would be in nanoseconds, and hold two times.
-TEST_F(Tables, OneWrongTimeDoesNotDecideTheUnit) {
-  std::string rows;
-  for (int i = 0; i < 50; ++i)
-    rows += (i == 20 ? "1600000000000000000" : std::to_string(1600000000 + i)) + " 0 0 0 0 0 0 1\n";
-  expect_error(rows, ":21:");
-}
-
 TEST_F(Tables, StrictRefusesWhatWouldBeRepaired) {
   ReadOptions strict;
   strict.strict = true;
@@ -206,31 +122,6 @@ TEST_F(Tables, StrictRefusesWhatWouldBeRepaired) {
                "pose 3, at 2.000000 s, comes after a later one", strict);
   expect_error("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n",
                "pose 2, at 1.000000 s, has the time of the one before it", strict);
-}
-
-/// Neighbouring rows are 23 s and more apart, as milliseconds might be; the times in order are 1 s apart.
-TEST_F(Tables, RowsOutOfOrderDoNotChangeTheUnitOfTheirTimes) {
-  std::string rows;
-  for (int i = 0; i < 60; ++i) rows += std::to_string(1'487'321'563 + i * 37 % 60) + ".5 0 0 0 0 0 0 1\n";
-  const TrajectoryReading reading = read(rows);
-  ASSERT_EQ(reading.trajectory.size(), 60u);
-  EXPECT_EQ(reading.trajectory.front().time_us, 1'487'321'563'500'000);
-  EXPECT_EQ(reading.trajectory.back().time_us - reading.trajectory.front().time_us, 59'000'000);
-}
-
-TEST_F(Tables, TimesSinceASensorWasSwitchedOnKeepTheirUnit) {
-  // what begins so is as long as milliseconds or microseconds since 1970 and is neither
-  for (const std::int64_t begin_s : {0, 3, 1'000, 50'000, 1'700'000, 3'000'000})
-    for (const std::int64_t second : {1'000ll, 1'000'000ll, 1'000'000'000ll}) {
-      std::string rows;
-      for (int i = 0; i < 40; ++i)
-        rows +=
-            std::to_string(begin_s * second + i * second / 20) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
-      const Trajectory poses = read(rows).trajectory;
-      ASSERT_EQ(poses.size(), 40u);
-      EXPECT_EQ(poses.front().time_us, begin_s * 1'000'000) << second << " a second";
-      EXPECT_EQ(poses.back().time_us, begin_s * 1'000'000 + 1'950'000) << second << " a second";
-    }
 }
 
 TEST_F(Tables, DecimalCommasAreReadWhereNothingElseIsMeant) {
@@ -306,32 +197,6 @@ TEST_F(Tables, EmptyFieldsOfATableAreCounted) {
   EXPECT_THAT(reading.losses.first_refused, HasSubstr("line 3"));
 }
 
-TEST_F(Tables, TimesMayBeDatesOfIso8601) {
-  const std::string pose = ",1,2,3,0,0,0.7071068,0.7071068\n", next = ",4,5,6,0,0,0.7071068,0.7071068\n";
-  expect_two_poses("t,x,y,z,qx,qy,qz,qw\n2001-09-09T01:46:40Z" + pose + "2001-09-09T01:46:40.1Z" + next);
-  expect_two_poses("2001-09-09 01:46:40.000" + pose + "2001-09-09 01:46:40.0999996" + next);
-  expect_two_poses("time [UTC],x,y,z,qx,qy,qz,qw\n2001-09-09T03:16:40+01:30" + pose +
-                   "2001-09-08T18:46:40.1-0700" + next);
-  const TrajectoryReading leap = read("t,x,y,yaw\n2000-02-29T23:59:59Z,0,0,0\n2000-03-01T00:00:00Z,1,0,0\n");
-  EXPECT_EQ(leap.trajectory[1].time_us - leap.trajectory[0].time_us, 1'000'000);
-  for (const char* wrong :
-       {"2001-02-29T00:00:00Z", "2001-13-01T00:00:00Z", "2001-09-09T24:00:00Z", "2001-09-09T01:60:00Z",
-        "2001-09-09T01:46:40X", "2001-09-09T01:46:40.", "2001-09-09T01:46:40+99:00", "2001-09-09"})
-    expect_error("t,x,y,yaw\n" + std::string(wrong) + ",0,0,0\n", ":2: time: expected a number");
-}
-
-TEST_F(Tables, PosesWithoutTimesHaveARate) {
-  ReadOptions options;
-  options.rate = 20;
-  const TrajectoryReading reading = read("1 2 3 0 0 0 1\n4 5 6 0 0 0.7071068 0.7071068\n", options);
-  ASSERT_EQ(reading.trajectory.size(), 2u);
-  EXPECT_EQ(reading.trajectory[1].time_us, 50'000);
-  EXPECT_LT((to_pose(reading.trajectory[1].pose).translation - Eigen::Vector3d(4, 5, 6)).norm(), 1e-12);
-  EXPECT_THAT(reading.notes, ::testing::Contains(HasSubstr("x y z qx qy qz qw")));
-  // seven numbers without a quaternion are no pose
-  expect_error("1 2 3 0.5 0 0 1\n", "expected 8 fields");
-}
-
 TEST_F(Tables, AHeadingIsOneOfACompass) {
   const TrajectoryReading reading = read("t,x,y,heading[deg]\n0,0,0,90\n1,1,0,90\n");
   EXPECT_LT(rotation_log(to_pose(reading.trajectory[0].pose).rotation).norm(), 1e-12);
@@ -356,14 +221,6 @@ TEST_F(Tables, WhatIsNotUnderstoodIsSaid) {
   EXPECT_THROW(read_trajectory(folder_.file("a.tum", "1 0 0 0 0 0 0 1\n") + ":/topic"), Error);
   EXPECT_THROW(read_trajectory(folder_.path("")), Error);
   EXPECT_THAT(read("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n").notes, IsEmpty());
-}
-
-}  // namespace
-TEST_F(Tables, WordsWrittenTogetherNameATime) {
-  for (const char* name : {"GPSTime", "ImageTimestamp", "rosTime", "header.stamp", "unixtime"})
-    expect_two_poses(std::string(name) +
-                     ",easting,northing,altitude,roll,pitch,yaw\n"
-                     "1000000000.0,1,2,3,0,0,1.5707963\n1000000000.1,4,5,6,0,0,1.5707963\n");
 }
 
 TEST_F(Tables, AWordWhereANumberIsExpectedNamesTheCure) {
@@ -457,4 +314,5 @@ TEST_F(Tables, DamagedImagesOfColmap) {
   EXPECT_FALSE(read(colmap + image).has_scale);
 }
 
+}  // namespace
 }  // namespace egocal::test_io_tables

@@ -57,4 +57,19 @@ inline std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
+/// Of a file of poses, those from one time to another [s] from its begin.
+inline std::string part_of(const ScratchFolder& folder, const std::string& file, const std::string& name,
+                           double from, double to) {
+  std::ifstream all(file);
+  std::ofstream part(folder.path(name));
+  double begin = -1;
+  for (std::string line; std::getline(all, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const double time = std::stod(line);
+    if (begin < 0) begin = time;
+    if (time - begin >= from && time - begin <= to) part << line << "\n";
+  }
+  return folder.path(name);
+}
+
 }  // namespace egocal::testing

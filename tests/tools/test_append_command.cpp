@@ -6,8 +6,10 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "egocal/geometry/pose.hpp"
+#include "egocal/io/trajectory_file.hpp"
 #include "rig_command.hpp"
 
 namespace egocal::test_append_command {
@@ -67,6 +69,10 @@ bool is_of_mounts(const nlohmann::json& text) {
   return text.get<std::string>().starts_with("The mounts of drive 1 (");
 }
 
+bool is_of_third(const nlohmann::json& text) {
+  return text.get<std::string>().starts_with("Drive 3 (");
+}
+
 // Such a difference was all that was said, whatever was wrong with a third drive.
 TEST_F(AppendCommand, ASmallDifferenceLeavesTheVerdictAndHidesNoFault) {
   for (const int seed : {1, 11}) {
@@ -78,11 +84,79 @@ TEST_F(AppendCommand, ASmallDifferenceLeavesTheVerdictAndHidesNoFault) {
 
     const std::string scaled = drive_of(seed + 2, 0, "--scale camera=1.5");
     const nlohmann::json three = run("solve --json" + two + " --append" + scaled).object();
-    EXPECT_FALSE(is_of_mounts(three["reason"])) << three["reason"];
-    ASSERT_GE(three["findings"].size(), 2u) << three["findings"];
-    EXPECT_TRUE(is_of_mounts(three["findings"][0]["message"])) << three["findings"];
-    EXPECT_NE(three["findings"].dump().find("scale_change"), std::string::npos) << three["findings"];
+    EXPECT_EQ(three["verdict"], "contradictory");
+    EXPECT_TRUE(is_of_third(three["reason"])) << three["reason"];
+    ASSERT_EQ(three["findings"].size(), 2u) << three["findings"];
+    EXPECT_EQ(three["findings"][0]["code"], "scale") << three["findings"];
+    EXPECT_TRUE(is_of_mounts(three["findings"][1]["message"])) << three["findings"];
   }
+}
+
+/// The same poses, world-to-sensor.
+std::string inverted(const testing::ScratchFolder& folder, const std::string& file) {
+  Trajectory poses = read_trajectory(file);
+  for (StampedPose& pose : poses) pose.pose = conjugate(pose.pose);
+  const std::string other = folder.path("inverted.tum");
+  write_tum(other, poses);
+  return other;
+}
+
+// The rotation was said to change by 64 deg within 12 s: a mounting that shakes.
+TEST_F(AppendCommand, ADriveThatDiffersIsNamedWithWhatIsWrongOfIt) {
+  for (const int seed : {1, 11}) {
+    const std::vector<std::string> third = testing::words_of(drive_of(seed + 2, 0));
+    const Result result = run("solve --json" + drive_of(seed, 0) + " --append" + drive_of(seed + 1, 0) +
+                              " --append " + third[0] + " " + inverted(folder, third[1]));
+    EXPECT_EQ(result.code, 3) << result.error;
+    const nlohmann::json found = result.object();
+    EXPECT_EQ(found["verdict"], "contradictory");
+    ASSERT_FALSE(found["findings"].empty());
+    EXPECT_EQ(found["findings"].dump().find("shakes"), std::string::npos) << found["findings"];
+    const std::string code = found["findings"][0]["code"], cure = found["findings"][0]["remedy"];
+    EXPECT_EQ(code, "inverted_b");
+    EXPECT_TRUE(is_of_third(found["reason"])) << found["reason"];
+    EXPECT_EQ(found["reason"], found["findings"][0]["message"]);
+    EXPECT_TRUE(cure.starts_with("Correct the files of drive 3, or leave it out. By itself: ")) << cure;
+    EXPECT_NE(cure.find("--invert-b"), std::string::npos) << cure;
+  }
+}
+
+// A drive between them that is wrong hid that the mounts differ.
+TEST_F(AppendCommand, MountsAreComparedAcrossADriveThatIsWrong) {
+  const std::vector<std::string> second = testing::words_of(drive_of(2, 0));
+  const nlohmann::json found = run("solve --json" + drive_of(1, 0) + " --append " + second[0] + " " +
+                                   inverted(folder, second[1]) + " --append" + drive_of(3, 5))
+                                   .object();
+  ASSERT_EQ(found["findings"].size(), 2u) << found["findings"];
+  const std::string message = found["findings"][1]["message"];
+  EXPECT_TRUE(message.starts_with("The mounts of drive 1 (")) << message;
+  EXPECT_NE(message.find(" and drive 3 ("), std::string::npos) << message;
+}
+
+/// " A B C" of a rig whose camera is turned by yaw [deg].
+class AppendToRig : public AppendCommand {
+ protected:
+  std::string rig_of(int seed, double yaw) {
+    const std::string files = drive_of(seed, yaw, "--sensor radar=2,0,0.5,1,0,0,0");
+    return files + " " + folder.path("drive" + std::to_string(seed)) + "/radar.tum";
+  }
+};
+
+// It moved "at 5639.8 s", half an hour before the second drive began.
+TEST_F(AppendToRig, AMountThatDiffersBetweenTwoDrivesIsThatOfASensor) {
+  const Result result =
+      run("solve --json" + rig_of(1, 0) + " --append" + rig_of(2, 0) + " --append" + rig_of(3, 5));
+  EXPECT_EQ(result.code, 3) << result.error;
+  const nlohmann::json found = result.object();
+  EXPECT_EQ(found["blamed"], "camera");
+  ASSERT_EQ(found["findings"].size(), 1u) << found["findings"];
+  const nlohmann::json& finding = found["findings"][0];
+  EXPECT_EQ(finding["code"], "mount_moved");
+  EXPECT_EQ(finding["sensor"], "camera");
+  EXPECT_FALSE(finding.contains("time")) << finding;
+  const std::string message = finding["message"];
+  EXPECT_TRUE(message.starts_with("camera: The mounts of drive 2 (")) << message;
+  EXPECT_NEAR(std::stod(message.substr(message.find("differ by ") + 10)), 5, 0.1) << message;
 }
 
 // Of a camera without scale: each drive may have a unit of its own.

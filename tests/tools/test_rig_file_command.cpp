@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // `egocal solve --rig`, and options that do not go with rigs.
+#include <gmock/gmock.h>
+
 #include "rig_command.hpp"
 
 namespace egocal::test_rig_file_command {
@@ -90,6 +92,63 @@ TEST_F(RigFile, ARigFileNamesItsSensors) {
   const Result unknown = run("solve --rig " + toml + " --from sonar=x --from lidar=y");
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.error.find("sonar"), std::string::npos);
+}
+
+/// A rig of three on flat ground, with one pair listed.
+class RigOnFlatGround : public RigFile {
+ protected:
+  Result solve_with(const std::string& pair) {
+    if (files_.empty()) files_ = words_of(rig("flat", "", 700, "flat"));
+    const char* names[] = {"lidar", "camera", "radar"};
+    const char* planes[] = {"[0.0, 0.0, 1.0, -1.8]", "[0.0, -1.0, 0.0, -1.5]", "[0.0, 0.0, 1.0, -0.5]"};
+    std::string text, from;
+    for (std::size_t k = 0; k < 3; ++k) {
+      text += std::string("[[sensor]]\nname = \"") + names[k] + "\"\nchannel = \"" + names[k] +
+              "\"\nplane = " + planes[k] + "\n";
+      from += std::string(" --from ") + names[k] + "=" + files_[k];
+    }
+    return run("solve --json --rig " + folder.file("rig.toml", text + "[[pair]]\n" + pair) + from);
+  }
+  std::vector<std::string> files_;
+};
+
+// It was ignored without a word.
+TEST_F(RigOnFlatGround, ANominalValueIsComparedInPlanarMode) {
+  const std::string pair = "a = \"lidar\"\nb = \"camera\"\nmode = \"planar\"\nnominal = ";
+  const json right = solve_with(pair + "[1.5, 0.2, -0.3, 0.5, -0.5, 0.5, -0.5]\n").object();
+  EXPECT_EQ(right["extrinsics"][0]["verdict"], "good");
+  const json wrong = solve_with(pair + "[1.5, 0.2, 0.9, 0.5, -0.5, 0.5, -0.5]\n").object();
+  EXPECT_EQ(wrong["extrinsics"][0]["verdict"], "doubtful");
+  EXPECT_THAT(wrong["findings"].dump(),
+              ::testing::HasSubstr("120 cm (z) from what the ground planes and the motions show"));
+}
+
+// A height by a ruler was doubtful: the other numbers, which had to be given, contradicted the motions.
+TEST_F(RigOnFlatGround, APartOfANominalValueIsEnough) {
+  for (const char* pair : {"a = \"lidar\"\nb = \"camera\"\nnominal = [nan, nan, -0.3]\n",
+                           "a = \"camera\"\nb = \"lidar\"\nnominal = [nan, -0.3, nan]\n"}) {
+    const Result result = solve_with(pair);
+    EXPECT_EQ(result.code, 0) << result.out;
+    const json extrinsic = result.object()["extrinsics"][0];
+    EXPECT_EQ(extrinsic["verdict"], "incomplete") << extrinsic["reason"];
+    EXPECT_NEAR(extrinsic["translation"][2].get<double>(), -0.3, 0.01) << pair;
+  }
+  const Result none = solve_with("a = \"lidar\"\nb = \"camera\"\nnominal = [nan, nan, nan]\n");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.error, ::testing::HasSubstr("nominal: nothing of it is known"));
+}
+
+// The cure asked for the pose of the camera in the lidar, which was what stood there.
+TEST_F(RigOnFlatGround, ANominalValueOfAReversedPairIsCuredInItsDirection) {
+  const json found =
+      solve_with("a = \"camera\"\nb = \"lidar\"\nnominal = [1.5, 0.2, -0.3, 0.5, -0.5, 0.5, -0.5]\n")
+          .object();
+  ASSERT_FALSE(found["findings"].empty());
+  EXPECT_EQ(found["findings"][0]["remedy"],
+            "Correct the nominal value, whose inverse agrees: give the pose of lidar in camera, not that of "
+            "camera in lidar.");
+  EXPECT_THAT(found["findings"][0]["message"].get<std::string>(),
+              ::testing::StartsWith("lidar, camera (listed as camera, lidar; in the axes of lidar): "));
 }
 
 TEST_F(RigFile, WhatDoesNotGoTogetherIsRefused) {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "arguments.hpp"
+#include "egocal/online/nominal_part.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -71,13 +72,14 @@ void refuse_options_of_streams(const RequestOptions& options) {
   refuse(options.max_gap != RequestOptions().max_gap, "--max-gap");
 }
 
-/// The ground planes, and the baselines of the paper, leave no direction to a nominal value.
-void refuse_unused_nominal(const RequestOptions& options) {
+/// The baselines of the paper leave no direction to a nominal value, and are not judged; a part of one is
+/// completed by an answer of streams.
+void refuse_unused_nominal(const RequestOptions& options, bool part) {
   const auto refuse = [](const std::string& option) {
     throw UsageError("--nominal: does not go with " + option + ", which takes nothing from it");
   };
-  if (options.planar) refuse("--planar");
   if (!method_from_name(options.method)) refuse("--method " + options.method);
+  if (options.samples && part) throw UsageError("--nominal: with --samples all of it is needed, without nan");
 }
 
 /// Further drives, and sets of still poses.
@@ -153,8 +155,12 @@ SolveRequest understood(const RequestOptions& options) {
   read_scale("--scale-b", options.scale_b, Side::b, result);
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
   if (!options.nominal.empty()) {
-    result.calibration.pairing.prior = to_dual_quaternion(pose("--nominal", options.nominal));
-    refuse_unused_nominal(options);
+    const Pose given = nominal("--nominal", options.nominal);
+    if (is_part(given))
+      result.nominal_part = given;
+    else
+      result.calibration.pairing.prior = to_dual_quaternion(given);
+    refuse_unused_nominal(options, is_part(given));
   }
   read_samples(options, result);
   return result;
@@ -209,7 +215,9 @@ void add_request_options(cli::App command, RequestOptions& options, Sources sour
   command.add_option("--scale-a", options.scale_a, "the same as --scale, and says that A is meant");
   command.add_option("--scale-b", options.scale_b, "the same for B; the extrinsic is in the unit of A");
   if (sources == Sources::all) add_options_of_other_sources(command, options);
-  command.add_option("--nominal", options.nominal, "X,Y,Z,QW,QX,QY,QZ: taken where the motions show nothing");
+  command.add_option(
+      "--nominal", options.nominal,
+      "X,Y,Z,QW,QX,QY,QZ or X,Y,Z, nan for what is not known: taken where the motions show nothing");
   command.add_option("--truth", options.truth, "X,Y,Z,QW,QX,QY,QZ: known extrinsic, to show the error (32)");
 }
 

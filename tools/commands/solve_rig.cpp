@@ -10,6 +10,7 @@
 #include "arguments.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/provenance.hpp"
+#include "offline/rig_joint.hpp"
 #include "offline/rig_report.hpp"
 #include "progress.hpp"
 #include "warnings.hpp"
@@ -97,7 +98,7 @@ void write_tree(const RigReport& report, const RigOutput& output) {
                       name));
   for (const std::string& line : tree_remarks(report)) say("egocal: " + line);
   const std::string text = extrinsic_tree_text(
-      rig_tree(report), *extrinsic_format_from_name(output.format.empty() ? "yaml" : output.format));
+      tree_of(report), *extrinsic_format_from_name(output.format.empty() ? "yaml" : output.format));
   if (output.out.empty())
     fmt::print("{}", text);
   else

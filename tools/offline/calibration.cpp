@@ -34,6 +34,7 @@
 #include "offline/samples.hpp"
 #include "offline/scale_report.hpp"
 #include "offline/trajectory_source.hpp"
+#include "offline/with_nominal_part.hpp"
 
 namespace egocal::tools {
 
@@ -295,12 +296,19 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
   options.diagnosis.unit = unit_of_answer(request, result);
   Terms terms;
   terms.solve = request.solve;
-  result.calibration = calibrate_motions(request.source, motions, options, terms);
+  std::string note;
+  result.calibration = with_nominal_part(
+      request.nominal_part, NominalOf::b_in_a, options,
+      [&](const CalibrationOptions& of_run) {
+        return calibrate_motions(request.source, motions, of_run, terms);
+      },
+      note);
+  if (!note.empty()) result.warnings.push_back("--nominal: " + note);
   follow_scale(motions, options, result);
   word_for_options(options, request.scale_option, result.calibration);
   if (std::string warning = scale_warning(request, result); !warning.empty())
     result.warnings.push_back(std::move(warning));
-  name_mounts_of_drives(drives, motions.a, motions.b, options, result.calibration);
+  name_what_drives_differ_in(drives, 0, 1, motions.a, motions.b, options, result.calibration);
   for (Finding& finding : result.calibration.findings) {
     finding.remedy = remedy_in_terms(finding, terms);
     // a slow change has no one time

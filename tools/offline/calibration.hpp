@@ -30,9 +30,10 @@ struct SamplesRequest {
 /// What `egocal solve` was asked for.
 struct SolveRequest {
   MotionSource source;
-  std::string method = "global";    ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
-  CalibrationOptions calibration;   ///< its method is set from the name above
-  std::vector<std::string> append;  ///< further drives of the same sensors: files of a and b alternately
+  std::string method = "global";     ///< global fast dual sdp sqp slsqp, or a baseline: analytic matrix local
+  CalibrationOptions calibration;    ///< its method is set from the name above
+  std::optional<Pose> nominal_part;  ///< --nominal of which something is not known: NaN there
+  std::vector<std::string> append;   ///< further drives of the same sensors: files of a and b alternately
   std::optional<Pose> truth;
   std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
   bool keep_motions = false;              ///< hand back what was solved, for a report

@@ -14,22 +14,20 @@
 
 #include "degrees.hpp"
 #include "egocal/error.hpp"
-#include "egocal/moves/find_moves.hpp"
+#include "offline/fault_of_drive.hpp"
 
 namespace egocal::tools {
 
 namespace {
 
-/// What each drive answers by itself; empty for a drive without an answer of its own.
-std::vector<std::optional<Calibration>> each_alone(const Drives& drives, const Trajectory& a,
-                                                   const Trajectory& b, const CalibrationOptions& options) {
-  std::vector<std::optional<Calibration>> alone(drives.size());
-  for (std::size_t k = 0; k < drives.size(); ++k) try {
-      alone[k] = calibrate(drives.part(a, k, 0), drives.part(b, k, 1), options);
-    } catch (const Error&) {
-      alone[k].reset();  // the drives together have their answer
-    }
-  return alone;
+/// What a drive answers by itself; empty where it has no answer of its own.
+std::optional<Calibration> of_drive(const Trajectory& a, const Trajectory& b,
+                                    const CalibrationOptions& options) {
+  try {
+    return calibrate(a, b, options);
+  } catch (const Error&) {
+    return std::nullopt;  // the drives together have their answer
+  }
 }
 
 bool is_usable(const std::optional<Calibration>& alone) {
@@ -72,52 +70,94 @@ std::string size_of(const ShownChange& shown) {
   return text;
 }
 
-Finding worded(const Drives& drives, std::size_t first, const ShownChange& shown) {
-  Finding finding;
+MountsDiffer worded(const Drives& drives, MountsDiffer differ) {
+  Finding& finding = differ.finding;
   finding.code = "mount_moved";
   finding.certain = true;
-  finding.message = fmt::format("The mounts of drive {} ({}) and drive {} ({}) differ by {}.", first + 1,
-                                drives.name(first), first + 2, drives.name(first + 1), size_of(shown));
+  finding.message = fmt::format("The mounts of drive {} ({}) and drive {} ({}) differ by {}.",
+                                differ.first + 1, drives.name(differ.first), differ.second + 1,
+                                drives.name(differ.second), size_of(differ.shown));
   finding.remedy = "Calibrate them separately: a mount was moved between these drives.";
   finding.change = MountingChange::at_once;
-  return finding;
+  return differ;
 }
 
+/// Each drive that is usable by itself against the one before it that is.
+std::vector<MountsDiffer> compared(const Drives& drives, const std::vector<std::optional<Calibration>>& alone,
+                                   bool metres, const MountsOfDrivesOptions& mounts) {
+  std::vector<MountsDiffer> found;
+  std::optional<std::size_t> last;
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    if (!is_usable(alone[k])) continue;
+    if (last)
+      if (const Move move = difference(*alone[*last], *alone[k], metres); shows(move, mounts))
+        found.push_back(worded(drives, {*last, k, shown_change(move), {}}));
+    last = k;
+  }
+  return found;
+}
+
+/// Of the drives that are not usable beside others that are.
+struct Faults {
+  std::vector<Finding> findings;
+  bool all_named = true;  ///< each such drive has one
+  bool contradictory = false;
+};
+
+Faults faults_of(const Drives& drives, const std::vector<std::optional<Calibration>>& alone) {
+  Faults faults;
+  const bool others = std::any_of(alone.begin(), alone.end(), is_usable);
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    if (is_usable(alone[k])) continue;
+    std::optional<Finding> fault;
+    if (others && alone[k]) fault = fault_of_drive(drives, k, *alone[k]);
+    faults.all_named = faults.all_named && fault;
+    if (!fault) continue;
+    faults.findings.push_back(std::move(*fault));
+    faults.contradictory = faults.contradictory || alone[k]->verdict == Verdict::contradictory;
+  }
+  return faults;
+}
+
+/// By a drive that has no fault of its own.
 bool is_shown_by(const std::vector<std::optional<Calibration>>& alone, const Finding& wanted) {
   return std::any_of(alone.begin(), alone.end(), [&](const std::optional<Calibration>& one) {
-    return one && std::any_of(one->findings.begin(), one->findings.end(),
-                              [&](const Finding& finding) { return finding.code == wanted.code; });
+    return is_usable(one) && std::any_of(one->findings.begin(), one->findings.end(),
+                                         [&](const Finding& finding) { return finding.code == wanted.code; });
   });
 }
 
 }  // namespace
 
-void name_mounts_of_drives(const Drives& drives, const Trajectory& a, const Trajectory& b,
-                           const CalibrationOptions& options, Calibration& calibration,
-                           const MountsOfDrivesOptions& mounts) {
-  if (drives.size() < 2 || calibration.verdict < Verdict::doubtful) return;
+std::vector<MountsDiffer> name_what_drives_differ_in(const Drives& drives, std::size_t sensor_a,
+                                                     std::size_t sensor_b, const Trajectory& a,
+                                                     const Trajectory& b, const CalibrationOptions& options,
+                                                     Calibration& calibration,
+                                                     const MountsOfDrivesOptions& mounts) {
+  if (drives.size() < 2 || calibration.verdict < Verdict::doubtful) return {};
   const double scale = calibration.scale ? calibration.scale->scale : 1;
   const bool metres = unit_of_scaled(options.diagnosis.unit, scale) == LengthUnit::metres;
-  const std::vector<std::optional<Calibration>> alone = each_alone(drives, a, b, options);
-  std::vector<Finding> findings;
-  bool beyond_tolerance = false;
-  for (std::size_t k = 0; k + 1 < drives.size(); ++k) {
-    if (!is_usable(alone[k]) || !is_usable(alone[k + 1])) continue;
-    const Move move = difference(*alone[k], *alone[k + 1], metres);
-    if (!shows(move, mounts)) continue;
-    const ShownChange shown = shown_change(move);
-    findings.push_back(worded(drives, k, shown));
-    beyond_tolerance = beyond_tolerance || shown.turn > options.diagnosis.tolerance_rotation ||
-                       shown.shift > options.diagnosis.tolerance_translation;
+  std::vector<std::optional<Calibration>> alone(drives.size());
+  for (std::size_t k = 0; k < drives.size(); ++k)
+    alone[k] = of_drive(drives.part(a, k, sensor_a), drives.part(b, k, sensor_b), options);
+  const std::vector<MountsDiffer> differ = compared(drives, alone, metres, mounts);
+  Faults faults = faults_of(drives, alone);
+  if (differ.empty() && faults.findings.empty()) return {};
+  std::vector<Finding> findings = std::move(faults.findings);
+  // a fault of one drive is in the answer to all of them
+  bool contradictory = faults.contradictory;
+  for (const MountsDiffer& two : differ) {
+    findings.push_back(two.finding);
+    contradictory = contradictory || two.shown.turn > options.diagnosis.tolerance_rotation ||
+                    two.shown.shift > options.diagnosis.tolerance_translation;
   }
-  if (findings.empty()) return;
-  if (beyond_tolerance) calibration.verdict = Verdict::contradictory;
-  // a drive that is not usable by itself may have a fault of its own, of which these say nothing
-  const bool explains_all = std::all_of(alone.begin(), alone.end(), is_usable);
-  if (explains_all || beyond_tolerance) calibration.reason = findings.front().message;
+  if (contradictory) calibration.verdict = Verdict::contradictory;
+  // a drive without a fault that has a name may have one that all drives together show
+  if (faults.all_named || contradictory) calibration.reason = findings.front().message;
   for (Finding& finding : calibration.findings)
-    if (!explains_all || is_shown_by(alone, finding)) findings.push_back(std::move(finding));
+    if (!faults.all_named || is_shown_by(alone, finding)) findings.push_back(std::move(finding));
   calibration.findings = std::move(findings);
+  return differ;
 }
 
 }  // namespace egocal::tools

@@ -19,6 +19,7 @@
 #include "offline/rig_findings.hpp"
 #include "offline/rig_joint.hpp"
 #include "offline/trajectory_source.hpp"
+#include "offline/with_nominal_part.hpp"
 
 namespace egocal::tools {
 
@@ -95,28 +96,37 @@ std::string no_offset_in_words(const RigPairSettings& pair, const std::vector<Tr
   return "time offset: cannot be estimated, the streams are too short or never turn";
 }
 
+/// What became of a pair: an answer, or why it has none.
+struct PairOutcome {
+  std::optional<Calibration> calibration;
+  std::vector<MountsDiffer> mounts;
+  std::string reason;
+  std::string note;  ///< what the answer does not use
+};
+
 /// One pair by itself, as if there were no others.
-Calibration calibrate_pair(const RigPairSettings& pair, const std::vector<Trajectory>& trajectories,
-                           const std::vector<ClockOfSensor>& clocks, const std::vector<std::string>& names) {
+PairOutcome calibrate_pair(const RigPairSettings& pair, const std::vector<Trajectory>& trajectories,
+                           const Drives& drives, const std::vector<ClockOfSensor>& clocks,
+                           const std::vector<std::string>& names) {
   // first: without the offset calibrate() fails as well where the times do not overlap, and advises to have
   // it found, which was tried
   if (clocks[pair.a].group != clocks[pair.b].group)
     throw Error(no_offset_in_words(pair, trajectories, names));
-  Calibration calibration = calibrate(trajectories[pair.a], trajectories[pair.b], pair.calibration);
+  const Trajectory &a = trajectories[pair.a], &b = trajectories[pair.b];
+  PairOutcome outcome;
+  CalibrationOptions options = pair.calibration;
+  Calibration& calibration = outcome.calibration.emplace(with_nominal_part(
+      pair.nominal_part, pair.turned ? NominalOf::a_in_b : NominalOf::b_in_a, options,
+      [&](const CalibrationOptions& of_run) { return calibrate(a, b, of_run); }, outcome.note));
+  outcome.mounts = name_what_drives_differ_in(drives, pair.a, pair.b, a, b, options, calibration);
   calibration.time_offset_applied = clocks[pair.b].offset - clocks[pair.a].offset;
   for (const std::size_t k : {pair.a, pair.b}) put_rival_offset(clocks[k], names[k], calibration);
-  return calibration;
+  return outcome;
 }
-
-/// What became of a pair: an answer, or why it has none.
-struct PairOutcome {
-  std::optional<Calibration> calibration;
-  std::string reason;
-};
 
 /// All pairs, two at a time: they do not depend on each other.
 std::vector<PairOutcome> calibrate_all(const RigSettings& settings,
-                                       const std::vector<Trajectory>& trajectories,
+                                       const std::vector<Trajectory>& trajectories, const Drives& drives,
                                        const std::vector<ClockOfSensor>& clocks,
                                        const std::function<void(double)>& progress) {
   std::vector<PairOutcome> outcomes(settings.pairs.size());
@@ -131,7 +141,7 @@ std::vector<PairOutcome> calibrate_all(const RigSettings& settings,
         i = next++;
       }
       try {
-        outcomes[i].calibration = calibrate_pair(settings.pairs[i], trajectories, clocks, settings.names);
+        outcomes[i] = calibrate_pair(settings.pairs[i], trajectories, drives, clocks, settings.names);
       } catch (const AdvisedError& error) {
         const RigPairSettings& pair = settings.pairs[i];
         outcomes[i].reason = error.in_terms({settings.names[pair.a], settings.names[pair.b], {}});
@@ -174,9 +184,13 @@ void put_outcomes(std::vector<PairOutcome> outcomes, const RigSettings& settings
       report.unsolved.push_back({pair.a, pair.b, outcomes[i].reason});
       continue;
     }
+    if (!outcomes[i].note.empty())
+      report.warnings.push_back(report.names[pair.a] + ", " + report.names[pair.b] + ": " + outcomes[i].note);
     Calibration& calibration = *outcomes[i].calibration;
     report.contradictory = report.contradictory || calibration.verdict == Verdict::contradictory;
     report.short_of_goal = report.short_of_goal || (calibration.goal && !calibration.goal->reached);
+    for (MountsDiffer& differ : outcomes[i].mounts)
+      report.mounts.push_back({report.pairs.size(), std::move(differ)});
     RigPairAnswer answer;
     answer.a = pair.a;
     answer.b = pair.b;
@@ -202,15 +216,15 @@ void answer_rig(const RigRequest& request, RigReport& report) {
   for (std::size_t k = 0; k < trajectories.size(); ++k)
     if (settings.scales[k] != 1) trajectories[k] = scaled(trajectories[k], settings.scales[k]);
   const std::vector<ClockOfSensor> clocks = synchronise(request, settings, trajectories);
-  put_outcomes(calibrate_all(settings, trajectories, clocks, request.progress), settings, report);
+  put_outcomes(calibrate_all(settings, trajectories, drives, clocks, request.progress), settings, report);
   for (const RigPairSettings& pair : settings.pairs)
     if (std::none_of(report.unsolved.begin(), report.unsolved.end(),
                      [&](const UnsolvedPair& other) { return other.a == pair.a && other.b == pair.b; }))
       drives.require_motions(pair.a, pair.b, trajectories[pair.a], trajectories[pair.b],
                              pair.calibration.pairing);
   const CommonMotions motions = solve_jointly(trajectories, settings, report);
-  choose_tree(report);
   find_in_rig(motions, trajectories, request, settings, report);
+  choose_tree(report);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "egocal/io/recording.hpp"
 #include "egocal/rig/rig.hpp"
 #include "egocal/rig/rig_moves.hpp"
+#include "offline/mounts_of_drives.hpp"
 
 namespace egocal::tools {
 
@@ -33,17 +34,24 @@ struct RigFinding {
   std::string code;                   ///< as Finding::code, without _a and _b
   std::optional<std::size_t> sensor;  ///< the one that all pairs which show it have in common
   std::string message, remedy;
-  std::optional<double> time;   ///< mount_moved: since the first pose of the first sensor [s]
-  std::optional<double> value;  ///< as Finding::value, of the sensor; of b of the pair where none is named
-  bool certain = true;          ///< as Finding::certain; an uncertain one blames no sensor
-  std::size_t pair = 0;         ///< index of the pair that shows it best
-  std::optional<RigMove> move;  ///< mount_moved
+  std::optional<double> time;      ///< mount_moved: since the first pose of the first sensor [s]
+  std::optional<double> value;     ///< as Finding::value, of the sensor; of b of the pair where none is named
+  bool certain = true;             ///< as Finding::certain; an uncertain one blames no sensor
+  std::size_t pair = 0;            ///< index of the pair that shows it best
+  std::vector<std::size_t> pairs;  ///< indices of all that should not be used because of it
+  std::optional<RigMove> move;     ///< mount_moved
 };
 
 /// Two sensors without an answer, and why.
 struct UnsolvedPair {
   std::size_t a = 0, b = 0;
   std::string reason;
+};
+
+/// Two drives between which a mount of a pair was moved.
+struct MountsOfPair {
+  std::size_t pair = 0;  ///< index
+  MountsDiffer differ;
 };
 
 struct RigReport {
@@ -59,8 +67,10 @@ struct RigReport {
   RigSolution solution;
   bool joint = false;         ///< the tree is the joint minimum; otherwise the most certain pairs
   std::string why_not_joint;  ///< why not
+  std::vector<MountsOfPair> mounts;
   std::vector<RigFinding> findings;
   std::optional<std::size_t> blamed;  ///< the sensor to blame
+  std::vector<std::string> unusable;  ///< of each pair: why it should not be used; empty: nothing is known
   bool contradictory = false;         ///< an answer that should not be used
   bool short_of_goal = false;         ///< a pair is known less well than the rig file asks for
   std::vector<std::string> warnings;

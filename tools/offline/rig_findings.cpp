@@ -8,11 +8,13 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "degrees.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/rig/rig_moves.hpp"
+#include "offline/rig_unusable.hpp"
 #include "offline/rig_words.hpp"
 
 namespace egocal::tools {
@@ -40,6 +42,7 @@ RigFinding moved(const RigReport& report, const RigMove& move, double begin) {
   finding.time = begin + move.time;
   finding.move = move;
   finding.pair = move.pair;
+  finding.pairs = {move.pair};
   const std::string name = who(report, move.sensor, move.pair);
   const std::string size = size_of(move.move);
   if (move.kind == MoveKind::creep) {
@@ -148,6 +151,8 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
   if (!is_of_the_pair(code)) finding.sensor = common_sensor(report, of_code);
   const PairFinding& best = best_of(report, of_code, finding.sensor);
   finding.pair = best.pair;
+  for (const PairFinding& found : of_code)
+    if (makes_bad(report, found)) finding.pairs.push_back(found.pair);
   const bool several = std::any_of(of_code.begin(), of_code.end(),
                                    [&](const PairFinding& found) { return found.pair != best.pair; });
   finding.certain = best.finding->certain || (certain_of_either(*best.finding) && finding.sensor && several);
@@ -159,12 +164,18 @@ RigFinding of_pairs(const RigReport& report, const std::string& code, const Pair
   words.name_b = report.names[answer.b];
   words.scale_a = settings.scales[answer.a];
   words.scale_b = settings.scales[answer.b];
+  const auto listed =
+      std::find_if(settings.pairs.begin(), settings.pairs.end(),
+                   [&](const RigPairSettings& pair) { return pair.a == answer.a && pair.b == answer.b; });
+  words.listed_turned = listed != settings.pairs.end() && listed->turned;
   words.time_offset = report.pairs[best.pair].time_offset_applied;
   std::optional<bool> of_b;
   if (finding.sensor) of_b = *finding.sensor == answer.b;
   word_for_rig(*best.finding, of_b, words, finding);
-  const std::string of =
+  std::string of =
       is_of_the_pair(code) ? words.name_a + ", " + words.name_b : who(report, finding.sensor, best.pair);
+  if (is_of_the_pair(code) && words.listed_turned)
+    of += fmt::format(" (listed as {}, {}; in the axes of {})", words.name_b, words.name_a, words.name_a);
   finding.message = fmt::format("{}: {}", of, finding.message);
   return finding;
 }
@@ -176,10 +187,54 @@ RigFinding moved_by_pairs(const RigReport& report, const PairFindings& of_move, 
   finding.code = "mount_moved";
   finding.sensor = of_move.size() > 1 ? common_sensor(report, of_move) : std::nullopt;
   finding.pair = first.pair;
+  for (const PairFinding& found : of_move) finding.pairs.push_back(found.pair);
   finding.time = begin + first.finding->time.value_or(0);
   finding.message = fmt::format("{}: {}", who(report, finding.sensor, first.pair), first.finding->message);
   finding.remedy = first.finding->remedy;
   return finding;
+}
+
+/// A mount that was moved between two drives: which pairs of them show it.
+using ShownByPairs = std::vector<const MountsOfPair*>;
+
+/// Moved by most of those.
+const MountsOfPair& largest_of(const ShownByPairs& shown) {
+  return **std::max_element(shown.begin(), shown.end(),
+                            [](const MountsOfPair* one, const MountsOfPair* other) {
+                              return std::pair(one->differ.shown.turn, one->differ.shown.shift) <
+                                     std::pair(other->differ.shown.turn, other->differ.shown.shift);
+                            });
+}
+
+/// Mounts that were moved between drives, and whose they are.
+std::vector<RigFinding> moved_between_drives(const RigReport& report) {
+  std::map<std::pair<std::size_t, std::size_t>, ShownByPairs> by_drives;
+  for (const MountsOfPair& mounts : report.mounts)
+    by_drives[{mounts.differ.first, mounts.differ.second}].push_back(&mounts);
+  std::vector<RigFinding> findings;
+  for (const auto& [drives, shown] : by_drives) {
+    RigFinding finding;
+    finding.code = "mount_moved";
+    PairFindings of_pairs;
+    for (const MountsOfPair* mounts : shown) {
+      finding.pairs.push_back(mounts->pair);
+      of_pairs.push_back({mounts->pair, std::nullopt, &mounts->differ.finding});
+    }
+    if (shown.size() > 1) finding.sensor = common_sensor(report, of_pairs);
+    const MountsOfPair& largest = largest_of(shown);
+    finding.pair = largest.pair;
+    finding.message =
+        fmt::format("{}: {}", who(report, finding.sensor, finding.pair), largest.differ.finding.message);
+    finding.remedy = largest.differ.finding.remedy;
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+bool is_between_drives(const RigReport& report, const PairFinding& found) {
+  return std::any_of(report.mounts.begin(), report.mounts.end(), [&](const MountsOfPair& mounts) {
+    return mounts.pair == found.pair && mounts.differ.finding.message == found.finding->message;
+  });
 }
 
 /// Moves that the diagnosis of some pair shows, and whose they are.
@@ -193,10 +248,10 @@ std::vector<RigFinding> moves_in_rig(const RigReport& report, const PairFindings
     return to_seconds(trajectories[a].front().time_us - start_us) + found.finding->time.value_or(0);
   };
   std::vector<RigMove> moves;
-  if (!motions.pairs.empty() && report.unsolved.empty()) {
-    std::vector<ShownMove> shown;
-    for (const PairFinding& found : of_moves)
-      if (found.finding->time) shown.push_back({found.pair, time_of(found) - motions.begin});
+  std::vector<ShownMove> shown;
+  for (const PairFinding& found : of_moves)
+    if (found.finding->time) shown.push_back({found.pair, time_of(found) - motions.begin});
+  if (!shown.empty() && !motions.pairs.empty() && report.unsolved.empty()) {
     const auto chance = [](const std::vector<RigMove>& found) {
       double least = 1;
       for (const RigMove& move : found) least = std::min(least, move.move.false_alarm);
@@ -234,10 +289,6 @@ std::vector<RigFinding> moves_in_rig(const RigReport& report, const PairFindings
   return findings;
 }
 
-bool is_open(const Loop& loop) {
-  return loop.known > 0 && !loop.closed;
-}
-
 }  // namespace
 
 void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& trajectories,
@@ -246,7 +297,10 @@ void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& tr
   std::vector<RigFinding> bad, others;
   for (const auto& [code, of_code] : by_code) {
     if (code == "mount_moved") {
-      for (RigFinding& move : moves_in_rig(report, of_code, motions, trajectories))
+      PairFindings in_drives = of_code;
+      std::erase_if(in_drives, [&](const PairFinding& found) { return is_between_drives(report, found); });
+      for (RigFinding& move : moved_between_drives(report)) bad.push_back(std::move(move));
+      for (RigFinding& move : moves_in_rig(report, in_drives, motions, trajectories))
         bad.push_back(std::move(move));
       continue;
     }
@@ -265,6 +319,8 @@ void find_in_rig(const CommonMotions& motions, const std::vector<Trajectory>& tr
   const bool open = std::any_of(report.solution.loops.begin(), report.solution.loops.end(), is_open);
   if (open && !report.blamed) report.blamed = report.solution.blamed;
   report.contradictory = report.contradictory || open || !bad.empty();
+  for (std::size_t i = 0; i < report.pairs.size(); ++i)
+    report.unusable.push_back(why_unusable(report, bad, i));
   report.findings = std::move(bad);
   for (RigFinding& finding : others) report.findings.push_back(std::move(finding));
   for (const auto& [code, of_code] : findings_by_code(report, false))

@@ -157,6 +157,14 @@ void judge_joint(const Calibration& pair, NamedExtrinsic& edge) {
                       : "All pairs agree with one set of extrinsics, which is not known well enough yet.";
 }
 
+/// why: RigReport::unusable. A good answer in a loop that does not close is not good.
+void judge_edge(const std::string& why, Verdict of_pair, NamedExtrinsic& edge) {
+  if (why.empty()) return;
+  edge.usable = false;
+  edge.verdict = to_string(of_pair < Verdict::doubtful ? Verdict::contradictory : of_pair);
+  edge.reason = why;
+}
+
 }  // namespace
 
 CommonMotions solve_jointly(const std::vector<Trajectory>& trajectories, const RigSettings& settings,
@@ -192,6 +200,8 @@ CommonMotions solve_jointly(const std::vector<Trajectory>& trajectories, const R
 void choose_tree(RigReport& report) {
   const ConsistentSet& set = report.solution.set;
   report.joint = false;
+  const auto bad = std::find_if(report.unusable.begin(), report.unusable.end(),
+                                [](const std::string& why) { return !why.empty(); });
   const auto is_planar = [](const Calibration& calibration) {
     return calibration.problem.mode == Mode::planar;
   };
@@ -199,7 +209,12 @@ void choose_tree(RigReport& report) {
     report.why_not_joint = "there is no joint answer in planar mode";
   else if (!report.unsolved.empty())
     report.why_not_joint = "not all pairs have an answer";
-  else if (!set.solved || set.stddev.size() != report.names.size())
+  else if (bad != report.unusable.end()) {
+    const RigPairAnswer& pair =
+        report.solution.pairs[static_cast<std::size_t>(bad - report.unusable.begin())];
+    report.why_not_joint =
+        fmt::format("the pair {} -> {} should not be used", report.names[pair.a], report.names[pair.b]);
+  } else if (!set.solved || set.stddev.size() != report.names.size())
     report.why_not_joint = "there are no instants that all sensors were seen at";
   else
     for (std::size_t i = 0; i < report.pairs.size() && report.why_not_joint.empty(); ++i) {
@@ -233,6 +248,7 @@ ExtrinsicTree tree_of(const RigReport& report) {
       edge.stddev = set.stddev[pair.b];
       judge_joint(report.pairs[i], edge);
     }
+    judge_edge(report.unusable[i], report.pairs[i].verdict, edge);
     edges.push_back(std::move(edge));
   }
   if (report.joint) return {report.names[0], std::move(edges), {}};

@@ -22,10 +22,12 @@ struct CommonMotions {
 CommonMotions solve_jointly(const std::vector<Trajectory>& trajectories, const RigSettings& settings,
                             RigReport& report);
 
-/// Which set of extrinsics is printed as a tree and exported: RigReport::joint and why_not_joint.
+/// Which set of extrinsics is printed as a tree and exported: RigReport::joint and why_not_joint. Not the
+/// joint one where some pair should not be used: that pair has a part in each of its edges.
 void choose_tree(RigReport& report);
 
-/// That tree. Each edge has the standard deviations and the verdict of the answer that it is.
+/// That tree. Each edge has the standard deviations and the verdict of the answer that it is, or why it
+/// should not be used.
 ExtrinsicTree tree_of(const RigReport& report);
 
 }  // namespace egocal::tools

@@ -237,6 +237,15 @@ Json unsolved_json(const RigReport& report) {
   return pairs;
 }
 
+/// Which edges of the tree a contradiction bears on.
+std::string whose(const ExtrinsicTree& tree) {
+  const auto bad = std::count_if(tree.edges.begin(), tree.edges.end(),
+                                 [](const NamedExtrinsic& edge) { return !edge.usable; });
+  if (bad == 0) return "It bears on no extrinsic of the tree.";
+  if (bad == std::ssize(tree.edges)) return "Do not use these extrinsics.";
+  return "Do not use those of the tree that are marked.";
+}
+
 }  // namespace
 
 Json rig_json(const RigReport& report) {
@@ -288,26 +297,15 @@ std::string contradiction(const RigReport& report) {
   return "A loop of three sensors does not close.";
 }
 
-ExtrinsicTree rig_tree(const RigReport& report) {
-  ExtrinsicTree tree = tree_of(report);
-  if (!report.contradictory) return tree;
-  for (NamedExtrinsic& edge : tree.edges) {
-    edge.usable = false;
-    edge.verdict = to_string(Verdict::contradictory);
-    edge.reason = contradiction(report);
-  }
-  return tree;
-}
-
 std::vector<std::string> tree_remarks(const RigReport& report) {
   std::vector<std::string> lines;
-  if (report.contradictory)
-    lines.push_back("contradictory: " + contradiction(report) + " Do not use these extrinsics.");
+  const ExtrinsicTree tree = tree_of(report);
+  if (report.contradictory) lines.push_back("contradictory: " + contradiction(report) + " " + whose(tree));
   lines.push_back(report.joint ? "the tree is the joint answer of all pairs"
                                : "the tree is that of the most certain pairs: " + report.why_not_joint);
   if (!report.apart.empty())
     lines.push_back("not in the tree, as no answer connects them with the others: " + names_apart(report));
-  for (const NamedExtrinsic& edge : tree_of(report).edges) {
+  for (const NamedExtrinsic& edge : tree.edges) {
     const auto is_of = [&](const RigPairAnswer& pair) {
       const std::string &a = report.names[pair.a], &b = report.names[pair.b];
       return (a == edge.parent && b == edge.child) || (a == edge.child && b == edge.parent);
@@ -315,7 +313,13 @@ std::vector<std::string> tree_remarks(const RigReport& report) {
     const auto pair = std::find_if(report.solution.pairs.begin(), report.solution.pairs.end(), is_of);
     if (pair == report.solution.pairs.end()) continue;
     const auto index = static_cast<std::size_t>(pair - report.solution.pairs.begin());
-    for (const std::string& line : remarks(edge, report.pairs[index]))
+    Calibration calibration = report.pairs[index];
+    if (!edge.usable) {  // in the words of the rig
+      calibration.verdict = Verdict::contradictory;
+      calibration.reason = edge.reason;
+      calibration.findings.clear();
+    }
+    for (const std::string& line : remarks(edge, calibration))
       lines.push_back(edge.parent + " -> " + edge.child + ": " + line);
   }
   return lines;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "egocal/io/extrinsic_tree.hpp"
 #include "offline/rig_calibration.hpp"
 
 namespace egocal::tools {
@@ -18,9 +17,7 @@ std::string rig_text(const RigReport& report);
 /// Of a rig whose answer should not be used: why, one sentence.
 std::string contradiction(const RigReport& report);
 
-/// The consistent set as a tree with the first sensor as its root.
-ExtrinsicTree rig_tree(const RigReport& report);
-/// What whoever writes that tree must know, one line each, for standard error; empty: nothing.
+/// What whoever writes the tree (tree_of()) must know, one line each, for standard error; empty: nothing.
 std::vector<std::string> tree_remarks(const RigReport& report);
 
 }  // namespace egocal::tools

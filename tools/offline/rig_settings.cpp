@@ -7,6 +7,7 @@
 #include "arguments.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "egocal/online/nominal_part.hpp"
 
 namespace egocal::tools {
 
@@ -58,7 +59,13 @@ const bus::PairConfig* listed_pair(const bus::Rig& rig, const std::string& a, co
 void take_from_pair(const bus::Rig& rig, const bus::PairConfig& pair, bool turned,
                     const CalibrationOptions& common, RigPairSettings& settings) {
   const auto towards_a = [turned](const Pose& T) { return turned ? inverse(T) : T; };
-  const PairingOptions of_file = bus::drive_options(rig, pair);
+  bus::PairConfig whole = pair;
+  if (whole.nominal && is_part(*whole.nominal)) {
+    settings.nominal_part = whole.nominal;
+    whole.nominal.reset();
+  }
+  settings.turned = turned;
+  const PairingOptions of_file = bus::drive_options(rig, whole);
   PairingOptions& pairing = settings.calibration.pairing;
   pairing.mode = of_file.mode;
   pairing.plane_a = turned ? of_file.plane_b : of_file.plane_a;
@@ -69,7 +76,7 @@ void take_from_pair(const bus::Rig& rig, const bus::PairConfig& pair, bool turne
     pairing.balance = of_file.balance;
     pairing.robust = of_file.robust;
   }
-  if (pair.nominal) pairing.prior = to_dual_quaternion(towards_a(*pair.nominal));
+  if (whole.nominal) pairing.prior = to_dual_quaternion(towards_a(*whole.nominal));
   if (pair.truth) settings.truth = towards_a(*pair.truth);
   settings.calibration.diagnosis.goal = pair.goal;
   settings.calibration.diagnosis.platform = pair.platform;

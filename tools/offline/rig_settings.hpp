@@ -16,8 +16,10 @@ namespace egocal::tools {
 struct RigPairSettings {
   std::size_t a = 0, b = 0;  ///< sensors, a < b
   CalibrationOptions calibration;
-  std::optional<Pose> truth;  ///< T_a_b
-  bool listed = false;        ///< by the rig file
+  std::optional<Pose> nominal_part;  ///< of which something is not known, as the file lists the pair
+  bool turned = false;               ///< the file lists it as b, a
+  std::optional<Pose> truth;         ///< T_a_b
+  bool listed = false;               ///< by the rig file
   /// Added to the stamps of b where the file lists the pair [s]; empty: it is to be found.
   std::optional<double> time_offset = 0;
 };

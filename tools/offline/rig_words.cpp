@@ -14,6 +14,11 @@ Terms terms_of(const RigWords& words) {
   return {words.name_a, words.name_b, {}};
 }
 
+/// Of what the rig file says of a pair.
+Terms terms_of_file(const RigWords& words) {
+  return words.listed_turned ? Terms{words.name_b, words.name_a, {}} : terms_of(words);
+}
+
 /// How well it fits, after a claim of the rig's own.
 std::string evidence_of(const Finding& found, const RigWords& words) {
   return found.words.evidence.empty() ? "." : in_terms(found.words.evidence, terms_of(words));
@@ -71,9 +76,10 @@ std::string cure(const Finding& found, const RigWords& words) {
            " is in metres.";
   if (code == "clock_drift") return "Synchronise the clocks; for a short drive --time-offset auto";
   if (code == "samples") return "Calibrate two of them at a time: solve A B --samples";
+  if (code == "nominal") return remedy_in_terms(found, terms_of_file(words));
   if (code.starts_with("plane_") && !words.rig.empty())
     return "Correct the plane of " + whose + " in " + words.rig + ".";
-  return remedy_in_terms(found, terms_of(words));
+  return found.words.cure.empty() ? found.remedy : in_terms(found.words.cure, terms_of(words));
 }
 
 }  // namespace
@@ -81,14 +87,15 @@ std::string cure(const Finding& found, const RigWords& words) {
 void word_for_rig(const Finding& found, std::optional<bool> of_b, const RigWords& words,
                   RigFinding& finding) {
   finding.value = found.value;
-  const bool has_value = found.value && *found.value != 0;
+  // what holds of a part of the drives only has its own words
+  const bool has_value = found.value && *found.value != 0 && found.words.scope.empty();
   if ((found.code == "scale" || found.code == "units") && has_value)
     return word_scale(found, of_b.value_or(found.code != "units" || *found.value < 1), words, finding);
   if (found.code == "clock_offset" && has_value)
     return word_clock_offset(found, of_b.value_or(true), words, finding);
   if (found.code == "clock_drift" && has_value && of_b && !*of_b) finding.value = -*found.value;
   finding.message = message_in_terms(found, terms_of(words));
-  finding.remedy = cure(found, words);
+  finding.remedy = in_terms(found.words.scope, terms_of(words)) + cure(found, words);
 }
 
 }  // namespace egocal::tools

@@ -14,6 +14,7 @@ struct RigWords {
   bool offset_found = false;        ///< --time-offset auto was given
   std::string name_a, name_b;       ///< of the pair
   double scale_a = 1, scale_b = 1;  ///< that their lengths were multiplied by
+  bool listed_turned = false;       ///< the rig file lists b, a: its nominal value is the pose of a in b
   double time_offset = 0;           ///< that was added to the stamps of b, against a [s]
 };
 

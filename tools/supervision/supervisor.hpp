@@ -38,17 +38,18 @@ struct SupervisorOptions {
   std::chrono::milliseconds patience{3000};  ///< that processes have to end before they are killed
 };
 
-/// Starts all, restarts what ends, with growing pauses and without a limit, passes SIGINT and
-/// SIGTERM on (SIGHUP as SIGTERM), ends all together. With a foreground program SIGTSTP stops us when that
-/// has given the terminal back, and the terminal's modes are what they were when it is gone, however it
-/// ended. Only wrong usage (exit code 2) and a program that cannot be executed, and a foreground program that
-/// fails, end all, where that comes before it has once started well: no restart helps there. A Ctrl-C reaches
-/// each process once: only foreground programs share our terminal's process group. Whatever happens to us,
-/// SIGKILL included, the others get SIGTERM. Returns 0 when they ended because they should, 1 when something
-/// could not be started (reported on standard error). Throws Error where an output file cannot be written
-/// before the first program starts; none is started then. Later the output of a process whose file cannot be
-/// written goes to /dev/null. The caller ignores SIGPIPE, or a report that nobody reads ends us; the programs
-/// do not.
+/// Starts all programs, and restarts those that end: without a limit, with growing pauses.
+/// - SIGINT and SIGTERM (and SIGHUP, as SIGTERM) are passed on and end all programs. A Ctrl-C reaches each
+///   process once, because only foreground programs share the process group of the terminal.
+/// - SIGTSTP stops this process after the foreground program has released the terminal. The modes of the
+///   terminal are restored when the foreground program ends, however it ends.
+/// - Wrong usage (exit code 2), a program that cannot be executed, and a foreground program that fails end
+///   all programs, unless the program has started well before: a restart would not help.
+/// - If this process dies, SIGKILL included, the programs receive SIGTERM.
+/// Returns 0 after a regular end, and 1 if a program could not be started (reported on standard error).
+/// Throws Error if an output file cannot be opened before the first program starts; then none is started. If
+/// it cannot be opened later, the output of that program goes to /dev/null. The caller must ignore SIGPIPE:
+/// otherwise a report that nobody reads ends this process. The programs do not inherit that.
 int supervise(const std::vector<Program>& programs, const SupervisorOptions& options);
 
 }  // namespace egocal::tools

@@ -9,8 +9,8 @@
 namespace egocal::detail {
 
 struct HoldOptions {
-  /// How many times the curvature of what holds is that of the motions: noise then pulls the answer from the
-  /// prior by less than 1e-5 of the difference, and rounding costs five of the sixteen digits of a proof.
+  /// Curvature of the added squares over that of the motions. With it, noise pulls the answer from the prior
+  /// by less than 1e-5 of the difference, and rounding costs five of the sixteen digits of a proof.
   double stiffness = 1e5;
   /// A hidden direction with more than this part of its square in translation is held as one, others as turns
   /// about a line. The motions of what turns about a line are as long as its arm makes them, and they set the
@@ -19,9 +19,10 @@ struct HoldOptions {
   /// 0.8 to 0.99 have the same answers; with 0.5 turns with long arms were held as translations, and roll and
   /// pitch were off by up to 45 standard deviations. Study: docs/method.md, "Hidden turns".
   double mostly_translation = 0.91;
-  /// An answer that is closer to the prior is there: rounding [m, rad].
+  /// An answer closer to the prior than this is at the prior: rounding [m, rad].
   double there = 1e-9;
-  /// Rotations about several axes do not commute, so each is brought to the prior in turn, this many times.
+  /// Rotations about several axes do not commute, so each is brought to the prior in turn, in this many
+  /// rounds.
   int sweeps = 8;
 };
 

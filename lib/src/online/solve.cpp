@@ -23,8 +23,8 @@ struct Stopwatch {
   std::int64_t now() const { return clock ? clock() : 0; }
 };
 
-/// Local methods without a start begin at the global minimum: it costs less than they do, and a poor start
-/// could end in a local one.
+/// Minimises by the method. Local methods without a start begin at the global minimum, which costs less than
+/// they do; a poor start could end in a local minimum.
 detail::ProvenSolution minimise(const Matrix8d& Q, Method method,
                                 const std::optional<DualQuaternion>& start) {
   const auto begin = [&] { return start ? *start : solve_dual(Q).q; };
@@ -41,9 +41,9 @@ detail::ProvenSolution minimise(const Matrix8d& Q, Method method,
   return {};
 }
 
-/// Of all equally good extrinsics the one closest to the prior: along the directions in which the cost is
-/// flat up to rounding, as long as it does not rise above it. Their set may be curved (rotation about a
-/// common axis): therefore steps.
+/// Of all equally good extrinsics the one closest to the prior: follows the directions in which the cost is
+/// flat up to rounding, as long as it does not rise. The set may be curved (rotation about a common axis),
+/// hence the steps.
 DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimiser,
                                 const DualQuaternion& prior) {
   DualQuaternion q = minimiser;
@@ -54,7 +54,7 @@ DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimis
     detail::Vector6d wish = detail::frame_a_difference(q, prior);
     wish.head<3>() /= flat.length;
     detail::Vector6d step = flat.basis * (flat.basis.transpose() * wish);
-    // rotations are followed in small steps, for their flat set is curved
+    // small steps in rotation, as the flat set is curved
     const double turn = step.tail<3>().norm();
     if (turn > 0.3) step *= 0.3 / turn;
     const double size = step.norm();
@@ -129,7 +129,7 @@ Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Metho
 
 namespace {
 
-/// Empty where the motions show everything, or the minimum is at the prior.
+/// Empty: the motions show every direction, or the minimum is at the prior.
 std::optional<detail::HeldCost> held(const Problem& problem, const Matrix8d& Q, const Answer& minimum) {
   if (!problem.prior || problem.mode == Mode::planar || minimum.status != SolverStatus::converged)
     return std::nullopt;

@@ -8,7 +8,7 @@
 
 namespace egocal::detail {
 
-/// solve() without what is known of the directions. Q: the problem's cost matrix (16).
+/// solve() without observability and standard deviations. Q: cost matrix of the problem (16).
 Answer solve_and_verify(const Problem& problem, const Matrix8d& Q, Method method,
                         const std::optional<DualQuaternion>& start = std::nullopt,
                         NanosecondClock clock = nullptr);

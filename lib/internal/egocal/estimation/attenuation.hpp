@@ -43,18 +43,17 @@ struct Attenuation {
   bool operator==(const Attenuation&) const = default;
 };
 
-/// Errors in variables. Noise of the rotations adds N I to D (N: mean square of the rotation residual, for
-/// noise of the two sensors that is independent, whatever its distribution), and the minimiser of (18)
-/// is then (1 - N / mu) times as long along an eigenvector of D with the eigenvalue mu. N = r'Dr is known
-/// from the residuals. This decides along which eigenvectors across r the noise is to be taken off D: where
-/// the pull is larger than AttenuationOptions::least_pull standard deviations, and a loss of certainty by the
-/// correction, 1 / (1 - N / mu), costs less than the pull. Empty where there are none, and where the blocks
+/// Errors in variables (docs/method.md has the derivation). Independent noise of the two rotations adds N I
+/// to D, where N = r'Dr is the mean squared rotation residual. The minimiser of (18) is then pulled towards
+/// zero: along an eigenvector of D with the eigenvalue mu it is (1 - N / mu) times as long. This function
+/// decides along which eigenvectors across r the noise is taken off D. It is taken off if the pull is larger
+/// than AttenuationOptions::least_pull standard deviations, and if the standard deviation, which the
+/// correction makes 1 / (1 - N / mu) times as large, grows by less than the pull. On circles of nearly one
+/// radius x, y and yaw are observable only together, and the pull is far larger. So if no single eigenvector
+/// needs the correction, the noise is taken off all that lose little certainty, provided that the answer
+/// changes by more than least_pull standard deviations in an observable direction. In the plane it is taken
+/// off both x and y, or off neither, by the same rule. Empty if nothing is to be taken off, or if the blocks
 /// are too few for a spread.
-///
-/// On circles of nearly one radius x, y and yaw are seen together only, and pulled by far more. So where no
-/// eigenvector needs it by itself, the noise is taken off all that lose little certainty, if the answer then
-/// differs by more than least_pull standard deviations in any direction that is seen. In the plane it is
-/// taken off x and y, or off neither, by the same rule.
 std::optional<Attenuation> find_attenuation(const Problem& problem, const AttenuationOptions& options = {});
 
 /// The same along all eigenvectors that `most_noise` allows, however small the pull. Empty in planar mode.

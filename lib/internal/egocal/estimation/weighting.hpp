@@ -74,10 +74,11 @@ struct WeightingOptions {
   /// The same in each direction alone (SelectionOptions::contradicts): shorter motions may have been refused
   /// for one of them.
   double contradicts = 4;
-  /// None of this counts where one of the two answers leaves this many times as much of the single stride's
-  /// motions as the other one: the product of the mean squared residuals of rotations and of translations,
-  /// which is the smaller the more likely the answer is, whatever the two noises are. With a balance that is
-  /// off by a thousand the least cost may be half a turn away; a jack-knife calls such an answer certain.
+  /// Exception to all of the above: the residuals of one answer are this many times those of the other one.
+  /// They are compared on the motions of the single stride, as the product of the mean squared residuals of
+  /// rotations and of translations. The smaller it is, the more likely is the answer, whatever the two noises
+  /// are. If the balance is wrong by a factor of a thousand, the minimum may be half a turn away, and a
+  /// jack-knife reports a small standard deviation for it.
   /// Two: by eight independent motions, the fewest parts of a spread, it is 4,000 times less likely. Answers
   /// that are both near the truth differ by a few percent. Study: docs/accuracy.md, "Wrong minima".
   double less_likely = 2;
@@ -119,15 +120,15 @@ struct SingleStride {
   Problem problem;  ///< its motions without those that contradict the others, in disjoint blocks
 };
 
-/// Weights of the strides that are maximum likelihood for white noise on poses together with noise on motions
-/// that adds up (a random walk): a motion of s steps then counts by lambda^s, where lambda depends on the
-/// ratio of the two noises alone (0: neighbours only; 1: all alike). lambda is fitted to the variance of the
-/// residuals by stride, for rotation and translation each; their balance is the inverse of the variances.
-/// Where omitting blocks of poses shows that another lambda = exp(-1 / memory) has a clearly smaller
-/// spread (noise is of another kind: it drifts, or grows with the length), that one is taken. sums: of the
-/// blocks. problem: mode, planes, prior. current: the choice in force. rival: the best single stride; one
-/// that is not among the strides of the blocks, or contradicts the sum, is not beaten, unless the sum's
-/// answer is far more likely by the rival's own motions. Empty where no motion turns or moves.
+/// Chooses the weights of the strides. For white noise on poses together with a random walk (noise on motions
+/// that adds up) the maximum-likelihood weight of a motion of s steps is lambda^s. lambda depends on the
+/// ratio of the two noises alone (0: neighbours only; 1: all alike). It is fitted to the variances of the
+/// residuals by stride, for rotation and translation separately. Their balance is the inverse of these
+/// variances. Another lambda = exp(-1 / memory) is taken if the jack-knife over poses shows a clearly smaller
+/// spread with it: then the noise is of another kind, for example it drifts or grows with the length. sums:
+/// of the blocks. problem: mode, planes and prior. current: the choice in force. rival: the best single
+/// stride. It is not beaten if it is not among the strides of the blocks, or contradicts the sum, unless the
+/// answer of the sum is far more likely on the rival's own motions. Empty if no motion turns or moves.
 std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const TouchingSums& sums,
                                            const Problem& problem, const std::optional<WeightChoice>& current,
                                            const std::optional<SingleStride>& rival = {},

@@ -3,6 +3,7 @@
 #include "diagnosis/verdict/nominal.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -13,65 +14,87 @@
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/uncertainty/observability.hpp"
+#include "egocal/uncertainty/plane_directions.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
-/// How far a nominal value is from the motions in the directions of one kind that they show.
-struct Departure {
+/// How far a nominal value is from the answer in the directions of one kind that are known without it.
+struct Disagreement {
   double size = 0, limit = 1;  ///< [m or rad]
   std::string names{};         ///< of the directions, "x, y"
   double part() const { return size / limit; }
 };
 
 /// Of translation and rotation.
-struct Departures {
-  Departure translation, rotation;
+struct Disagreements {
+  Disagreement translation, rotation;
   double part() const { return std::max(translation.part(), rotation.part()); }
 };
 
-Departure departure(const Vector6d& difference, std::size_t first, double tolerance,
-                    const Observability& shown, const NominalCheckOptions& check) {
-  Departure result;
+/// What the motions show, or the ground planes give, and its standard deviation.
+struct Known {
+  std::array<bool, 6> directions{};
+  std::array<double, 6> stddev{};  ///< 0 of what the planes give
+};
+
+Known known_without_nominal(const Answered& answered) {
+  Known known{answered.observability.observable, answered.observability.stddev};
+  for (std::size_t k = 0; k < 6; ++k) {
+    known.directions[k] = known.directions[k] && std::isfinite(known.stddev[k]);
+    if (answered.problem.mode != Mode::planar || in_plane(answered.problem.plane_a, k)) continue;
+    known.directions[k] = true;
+    known.stddev[k] = 0;
+  }
+  return known;
+}
+
+Disagreement disagreement(const Vector6d& difference, std::size_t first, double tolerance, const Known& known,
+                          const NominalCheckOptions& check) {
+  Disagreement result;
   double squares = 0, variance = 0;
   for (std::size_t k = first; k < first + 3; ++k) {
-    if (!shown.observable[k] || !std::isfinite(shown.stddev[k])) continue;
+    if (!known.directions[k]) continue;
     squares += std::pow(difference[static_cast<Eigen::Index>(k)], 2);
-    variance += shown.stddev[k] * shown.stddev[k];
-    result.names += (result.names.empty() ? "" : ", ") + std::string(direction_names[k]);
+    variance += known.stddev[k] * known.stddev[k];
   }
   result.size = std::sqrt(squares);
   result.limit = tolerance + check.sigmas * std::sqrt(variance);
+  for (std::size_t k = first; k < first + 3; ++k)
+    if (known.directions[k] &&
+        std::abs(difference[static_cast<Eigen::Index>(k)]) > check.least_part * result.size)
+      result.names += (result.names.empty() ? "" : ", ") + std::string(direction_names[k]);
   return result;
 }
 
 /// The answer is taken from the nominal value along the hidden directions, so what is left between the two is
 /// in the others. Both in the frame of a.
-Departures departures_of(const Pose& nominal, const Answered& answered, const DiagnosisOptions& options,
-                         const NominalCheckOptions& check) {
+Disagreements disagreements_of(const Pose& nominal, const Answered& answered, const DiagnosisOptions& options,
+                               const NominalCheckOptions& check) {
   Problem problem = answered.minimised.blocks.empty() ? answered.problem : answered.minimised;
   problem.prior = to_dual_quaternion(nominal);
   const Vector6d difference = frame_a_difference(solve(problem, Method::dual).T_a_b, *problem.prior);
-  const ObservabilityOptions known;
-  Departures result;
+  const ObservabilityOptions drawing;
+  const Known known = known_without_nominal(answered);
+  Disagreements result;
   // lengths of an unknown unit cannot be compared with metres
   if (options.unit != LengthUnit::unknown)
-    result.translation = departure(
-        difference, 0, std::max(options.tolerance_translation, check.sigmas * known.prior_translation),
-        answered.observability, check);
+    result.translation = disagreement(
+        difference, 0, std::max(options.tolerance_translation, check.sigmas * drawing.prior_translation),
+        known, check);
   result.rotation =
-      departure(difference, 3, std::max(options.tolerance_rotation, check.sigmas * known.prior_rotation),
-                answered.observability, check);
+      disagreement(difference, 3, std::max(options.tolerance_rotation, check.sigmas * drawing.prior_rotation),
+                   known, check);
   return result;
 }
 
 /// "30 deg (roll, pitch, yaw) and 2.83 m (x, y)": those beyond their limits.
-std::string in_words(const Departures& departures) {
+std::string in_words(const Disagreements& disagreements) {
   constexpr double in_degrees = 180 / std::numbers::pi;
   std::string text;
-  const Departure &turn = departures.rotation, &shift = departures.translation;
+  const Disagreement &turn = disagreements.rotation, &shift = disagreements.translation;
   if (turn.part() > 1) text = format("%.3g deg (%s)", turn.size * in_degrees, turn.names.c_str());
   if (shift.part() > 1)
     text += (text.empty() ? "" : " and ") + length_in_words(shift.size) + " (" + shift.names + ")";
@@ -94,14 +117,17 @@ std::string agreeing_reading(const Pose& nominal, double part, const Answered& a
     readings.push_back(
         {{nominal.rotation, nominal.translation / 1000}, "which agrees in millimetres: give metres"});
   for (const auto& [reading, words] : readings) {
-    const double left = departures_of(reading, answered, options, check).part();
+    const double left = disagreements_of(reading, answered, options, check).part();
     if (left <= 1 && left < check.much_nearer * part) return words;
   }
   return "";
 }
 
-/// ", so z, which is taken from it, is not known": of the directions that are hidden.
-std::string what_is_taken(const Observability& shown) {
+/// ", so z, which is taken from it, is not known": of the directions that are hidden. In planar mode nothing
+/// is: what the motions hide is the planes'.
+std::string what_is_taken(const Answered& answered) {
+  if (answered.problem.mode == Mode::planar) return "";
+  const Observability& shown = answered.observability;
   std::string names;
   std::size_t count = 0;
   for (std::size_t k = 0; k < 6; ++k)
@@ -126,22 +152,26 @@ Finding worded(const std::string& claim, const std::string& cure) {
 
 std::optional<Finding> contradicted_nominal(const Answered& answered, const DiagnosisOptions& options,
                                             const NominalCheckOptions& check) {
-  if (!answered.problem.prior || answered.problem.mode == Mode::planar) return std::nullopt;
+  if (!answered.problem.prior) return std::nullopt;
   const Pose nominal = to_pose(*answered.problem.prior);
-  const Departures departures = departures_of(nominal, answered, options, check);
-  const std::string taken = what_is_taken(answered.observability);
+  const Disagreements disagreements = disagreements_of(nominal, answered, options, check);
+  const std::string taken = what_is_taken(answered);
   const double length = nominal.translation.norm();
+  const bool planar = answered.problem.mode == Mode::planar;
   const bool is_long = options.unit != LengthUnit::unknown && length > check.longest;
   const std::string in_metres =
       "Give the nominal value in metres: it is " + length_in_words(length) + " long; is it in millimetres?";
-  if (departures.part() > 1) {
-    const std::string agrees = agreeing_reading(nominal, departures.part(), answered, options, check);
+  if (disagreements.part() > 1) {
+    const std::string agrees = agreeing_reading(nominal, disagreements.part(), answered, options, check);
     return worded(
-        "The nominal value is " + in_words(departures) + " from what the motions show" + taken + ".",
+        "The nominal value is " + in_words(disagreements) + " from what " +
+            (planar ? "the ground planes and " : "") + "the motions show" + taken + ".",
         !agrees.empty() ? "Correct the nominal value, " + agrees + "."
         : is_long       ? in_metres
-                        : "Correct the nominal value, the pose of {b} in {a}. Where only a part of it "
-                          "is measured, give what this answer has in the other directions.");
+        : planar
+            ? "Correct the nominal value, the pose of {b} in {a}, or the ground planes: one of them is wrong."
+            : "Correct the nominal value, the pose of {b} in {a}. Where only a part of it "
+              "is measured, give what this answer has in the other directions, or nan to solve.");
   }
   if (taken.empty() || !is_long) return std::nullopt;
   return worded("The nominal value is " + length_in_words(length) + " long" + taken + ".", in_metres);
