@@ -4,23 +4,31 @@
 // moves the answer by decimetres.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <string>
 
 #include "../support/findings.hpp"
 #include "../support/random_motion.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "uncertainty/frame_a.hpp"
 
 namespace egocal::test_small_scale {
 namespace {
+
+using detail::frame_a_difference;
+using detail::Vector6d;
 
 constexpr double gravity = 9.81;  // [m/s^2]
 
 /// A multirotor that sways slowly: it tilts as it accelerates, so that lengths that are wrong by e look like
 /// a lever arm along its axis, longer by e times gravity over the squared angular frequency.
-testing::Streams multirotor(std::uint64_t seed, double scale_of_b) {
+/// rotations: noise of each step of both sensors [rad].
+testing::Streams multirotor(std::uint64_t seed, double scale_of_b, double rotations = 5e-5) {
   testing::Random random(seed);
   const double rate_x = 2 * std::numbers::pi / random.uniform(16, 19),
                rate_y = 2 * std::numbers::pi / random.uniform(14, 16);
@@ -30,7 +38,7 @@ testing::Streams multirotor(std::uint64_t seed, double scale_of_b) {
   Pose odometry_a{Rotation::Identity(), Eigen::Vector3d::Zero()}, odometry_b = odometry_a;
   Pose before{Rotation::Identity(), Eigen::Vector3d::Zero()};
   const auto noisy = [&](const Pose& motion, double scale) {
-    return Pose{motion.rotation * rotation_exp(random.normal3(5e-5)),
+    return Pose{motion.rotation * rotation_exp(random.normal3(rotations)),
                 scale * motion.translation + random.normal3(5e-4)};
   };
   for (int i = 0; i < 1500; ++i) {
@@ -65,6 +73,30 @@ TEST(SmallScale, IsNamedWhereTheAnswerAtItIsAnotherOne) {
     ASSERT_TRUE(scale->T_a_b);
     EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*scale->T_a_b)).translation,
               0.5 * given.translation);
+  }
+}
+
+/// The largest error in standard deviations.
+double sigmas(const testing::Streams& streams, const Calibration& calibration) {
+  const Vector6d error = frame_a_difference(streams.T, to_dual_quaternion(calibration.T_a_b));
+  double largest = 0;
+  for (std::size_t i = 0; i < 6; ++i)
+    largest = std::max(largest,
+                       std::abs(error[static_cast<Eigen::Index>(i)]) / calibration.observability.stddev[i]);
+  return largest;
+}
+
+TEST(SmallScale, IsContainedInTheStandardDeviationsWhereItMovesTheAnswer) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    const testing::Streams streams = multirotor(seed, 1.006);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    const Finding* scale = testing::find(calibration, "scale");
+    ASSERT_NE(scale, nullptr) << seed << ": " << calibration.reason;
+    EXPECT_FALSE(scale->certain);
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << calibration.reason;
+    EXPECT_LT(sigmas(streams, calibration), 4) << seed << ": " << scale->message;
+    EXPECT_NE(scale->message.find("moves the answer by"), std::string::npos) << scale->message;
+    EXPECT_NE(scale->remedy.find("--scale-b auto"), std::string::npos) << scale->remedy;
   }
 }
 

@@ -28,7 +28,7 @@ void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, c
   const bool another_answer = far_off(evidence.scaled.explained.fit.T, answered, options) > 1;
   std::optional<Finding> scale;
   if (!small || another_answer) scale = wrong_scale(evidence, options);
-  if (!scale && (!small || another_answer)) scale = wrong_scale_of_drive(evidence, pairing, options);
+  if (!scale && !small) scale = wrong_scale_of_drive(evidence, pairing, options);
   if (!scale) return;
   if (!scale->certain) {
     const bool named =

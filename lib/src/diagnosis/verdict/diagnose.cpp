@@ -34,6 +34,7 @@
 #include "diagnosis/verdict/judge.hpp"
 #include "diagnosis/verdict/known_directions.hpp"
 #include "diagnosis/verdict/look_further.hpp"
+#include "diagnosis/verdict/small_scale.hpp"
 #include "diagnosis/verdict/timing.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 
@@ -144,6 +145,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
                                  evidence.instants.period, options.unit == LengthUnit::metres, options.pace))
     result.findings.insert(result.findings.begin(), *std::move(pace));
   look_at_times(foreseen, answered, result);
+  name_small_scale(evidence, options, answered, result);
   if (pairing.mode != Mode::planar)
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
   name_askew_rotations(evidence, answered, options, result.findings);
