@@ -91,5 +91,32 @@ TEST(ContradictingParts, AreNotASingleJump) {
                   .parts.empty());
 }
 
+// Of a vehicle that stands only motions to and from wrong poses are motions.
+TEST(ContradictingParts, AreNotWrongPosesOfAVehicleThatStands) {
+  testing::Streams streams = testing::noisy_drive(Terrain::free, 0.001);
+  testing::Random random(7);
+  for (std::size_t i = 120; i < 260; ++i) {
+    for (Trajectory* stream : {&streams.a, &streams.b})
+      (*stream)[i].pose = normalized((*stream)[119].pose * testing::normal_displacement(random, 1e-4, 1e-4));
+    if (i % 5 == 0)
+      streams.b[i].pose = normalized(streams.b[i].pose * testing::displacement({0, 0.2, 0}, {0, 0, 0}));
+  }
+  EXPECT_TRUE(detail::contradicting_parts(detail::synchronised(streams.a, streams.b, {}, 0.5), 8,
+                                          to_pose(streams.T), {})
+                  .parts.empty());
+}
+
+// Of 61 poses each tenth has six motions, and two wrong poses spoil four of them.
+TEST(ContradictingParts, AreNotTwoWrongPosesOfAShortDrive) {
+  testing::Streams streams = testing::noisy_drive(Terrain::free, 0.001);
+  streams.a.resize(61);
+  streams.b.resize(61);
+  for (const std::size_t i : {20u, 22u})
+    streams.b[i].pose = normalized(streams.b[i].pose * testing::displacement({0, 0.2, 0}, {0, 0, 0}));
+  EXPECT_TRUE(detail::contradicting_parts(detail::synchronised(streams.a, streams.b, {}, 0.5), 1,
+                                          to_pose(streams.T), {})
+                  .parts.empty());
+}
+
 }  // namespace
 }  // namespace egocal::test_following_mount

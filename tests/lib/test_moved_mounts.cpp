@@ -328,6 +328,8 @@ TEST(MovedMount, StreamsThatMayBothBeInvertedMoveForCertainOnlyWhereThatFitsBett
     ++uncertain;
     EXPECT_FALSE(moved->certain) << seed << ": " << inverted.reason;
     EXPECT_GE(inverted.verdict, Verdict::doubtful) << seed;
+    const Finding* both = find(inverted, "inverted_both");
+    EXPECT_NE(both->message.find("the mounting did not change"), std::string::npos) << both->message;
   }
   EXPECT_GE(uncertain, 2) << "mounts seem to move where odometry drifts";
 }

@@ -29,6 +29,23 @@ TEST(OtherReadings, TheRemedyOfAReadingCures) {
   EXPECT_LT((cured.T_a_b.translation - right.translation).norm(), 1e-6);
 }
 
+// Rows of COLMAP in a file of x y z w: a mount that moved was named, or nothing.
+TEST(OtherReadings, ScalarFirstAndInvertedIsNamedWithBothOptions) {
+  for (const bool in_a : {true, false}) {
+    testing::Streams streams = drive(Terrain::rough);
+    Trajectory& wrong = in_a ? streams.a : streams.b;
+    wrong = testing::scalar_first(testing::inverted(wrong));
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+    const Finding* finding = find(calibration, in_a ? "quaternion_order_a" : "quaternion_order_b");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_NE(finding->message.find("and its poses are world-to-sensor"), std::string::npos)
+        << finding->message;
+    EXPECT_EQ(finding->remedy,
+              in_a ? "--quaternion-order-a wxyz --invert-a" : "--quaternion-order-b wxyz --invert-b");
+  }
+}
+
 /// Turned axes of one stream are those of the other one up to the lever arm: one of them is named.
 TEST(OtherReadings, PositionsInAnotherWorldFrameAreNamed) {
   testing::Streams streams = drive(Terrain::free);

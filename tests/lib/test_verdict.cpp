@@ -141,5 +141,49 @@ TEST(Verdict, AClearlyWrongScaleIsDoubtfulWhereItMovesTheAnswerByMoreThanItState
   EXPECT_EQ(verdict_of(0.983, 0.018), Verdict::doubtful);
 }
 
+// Half a minute on rails knows x to metres, and a clock that noise showed was a contradiction.
+TEST(Verdict, AClockContradictsTheAnswerBeyondWhatItStates) {
+  const auto verdict_of = [](double stddev, double improvement) {
+    Answered answered;
+    answered.observability.observable.fill(true);
+    answered.observability.stddev.fill(stddev);
+    Diagnosis diagnosis;
+    Finding finding;
+    finding.code = "clock_offset";
+    finding.certain = true;
+    finding.improvement = improvement;
+    finding.T_a_b = Pose{Eigen::Quaterniond::Identity(), {1.5, 0, 0}};
+    diagnosis.findings = {finding};
+    detail::judge(diagnosis, answered, {}, {});
+    return diagnosis.verdict;
+  };
+  EXPECT_EQ(verdict_of(0.5, 2), Verdict::contradictory);
+  EXPECT_EQ(verdict_of(1, 2), Verdict::incomplete);
+  EXPECT_EQ(verdict_of(1, 1000), Verdict::contradictory) << "the motions say so whatever the answer states";
+}
+
+// Noise that wanders looks like a mounting that moves a little. Where the two cannot be told apart, the
+// verdict depends on how far this answer is from the one after the move.
+TEST(Verdict, APossibleMoveIsDoubtfulWhereTheAnswerAfterItIsFar) {
+  Answered answered;
+  answered.observability.observable.fill(true);
+  answered.observability.stddev.fill(0.005);
+  const auto verdict_of = [&](bool certain, double moved, const char* beside = "clock_drift") {
+    Diagnosis diagnosis;
+    Finding finding, other;
+    other.code = beside;
+    finding.code = "mount_moved";
+    finding.certain = certain;
+    finding.T_a_b = Pose{Eigen::Quaterniond::Identity(), {moved, 0, 0}};
+    diagnosis.findings = {finding, other};
+    detail::judge(diagnosis, answered, {}, {});
+    return diagnosis.verdict;
+  };
+  EXPECT_LE(verdict_of(false, 0.1), Verdict::incomplete);
+  EXPECT_EQ(verdict_of(false, 0.1, "inverted_both"), Verdict::doubtful) << "streams that may be inverted";
+  EXPECT_EQ(verdict_of(false, 0.5), Verdict::doubtful);
+  EXPECT_EQ(verdict_of(true, 0.1), Verdict::doubtful) << "a move that is certain";
+}
+
 }  // namespace
 }  // namespace egocal::test_verdict

@@ -27,7 +27,8 @@ struct Ranked {
 
 std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptions& options) {
   std::vector<std::pair<double, std::size_t>> looks;
-  const std::vector<Candidate> candidates = common_mistakes();
+  std::vector<Candidate> candidates = common_mistakes();
+  for (const Candidate& two : combined_mistakes()) candidates.push_back(two);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (std::string_view(candidates[i].code) == "inverted_both") continue;  // decided by itself
     const Motions motions = motions_of(evidence.instants, candidates[i].a, candidates[i].b, evidence.stride,

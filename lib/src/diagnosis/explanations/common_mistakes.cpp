@@ -22,6 +22,13 @@ std::vector<Candidate> common_mistakes() {
           {"quaternion_order_both", xyzw, xyzw}};
 }
 
+std::vector<Candidate> combined_mistakes() {
+  PoseReading as_read, wxyz_inverted;
+  wxyz_inverted.quaternion_order = QuaternionOrder::wxyz;
+  wxyz_inverted.invert = true;
+  return {{"quaternion_order_a", wxyz_inverted, as_read}, {"quaternion_order_b", as_read, wxyz_inverted}};
+}
+
 Explanation explained(const Evidence& evidence, int stride, const char* code, const PoseReading& a,
                       const PoseReading& b, const DiagnosisOptions& options) {
   Explanation result{code, a, b, evidence.clock, 1, {}};

@@ -16,6 +16,8 @@ struct Candidate {
 
 /// The mistakes that have an option as their cure, simplest first.
 std::vector<Candidate> common_mistakes();
+/// Two of them in one stream: rows of COLMAP (w x y z, world-to-camera) that were copied into another file.
+std::vector<Candidate> combined_mistakes();
 
 /// An explanation by motions of `stride` instants.
 Explanation explained(const Evidence& evidence, int stride, const char* code, const PoseReading& a,

@@ -62,6 +62,15 @@ double usual_angle(const Motions& motions) {
   return usual_size(motions, smaller_angle);
 }
 
+std::vector<bool> one_at_rest(const Motions& motions, const RestOptions& options) {
+  const double longest = options.length * usual_size(motions, smaller_length),
+               largest = options.angle * usual_angle(motions);
+  std::vector<bool> rest;
+  for (const Motion& motion : motions.all)
+    rest.push_back(smaller_length(motion) <= longest && smaller_angle(motion) <= largest);
+  return rest;
+}
+
 std::vector<bool> at_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options) {
   const double longest = options.length * usual_size(motions, smaller_length),
                largest = options.angle * usual_angle(motions);

@@ -40,6 +40,9 @@ double usual_angle(const Motions& motions);
 /// noise.
 std::vector<bool> at_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options = {});
 
+/// Which motions are at rest by one of the sensors at least: a wrong pose moves one stream alone.
+std::vector<bool> one_at_rest(const Motions& motions, const RestOptions& options = {});
+
 /// The motions without those at rest, measured by what they are without them; all of them where few are.
 Motions without_rest(const Motions& motions, const Pose& T_a_b, const RestOptions& options = {});
 

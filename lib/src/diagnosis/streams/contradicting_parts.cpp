@@ -17,7 +17,7 @@ namespace {
 
 /// What the answer leaves of the rotations of one part of the drive [rad], and as a part of what is turned.
 struct PartResidual {
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< of motions that are not at rest; 0: most of them are
   double rotation = 0, relative = 0;
 };
 
@@ -25,23 +25,35 @@ struct TimeSpan {
   double begin = 0, end = 0;  ///< [s]
 };
 
+double quantile(std::vector<double>& values, double part) {
+  if (values.empty()) return 0;
+  return order_statistic_in_place(values,
+                                  static_cast<std::size_t>(part * static_cast<double>(values.size())));
+}
+
 std::vector<PartResidual> residuals_of_parts(const Motions& motions, const Pose& T_a_b, const TimeSpan& drive,
-                                             std::size_t parts, double least_turning) {
+                                             const ContradictingPartsOptions& tuning) {
+  const std::size_t parts = tuning.parts;
   std::vector<std::vector<double>> rotations(parts), angles(parts);
-  const std::vector<bool> rest = at_rest(motions, T_a_b);
+  std::vector<std::size_t> all(parts);
+  const std::vector<bool> rest = at_rest(motions, T_a_b), one_rests = one_at_rest(motions);
   for (std::size_t i = 0; i < motions.all.size(); ++i) {
     const Motion& motion = motions.all[i];
     const double place = static_cast<double>(parts) * (motion.time - drive.begin) / (drive.end - drive.begin);
-    if (rest[i] || place < 0) continue;
+    if (place < 0) continue;
     const std::size_t part = std::min(parts - 1, static_cast<std::size_t>(place));
+    ++all[part];
+    if (rest[i] || one_rests[i]) continue;
     rotations[part].push_back(residual_at(motion, T_a_b).rotation);
     angles[part].push_back(std::min(motion.angle_a, motion.angle_b));
   }
   // of parts that hardly turn nothing is left for each degree
-  const double least_angle = least_turning * usual_angle(motions);
+  const double least_angle = tuning.least_turning * usual_angle(motions);
   std::vector<PartResidual> result;
   for (std::size_t part = 0; part < parts; ++part) {
-    PartResidual residual{rotations[part].size(), median(std::move(rotations[part])), 0};
+    const auto moving = static_cast<double>(rotations[part].size());
+    const bool counts = moving >= tuning.least_moving * static_cast<double>(all[part]);
+    PartResidual residual{counts ? rotations[part].size() : 0, quantile(rotations[part], tuning.quantile), 0};
     const double angle = std::max(least_angle, median(std::move(angles[part])));
     residual.relative = angle > 0 ? residual.rotation / angle : 0;
     result.push_back(residual);
@@ -67,10 +79,8 @@ ContradictingParts contradicting_parts(const Instants& instants, int stride, con
   if (motions.all.size() < tuning.parts * tuning.least) return {};
   const TimeSpan drive{motions.all.front().time, motions.all.back().time};
   if (!(drive.end > drive.begin)) return {};
-  const std::vector<PartResidual> parts = residuals_of_parts(motions, T_a_b, drive, tuning.parts,
-                                                             tuning.least_turning),
-                                  of_shorter = residuals_of_parts(shorter, T_a_b, drive, tuning.parts,
-                                                                  tuning.least_turning);
+  const std::vector<PartResidual> parts = residuals_of_parts(motions, T_a_b, drive, tuning),
+                                  of_shorter = residuals_of_parts(shorter, T_a_b, drive, tuning);
   const double relative = median_of(parts, tuning.least, &PartResidual::relative),
                relative_shorter = median_of(of_shorter, tuning.least, &PartResidual::relative);
   ContradictingParts found;

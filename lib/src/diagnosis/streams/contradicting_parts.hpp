@@ -15,10 +15,19 @@ namespace egocal::detail {
 
 struct ContradictingPartsOptions {
   std::size_t parts = 10;  ///< of the drive, of equal duration
-  std::size_t least = 5;   ///< motions of a part that counts, none at rest
-  /// The median rotation of a part contradicts where the answer leaves so many times more than in the median
-  /// part, in degrees and for each degree that is turned. Clean drives: 3.2 (116 of an independent
-  /// simulator).
+  /// Motions of a part that counts, none at rest. A wrong pose is the end of two of them: two wrong poses
+  /// spoil most of 6 motions.
+  std::size_t least = 20;
+  /// A part counts where in at least this part of its motions neither sensor is at rest: of a vehicle that
+  /// stands the other motions are those of wrong poses. Found on a car that stood for 7 s with 5 % wrong
+  /// poses.
+  double least_moving = 0.5;
+  /// A part is judged by this quantile of the rotations that the answer leaves: three of four motions are off
+  /// by more. 5 % wrong poses in both streams spoil the median of a tenth, as each also spoils those that are
+  /// interpolated from it (2 of 36 short clean drives).
+  double quantile = 0.25;
+  /// A part contradicts where that is so many times more than in the median part, in degrees and for each
+  /// degree that is turned. Clean drives: 3.2 (116 of an independent simulator).
   double times = 10;
   /// And at least [rad]: as large as what users call wrong.
   double least_rotation = std::numbers::pi / 180;
@@ -31,7 +40,7 @@ struct ContradictingPartsOptions {
 
 struct ContradictingPart {
   double begin = 0, end = 0;  ///< [s]
-  double rotation = 0;        ///< median of what the answer leaves [rad]
+  double rotation = 0;        ///< the quantile of what the answer leaves [rad]
 };
 struct ContradictingParts {
   std::vector<ContradictingPart> parts;

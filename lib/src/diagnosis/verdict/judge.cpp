@@ -26,8 +26,27 @@ namespace {
 constexpr double degrees = 180 / std::numbers::pi;
 /// 95 % of a normal distribution, on one side (mathematics).
 constexpr double confidence_one_sided = 1.645;
+/// The same on both sides.
+constexpr double two_sided_95 = 1.96;
 /// 95 % of the length of three equal, independent components (mathematics).
 constexpr double length_of_three = 2.79;
+/// Two answers within this part of the tolerances are near each other: which of them is right matters little.
+constexpr double near = 0.5;
+
+/// Largest difference of the finding's answer from this one, in standard deviations that this one states;
+/// infinite without an answer.
+double in_stated_stddevs(const Finding& finding, const Answered& answered) {
+  if (!finding.T_a_b) return INFINITY;
+  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
+  double largest = 0;
+  for (int i = 0; i < 6; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!answered.observability.observable[k]) continue;
+    const double stddev = with_further_parts(answered.observability.stddev[k], answered, k);
+    if (difference[i] != 0) largest = std::max(largest, std::abs(difference[i]) / stddev);
+  }
+  return largest;
+}
 
 /// A wrong scale that moves the answer by more than it states to be uncertain.
 bool significant_scale(const Finding& finding, const Answered& answered, const ScaleCheckOptions& options) {
@@ -35,14 +54,7 @@ bool significant_scale(const Finding& finding, const Answered& answered, const S
   const double size = std::abs(std::log(*finding.value));
   if (!(size >= options.least)) return false;
   const double significant = size >= options.clear ? options.significant_where_clear : options.significant;
-  const Vector6d difference = frame_a_difference(answered.T_a_b, to_dual_quaternion(*finding.T_a_b));
-  for (int i = 0; i < 6; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (!answered.observability.observable[k]) continue;
-    const double stddev = with_further_parts(answered.observability.stddev[k], answered, k);
-    if (std::abs(difference[i]) > significant * stddev) return true;
-  }
-  return false;
+  return in_stated_stddevs(finding, answered) > significant;
 }
 
 /// Length that a vector keeps below in 95 % of all cases where its components scatter independently with
@@ -136,11 +148,29 @@ bool misread(const Finding& finding) {
          !finding.code.starts_with("held_") && !stream_fault(finding) && !undersampling(finding);
 }
 
+/// One more unknown, with which the motions fit better. It contradicts the answer only beyond what that
+/// states to be uncertain: half a minute on rails knows x to metres, and noise alone may show a clock that is
+/// off by 20 ms.
+bool within_what_is_stated(const Finding& finding, const Answered& answered) {
+  const bool unknown =
+      finding.code == "scale" || finding.code == "clock_offset" || finding.code == "clock_drift";
+  return unknown && in_stated_stddevs(finding, answered) < two_sided_95;
+}
+
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
 /// unknown.
 bool casts_doubt(const Finding& finding) {
   return finding.code != "inverted_both" && finding.code != "scale" && finding.code != "clock_offset" &&
          finding.code != "clock_drift";
+}
+
+/// A change of the mounting that may as well be noise that wanders, to an answer that this one is near: the
+/// two cannot be told apart, and it matters little which it is. Where both streams may be read in another
+/// way, what seems to move a little is a sign that they are.
+bool slight_move(const Finding& finding, double far, const std::vector<Finding>& findings) {
+  return finding.code == "mount_moved" && !finding.certain && finding.T_a_b && far <= near &&
+         std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& one) { return one.code.ends_with("_both"); });
 }
 
 /// Another reading fits far better and has another answer. Which one it is may be open, not that the streams
@@ -167,6 +197,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     Verdict verdict = Verdict::good;
     const double far = far_off(finding, answered, options);
     const bool certain = certain_of_either(finding);
+    const double apart = certain && !within_what_is_stated(finding, answered) ? far : 0;
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
     else if (undersampling(finding))
@@ -175,11 +206,11 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
       verdict = shows_all(answered.observability) ? Verdict::good : Verdict::doubtful;
     else if (stream_fault(finding))
       verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
-    else if (misread(finding) || refutes(finding, far, options) ||
-             (certain && (far > 1 || finding.improvement > options.overwhelming)))
+    else if (misread(finding) || refutes(finding, far, options) || apart > 1 ||
+             (certain && finding.improvement > options.overwhelming))
       verdict = Verdict::contradictory;
-    else if (finding.code == "mount_moved" || finding.code == "scale_change" ||
-             finding.code.starts_with("plane_") || (certain && far > 0.5) ||
+    else if ((finding.code == "mount_moved" && !slight_move(finding, far, diagnosis.findings)) ||
+             finding.code == "scale_change" || finding.code.starts_with("plane_") || apart > near ||
              significant_scale(finding, answered, options.scale_check) || (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};

@@ -19,6 +19,7 @@
 #include "diagnosis/streams/turning_alike.hpp"
 #include "diagnosis/verdict/turning_noise.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -55,6 +56,17 @@ bool left_by_noise(const Evidence& evidence, const Fit& fit, const DiagnosisOpti
   const Explained& given = evidence.given.explained;
   return misfit.median > options.unrelated_misfit && fit.translation_relative_median < noise.most_of_way &&
          steps_leave_noise(evidence.instants, given.motions, to_pose(given.fit.T), noise);
+}
+
+/// Beside a possible move: a mounting that moved once looks as if both streams were inverted, and then has an
+/// answer that fits.
+void word_beside_moves(Finding& finding) {
+  if (finding.code != "inverted_both" || finding.certain) return;
+  say(finding, "If the poses of both streams are world-to-sensor",
+      "Find out how the poses were made. {solve}--invert-a --invert-b is right for world-to-sensor poses "
+      "alone: "
+      "for others it gives a wrong answer that fits.",
+      ", the mounting did not change and the answer is another one; the motions cannot tell.");
 }
 
 }  // namespace
@@ -123,6 +135,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   // a mount that moved looks like many things, and another reading of both streams like one that moved
   if (!moves.empty()) {
     std::erase_if(findings, [](const Finding& one) { return !one.code.ends_with("_both"); });
+    std::for_each(findings.begin(), findings.end(), word_beside_moves);
     findings.insert(findings.begin(), moves.begin(), moves.end());
     return;
   }

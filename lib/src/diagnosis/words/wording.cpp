@@ -115,8 +115,13 @@ Finding worded_reading(Finding finding, const PoseReading& read_a, const PoseRea
   } else if (code == "quaternion_order_a" || code == "quaternion_order_b") {
     const char which = code.back();
     const char* order = which == 'a' ? order_a : order_b;
-    say(finding, format("The quaternions of %s are in the order %s", mark(which), order),
-        format("{solve}--quaternion-order-%c %s", which, order), format(": %s.", fits(finding).c_str()));
+    const bool inverted = (which == 'a' ? read_a : read_b).invert;
+    say(finding,
+        format("The quaternions of %s are in the order %s%s", mark(which), order,
+               inverted ? ", and its poses are world-to-sensor" : ""),
+        format("{solve}--quaternion-order-%c %s", which, order) +
+            (inverted ? format(" --invert-%c", which) : ""),
+        format(": %s.", fits(finding).c_str()));
   } else if (code == "quaternion_order_both") {
     say(finding, format("The quaternions of both streams are in the order %s", order_a),
         format("{solve}--quaternion-order-a %s --quaternion-order-b %s", order_a, order_b),
