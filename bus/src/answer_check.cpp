@@ -11,7 +11,7 @@ namespace egocal::bus {
 
 namespace {
 
-/// Of two extrinsics that are the same up to the rounding of their conversion [1, m].
+/// Largest difference of two extrinsics that are equal up to the rounding of conversions [1, m].
 constexpr double same_pose = 1e-9;
 
 const std::string denied = "answer that claims a certificate which its problem denies";

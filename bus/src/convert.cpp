@@ -17,8 +17,8 @@ namespace egocal::bus {
 
 namespace {
 
-/// A cost is a sum of squares; where the message does not say how it was rounded it may be this far below
-/// zero [m^2]: the rounding of motions of 100 km.
+/// A cost is a sum of squares. If the message does not say how it was rounded, it may be this far below zero
+/// [m^2]: the rounding of motions of 100 km.
 constexpr double negative_by_rounding = 1e-6;
 constexpr std::size_t largest_block_count = 2 * BlockStatistics::max_inlier_blocks;  // limit of the wire
 
@@ -34,7 +34,8 @@ Checked<StampedPose> stamped(std::int64_t utime, const double (&pos)[3], const d
   return {StampedPose{utime, *pose.value}, {}};
 }
 
-/// Empty: fine. Of a sum of M'M the diagonal is not negative and bounds the rest (Cauchy-Schwarz).
+/// Empty: no fault. In a sum of M'M the diagonal is not negative and bounds the other entries
+/// (Cauchy-Schwarz).
 std::string fault(const Statistics& block) {
   if (!std::isfinite(block.weight) || block.weight <= 0)
     return "statistics with a weight that is not positive";
@@ -47,12 +48,12 @@ std::string fault(const Statistics& block) {
              : "statistics that are not a sum of squares";
 }
 
-/// Whether a certificate is consistent: the gap is that between cost and bound, no cost is negative by more
-/// than rounding, and only what keeps to the gap's limit, or is proven to lie close to the optimum, is
-/// certified.
+/// Whether the certificate contradicts itself. It must have the gap between cost and bound, and no cost may
+/// be negative by more than rounding. A certified answer must keep to the limit of the gap, or be proven to
+/// lie close to the optimum.
 bool contradicts_itself(const calibration_t& message) {
   const double gap = std::max(0.0, message.cost - message.lower_bound);
-  // a sender may have made the bound from cost and gap: then it is known to the rounding of the cost
+  // a sender may have computed the bound from cost and gap, which rounds it like the cost
   const double tolerance = 1e-9 * gap + 4 * std::numeric_limits<double>::epsilon() * std::abs(message.cost);
   if (!(std::abs(message.gap - gap) <= tolerance) && !(std::isinf(gap) && std::isinf(message.gap)))
     return true;

@@ -147,7 +147,7 @@ std::optional<Reassembly::Message> Reassembly::take_fragment(Bytes datagram, std
     partial = partials_.end();
   }
   if (partial == partials_.end()) {
-    // the first fragment has the channel: without it a message cannot be wanted; LCM drops it likewise
+    // only the first fragment names the channel; without it the message is dropped, as by LCM
     if (fragment != 0 || !wanted(channel)) return std::nullopt;
     if (size + sizeof(Part) * fragments > options_.max_message) {
       ++incomplete_;

@@ -6,7 +6,8 @@
 
 namespace egocal::bus {
 
-/// SIGINT and SIGTERM as a file descriptor; blocked meanwhile, in every thread that is started after it.
+/// SIGINT and SIGTERM as a file descriptor. While it exists both are blocked, also in threads that start
+/// later.
 class EndingSignals {
  public:
   /// wanted: otherwise nothing is blocked and fd() is -1. Throws Error where the kernel gives no descriptor.

@@ -71,7 +71,8 @@ void Heartbeat::change() {
   });
 }
 
-/// The loop's clock without the time in which this process was stopped: for how long others have been silent.
+/// Time of the loop's clock without the time in which this process was stopped, to measure how long others
+/// have been silent.
 std::int64_t Heartbeat::awake_us() const {
   const std::int64_t longest_us =
       std::chrono::duration_cast<std::chrono::microseconds>(options_.stopped_periods * options_.period)

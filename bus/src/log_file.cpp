@@ -19,8 +19,8 @@ namespace egocal::bus {
 
 namespace {
 
-// Every event: sync word, number (8 bytes), time (8), length of the channel (4), length of the data (4),
-// both, all big endian.
+// Each event: sync word, number (8 bytes), time (8), length of the channel (4), length of the data (4),
+// channel, data; all big endian.
 constexpr std::uint32_t sync_word = 0xEDA1DA01;
 constexpr std::size_t header_size = 28;          // bytes, format
 constexpr std::int32_t longest_channel = 63;     // LCM_MAX_CHANNEL_NAME_LENGTH
@@ -73,7 +73,7 @@ void EventNumbers::begin_at(std::int64_t number) {
 
 bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
   if (restart_) {
-    // The count continues as if there had been no zero: the zero was a damaged number.
+    // The number after the zero shows that the zero was damaged: the count continues as if it had not come.
     const Restart& restart = *restart_;
     if (damaged_bytes == 0 && !follows(number, last_) &&
         static_cast<std::uint64_t>(number) == static_cast<std::uint64_t>(restart.last) + 2) {
@@ -92,8 +92,8 @@ bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
     *this = another;
     in_order = true;
   }
-  // Numbers that jump and come back to where they would be without the jump were damaged alike: nothing was
-  // cut out there, nor put elsewhere.
+  // If numbers jump and later return to where they would be without the jump, the numbers in between were
+  // damaged, and nothing was cut out or inserted there.
   bool back = false;
   if (!in_order && damaged_bytes == 0) {
     back = run_ &&
@@ -103,8 +103,8 @@ bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
   } else if (run_) {
     ++run_->length;
   }
-  // Two numbers in a row confirm each other. One that comes after damaged bytes is plausible as far as
-  // these can have held the events in between; a single one is damaged itself.
+  // Two numbers in a row confirm each other. After damaged bytes a number is plausible if these can have held
+  // the events in between. A single number that fits nothing is damaged itself.
   const std::uint64_t most_between = damaged_bytes / (header_size + 1) + 1;
   const bool close =
       damaged_bytes > 0 && number > last_ &&
@@ -117,7 +117,7 @@ bool EventNumbers::take(std::int64_t number, std::uint64_t damaged_bytes) {
 }
 
 void EventNumbers::cut_off() {
-  // one at least has begun there, unless that place in the count is known to be missing already
+  // at least one event has begun there, unless that number is known to be missing
   if (follows(top_, last_)) ++top_;
 }
 
@@ -163,7 +163,7 @@ std::optional<LogReader::Place> LogReader::event_from(std::uint64_t from, std::u
   return std::nullopt;
 }
 
-/// Of an event and the two after it the middle time: one may be damaged.
+/// The median of the times of an event and the two after it, as one of them may be damaged.
 std::int64_t LogReader::typical_time(const Place& place) const {
   std::array<std::int64_t, 3> times{place.time_us, place.time_us, place.time_us};
   std::optional<Place> next = place;
@@ -260,10 +260,10 @@ std::string LogReader::channel_of(const Place& place) const {
   return channel;
 }
 
-/// Whether the header found inside of an event is the continuation of the log, and not a piece of a log that
-/// another program has sent as a message. The next number alone proves nothing: every log has a 1. It is
-/// confirmed by a higher one after it, wherever that is (the events in between may be damaged, too), or
-/// by an end where the outer event has its own.
+/// Whether the header found inside an event continues this log, or belongs to a log that another program has
+/// sent as a message. The next number alone proves nothing, as every log has a 1. It is confirmed by a higher
+/// number after it, however far (the events in between may be damaged), or by an end at the end of the outer
+/// event.
 bool LogReader::goes_on(const Place& inner, const Place& outer) const {
   if (!follows(inner.number, outer.number)) return false;
   if (inner.end() == outer.end()) return true;
@@ -271,7 +271,8 @@ bool LogReader::goes_on(const Place& inner, const Place& outer) const {
   return next && next->number > inner.number;
 }
 
-/// Whether its lengths, which decide where the next event is looked for, agree with what is around it.
+/// Whether the lengths of an event agree with its surroundings: they decide where the next event is looked
+/// for.
 bool LogReader::believable(const Place& place) const {
   if (place.end() > size_) return false;
   const std::string channel = channel_of(place);
@@ -279,14 +280,14 @@ bool LogReader::believable(const Place& place) const {
     return false;
   const std::optional<Place> next = header_at(place.end());
   if (next && follows(next->number, place.number)) return true;
-  // Too long: it would swallow other events. Where another one begins at its end after all, or the file ends
-  // there, only the log itself going on inside betrays it.
+  // Too long: it would swallow other events. If another event begins at its end after all, or the file ends
+  // there, only a continuation of the log inside reveals it.
   const bool ends_well = next || place.end() == size_;
   const std::optional<Place> inner = find_header(place.offset + header_size, place.end());
   if (inner && (!ends_well || goes_on(*inner, place))) return false;
   if (ends_well) return true;
-  // Too short: bytes are left before an event that is the very next one, so they are this one's own. Unless
-  // its channel had such an event before: then they came in between.
+  // Too short: bytes are left before an event with the very next number, so they belong to this event. If its
+  // channel had an event of this size before, they are events that came in between.
   const std::optional<Place> other = find_header(place.end(), size_);
   if (!other || !follows(other->number, place.number)) return true;
   const auto usual = usual_size_.find(channel);

@@ -67,7 +67,7 @@ struct Loop::Impl {
       if (queue.empty() || now >= end || handled++ == options.most_in_batch) break;
       queue.handle_one();
     }
-    // a callback may add another one, whose turn comes with the next batch
+    // a callback may add another one, which is called after the next batch
     for (std::size_t i = 0, all = batch_callbacks.size(); i < all; ++i) batch_callbacks[i](queue.empty());
   }
 

@@ -8,7 +8,7 @@
 
 namespace egocal::bus {
 
-/// What is sent comes back to the sender, in order: memq://, for tests of handlers.
+/// Transport of memq://: the sender receives its own messages, in order. For tests of handlers.
 std::unique_ptr<Transport> open_memory_transport(const Clock& clock);
 
 }  // namespace egocal::bus

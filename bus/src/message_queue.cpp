@@ -11,9 +11,9 @@ namespace egocal::bus {
 
 namespace {
 
-/// Taken from the transport before handlers get their turn again.
+/// Messages taken from the transport before handlers get their turn again.
 constexpr int fill_at_once = 256;
-/// Of all messages that wait [bytes]; several times what all queues of a large rig hold.
+/// Size of all waiting messages [bytes]; several times what the queues of a large rig hold.
 constexpr std::size_t max_bytes = std::size_t{64} << 20;
 
 }  // namespace

@@ -14,8 +14,8 @@
 
 namespace egocal::bus {
 
-/// Messages on their way from the transport to their handlers, in the order of their arrival. Each
-/// subscription has its own capacity, so that a flood on one channel displaces nothing on another.
+/// Messages between transport and handlers, in the order of arrival. Each subscription has its own capacity,
+/// so a flood on one channel displaces nothing on another.
 class MessageQueue {
  public:
   void subscribe(const std::string& channel, bool prefix, Loop::Handler handler, int capacity);
@@ -26,7 +26,7 @@ class MessageQueue {
   /// Takes what the transport has, up to some hundred messages.
   void fill(Transport& transport);
   bool empty() const { return waiting_.empty(); }
-  /// Takes out the oldest message and calls its handler. Must not be empty.
+  /// Removes the oldest message and calls its handler. The queue must not be empty.
   void handle_one();
   /// Messages that found their subscription's queue full.
   std::int64_t dropped() const { return dropped_; }

@@ -8,7 +8,7 @@ namespace egocal::bus {
 
 namespace {
 
-/// The pose with its position multiplied, if that is still one that a sensor can have.
+/// Multiplies the position, and refuses a result that no sensor can have.
 void apply_scale(double scale, Checked<StampedPose>& received) {
   if (scale == 1 || !received) return;
   Pose pose = to_pose(received.value->pose);

@@ -16,7 +16,8 @@ constexpr std::size_t max_peers = 256;  // a limit on memory
 bool is_alive(const Peer& peer, std::int64_t now_us, std::int64_t timeout_us) {
   return peer.state != State::ended && now_us - peer.heard_us <= timeout_us;
 }
-/// A paused process has the statistics and goes on from them. Another version's state is not known.
+/// Whether a process works. A paused one does: it has the statistics and continues with them. A state of
+/// another version is unknown.
 bool works(std::optional<State> state) {
   return state && *state != State::waiting && *state != State::ended;
 }

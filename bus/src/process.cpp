@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 6> roles{"player", "pairing",   "global",
                                                 "fast",   "diagnosis", "monitor"};
 constexpr std::array<std::string_view, 5> states{"waiting", "standby", "running", "paused", "ended"};
 
-/// In the order of Role. A verdict follows the session by itself: the diagnosis has nothing to reset.
+/// In the order of Role. The diagnosis has no verb reset: it follows the session of the problems by itself.
 constexpr std::array<std::string_view, 6> verbs{"pause, resume, step, seek, speed",
                                                 "pause, resume, reset",
                                                 "pause, resume",

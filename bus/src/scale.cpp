@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t most_blocks = 64;
 /// Limits of the wire.
 constexpr double least_scale = 1e-9, most_scale = 1e9;
-/// Two solutions of one problem agree to this: the same program finds the same to the bit, others may round
-/// in another order.
+/// Largest difference of two solutions of one problem. One program finds the same bits again; others may
+/// round in another order.
 constexpr double same_scale = 1e-6;
 
 using Block = ScaleStatistics::Block;
@@ -46,8 +46,8 @@ Block full(const double (&in)[16]) {
   return matrix;
 }
 
-/// Empty: fine. At a scale that both lengths have in common it must be a sum of squares, as far as its
-/// diagonal and two by two parts show.
+/// Empty: no fault. At a scale common to both lengths the block must be a sum of squares, as far as its
+/// diagonal and its two by two minors show.
 std::string fault(const ScaleStatistics& block) {
   if (!std::isfinite(block.weight) || block.weight <= 0)
     return "statistics with a weight that is not positive";

@@ -13,13 +13,13 @@ namespace egocal::bus {
 
 namespace {
 
-/// How fast the times of a stream run, where it is one of the usual mistakes.
+/// The wrong unit that explains this pace of the stamps; null: none of the usual ones.
 const char* wrong_unit(double pace) {
   const auto near = [pace](double factor) { return pace > factor / 1.5 && pace < factor * 1.5; };
   return near(1e3) ? "nanoseconds" : near(1e-3) ? "milliseconds" : near(1e-6) ? "seconds" : nullptr;
 }
 
-/// By how much the time of a stream has run more than ours [us].
+/// By how much more the time of the stream has advanced than ours [us].
 std::int64_t gain_us(const Stamp& from, const Stamp& to) {
   return (to.time_us - from.time_us) - (to.mono_us - from.mono_us);
 }
@@ -65,7 +65,7 @@ bool StreamClock::steady() const {
          std::abs(static_cast<double>(gain_us(*first_, *newest_))) <= options_.steady_part * elapsed;
 }
 
-/// Of a message with the time of the one before. Copies that the network made come one at a time.
+/// Judges a message with the time of the one before. Copies made by the network come one at a time.
 std::optional<ClockFault> StreamClock::same_time(const Stamp& stamp) {
   ++at_same_time_;
   const bool copy = same_message(*before_, stamp);
@@ -101,7 +101,8 @@ std::optional<ClockFault> StreamClock::jump(const Stamp& stamp) {
   return ClockFault{"clock jumps", jump_in_words(gain)};
 }
 
-/// A single leap, which is a jump, tells nothing about the unit; in nanoseconds every step is one.
+/// Judges the unit of the stamps. A single leap is a jump and says nothing about the unit; in nanoseconds
+/// every step is a leap.
 std::optional<ClockFault> StreamClock::unit(const Stamp& before, const Stamp& stamp) {
   if (!pace_ || stamp.time_us < pace_->begin.time_us) {
     pace_ = Pace{stamp};

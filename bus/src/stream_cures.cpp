@@ -92,7 +92,10 @@ std::string cure_of_rejection(const std::string& reason) {
       {"duplicate",
        "a message or its time came twice: a player sent it again, two senders, a network loop, or stamps "
        "that repeat."},
-      {"too late", "it came after newer ones had been used: raise reorder_window in the rig file."},
+      {"too late",
+       "it came after newer ones had been used: two senders on one channel, or messages that are late by "
+       "more "
+       "than reorder_window in the rig file."},
       {"time or number jumps", "stamps or sequence numbers leap: check the clock of the sender."},
       {std::string(to_string(Rejection::not_finite)), "the odometry sends values that are no poses."},
       {std::string(to_string(Rejection::out_of_order)),

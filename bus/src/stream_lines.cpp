@@ -30,7 +30,7 @@ std::string described(const HeardStream& stream) {
          (stream.rate > 0 ? ", " + rate_text(stream.rate) : "") + ")";
 }
 
-/// Channels with odometry first: they are what a misspelt name would have been.
+/// Other channels that were heard, those with odometry first: they show how a misspelt name is spelt.
 std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
   std::vector<const HeardStream*> streams;
   for (const auto& [channel, stream] : watch.others())
@@ -45,8 +45,8 @@ std::string heard_instead(const StreamWatch& watch, std::int64_t mono_us) {
   return text;
 }
 
-/// As where a monitor is started during a pause. Where others came, a channel that never did has the wrong
-/// name.
+/// Nothing was ever received, as when a monitor is started during a pause. If other streams were received, a
+/// silent channel has the wrong name.
 bool nothing_ever_came(const StreamWatch& watch) {
   return watch.others().empty() && std::none_of(watch.sensors().begin(), watch.sensors().end(),
                                                 [](const SensorStream& s) { return s.heard.has_value(); });

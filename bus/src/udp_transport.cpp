@@ -25,9 +25,9 @@ namespace egocal::bus {
 namespace {
 
 constexpr std::size_t datagram_size = 65536;  // bytes: no UDP datagram is longer
-/// Datagrams fetched by one system call: a flood costs less than a call each.
+/// Datagrams fetched by one system call, so that a flood costs less than a call each.
 constexpr std::size_t datagrams_at_once = 16;
-/// A network card whose queue is full is waited for this long [us]; then it counts as away.
+/// Time to wait for a full queue of the network card [us]. After it the network counts as away.
 constexpr long send_timeout_us = 100'000;
 
 const char* const remedy =
@@ -120,8 +120,8 @@ class UdpTransport final : public Transport {
   int fd() const override { return receiver_.fd(); }
   bool ready() const override { return next_ < fetched_; }
 
-  /// Joining is idempotent: it fails with EADDRINUSE while the membership is there, and joins on another
-  /// interface where the route has moved there.
+  /// Joins again. That fails with EADDRINUSE while the membership exists, and joins on the new interface if
+  /// the route has moved.
   void check_network() override {
     ip_mreqn group{};
     group.imr_multiaddr = to_.sin_addr;
@@ -137,7 +137,7 @@ class UdpTransport final : public Transport {
   }
 
   std::string network_error() const override {
-    // joining reports "No such device" where there is no route; the error of sending is clearer
+    // joining reports "No such device" if there is no route; the error of sending is clearer
     const int error = join_error_ == ENODEV ? ENETUNREACH : join_error_ != 0 ? join_error_ : send_error_;
     return error == 0 ? std::string{}
                       : "no multicast to " + url_.group + ": " + std::strerror(error) + remedy;
@@ -151,13 +151,14 @@ class UdpTransport final : public Transport {
   void open_receiver() {
     Socket socket(SOCK_NONBLOCK);
     socket.set(SOL_SOCKET, SO_REUSEADDR, 1);
-    // needs a capability that few have; without it up to net.core.rmem_max is given
+    // SO_RCVBUFFORCE needs a capability that few processes have; SO_RCVBUF gives up to net.core.rmem_max
     if (!socket.set(SOL_SOCKET, SO_RCVBUFFORCE, url_.receive_buffer))
       socket.set(SOL_SOCKET, SO_RCVBUF, url_.receive_buffer);
     socket.set(SOL_SOCKET, SO_TIMESTAMPNS, 1);
     socket.set(SOL_SOCKET, SO_RXQ_OVFL, 1);
     socket.set(IPPROTO_IP, IP_MULTICAST_ALL, 0);
-    // bound to the group, not to any address: what others send to this port of the host does not arrive here
+    // bound to the group and not to any address, so that other traffic to this port of the host does not
+    // arrive here
     if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&to_), sizeof to_) != 0)
       throw Error("cannot listen on UDP " + url_.group + ":" + std::to_string(url_.port) + ": " +
                   std::strerror(errno));
@@ -167,7 +168,7 @@ class UdpTransport final : public Transport {
     next_ = fetched_ = 0;
   }
 
-  /// A route that has come back is noticed although nothing is sent meanwhile.
+  /// Notices a route that has come back, even if nothing is sent meanwhile.
   void probe_route() {
     const Socket probe(0);
     if (connect(probe.fd(), reinterpret_cast<const sockaddr*>(&to_), sizeof to_) == 0) send_error_ = 0;
@@ -201,8 +202,8 @@ class UdpTransport final : public Transport {
     return true;
   }
 
-  /// The kernel stamps by the wall clock, which may be set at any moment: no message came before the moment
-  /// at which nothing was left in the socket.
+  /// Time of arrival. The kernel stamps by the wall clock, which may be set at any moment; but no message
+  /// arrived before the socket was last found empty.
   std::int64_t arrival_us(msghdr& header) {
     std::int64_t age_us = 0;
     for (cmsghdr* entry = CMSG_FIRSTHDR(&header); entry; entry = CMSG_NXTHDR(&header, entry)) {

@@ -8,7 +8,7 @@
 
 namespace egocal::bus {
 
-/// LCM's UDP multicast. Throws Error where the kernel gives no sockets; a network that is away is waited for.
+/// LCM's UDP multicast. Throws Error if the kernel gives no sockets. A missing network is awaited.
 std::unique_ptr<Transport> open_udp_transport(const LcmUrl& url, const Clock& clock);
 
 }  // namespace egocal::bus

@@ -90,7 +90,7 @@ Checked<Fit> to_fit(const fit_t& message) {
   return {std::move(fit), {}};
 }
 
-/// The words of "z yaw"; empty where one of them is no direction, or comes twice.
+/// The words of "z yaw"; empty: one of them is no direction, or comes twice.
 std::optional<std::vector<std::string>> directions_in(const std::string& text) {
   std::vector<std::string> words;
   if (text.empty()) return words;

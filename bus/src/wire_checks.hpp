@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What several messages are checked for before their numbers are believed.
+// Checks that several messages need before their numbers are used.
 #pragma once
 
 #include <initializer_list>
@@ -9,7 +9,7 @@
 
 namespace egocal::bus {
 
-/// Largest entry of statistics: products of two stay far from overflow.
+/// Largest entry of statistics: products of two such entries stay far from overflow.
 inline constexpr double largest_entry = 1e30;
 
 /// No value is negative or NaN. Infinity may be meant: unknown.
@@ -18,7 +18,8 @@ bool not_negative(std::initializer_list<double> values);
 /// The same, and all are finite.
 bool finite_not_negative(std::initializer_list<double> values);
 
-/// Of a sum of M'M the diagonal bounds the rest (Cauchy-Schwarz), up to `slack` [the matrix's own unit].
+/// Whether the diagonal bounds the other entries, as in a sum of M'M (Cauchy-Schwarz), up to `slack` [unit of
+/// the matrix].
 bool bounded_by_diagonal(const Matrix8d& matrix, double slack);
 
 }  // namespace egocal::bus

@@ -13,7 +13,8 @@ namespace egocal::cli {
 
 namespace {
 
-/// Insertions, deletions, exchanges, and exchanges of two neighbours that make one word of the other.
+/// Distance of two words: insertions, deletions, replacements and swaps of neighbours that turn one into the
+/// other (Damerau-Levenshtein).
 std::size_t edit_distance(const std::string& from, const std::string& to) {
   std::array<std::vector<std::size_t>, 3> rows;  // the one before the last, the last one, this one
   rows.fill(std::vector<std::size_t>(to.size() + 1));
@@ -84,7 +85,7 @@ std::string in_words_unexpected(const CLI::App& command, std::string word) {
 std::string closest(const std::string& word, const std::vector<std::string>& names) {
   const auto bare = [](const std::string& name) { return name.substr(name.rfind("--", 0) == 0 ? 2 : 0); };
   const std::string meant = bare(word);
-  // a third of the letters may be wrong; of two letters every other word is made
+  // a third of the letters may be wrong; words of two letters are near every other word
   std::size_t best_distance = std::max<std::size_t>(meant.size() > 2 ? 1 : 0, meant.size() / 3) + 1;
   std::string best;
   for (const std::string& name : names) {

@@ -8,14 +8,14 @@
 
 namespace egocal::cli {
 
-/// The name of the given ones that a mistyped word most likely meant; empty where none is close.
+/// The given name that a mistyped word most likely meant; empty: none is close.
 std::string closest(const std::string& word, const std::vector<std::string>& names);
 
-/// Of a word in the place of a command that is none, what is wrong with it; empty: there is none. CLI11 says
-/// that a command is required, or takes a later word for one.
+/// What is wrong with a word in the place of a command; empty: nothing. CLI11 itself reports that a command
+/// is required, or takes a later word for one.
 std::string wrong_command(const CLI::App& program, const std::vector<std::string>& arguments);
 
-/// An error in our words: what is at fault, what was expected, and what the user may have meant.
+/// An error as one sentence: what is wrong, what was expected, and what the user may have meant.
 std::string in_words(const CLI::ParseError& error, const CLI::App& program);
 
 }  // namespace egocal::cli

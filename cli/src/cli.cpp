@@ -40,7 +40,7 @@ bool names_file(const std::string& value, const std::string& file) {
   return false;
 }
 
-/// A value of the command, other than that of `output`, that names the same file; empty: none.
+/// Another value of the command than `output` that names the same file; empty: none.
 std::string named_again(const CLI::App& command, const CLI::Option& output, const std::string& file) {
   if (file.empty()) return "";
   for (const CLI::Option* option : command.get_options()) {
@@ -96,7 +96,7 @@ std::string output_error(const std::string& reason) {
   return "standard output: cannot be written" + (reason.empty() ? "" : ": " + reason);
 }
 
-/// What was printed has arrived. Throws std::runtime_error otherwise: a full disk, a closed output.
+/// Flushes standard output. Throws std::runtime_error if it was not written: a full disk, a closed output.
 void finish_output() {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
@@ -247,7 +247,7 @@ void App::footer(const std::string& text) {
 Program::Program(const std::string& name, const std::string& help, const std::string& version)
     : App(nullptr), owned_(std::make_unique<CLI::App>(help, name)) {
   app_ = owned_.get();
-  // a limit on the size of files is an error of the write, with its line, not a death
+  // exceeding the size limit of files becomes an error of the write instead of killing the process
   std::signal(SIGXFSZ, SIG_IGN);
   if (!version.empty()) app_->set_version_flag("--version", name + " " + version);
 }

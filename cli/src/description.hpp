@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-/// A command line as data, for what is generated from it: manual pages and shell completion.
+/// A command line as data, from which manual pages and shell completion are generated.
 namespace egocal::cli {
 
 struct OptionDescription {

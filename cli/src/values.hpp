@@ -22,13 +22,13 @@ std::string shortest(double value);
 /// "flat, rough or free".
 std::string alternatives(const std::vector<std::string>& words);
 
-/// Refuses an empty value: `--goal "$GOAL"` of a shell in which GOAL is not set is no goal at all. Also the
-/// name of an option: the value of `--out --json` was forgotten.
+/// Refuses an empty value: `--goal "$GOAL"` in a shell without GOAL is no goal. Also refuses the name of an
+/// option, as in `--out --json`, where the value was forgotten.
 CLI::Validator a_value();
 
 CLI::Validator any_number();
 
-/// Decimal digits: CLI11 itself takes 010 for eight, and -1 for the largest unsigned number.
+/// Accepts decimal digits only: CLI11 takes 010 for eight, and -1 for the largest unsigned number.
 template <class Integer>
 CLI::Validator whole_number() {
   return CLI::Validator(

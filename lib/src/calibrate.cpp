@@ -49,8 +49,8 @@ Problem formulation(const PairingOptions& options) {
   return problem;
 }
 
-/// The balance with the smallest jack-knife spread, or with the most likely answer where none has a spread;
-/// the motions of a file have no strides to choose from.
+/// The balance with the smallest jack-knife spread, or with the most likely answer if none has a spread.
+/// Motions of a file have no strides to choose from.
 Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   Choice choice;
   choice.balance = problem.balance;
@@ -121,8 +121,8 @@ void put_rival_offset(const Trajectory& a, const Trajectory& b, const PairingOpt
   result.reason = reason;
 }
 
-/// Of streams whose lengths are in one unit. scale: found before, which adds to what is not known. beside:
-/// may be empty.
+/// Calibrates streams with lengths in one unit. scale: found before, and its uncertainty adds to that of the
+/// answer. beside: may be empty.
 Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
                               const CalibrationOptions& options, const Beside& beside,
                               const std::optional<ScaleSolution>& scale) {
@@ -133,7 +133,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
     if (!time_offset)
       throw Error("time offset: cannot be estimated, the streams are too short or never turn");
     pairing_options.time_offset =
-        0;  // a drift cannot be expressed by it: the stamps themselves are corrected
+        0;  // an offset cannot express a drift, so the stamps themselves are corrected
   }
   std::optional<Trajectory> corrected;
   if (time_offset) corrected = on_clock_of_a(*time_offset, given_b);

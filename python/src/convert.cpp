@@ -35,13 +35,13 @@ std::string text(const char* format, double value) {
 }
 
 std::int64_t to_microseconds(double seconds, const char* name, py::ssize_t row) {
-  // beyond this a double no longer holds microseconds, and times subtract without overflow below it
+  // a larger double cannot hold microseconds, and differences of larger times could overflow
   if (!std::isfinite(seconds) || std::abs(seconds) > 9e9)
     refuse(name, "row " + std::to_string(row) + ": expected a time in seconds, got " + text("%.4g", seconds));
   return std::llround(seconds * 1e6);
 }
 
-/// Numbers of four bytes hold a date to two minutes. times: the first numbers of the rows.
+/// Refuses times of four bytes, which hold a date to two minutes only. times: the first column.
 void require_fine_times(const py::handle& object, double largest, const char* name) {
   constexpr double coarsest = 1e-3;  // [s]: a tenth of the period of a fast sensor
   const py::array array = py::array::ensure(object);
@@ -52,7 +52,7 @@ void require_fine_times(const py::handle& object, double largest, const char* na
                      std::to_string(8 * array.itemsize()) + ": give them as float64");
 }
 
-/// Why this is no pose; empty: it is one. The limits of poses in files.
+/// Why this is no pose; empty: it is one. The limits are those of poses in files.
 std::string fault_of(const Eigen::Vector3d& position, const Eigen::Vector4d& quaternion) {
   if (!position.allFinite()) return "the position is not finite";
   if (!plausible_distance(position.cwiseAbs().maxCoeff())) return "position: expected less than 1e9 m";
@@ -134,7 +134,8 @@ Eigen::Matrix<double, size, size> square_of(const py::handle& object, const char
   return Eigen::Map<const Eigen::Matrix<double, size, size, Eigen::RowMajor>>(matrix.data());
 }
 
-/// Of a str or a path-like object. The library reads files and writes messages in UTF-8.
+/// The name of a file from a str or a path-like object. The library takes file names and gives messages in
+/// UTF-8.
 std::string to_file_name(const py::handle& object, const char* name) {
   const py::module_ os = py::module_::import("os");
   const py::object path = os.attr("fsdecode")(os.attr("fspath")(object));

@@ -6,8 +6,8 @@
 
 namespace egocal::python {
 
-/// A message of the library, which names options of the command line, with the arguments of solve() in their
-/// place: "--time-offset auto" becomes "time_offset='auto'". Options that are no arguments here stay.
+/// A message of the library in terms of Python: options of the command line become arguments of solve(),
+/// "--time-offset auto" becomes "time_offset='auto'". Options without an argument stay.
 std::string in_python_words(std::string text);
 
 }  // namespace egocal::python

@@ -14,10 +14,10 @@ namespace egocal::python {
 /// Adds EgocalWarning, the category of all warnings of this module.
 void bind_warning(pybind11::module_& module);
 
-/// Warns at the line that called this module. Throws where the filters make an exception of it.
+/// Warns at the line that called this module. Throws if the filters turn the warning into an exception.
 void warn(const std::string& text);
-/// Of each note of reading, and of a verdict that is not good, with its reason; of one that is, of what is
-/// wrong for certain all the same.
+/// Warns of each note of reading, and of a verdict that is not good, with its reason. If the verdict is good,
+/// of what is certainly wrong nevertheless.
 void warn_of(const Calibration& calibration, const std::vector<std::string>& notes);
 
 }  // namespace egocal::python

@@ -14,11 +14,11 @@ namespace egocal::services {
 
 namespace {
 
-/// Numbers farther ahead of the stream are not remembered when they are refused: a limit on memory. Several
-/// times what a player has on its way.
+/// Refusals of numbers farther ahead of the stream are not remembered, which bounds the memory. Several times
+/// as many as a player has in flight.
 constexpr std::int64_t farthest_refused = 256;
 
-/// Of a state that was read: what is counted on cannot overflow.
+/// For a state that was read from a file: its counts must not overflow later.
 bool plausible_refusals(const ChannelState& state) {
   const auto plausible = [](const auto& entry) {
     return entry.first >= 0 && entry.second.times >= 0 && entry.second.times < INT32_MAX / 2 &&
@@ -88,7 +88,7 @@ void Accumulation::hand_on(Channel& channel, const std::vector<NumberedPose>& sa
     }
 }
 
-/// Of a message that the stream misses: it can come again, whole, if it was damaged on its way.
+/// For a message that the stream misses: its sender can repeat it, if it was the network that damaged it.
 void Accumulation::note_refusal(Channel& channel, std::int64_t number, std::int64_t refused_before) {
   const std::int64_t expected = channel.stream.expected();
   if (expected < 0 || number < expected || number - expected > farthest_refused) return;
@@ -98,15 +98,15 @@ void Accumulation::note_refusal(Channel& channel, std::int64_t number, std::int6
   if (refused_before != number) ++refusals.apart;
 }
 
-/// Messages that were refused, and that their sender is to send again.
+/// The number of refused messages that their sender will repeat.
 std::size_t Accumulation::awaited_again(const Channel& channel) {
   const auto& refused = channel.state.refused;
   return static_cast<std::size_t>(std::count_if(
       refused.begin(), refused.end(), [](const auto& entry) { return !entry.second.in_the_log(); }));
 }
 
-/// Does not wait for numbers that are damaged in the log. Where another number is missing in the same gap,
-/// that one is waited for first.
+/// Does not wait for numbers that are damaged in the log. If another number is missing in the same gap, that
+/// number is awaited first.
 void Accumulation::go_on_behind_damage(Channel& channel) {
   auto& refused = channel.state.refused;
   const StreamState& stream = channel.stream.state();

@@ -14,19 +14,19 @@
 
 namespace egocal::services {
 
-/// Whatever changes what has been accumulated. The same inputs in the same order give the same bits: a
-/// snapshot and the inputs since then are enough to continue from.
+/// One change of what has been accumulated. The same inputs in the same order give the same bits, so a
+/// snapshot and the inputs after it are enough to continue.
 struct Input {
   enum class Kind : std::uint8_t {
     message,       ///< of a channel, as it came
     give_up,       ///< a channel: waits no longer for what is missing
     patient,       ///< all channels: what is missing will be sent again
-    impatient,     ///< all channels: it will not
+    impatient,     ///< all channels: what is missing will not be sent again
     new_session,   ///< a pair: the next pose begins one
     pause,         ///< a pair
     resume,        ///< a pair
     nothing_sent,  ///< a channel: its sender has nothing for the first gap
-    settled        ///< a channel: what its sender goes over again is all that it has sent so far
+    settled        ///< a channel: nothing that its sender repeats is still in flight as a first copy
   };
   Kind kind = Kind::message;
   std::uint16_t index = 0;   ///< of the channel or pair in the rig
@@ -34,11 +34,13 @@ struct Input {
   std::int64_t mono_us = 0;  ///< arrival; nothing that is accumulated depends on it
 };
 
-/// Messages that came with one number and were refused, as damaged: their pose is none.
+/// Messages with one number that were refused because they are damaged. Such a number has no pose.
 struct Refusals {
   std::int32_t times = 0;
-  std::int32_t apart = 0;  ///< of these, behind another message: no copies that the network made
-  /// Twice as it was sent, or so often that its sender has nothing else: what is damaged is the log.
+  std::int32_t apart =
+      0;  ///< of these, after another message, so that they are no copies made by the network
+  /// The log itself is damaged: the message came damaged twice, or so often that its sender has no other
+  /// copy.
   bool in_the_log() const { return apart >= 2 || times >= 3; }
 };
 
@@ -69,7 +71,7 @@ class Accumulation {
 
   AccumulationState state() const;
   void restore(AccumulationState state);
-  /// After an interruption: senders will go back to what they have not been acknowledged.
+  /// After an interruption: senders will repeat what was not acknowledged.
   void settle();
 
   const std::vector<PairSession>& pairs() const { return pairs_; }
@@ -77,9 +79,10 @@ class Accumulation {
   std::size_t channels() const { return channels_.size(); }
   const bus::Sensor& sensor(std::size_t channel) const { return channels_[channel].sensor; }
   const Stream& stream(std::size_t channel) const { return channels_[channel].stream; }
-  /// Time of the newest message before which nothing is missing [us]; for acknowledgements. After a message
-  /// that has no place in the stream (a second time, damaged in the log) it is that one's bus::utime_in(): it
-  /// is done with. What was refused once may have been damaged on its way, and is waited for.
+  /// Time of the newest message before which nothing is missing [us], for acknowledgements. After a message
+  /// without a place in the stream (a repetition, or one that is damaged in the log) it is the time of that
+  /// message (bus::utime_in()), which needs no repetition. A message that was refused once may have been
+  /// damaged by the network, so its repetition is awaited.
   std::int64_t complete_until(std::size_t channel) const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 

@@ -8,7 +8,7 @@
 
 namespace egocal::services {
 
-/// Of the fields below and of those that they hold: a change of either raises it.
+/// Version of the fields below and of those that they hold. Raise it whenever either changes.
 constexpr int accumulation_layout = 1000 * 1 + state_layout;
 
 void fields(auto& archive, Is<EarlyPose> auto& value) {

@@ -43,7 +43,7 @@ std::vector<MotionPair> PairSession::push_pose(Side side, const StampedPose& pos
 }
 
 void PairSession::begin(std::int64_t time_us) {
-  // session numbers only grow, so that the newest problem is known by it
+  // receivers tell the newest problem by the largest session number
   state_.session = std::max(time_us, state_.last_session + 1);
   EGOCAL_CHECK(state_.session > state_.last_session, "session numbers only grow");
   state_.last_session = state_.session;
@@ -66,8 +66,8 @@ void PairSession::timeline_restarts(Side side) {
     state_.restarted_by = side;
     return;
   }
-  // the other stream began again shortly before: same session, without what this one still sent of the old
-  // timeline
+  // the other stream started again shortly before: the session stays, without the poses that this stream
+  // still sent on the old timeline
   begin_drive();
   std::erase_if(state_.early, [side](const EarlyPose& early) { return early.side == side; });
   for (const EarlyPose& early : state_.early) push_pose(early.side, early.pose);

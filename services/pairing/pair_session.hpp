@@ -30,7 +30,8 @@ struct PairState {
   std::int64_t session = -1;             ///< -1: none has begun
   std::int64_t last_session = -1;
   std::int64_t seq = 0;
-  /// Until the two streams have met, so that the second one's restart does not cost the first one's poses.
+  /// The stream that restarted first, until both streams have poses at common times. It keeps its first poses
+  /// when the other stream restarts after it.
   std::optional<Side> restarted_by;
   std::vector<EarlyPose> early;
   bool paused = false;
@@ -58,9 +59,9 @@ class PairSession {
 
   /// Something new is in the problem since the last message().
   bool fresh() const { return fresh_; }
-  /// The problem as it stands, without the sender's host; empty where there is none yet.
+  /// The current problem, without the host of the sender; empty: there is none yet.
   std::optional<problem_t> message();
-  /// What is known of the scale that is to be found; empty where there is none, or nothing is known yet.
+  /// The current problem of the unknown scale; empty: no scale is to be found, or there are no motions yet.
   std::optional<scale_problem_t> scale_message() const;
   void count(std::map<std::string, std::int64_t>& counters) const;
 

@@ -55,7 +55,7 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
 }
 
 Pairing::~Pairing() {
-  // what is saved is what others know; what is in memory may be what has just been found wrong
+  // the saved state is what others know; the state in memory may have just been found wrong
   if (!saved_ || std::uncaught_exceptions() > 0) return;
   try {
     saved_->snapshot(accumulation_);
@@ -79,7 +79,7 @@ void Pairing::save() {
   }
 }
 
-/// Continues without it; every attempt is a whole snapshot from now on.
+/// Continues without a saved state. From now on each attempt to save writes a whole snapshot.
 void Pairing::not_saved(const std::string& why) {
   if (save_error_.empty()) std::fprintf(stderr, "egocal-pairing: %s\n", why.c_str());
   save_error_ = why;
@@ -97,8 +97,8 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   if (unacknowledged_ >= options_.acknowledge_every && acknowledges_early()) heartbeat_.publish();
 }
 
-/// Within a batch not again until the messages have taken as long as saving them did: a flood on a slow disk
-/// would be saved sixteen messages at a time.
+/// Within a batch the next save waits until handling messages has taken as long as the last save did. A flood
+/// on a slow disk would otherwise be saved sixteen messages at a time.
 bool Pairing::acknowledges_early() const {
   return leads() && loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
 }
@@ -142,7 +142,8 @@ void Pairing::publish_new_problems() {
     });
 }
 
-/// What was sent to others is saved beyond this process, unless the disk does not take it, which is shown.
+/// A problem may be sent only after its inputs are on the disk, or after the status has reported that the
+/// disk fails.
 bool Pairing::saved_or_known_not_to_be() const {
   return !saved_ || saved_->complete() || !save_error_.empty();
 }
@@ -171,8 +172,8 @@ void Pairing::publish_motions() {
     loop_.publish(channels_[motion.pair].motion, motion.message);
 }
 
-/// The monotonic clock without the time in which this process was stopped, or read what had come meanwhile:
-/// how long others have been silent.
+/// How long this process has been able to hear others [us]: the monotonic clock without the time in which
+/// this process was stopped, or was reading what had arrived meanwhile.
 std::int64_t Pairing::listened_us() const {
   const std::int64_t longest_us = 2 * std::chrono::microseconds(options_.watch_period).count();
   return listened_us_ + std::min(loop_.mono_us() - watched_mono_us_, longest_us);
@@ -196,8 +197,8 @@ void Pairing::be_patient_if_it_helps() {
   patient_ = patient;
 }
 
-/// Ten times a second: what is missing and does not come. After a stop what waits in the socket is read
-/// first.
+/// Ten times a second: gives up gaps that nothing fills. After a stop the messages that wait in the socket
+/// are read first.
 void Pairing::watch_gaps() {
   listen_on();
   if (catching_up_) return;
@@ -214,7 +215,7 @@ void Pairing::watch_gaps() {
       arrivals.gone_over_at_us = now;
     else if (now - arrivals.gone_over_at_us >= options_.latest_us)
       feed({Input::Kind::settled, i});
-    // a player that was restarted comes to what is missing at the speed of the recording
+    // a restarted player reaches the missing messages at the speed of the recording
     const bool comes =
         patient_ && arrivals.repeated_at_us > 0 && now - arrivals.repeated_at_us <= options_.patience_us;
     if (!stream.waiting()) {
@@ -230,12 +231,12 @@ void Pairing::watch_gaps() {
     waits = waits || stream.waiting();
   }
   after_batch(true);
-  // a player sends again where it hears of something missing, and an acknowledgement may be lost
+  // a player repeats what a status reports as missing, and a status may be lost
   if (waits && patient_ && leads() && loop_.mono_us() - acknowledged_mono_us_ >= options_.ask_again_us)
     heartbeat_.publish();
 }
 
-/// What everybody may know about this process, with what has just been learnt.
+/// Puts the state of this process into its status: waiting, paused or running, and its error.
 void Pairing::show_state() {
   const std::optional<bus::Peer> senior = heartbeat_.senior_namesake();
   waits_for_senior_ = senior.has_value();
@@ -262,8 +263,8 @@ void Pairing::begin_to_send() {
   if (leads()) heartbeat_.publish();  // from where senders have to continue
 }
 
-/// A player states what follows in its log after the newest message that it knows to be here. Where that is
-/// the first one behind a gap, nothing was recorded in between, and no repeat will bring it.
+/// A player states the message of its log that follows the acknowledged one. If that is the first message
+/// behind a gap, the log holds nothing for the gap, and no repetition will fill it.
 void Pairing::give_up_what_was_not_sent(const status_t& player) {
   for (const acknowledgement_t& next : player.acknowledgements)
     for (std::size_t i = 0; i < arrivals_.size(); ++i)
@@ -272,15 +273,15 @@ void Pairing::give_up_what_was_not_sent(const status_t& player) {
         feed({Input::Kind::nothing_sent, static_cast<std::uint16_t>(i)});
 }
 
-/// What starts need not wait for the second to be over, and a namesake that precedes this one silences it at
-/// once.
+/// A process that starts gets its answer at once instead of after up to a second. A namesake that precedes
+/// this process silences it at once.
 void Pairing::hear(const status_t& status) {
   if (status.name == heartbeat_.identity().name) show_state();
   const bool player = status.role == "player";
   if (player) give_up_what_was_not_sent(status);
   if ((status.role != "fast" && status.role != "global" && !player) || status.state == "ended" ||
       known_runs_.contains(status.run) || known_runs_.size() >= options_.most_known_runs)
-    return;  // a flood of invented ones gains nothing
+    return;  // bounds the work that a flood of forged statuses can cause
   known_runs_.insert(status.run);
   if (player) be_patient_if_it_helps();
   if (!leads()) return;

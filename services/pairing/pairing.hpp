@@ -22,7 +22,7 @@ namespace egocal::services {
 /// acknowledgement, before the inputs behind it are in the state file.
 class Pairing {
  public:
-  /// saved: may be null, then everything is lost with the process.
+  /// saved: null means that the state is lost when the process ends.
   Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, std::unique_ptr<SavedState> saved,
           const PairingServiceOptions& options = {});
   /// With a last snapshot.

@@ -21,9 +21,9 @@ class SavedState {
   SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock,
              const StateOptions& options = {});
 
-  /// What is on disk, with all inputs applied and settled (Accumulation::settle()); a new one where there is
-  /// nothing or it is refused. Takes a snapshot, so that the next restart is quick. A disk that does not take
-  /// it ends nothing, see not_saved().
+  /// The saved state with all its inputs applied and settled (Accumulation::settle()); a new one if there is
+  /// no state or it was refused. Writes a snapshot, so that the next restart is quick. If the disk refuses
+  /// that snapshot, nothing is thrown; see not_saved().
   Accumulation restore();
   bool restored() const { return restored_; }
   /// One line: why what was there is refused; empty: it is not.
@@ -34,7 +34,7 @@ class SavedState {
 
   /// Takes note of an input that is being applied.
   void note(const Input& input);
-  /// Everything noted is on disk afterwards. Throws Error where that fails; a later snapshot heals it.
+  /// Afterwards everything noted is on the disk. Throws Error if that fails; a later snapshot repairs it.
   void save(const Accumulation& accumulation);
   void snapshot(const Accumulation& accumulation);
   /// Everything noted is on disk.

@@ -7,12 +7,12 @@
 
 namespace egocal::services {
 
-/// What a user wants of the player, by a key or by a command on the bus.
+/// A request of the user to the player, by a key or by a command on the bus.
 struct Control {
   enum class Verb { pause, resume, toggle, step, seek, skip, speed, faster, quit };
   Verb verb;
-  double value =
-      0;  ///< seek: so far into the log [s]; skip: forwards [s]; speed; faster: times the present one
+  /// seek: time of the log [s]; skip: time forwards [s]; speed: times real time; faster: factor of the speed.
+  double value = 0;
 };
 
 /// "pause", "resume", "step", "seek 12.5", "speed 4": the verbs of a command_t. Empty: not one of them.

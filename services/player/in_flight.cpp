@@ -86,7 +86,7 @@ bool InFlight::begins(const std::string& channel) const {
   return entry != channels_.end() && entry->second.utime == 0 && !entry->second.messages.empty();
 }
 
-/// Among many names that nothing was sent on the true ones come again with the next true status.
+/// If names are forged, the real ones return with the next real status.
 bool InFlight::make_room_for(const std::string& channel) {
   if (channels_.size() < options_.most_channels || channels_.contains(channel)) return true;
   const auto unused = std::find_if(channels_.begin(), channels_.end(),

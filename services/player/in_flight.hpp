@@ -17,46 +17,45 @@ namespace egocal::services {
 
 /// Study: tests/services/player/test_in_flight.cpp, tests/e2e/test_lossy_network.cpp.
 struct InFlightOptions {
-  /// Names of channels that are remembered: a status can be forged. Four times the sensors of a large rig.
+  /// Channels that are remembered, because a status can be forged. Four times the sensors of a large rig.
   std::size_t most_channels = 256;
-  /// Attempts to fill a gap, each as soon as what was sent before has arrived. Later ones wait for
-  /// PaceOptions::stall_us. Only after these attempts does the player state what its log holds next: the log
-  /// may hold messages in another order than that of their numbers.
+  /// Attempts to fill a gap, each as soon as the messages sent before have arrived. Later attempts wait for
+  /// PaceOptions::stall_us. The player states what its log holds next only after these attempts, because a
+  /// log may hold messages in another order than that of their numbers.
   int most_tries = 2;
 };
 
-/// The messages that pairing has not acknowledged yet, of the channels that it acknowledges. What is lost on
-/// the way, or was sent to a pairing process that ended, is still here to be sent again. Pure: no clock, no
-/// LCM.
+/// The messages that pairing has not acknowledged yet, of the channels that it acknowledges. They are kept so
+/// that they can be sent again, if they were lost or their pairing process has ended. Pure: no clock, no LCM.
 class InFlight {
  public:
   explicit InFlight(const InFlightOptions& options = {}) : options_(options) {}
 
-  /// Takes note of a message that was sent. Of channels that pairing does not listen to nothing is kept.
+  /// Remembers a message that was sent. Messages of channels that pairing does not listen to are not kept.
   void sent(const bus::LogEvent& event);
   struct Progress {
     bool any = false;  ///< something new was acknowledged, or it is a new process
-    /// all(): a new process has them not, or one before what it has is missing, or it has the first only
+    /// all() must be sent again: pairing is a new process, lacks a message before what it has, or has only
+    /// the first one
     bool send_again = false;
   };
-  /// A status of pairing. Its acknowledgements name the newest message before which nothing is missing; the
-  /// counter "held back: <channel>" says that something came behind a gap.
+  /// Takes a status of pairing. Its acknowledgements name the newest message before which nothing is missing;
+  /// the counter "held back: <channel>" shows that something arrived behind a gap.
   Progress acknowledged(const status_t& pairing);
 
-  /// Of each channel on which something came behind a gap and most_tries have not filled it: the time of the
-  /// next message of the log after the acknowledged one. Where that is what came, the log holds nothing for
-  /// the gap.
+  /// For each channel with a gap that most_tries attempts have not filled: the time of the next message of
+  /// the log after the acknowledged one. If pairing has that message, the log holds nothing for the gap.
   std::vector<acknowledgement_t> following() const;
 
-  /// A message of the channel has been sent, and pairing has none. Where more were sent now and the first
-  /// were lost, pairing would take what it receives for the beginning.
+  /// A message of the channel was sent, and pairing has none yet. More messages must wait: if the first one
+  /// is lost, pairing would take a later one for the beginning.
   bool begins(const std::string& channel) const;
 
   bool heard() const { return run_.has_value(); }            ///< any pairing process, ever
   std::size_t count() const;                                 ///< messages on the way
   std::size_t channels() const { return channels_.size(); }  ///< that are remembered
-  /// What is to be sent again, in the order in which it was sent: all of them, and of a channel that begins()
-  /// the first.
+  /// The messages to send again, in the order in which they were sent: all of them, but of a channel that
+  /// begins() only the first.
   std::vector<bus::LogEvent> all() const;
   void clear();
 

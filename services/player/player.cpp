@@ -49,7 +49,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
         static_cast<std::int64_t>(tape_.damage().regions);
     heartbeat_.counter("lost: events of the log") = static_cast<std::int64_t>(tape_.damage().lost_events);
   });
-  // listens before it announces itself: a command may follow the first status at once
+  // subscribes before the first status, because a command may follow that at once
   loop_.subscribe<command_t>(bus::command_channel,
                              [this](const command_t& command, const bus::Arrival&) { hear(command); });
   heartbeat_.set_state(paused_ ? bus::State::paused : bus::State::running);
@@ -79,7 +79,7 @@ void Player::hear(const status_t& status) {
 
 void Player::hear(const command_t& command) {
   if (command.to != "*" && command.to != heartbeat_.identity().name) return;
-  // a command to one pair: the others continue, and so does the log
+  // a command to one pair: the other pairs continue, and so does the log
   if (command.to == "*" && !(command.sensor_a.empty() && command.sensor_b.empty())) return;
   if (const std::optional<Control> control = control_from_text(command.verb))
     obey(*control);
@@ -152,7 +152,8 @@ void Player::seek(double seconds) {
   say_it_jumps();
 }
 
-/// Before the first message from there: what listeners miss, or hear twice, is no fault.
+/// Announces the jump before the first message from the new place. Listeners then take what they miss, or
+/// hear twice, for no fault.
 void Player::say_it_jumps() {
   ++heartbeat_.counter("seeks");
   heartbeat_.publish();
@@ -176,7 +177,7 @@ bool Player::begin_again() {
   return true;
 }
 
-/// Where in the recording the clock is; at most at the next event, which has not been sent yet.
+/// Time of the recording that is played now; at most that of the next event, which has not been sent yet.
 std::int64_t Player::recorded_now() const {
   if (!next_) return played_us_;
   if (paused_ || options_.speed == 0) return anchor_us_;
@@ -202,8 +203,8 @@ bool Player::send(const bus::LogEvent& event) {
   return true;
 }
 
-/// After a message that could not be sent: the log waits while the network is away. False: the network is
-/// there, and this message is lost.
+/// After a message that could not be sent: true while the network is away, and the log waits. False: the
+/// network is there, and this message is lost.
 bool Player::network_may_return() {
   const std::int64_t now = loop_.mono_us();
   if (!refused_mono_us_) {
@@ -283,7 +284,7 @@ void Player::play() {
     ended_ = true;
     progress_mono_us_ = loop_.mono_us();
   }
-  // paused at the end, by a step: a person who steps may want to go back
+  // paused at the end by a step: the user may want to go back
   if (ended_ && in_flight_.count() == 0 && !paused_) finish();
 }
 
@@ -291,7 +292,7 @@ void Player::play() {
 void Player::watch_over() {
   const std::int64_t now = loop_.mono_us();
   show_progress(false);
-  // without a network nobody can be heard: the waits begin when it is back
+  // without a network nobody can be heard, so the waiting times start when it is back
   if (!loop_.network_error().empty()) started_mono_us_ = progress_mono_us_ = now;
   say_that_it_waits(now);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {
@@ -301,15 +302,15 @@ void Player::watch_over() {
     if (next_) anchor(paused_ ? anchor_us_ : next_->time_us);
     play();
   }
-  // what a process that is stopped has in its socket it need not get twice: it is asked for by its next
-  // status, which one that works sends every second
+  // a stopped process has the messages in its socket and needs no second copy; when it works again, its next
+  // status, one a second, asks for what it lacks
   const bool heard_since = pairing_mono_us_ > progress_mono_us_;
   const std::int64_t wait = heard_since ? options_.pace.stall_us : options_.pace.unheard_us;
   if (in_flight_.count() > 0 && now - progress_mono_us_ > wait && heartbeat_.alive(bus::Role::pairing)) {
     send_again();
     progress_mono_us_ = now;
   }
-  // a pairing that has been gone for long at the end of the log is not waited for
+  // at the end of the log, a pairing process that has been gone for long is not waited for
   if (ended_ && in_flight_.count() > 0 && now - progress_mono_us_ > options_.pace.end_wait_us) {
     say(text("%zu messages were never acknowledged", in_flight_.count()));
     in_flight_.clear();
@@ -317,7 +318,7 @@ void Player::watch_over() {
   }
 }
 
-/// For a pairing process, where it takes long and the network is there.
+/// Reports that the player waits for a pairing process, if that takes long and the network is there.
 void Player::say_that_it_waits(std::int64_t now) {
   const bool waits =
       !in_flight_.heard() && !alone_ && !paused_ && now - started_mono_us_ > options_.pace.announced_wait_us;
@@ -332,7 +333,7 @@ void Player::finish() {
   loop_.stop();
 }
 
-/// A line for people, not into the middle of the one that shows the progress.
+/// Prints a line without breaking the line that shows the progress.
 void Player::say(const std::string& line) {
   std::fprintf(stderr, "%segocal-player: %s\n", line_open_ ? "\n" : "", line.c_str());
   line_open_ = false;

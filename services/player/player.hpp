@@ -26,13 +26,13 @@ struct PlayerOptions {
   PaceOptions pace{};
 };
 
-/// Plays a log on the bus. In step with pairing: no more than a few dozen messages are on their way to it at
-/// any time, and what it did not get, because it was lost or its process ended, is sent again.
+/// Plays a log on the bus. It keeps in step with pairing: at most a few dozen messages are in flight, and
+/// those that pairing did not get, because they were lost or its process ended, are sent again.
 class Player {
  public:
   /// Throws Error where there is nothing to play.
   Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& options);
-  /// Says what of the log could not be played, whatever ended the loop.
+  /// Reports what could not be played, whatever ended the loop.
   void report();
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double largest_time_us = 9e18;  // fits an int64; times that are damaged may be anything
 
-/// a - b is more than that; times that are damaged may be anything.
+/// Whether a - b > by, without overflow: damaged times may have any value.
 bool later(std::int64_t a, std::int64_t b, std::int64_t by) {
   return a > b &&
          static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b) > static_cast<std::uint64_t>(by);
@@ -45,7 +45,7 @@ Tape::Tape(const std::string& file, const TapeOptions& options) : log_(file), op
 }
 
 void Tape::rewind(double from) {
-  // the events in between are not read: a seek in a log of 10 GB takes no longer than in a small one
+  // skips the events in between, so a seek in a log of 10 GB takes no longer than in a small one
   const double target_us = static_cast<double>(begin_us_) + second_us * from;
   if (from > 0 && std::abs(target_us) < largest_time_us)
     log_.seek(std::llround(target_us));

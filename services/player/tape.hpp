@@ -15,19 +15,20 @@ namespace egocal::services {
 struct TapeOptions {
   double start = 0;           ///< begins so far into the log [s]
   std::optional<double> end;  ///< ends so far into the log [s]
-  /// Regular expression: only these channels. Empty: all but those that egocal itself sends on (EGOCAL_*):
-  /// answers and acknowledgements of another day would be taken for today's.
+  /// Regular expression: only these channels are played. Empty: all except those that egocal itself sends on
+  /// (EGOCAL_*), because recorded answers and acknowledgements would be taken for current ones.
   std::string channel;
-  // Study of both: tests/services/player/test_tape.cpp.
+  // Study of both: tests/services/player/test_tape.cpp. Events of several sources are not exactly in order. A
+  // disorder of up to this is no damage [us].
   /// Events of several sources are not exactly in order: up to this is no damage [us].
   std::int64_t disorder_us = 1'000'000;
-  /// Where only one neighbour shows what is plausible, a longer gap is damage [us].
+  /// If only one neighbouring event can be compared, a longer gap is damage [us].
   std::int64_t longest_gap_us = 3'600'000'000;
 };
 
 /// The events of a log that are to be played, in the order of the file. A time that fits neither the event
-/// before nor the one after it is damaged and replaced by that of the event before: the player does not wait
-/// years for one flipped bit.
+/// before nor the one after is damaged, and is replaced by the time of the event before. Otherwise a flipped
+/// bit could make the player wait for years.
 class Tape {
  public:
   /// Throws Error where there is nothing to play.
@@ -35,7 +36,7 @@ class Tape {
 
   /// The next event; empty at the end.
   std::optional<bus::LogEvent> next();
-  /// Starts again; only events at this time of the log, or later [s].
+  /// Starts again, with the events from this time of the log on [s].
   void rewind(double from);
 
   std::int64_t begin_us() const { return begin_us_; }  ///< recorded time of the log's first event

@@ -11,7 +11,7 @@ namespace egocal::services {
 
 namespace {
 
-/// Started with & in a shell: keys belong to the shell, and reading would stop us.
+/// In the background (& in a shell) the keys belong to the shell, and reading them would stop this process.
 bool in_foreground() {
   return tcgetpgrp(STDIN_FILENO) == getpgrp();
 }

@@ -8,7 +8,7 @@
 
 namespace egocal::services {
 
-/// Standard input as single keys without echo, where it is a terminal; as it was before when the object goes.
+/// Reads standard input as single keys without echo, if it is a terminal. The destructor restores its mode.
 class TerminalKeys {
  public:
   TerminalKeys();
@@ -17,7 +17,7 @@ class TerminalKeys {
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
   bool there() const { return there_; }
-  /// What was typed; empty: nothing, or another process has the terminal.
+  /// The keys typed since the last call; empty: none, or another process has the terminal.
   std::string read();
   bool ended() const { return ended_; }
 

@@ -12,13 +12,13 @@ namespace egocal::services {
 
 enum class Verb { reset, pause, resume };
 
-/// Hands on the commands that are meant for this process: its name or "*", a known verb, names that make
-/// sense. What is not understood is counted as rejected.
+/// Hands on the commands for this process: addressed to its name or "*", with a known verb and plausible
+/// names. Other commands are counted as rejected.
 void hear_commands(bus::Loop& loop, bus::Heartbeat& heartbeat,
                    std::function<void(Verb, const command_t&)> callback);
 
-/// Whether a command means this pair: both names, or none for all pairs; and of a reset, whether it means
-/// this session.
+/// Whether a command concerns this pair: it names both sensors, or no pair, which means all pairs. A reset
+/// must also name this session, or none.
 bool means(const command_t& command, Verb verb, const std::string& sensor_a, const std::string& sensor_b,
            std::int64_t session);
 

@@ -12,7 +12,7 @@
 
 namespace egocal::services {
 
-/// An option with a value; the variable's value on the way in is the default.
+/// An option with a value. The initial value of the variable is the default.
 struct TextOption {
   std::string name;  ///< "--method"
   std::string help;

@@ -55,8 +55,8 @@ void FastSolver::hear(std::size_t pair, const calibration_t& message) {
     heartbeat_.reject(answer.reason);
     return;
   }
-  // The global answer that was asked for is where the next step starts. It needs no proof here: the step that
-  // starts from it is verified.
+  // The next step starts from the global answer that was asked for. That needs no proof here, because the
+  // step itself is verified.
   if (answer.value->certificate.optimality == Optimality::certified && message.utime >= progress.utime)
     progress.state.last = answer.value->T_a_b;
 }

@@ -34,7 +34,7 @@ class FastSolver final : public Solver {
   void answer(std::size_t pair, const ReceivedProblem& received);
 
   OnlineOptions options_;
-  ScaleDesk scales_;                ///< a scale has no local solution: only while no global process is alive
+  ScaleDesk scales_;  ///< used only while no global process is alive, as a scale has no local solution
   std::vector<Progress> progress_;  ///< of the pairs
 };
 

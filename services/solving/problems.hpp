@@ -21,13 +21,13 @@ struct ReceivedProblem {
   Problem problem;
 };
 
-/// The last answer, if there is one, is one to this very problem.
+/// The last answer, if there is one, is an answer to this very problem.
 template <class Answer, class Problem>
 bool answers(const std::optional<Answer>& last, const Problem& problem) {
   return last && last->session == problem.session && last->seq == problem.seq && last->utime == problem.utime;
 }
 
-/// What was made of a message about this pair; refused where it names another one.
+/// A message about this pair, checked and converted; refused if it names another pair.
 template <class T, class Message>
 bus::Checked<T> of_pair(bus::Checked<T> checked, const Message& message, const std::string& a,
                         const std::string& b) {
@@ -44,7 +44,7 @@ class ProblemInbox {
   std::optional<ReceivedProblem> take();
   const std::string& sensor_a() const { return sensor_a_; }
   const std::string& sensor_b() const { return sensor_b_; }
-  /// Newer ones that made older ones superfluous before they were looked at.
+  /// Problems that were skipped because a newer one had arrived.
   std::int64_t skipped() const { return newest_.skipped(); }
 
  private:
@@ -53,12 +53,13 @@ class ProblemInbox {
   bus::Newest<problem_t> newest_;
 };
 
-/// Sends an answer and remembers it: when the problem is sent again so is the answer, for late listeners.
+/// Sends an answer and remembers it. If the problem is sent again, so is the answer, for listeners that came
+/// late.
 class AnswerOutbox {
  public:
   AnswerOutbox(bus::Loop& loop, bus::Heartbeat& heartbeat) : loop_(loop), heartbeat_(heartbeat) {}
 
-  /// Sends the answer once more where this very problem was answered last. False: it was not.
+  /// Sends the last answer again if it answers this very problem. False: it does not.
   bool repeat(const problem_t& problem);
   void send(const Answer& answer, const problem_t& problem, bool fallback);
 
@@ -68,8 +69,8 @@ class AnswerOutbox {
   std::optional<calibration_t> last_;
 };
 
-/// Pairing that sends nothing for this time is silent [us]: half as long again as the second after which it
-/// repeats its problems. Solvers repeat their answers themselves then.
+/// Pairing repeats its problems every second. After half a second more without one it counts as silent [us],
+/// and solvers repeat their answers themselves.
 constexpr std::int64_t pairing_is_silent_us = 1'500'000;
 
 /// CLOCK_MONOTONIC for the library's timings [ns].

@@ -16,18 +16,18 @@
 
 namespace egocal::services {
 
-/// Answers the scale problems of those pairs of which a sensor has scale = "auto": each once, and with the
-/// same message again when the problem is sent again.
+/// Answers the scale problems of pairs that have a sensor with scale = "auto". Each problem is solved once;
+/// if it is sent again, the same answer is sent again.
 class ScaleDesk {
  public:
   ScaleDesk(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig);
 
-  /// Problems may be waiting. publishes: false where another solver answers them.
+  /// To be called when problems may be waiting. publishes: false if another solver publishes the answers.
   void answer_newest(bool publishes = true);
-  /// Sends the newest scales again where pairing is silent, which would ask for them.
+  /// Sends the newest scales again while pairing is silent, whose problems would ask for them.
   void repeat(bool publishes = true);
-  /// An answer at an unknown scale is as uncertain as that is: adds the scale's part to its standard
-  /// deviations, once a scale of the problem's session was solved here.
+  /// Adds what the uncertainty of the scale adds to the standard deviations of an answer, once a scale of
+  /// this session was solved here.
   Answer with_spread(Answer answer, const ReceivedProblem& received) const;
 
  private:

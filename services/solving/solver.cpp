@@ -44,8 +44,8 @@ std::optional<ReceivedProblem> Solver::take(std::size_t pair) {
   return received;
 }
 
-/// Pairing sends its problems again once a second, which brings the answers again. Where it does not, it
-/// hangs or is gone: listeners that come now would believe that nothing was ever answered.
+/// Pairing sends its problems again every second, which repeats the answers. If pairing hangs or is gone, new
+/// listeners would not learn of any answer without this.
 void Solver::repeat_answers() {
   for (const auto& pair : pairs_)
     if (pair->session >= 0 && !pair->paused && loop_.mono_us() - pair->heard_mono_us >= pairing_is_silent_us)

@@ -14,9 +14,8 @@
 
 namespace egocal::services {
 
-/// What solver processes share: the newest problem of each pair, the answers of other solvers, commands,
-/// counters and what the heartbeat says. A solver has no state worth keeping: the next problem brings another
-/// one up to date.
+/// The common part of the solver processes: the newest problem of each pair, the answers of other solvers,
+/// commands, counters and the status. A solver has no state worth keeping, as the next problem is enough.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -42,7 +41,7 @@ class Solver {
   /// Once a second and on commands.
   void report();
 
-  /// Problems may be waiting. Also called once a second: another process may have fallen silent.
+  /// Called when problems may be waiting, and once a second, because another process may have fallen silent.
   virtual void answer_newest() = 0;
   /// Once a second: scales of a pairing that is silent.
   virtual void repeat_scales() = 0;
@@ -51,7 +50,7 @@ class Solver {
   virtual void reset(std::size_t pair) = 0;
   /// While nothing is paused.
   virtual bus::State state() const = 0;
-  /// What the user should know about the other solvers, one line; empty: nothing.
+  /// Advice to the user about the other solvers, one line; empty: none.
   virtual std::string advice() const = 0;
 
   bus::Loop& loop_;

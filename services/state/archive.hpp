@@ -19,7 +19,7 @@
 
 namespace egocal::services {
 
-/// T is U, const or not: one function serves for writing and reading.
+/// T is U or const U: one function serves for writing and reading.
 template <class T, class U>
 concept Is = std::same_as<std::remove_const_t<T>, U>;
 
@@ -39,8 +39,8 @@ concept Sequence = requires(T t) {
 }
 &&!std::same_as<T, std::string>;
 
-/// The bits of values one after the other, as this machine keeps them. Structs are written field by field by
-/// an overload of fields(archive, value).
+/// Writes the bits of values one after the other, in the byte order of this machine. An overload of
+/// fields(archive, value) writes a struct field by field.
 class Writer {
  public:
   template <class... T>
@@ -102,8 +102,8 @@ class Writer {
   std::vector<std::byte> bytes_;
 };
 
-/// What a Writer wrote, in the same order. Throws Error where the bytes end too early; no count makes it
-/// allocate more than a small multiple of the bytes that are there.
+/// Reads what a Writer wrote, in the same order. Throws Error if the bytes end too early. A count never makes
+/// it allocate more than a small multiple of the bytes that are there.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -189,7 +189,7 @@ class Reader {
   std::span<const std::byte> rest_;
 };
 
-/// Finds every change of a single byte, and others except for one in 2^64 (FNV-1a).
+/// Detects every change of a single byte, and other changes except for one in 2^64 (FNV-1a).
 inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const std::byte byte : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;

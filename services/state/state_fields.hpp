@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What of each of the library's structs goes into a state file: everything. The structured bindings do not
-// compile where a struct gains or loses a field, so that none is forgotten. A change of one raises
-// state_layout.
+// The fields of the library structs in a state file: all of them. The structured bindings do not compile when
+// a struct gains or loses a field, so no field is forgotten. Raise state_layout with each change.
 #pragma once
 
 #include "egocal/pairing/motion_pairing.hpp"
@@ -188,7 +187,8 @@ void fields(auto& archive, services::Is<AccumulatorState::PerStride> auto& value
   archive(stride, statistics);
 }
 
-/// Most cells hold no motions that span a jump, many hold none at all: those take 16 bytes instead of 1056.
+/// Most cells hold no motions across a jump, and many hold none at all. Empty statistics take 8 bytes instead
+/// of 528.
 void fields(auto& archive, services::Is<StrideCell> auto& value) {
   auto& [motions, rotations] = value;
   const auto unless_empty = [&archive](auto& statistics) {

@@ -28,7 +28,7 @@ std::string magic(const std::string& process) {
   return beginning(process) + "4" + (low ? "l" : "b") + "\n";
 }
 
-/// Up to version 3 the state of every process began so: whose it is, its identity alone states.
+/// Up to version 3 all processes began their state like this, and only the identity in it names the process.
 const std::string shared_beginning = "egocal-pairing state 3";
 
 /// Before each part: identity, snapshot, additions.
@@ -94,8 +94,8 @@ std::string text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Whether a file that begins as a state may is one of this process. One that cannot be told is of the
-/// process whose name it begins with.
+/// Whether a file that begins like a state may be one of this process. If its identity cannot be read, the
+/// process named at its beginning decides.
 bool is_of(const std::string& process, std::span<const std::byte> bytes) {
   const std::string begin = text_of(bytes.first(std::min(bytes.size(), shared_beginning.size())));
   if (begin == shared_beginning) {

@@ -8,11 +8,10 @@
 
 namespace egocal::services {
 
-/// Whose state a file holds. What a process has learnt means nothing to another process or rig, nor to
-/// another version of the mathematics.
+/// Whose state a file holds. It is useless to another process, rig or version of the mathematics.
 struct StateIdentity {
   std::string process;  ///< "egocal-pairing"; the state of another process is not touched
-  std::string text;     ///< everything else, one line each; where it differs the state is refused
+  std::string text;     ///< everything else, one line each; a state with other lines is refused
 };
 
 /// Of a process with this layout of its fields, for this rig.

@@ -21,8 +21,8 @@ namespace egocal::services {
 
 namespace {
 
-/// The file, checked before its content is read: a user's own file must not be moved away because of a
-/// slip on the command line, nor a pipe be waited for. Empty: there is none.
+/// Opens the file and checks it before reading: a file named by mistake must not be moved away, and a pipe
+/// must not block. Empty: there is no file.
 std::optional<StateMedium::Found> whole(const std::string& file, const StateMedium::Expected& expected,
                                         const StateOptions& options) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -54,7 +54,7 @@ std::optional<StateMedium::Found> whole(const std::string& file, const StateMedi
   std::size_t longest = 0;
   for (const std::string& begin : expected.begins) longest = std::max(longest, begin.size());
   read_up_to(std::min(static_cast<std::size_t>(most), longest));
-  // of a short file as much as there is: a state that was cut off is one, a user's short file is none
+  // compares a short file as far as it goes: a truncated state is one, a short file of the user is none
   const auto begins_so = [&bytes](const std::string& begin) {
     return std::memcmp(bytes.data(), begin.data(), std::min(bytes.size(), begin.size())) == 0;
   };
@@ -83,7 +83,7 @@ class StateInFileSystem final : public StateMedium {
   std::optional<Found> read(const Expected& expected) override { return whole(file_, expected, options_); }
 
   void replace(std::span<const std::byte> bytes) override {
-    // the folder was there when this began: its removal was not meant for what is known here
+    // the folder existed at the start, and whoever removed it did not mean to lose the current state
     std::error_code none;
     std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
     lock_.confirm();

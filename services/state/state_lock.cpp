@@ -16,7 +16,7 @@ namespace egocal::services {
 
 namespace {
 
-/// A disk that is full or has become read-only still has the file of the process before.
+/// A disk that is full or read-only still has the lock file of an earlier process.
 int open_lock(const std::string& file) {
   int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0644);
   const int reason = errno;

@@ -6,8 +6,8 @@
 
 namespace egocal::services {
 
-/// FILE.lock, held for one process alone until the end. It remains as an empty file: to remove it while
-/// another process waits for it would let two continue.
+/// FILE.lock, locked by one process until it ends. The file remains, empty: if it were removed while another
+/// process waits for it, two processes could hold the lock.
 class StateLock {
  public:
   /// Throws Error where another process holds it, or where the file system cannot lock.
@@ -16,7 +16,7 @@ class StateLock {
   StateLock(const StateLock&) = delete;
   StateLock& operator=(const StateLock&) = delete;
 
-  /// Throws Error where the lock file was removed meanwhile and another process has taken its place.
+  /// Throws Error if the lock file was removed meanwhile and another process holds a new one.
   void confirm();
 
  private:

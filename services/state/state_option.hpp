@@ -16,9 +16,9 @@ inline TextOption state_option(std::string& file) {
   return {"--state", "file from which it continues after it was ended or killed", &file, {}};
 }
 
-/// The service, continuing from its Saved state where a file is named. What is refused is one line on
-/// standard error. Throws Error where the file is held by another process, or is something else than a state
-/// of this one.
+/// Makes the service, which continues from its Saved state if a file is named. A refused state is reported on
+/// standard error, in one line. Throws Error if another process holds the file, or it is no state of this
+/// process.
 template <class Service, class Saved>
 std::shared_ptr<void> with_state(const std::string& program, const std::string& file, bus::Loop& loop,
                                  bus::Heartbeat& heartbeat, const bus::Rig& rig) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Errors on all data sets and on simulated drives, beside equal weights and published numbers: the tables of
-// docs/accuracy.md. `scripts/benchmark` runs it.
+// docs/accuracy.md. Run by `scripts/benchmark`.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -55,7 +55,7 @@ struct Drive {
   }
 };
 
-/// Several drives, so that no branch predictor learns one problem by heart.
+/// Several drives, so that no branch predictor learns one problem.
 const std::vector<Drive>& drives(Motion motion) {
   const auto make = [](Motion kind) {
     std::vector<Drive> made;

@@ -121,7 +121,7 @@ Six rms_at(const std::vector<std::vector<Look>>& drives, std::size_t look) {
   return rms;
 }
 
-/// What is called true: the error of every direction is within 1.96 goals.
+/// "Reached" is true if the error of every direction is within 1.96 goals.
 constexpr double interval = 1.96;
 
 bool within(const Six& x, const GoalOptions& goal) {

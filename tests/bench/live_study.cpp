@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What a driver sees: hours of driving, judged again and again as egocal-diagnosis does it. How often a mount
-// that does not move is called moved, what the verdicts are, and how soon a move is shown (docs/moves.md).
-// Every drive has a seed of its own and is one line of a record, so that hours add up over several runs. Exit
-// code 1 where a fixed mount raises an alarm.
+// Hours of simulated driving, judged again and again as egocal-diagnosis does it: false alarms of moved
+// mounts, verdicts, and the delay until a move is shown (docs/moves.md). Every drive has its own seed and is
+// one line of a record, so hours add up over several runs. Exit code 1 if a fixed mount raises an alarm.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

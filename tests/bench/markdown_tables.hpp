@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables that a program makes, inside a page that people write.
+// Tables made by a program, within a page written by people.
 #pragma once
 
 #include <string>
@@ -21,11 +21,11 @@ std::string markdown(const Table& table);
 /// The text of a page; empty where there is no such file.
 std::string read_page(const std::string& file);
 
-/// The page with the table in its place. Throws std::runtime_error where the page has no such place.
+/// The page with the table in its place. Throws std::runtime_error if the page has no such place.
 std::string with_table(const std::string& page, const Table& table);
 
-/// What is different between the page and the table, one line each; empty where they agree. Words must be
-/// equal; numbers may differ by `relative`, or by one in their last place.
+/// The differences between the page and the table, one line each; empty: they agree. Words must be equal;
+/// numbers may differ by `relative`, or by one in their last place.
 std::vector<std::string> differences(const std::string& page, const Table& table, double relative);
 
 /// The page without the rows whose first cell no row of the table has: a part of a table is compared with it.

@@ -28,7 +28,7 @@ using testing::Random;
 constexpr double rate = 10;  // [Hz]
 constexpr double degree = std::numbers::pi / 180;
 
-/// A sort of drive: how long it is, its noise, and what happens to the mount of its second sensor.
+/// A kind of drive: its length, its noise, and what happens to the mount of the second sensor.
 struct Sort {
   const char* name;
   double seconds;

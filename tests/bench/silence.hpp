@@ -4,8 +4,8 @@
 
 namespace egocal::bench {
 
-/// Some solvers print remarks that they cannot be asked to keep to themselves: standard output goes nowhere
-/// while this lives.
+/// Discards standard output while the object exists, as some solvers print remarks that cannot be switched
+/// off.
 class Silence {
  public:
   Silence();

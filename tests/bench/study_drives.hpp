@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The drives that verdicts are measured on: simulated ones of every terrain and noise, and the real ones.
+// Drives on which verdicts are measured: simulated ones of every terrain and noise, and the real ones.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How long the real processes take, and what they need over hours. The numbers are in docs/benchmarks.md.
+// Times of the real processes, and their resources over hours. The numbers are in docs/benchmarks.md.
 #include <sys/resource.h>
 #include <sys/wait.h>
 

@@ -206,7 +206,7 @@ int run(const Options& options) {
     return 1;
   }
 
-  // a busy machine takes its time for each restart; the drive lasts longer than the kills
+  // a busy machine needs this long for a restart; the drive lasts longer than the kills
   const double restart_s = 0.5;
   const double duration = (options.kill_distance + restart_s) * options.kills + 2;
   const double speed = 60 * options.minutes / duration;

@@ -63,7 +63,7 @@ inline std::vector<Event> events(const std::vector<Trajectory>& trajectories) {
   return all;
 }
 
-/// Our programs on a network of their own, and an observer of all they send.
+/// Our programs on a network of their own, and an observer of all that they send.
 class Processes : public ::testing::Test {
  protected:
   Processes() {

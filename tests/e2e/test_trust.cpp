@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What others send, by mistake or without end, is counted and harms nothing else.
+// Messages of other programs, sent by mistake or without end, are counted and harm nothing else.
 #include <atomic>
 #include <thread>
 

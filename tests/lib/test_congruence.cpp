@@ -82,8 +82,8 @@ TEST(Congruence, FirstTurnInPlaceIsNotRejected) {
     }
 }
 
-/// What ScreeningOptions::doubtful and CongruenceOptions::most_growing rest on: real odometry has heavy
-/// tails, but hardly ever is a step of it as far from congruent as a pose that is wrong.
+/// The basis of ScreeningOptions::doubtful and CongruenceOptions::most_growing: real odometry has heavy
+/// tails, but a step of it is hardly ever as far from congruent as a wrong pose.
 TEST(RealCongruence, StepsOfRealDrivesAreHardlyEverDoubtful) {
   if (!testing::have_real_drives()) GTEST_SKIP() << "shared/data is not there";
   const std::pair<const char*, testing::Streams> drives[] = {{"KITTI 05", testing::kitti("05")},

@@ -70,7 +70,7 @@ std::string plain_yaml_and_json(std::string text) {
   return text;
 }
 
-// Whoever opens the file saw "certified globally optimal" and a number for the height, and nothing else
+// A reader of the file saw "certified globally optimal" and a number for the height, and nothing else.
 TEST(ExtrinsicText, EveryFormatStatesTheVerdictAndWhatIsNotObservableBeforeTheCertificate) {
   for (const ExtrinsicFormat format : formats) {
     const std::string text = plain_yaml_and_json(extrinsic_text(of_a_flat_drive(), format));

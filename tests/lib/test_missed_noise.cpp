@@ -64,9 +64,9 @@ testing::Streams flat_drive(std::uint64_t seed) {
   return streams;
 }
 
-/// In the plane the residuals of rotations have one axis, and show the growth of the noise three times less
-/// certainly. The smallest growth that is possible let motions of 13 steps and more win that have a smaller
-/// spread because omitting blocks misses their noise: in eleven of these drives.
+/// In the plane the residuals of rotations have one axis, and show the growth of the noise with a third of
+/// the certainty. With the smallest possible growth, motions of 13 steps and more won in eleven of these
+/// drives, whose spread is smaller because omitting blocks misses their noise.
 TEST(MissedNoise, LongMotionsDoNotWinInThePlaneForTheNoiseThatIsMissed) {
   int long_ones = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {

@@ -59,8 +59,8 @@ void expect_no_harm(Terrain terrain, const Stand& stand) {
   EXPECT_LT(error_of(data, drive).translation, 3 * error_of(data, plain).translation + 0.02) << what;
 }
 
-/// A vehicle that stands at the start shows no noise, or the little of its wheels' odometry: whatever it is,
-/// it says nothing of the drive that follows.
+/// A vehicle that stands at the start shows no noise, or only that of its wheel odometry, which says nothing
+/// about the drive that follows.
 TEST(MotionPairing, StandingRejectsNothingOfTheDriveThatFollows) {
   for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free})
     for (const double jitter : {0.0, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3})
@@ -68,8 +68,8 @@ TEST(MotionPairing, StandingRejectsNothingOfTheDriveThatFollows) {
         expect_no_harm(terrain, {.at = at, .periods = 700, .jitter = jitter, .seed = 3});
 }
 
-/// What is typical then comes from motions that are all zero, whichever of the estimates is due when the last
-/// one of the drive is forgotten.
+/// The typical sizes then come from motions that are all zero, whichever estimate is due when the last motion
+/// of the drive is forgotten.
 TEST(MotionPairing, ParkingForLongerThanWhatIsRemembered) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free})
     for (const double jitter : {0.0, 1e-6, 1e-4})

@@ -71,8 +71,8 @@ TEST(Moves, EvidenceIsThatOfTwoStrides) {
   EXPECT_LT(chance({pairs_of(bumped, 2)}), 1e-10);
 }
 
-/// In a short drive noise that is remembered for seconds has few independent parts, so how long it is
-/// remembered is a guess. 17 of these 60 drives had a certain move before, now 6.
+/// In a short drive, noise that is remembered for seconds has few independent parts, so its memory is a
+/// guess. 17 of these 60 drives had a certain move before, now 6.
 TEST(Moves, NoiseThatWandersThroughAShortDriveIsNoCertainMove) {
   const auto moved_for_certain = [](const MovesResult& result) {
     return std::any_of(result.moves.begin(), result.moves.end(),

@@ -81,8 +81,8 @@ TEST(NoMoves, AVehicleThatStopsOftenHasNotMovedItsMount) {
       }
 }
 
-// Neighbouring blocks are alike, and there are too few motions for longer ones. Of 400 such drives these had
-// an alarm at the chance that holds for blocks of eight motions.
+// Neighbouring blocks are alike, and there are too few motions for longer ones. With the chance for blocks of
+// eight motions, these of 400 such drives had a false alarm.
 TEST(NoMoves, NoiseThatWandersIsNoneInAHundredMotions) {
   for (const std::uint64_t seed : {4u, 24u, 80u, 192u, 302u}) {
     SimulationOptions options = moved_drive(seed % 2 == 0 ? Terrain::rough : Terrain::free, seed, 12);

@@ -156,8 +156,8 @@ TEST(Planes, OfMotionPairsAreLookedAt) {
   EXPECT_NE(find(egocal::calibrate(pairs, options), "plane_b"), nullptr);
 }
 
-// Without curves both sensors turn by noise alone, which says nothing of the normals: honest planes were
-// called 112 degrees apart, in 9 of 12 drives. Every drive begins like this.
+// Without curves both sensors turn by noise alone, which says nothing about the normals: honest planes were
+// called 112 degrees apart in 9 of 12 drives. Every drive begins like this.
 TEST(Planes, AreNotJudgedByTheNoiseOfAStraightDrive) {
   for (const double noise : {1e-4, 1e-3, 5e-3})
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -133,7 +133,7 @@ TEST(RepeatingMotion, ThatIsNeverQuiteTheSameShowsItsOffset) {
       }
 }
 
-// Without noise interpolation is all that is left, and none is needed where the stamps coincide.
+// Without noise only interpolation errors are left, and there are none if the stamps coincide.
 TEST(RepeatingMotion, StampsThatCoincideAtAnotherOffsetDoNotDecide) {
   Drive drive;
   drive.rate_a = drive.rate_b = 20;
@@ -164,7 +164,7 @@ TEST(RepeatingMotion, NearAKnownOffsetLeavesNoDoubt) {
   EXPECT_LT(offset->stddev, 0.005);
 }
 
-// Clocks that share nothing: no offset is nearer to the truth than the one at which most was recorded.
+// With clocks that share nothing, no offset is likelier than the one with the longest overlap.
 TEST(RepeatingMotion, OfClocksThatShareNothingOverlapsMost) {
   const Streams streams = driven({.late = 1000}, uneven_eight);
   const auto offset = estimate_time_offset(streams.a, streams.b);

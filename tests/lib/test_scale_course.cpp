@@ -40,7 +40,7 @@ Trajectory stepped(const Trajectory& trajectory, double time, double factor) {
   return scaled(trajectory, course);
 }
 
-// Blocks of equal time where the vehicle stands showed no scale, and nothing was looked for any more.
+// Blocks of equal time in which the vehicle stands showed no scale, and the search ended there.
 TEST(ScaleCourse, AStepIsFoundWhereTheVehicleStandsInBetween) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SimulationOptions options = drive(seed, Terrain::rough, 901);
@@ -133,8 +133,8 @@ Trajectory stepping(const Trajectory& trajectory, const std::vector<double>& tim
   return scaled(trajectory, course);
 }
 
-// Each change passed for noise that wanders while one step alone was tested: none was found, and the answer
-// was good and off by up to 1.6 m.
+// While single steps alone were tested, each change passed for noise that wanders: none was found, and the
+// answer was good and off by up to 1.6 m.
 TEST(ScaleCourse, ChangesThatTakeEachOtherBackAreAllFound) {
   struct Case {
     std::vector<double> times, factors;

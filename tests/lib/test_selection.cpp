@@ -85,8 +85,9 @@ testing::Streams aircraft(std::uint64_t seed) {
   return streams;
 }
 
-/// Its translations are known to metres and say nothing of the rotation about the direction of travel, for a
-/// lever arm of half a motion's length does the same as half a turn: the rotations do, where they count.
+/// The translations of a fast machine are known to metres only and say nothing about the rotation about the
+/// direction of travel: a lever arm of half the length of a motion has the same effect as half a turn. The
+/// rotations show it, if they count.
 TEST(Selection, TranslationsOfAFastMachineCountAsLittleAsTheyAreKnown) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const testing::Streams streams = aircraft(seed);
@@ -147,9 +148,9 @@ double error_of_motions(std::uint64_t seed, int poses) {
   return extrinsic_error(streams.T, to_dual_quaternion(calibration.T_a_b)).rotation * degrees;
 }
 
-/// Translations that weigh a thousand times too much have their least cost at a wrong minimum, whose spread
-/// is small, or show no direction at all. The residuals of the other balances tell. (Two of these drives were
-/// off by 154 and 157 deg, one by 39.)
+/// Translations with a thousand times too much weight have their least cost at a wrong minimum with a small
+/// spread, or show no direction at all. The residuals of the other balances reveal it. (Two of these drives
+/// were off by 154 and 157 deg, one by 39.)
 TEST(Selection, MotionsWithoutPosesAreNotTurnedByABalanceThatTheResidualsRefute) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) EXPECT_LT(error_of_motions(seed, 101), 35) << seed;
 }

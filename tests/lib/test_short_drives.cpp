@@ -115,10 +115,9 @@ TEST(ShortDrives, ThatShowLittleAreIncomplete) {
   }
 }
 
-/// By translations alone an answer that is turned by half a turn about the direction of travel, with a lever
-/// arm of half a motion's length, fits as well. Where they counted a thousand times too much, it was chosen
-/// for the small spread of its jack-knife: seven of these drives were off by 100 to 165 deg, 5 to 10 of the
-/// stated standard deviations.
+/// For translations alone, half a turn about the direction of travel with a lever arm of half the length of a
+/// motion fits as well. When they weighed a thousand times too much, it was chosen for its small spread:
+/// seven of these drives were off by 100 to 165 deg, 5 to 10 of the stated standard deviations.
 TEST(ShortDrives, AreNotTurnedByWeightsThatTheResidualsRefute) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const testing::Streams streams = slow(seed, 20);

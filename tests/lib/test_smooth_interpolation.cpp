@@ -146,7 +146,7 @@ Off calibrated(const testing::Streams& streams, std::size_t smooth_poses) {
   return off;
 }
 
-// Both streams cut alike keep what bends slowly. Before smooth interpolation the height of a car that is
+// When both streams are cut alike they keep slow bends only. Before smooth interpolation the height of a car
 // shaken at 1 to 6 Hz was wrong by up to 20 cm and ten standard deviations, with a verdict of `good`.
 TEST(SmoothInterpolation, AShakenCarIsCalibratedWhateverTheRates) {
   double smooth = 0, cut = 0;

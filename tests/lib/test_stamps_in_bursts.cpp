@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Poses that waited in a buffer have the stamps of their arrival, several at once; they are named, and poses
-// that a sensor does measure in bursts are not.
+// Poses that waited in a buffer have the stamps of their arrival, several at once, and are named. Poses that
+// a sensor really measures in bursts are not.
 #include <gtest/gtest.h>
 
 #include <algorithm>

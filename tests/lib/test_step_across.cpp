@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A mount that moved shows in the motions across the time of its move. Where it does not, an error that
-// wanders for seconds made the motions before differ from those after.
+// A moved mount shows in the motions across the time of its move. If it does not, an error that wanders for
+// seconds made the motions before differ from those after.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -93,8 +93,8 @@ Trajectory wandering(Trajectory trajectory, std::uint64_t seed, double seconds, 
   return trajectory;
 }
 
-/// Of 180 such drives (seeds 1 to 60; 2, 3 and 5 s) the first two had a move that is none, and two others
-/// still have one.
+/// Of 180 such drives (seeds 1 to 60; 2, 3 and 5 s) the first two had a false move, and two others still have
+/// one.
 TEST(StepAcross, ErrorsThatWanderAreNoMove) {
   for (const auto& [seed, seconds] :
        {std::pair{20, 3.0}, {32, 5.0}, {1, 2.0}, {2, 3.0}, {3, 5.0}, {4, 3.0}}) {

@@ -142,9 +142,9 @@ TEST(TouchingBlocks, NoDriveHasASpreadOutOfProportion) {
   EXPECT_LT(spreads.largest, 4);
 }
 
-/// Poses and steps near the border of two blocks are in all motions that span it, so effects of touching
-/// blocks correlate by more than the motions they share. (With that taken for an error that lasts, standard
-/// deviations were 2.2 times the errors.)
+/// The noise of poses and steps near the border of two blocks is in all motions across it, so the effects of
+/// touching blocks correlate by more than the motions they share. (Taken for an error that lasts, it made the
+/// standard deviations 2.2 times the errors.)
 TEST(TouchingBlocks, NoiseOnMotionsAndPosesIsNotTakenForNoiseThatLasts) {
   const Spreads spreads = spreads_of(40, [](std::uint64_t seed) {
     return noisy_poses(short_drive(Terrain::free, 101, 0.02, seed), 0.05, true);
@@ -154,8 +154,8 @@ TEST(TouchingBlocks, NoiseOnMotionsAndPosesIsNotTakenForNoiseThatLasts) {
   EXPECT_GE(spreads.covered, 0.94);
 }
 
-/// With blocks of two instants most motions are longer than a block. What they make lasts for more blocks
-/// than those whose correlations count. (Covered were 88 %.)
+/// With blocks of two instants most motions are longer than a block, and their noise spans more blocks than
+/// the correlations that count. (Coverage was 88 %.)
 TEST(TouchingBlocks, NoiseOnMotionsAndPosesOfFortyStepsIsCovered) {
   const Spreads spreads = spreads_of(
       60, [](std::uint64_t seed) { return noisy_poses(short_drive(Terrain::free, 41, 0.01, seed), 0.03); });
@@ -163,8 +163,8 @@ TEST(TouchingBlocks, NoiseOnMotionsAndPosesOfFortyStepsIsCovered) {
   EXPECT_LT(spreads.stddev_to_error, 1.4);
 }
 
-/// Motions between two blocks are in both, so their effects correlate: that is no error that lasts. (Taken
-/// for one, it made the standard deviations 1.27 and 1.33 times the errors.)
+/// Motions between two blocks are in both, so the effects of these correlate without any error that lasts.
+/// (Taken for one, it made the standard deviations 1.27 and 1.33 times the errors.)
 TEST(TouchingBlocks, WhiteNoiseOnMotionsIsNotTakenForNoiseThatLasts) {
   for (const Terrain terrain : {Terrain::free, Terrain::rough}) {
     const Spreads spreads = spreads_of(40, [&](std::uint64_t seed) {
@@ -176,8 +176,8 @@ TEST(TouchingBlocks, WhiteNoiseOnMotionsIsNotTakenForNoiseThatLasts) {
   }
 }
 
-/// Drives of 30 and 50 motions have fifteen and twelve blocks, too few to join them: the correlation of
-/// neighbours alone shows such noise.
+/// Drives of 30 and 50 motions have fifteen and twelve blocks, too few to be joined, so only the correlation
+/// of neighbours shows such noise.
 TEST(NoiseThatLasts, IsSeenInShortDrives) {
   for (const int poses : {31, 51}) {
     const Spreads spreads = spreads_of(100, [&](std::uint64_t seed) {
@@ -196,8 +196,8 @@ TEST(NoiseThatLasts, IsSeenInThePlane) {
   EXPECT_LT(spreads.stddev_to_error, 1.5);
 }
 
-/// Spreads of single instants say too little of long motions, and chose weights that such noise does not
-/// bear. (Standard deviations were 0.8 times the errors, and 88 % were covered.)
+/// Spreads of single instants say too little about long motions, and chose weights unsuitable for such noise.
+/// (Standard deviations were 0.8 times the errors, with a coverage of 88 %.)
 TEST(NoiseThatLasts, ChoosesNoMemoryInVeryShortDrives) {
   const Spreads spreads = spreads_of(150, [](std::uint64_t seed) {
     return wandering_motions(short_drive(Terrain::flat, 25, 0, seed), 0.1, Mode::planar);

@@ -20,8 +20,8 @@ using testing::drive;
 using testing::find;
 using testing::lengthened;
 
-/// Two models without scale may be in any unit: neither may that of 10 m make 60 cm of 6 m, nor that of 1 mm
-/// a motion that is impossibly fast.
+/// Two models without scale may be in any unit. In a unit of 10 m an error of 6 m must not count as 60 cm,
+/// and in a unit of 1 mm no motion may be impossibly fast.
 TEST(VerdictUnits, WithoutMetresAnswersAreJudgedAlikeInEveryUnit) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free, Terrain::flat}) {
     const testing::Streams right = drive(terrain);

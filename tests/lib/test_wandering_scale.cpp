@@ -64,8 +64,8 @@ TEST(WanderingScale, IsNoMoveOfTheMount) {
   EXPECT_GT(before, now);
 }
 
-/// A monocular odometry that was lost for a third of the drive: its motions are outliers beside the others,
-/// so the median says nothing of them. 23 of 24 such drives had no finding, 17 of these were good.
+/// A monocular odometry that was lost for a third of the drive: its motions are outliers, so the median does
+/// not show them. 23 of 24 such drives had no finding, and 17 of these were good.
 TEST(WanderingScale, AnotherScaleInAThirdOfTheDriveIsNamed) {
   for (const Terrain terrain : {Terrain::free, Terrain::rough})
     for (const double scale : {0.8, 1.15}) {

@@ -6,7 +6,7 @@
 
 namespace egocal::simulation {
 
-/// Whose memory is allocated from here on, until the end of the scope. One thread.
+/// Sets the owner of the memory that is allocated until the end of the scope. One thread.
 class MemoryOwner {
  public:
   /// 0: memory that several processes share.

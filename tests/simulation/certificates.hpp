@@ -15,16 +15,16 @@
 
 namespace egocal::simulation {
 
-/// The problems of a life, and whether arithmetic of 113 bits agrees with the certificates of the answers to
-/// them.
+/// The problems of a life. Checks with arithmetic of 113 bits whether the certificates of their answers are
+/// true.
 class Certificates {
  public:
   /// A problem that was sent.
   void take_problem(const std::string& channel, bus::Bytes message);
   /// Whether a problem of this session and number was ever sent on the channel.
   bool knows(const std::string& channel, std::int64_t session, std::int64_t seq) const;
-  /// Why the answer is not what it claims, one line; empty: no objection, or its problem was sent too long
-  /// ago. What claims no certificate is not looked at. About 0.3 ms.
+  /// What is wrong with the certificate of the answer, one line; empty: nothing, or its problem was sent too
+  /// long ago. Answers without a certificate are not checked. About 0.3 ms.
   std::string objection(const std::string& channel, const calibration_t& answer);
   /// Answers that were looked at.
   std::int64_t checked() const { return checked_; }

@@ -19,16 +19,16 @@ namespace egocal::simulation {
 
 namespace {
 
-/// Answers are that recent while data come: poses wait for four periods of the other stream.
+/// Greatest age of an answer while data arrive: a pose waits for four periods of the other stream.
 std::int64_t recent_us(const Plan& plan) {
   return 1'000'000 + std::llround(4e6 / plan.rate_hz);
 }
 /// Messages of a sensor that pairing knows again.
 constexpr double remembered = 64;
-/// After this time a command has been obeyed, and what was on its way has arrived.
+/// After this time a command has been obeyed, and messages in flight have arrived.
 constexpr std::int64_t heard_us = 200'000;
-/// Of a process [bytes]. A pair takes up to 2.5 MB, and a life has four of them: before 64 poses pairing
-/// holds a copy of what it has accumulated, with choices made early.
+/// Largest memory of a process [bytes]. A pair takes up to 2.5 MB, and a life has four pairs; before 64 poses
+/// pairing holds a second copy, with choices made early.
 constexpr std::size_t largest_memory = std::size_t{12} << 20;
 /// Arithmetic of 113 bits takes as long as all the rest of a short life: one answer of this number is
 /// checked.
@@ -51,13 +51,13 @@ bool Checks::keeps_state(const Process& process) const {
                                    IncidentKind::old_state});
 }
 
-/// Wrong values may look right: what is in the statistics is not known then.
+/// Whether values are corrupted: some may look right, so the statistics are then unknown.
 bool Checks::corrupts() const {
   const NetworkFaults& network = surroundings_.plan.network;
   return network.truncated > 0 || network.flipped > 0 || has(surroundings_.plan, {IncidentKind::hostile});
 }
 
-/// No message is lost or late for long, and no process is silent while it lives.
+/// Whether no message is lost or late for long, and no live process is silent.
 bool Checks::peaceful() const {
   const NetworkFaults& network = surroundings_.plan.network;
   return network.lost == 0 && network.burst == 0 && !corrupts() && network.late == 0 &&
@@ -67,7 +67,7 @@ bool Checks::peaceful() const {
                IncidentKind::flood, IncidentKind::power_cut, IncidentKind::slow_disk});
 }
 
-/// What overtakes others does so by less than what is taken for a log that begins again.
+/// Whether messages overtake others by less than what is taken for a log that starts again.
 bool Checks::keeps_order() const {
   const Plan& plan = surroundings_.plan;
   const std::int64_t late_us = plan.network.jitter_us + (plan.network.late > 0 ? plan.network.late_by_us : 0);
@@ -79,8 +79,8 @@ bool Checks::keeps_order() const {
   return plan.speed > 0 ? static_cast<double>(late_us) * plan.speed < largest_jump_us : late_us == 0;
 }
 
-/// Messages have no numbers, and some arrive so late that they look like a log that begins again. Their order
-/// cannot be restored.
+/// Whether the order cannot be restored: messages have no numbers, and some arrive so late that they look
+/// like a log that starts again.
 bool Checks::in_an_order_of_its_own() const {
   return !surroundings_.plan.numbered && !keeps_order();
 }
@@ -127,8 +127,8 @@ void Checks::problem_sent(const Process& from, const std::string& channel, bus::
   check_leader(from);
 }
 
-/// Of several pairing processes of one name the one that sent first continues. Before that it is the older
-/// one, as far as the dates of their starts say so.
+/// Checks which of several pairing processes of one name continues: the one that sent first; before that the
+/// older one, as far as the dates of their starts show.
 void Checks::check_leader(const Process& from) {
   const auto object = [&](const Process& other, const std::string& which) {
     fail('e', "a " + from.spec().name + " that was started at " + std::to_string(from.started_us()) +
@@ -146,7 +146,7 @@ void Checks::check_leader(const Process& from) {
   }
 }
 
-/// Of the hosts, whose dates name the starts of their processes.
+/// Whether the dates of the hosts differ, by which the starts of their processes are compared.
 bool Checks::dates_differ() const {
   const Plan& plan = surroundings_.plan;
   for (int i = 1; i < plan.hosts; ++i)
@@ -211,7 +211,7 @@ void Checks::commanded(const std::string& to, const std::string& verb, const std
   commands_.command(surroundings_.schedule.now_us(), to, verb, surroundings_.drive.rig, a, b);
 }
 
-/// A new session begins where it was asked for or the log begins again, and nowhere else.
+/// A new session begins on request or when the log starts again, and never otherwise.
 void Checks::check_wishes(const Process& from, const std::string& channel, std::int64_t session,
                           std::int64_t seq) {
   const Plan& plan = surroundings_.plan;
@@ -273,7 +273,7 @@ void Checks::received(const Address& by, std::string_view channel, bus::Bytes me
     if (channel != sensors[i].channel) continue;
     Lineage& lineage = lineages_[listener.spec().name + listener.spec().state_file];
     if (is_foreign(message)) {
-      // acknowledged by what its bytes hold, so that a player with a damaged log continues; and not used
+      // acknowledged by the time in its bytes, so that a player with a damaged log continues; it is not used
       lineage.again[std::string(channel)].insert(field(message, utime_at));
       ++lineage.sensors[i].received;
       continue;

@@ -19,14 +19,14 @@
 
 namespace egocal::simulation {
 
-/// A promise of docs/processes.md that was not kept. check: the letter of docs/simulation.md.
+/// A broken promise of docs/processes.md. check: the letter of docs/simulation.md.
 struct Violation {
   char check = '?';
   std::int64_t at_us = 0;
   std::string text;
 };
 
-/// Watches a life from outside: what is sent, what arrives, who lives.
+/// Observes a life from outside: what is sent, what arrives, which processes live.
 class Checks {
  public:
   Checks(const Surroundings& surroundings, const std::vector<std::unique_ptr<Process>>& processes)

@@ -180,7 +180,7 @@ void Checks::check_counts() {
   }
 }
 
-/// What the network took from the processes that still live is what they say.
+/// The losses that live processes report are those of the network.
 void Checks::check_losses() {
   for (const auto& process : processes_) {
     if (!process->runs()) continue;

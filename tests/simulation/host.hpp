@@ -13,7 +13,7 @@
 
 namespace egocal::simulation {
 
-/// The clocks of one simulated host: they drift, begin again at a boot, and the date may be set.
+/// The clocks of one simulated host: they drift, restart at a boot, and the date may be set.
 class HostClock final : public bus::Clock {
  public:
   HostClock(const Schedule& schedule, const ClockFaults& faults)
@@ -23,7 +23,7 @@ class HostClock final : public bus::Clock {
   std::int64_t wall_us() const override { return start_of_all_us + passed_ns() / 1000 + wall_off_us_; }
   int wait(std::span<pollfd>, std::chrono::nanoseconds) const override { return 0; }
 
-  /// The first moment of the schedule at which this clock shows the time or more.
+  /// The first time of the schedule at which this clock shows at least this time.
   std::int64_t schedule_ns(std::int64_t mono) const {
     const std::int64_t passed = mono - first_ns + boot_ns_;
     std::int64_t time = passed - passed / 1'000'000 * drift_ppm_ - 2000;

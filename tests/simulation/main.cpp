@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// egocal_simulation: lives of all processes in virtual time, one a seed (docs/simulation.md).
+// egocal_simulation: all processes in virtual time, one life per seed (docs/simulation.md).
 #include <fcntl.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ struct Options {
   std::string corpus, resume;
 };
 
-/// What a long run has done, in a file: `next seed, lives, violations, trace`.
+/// Progress of a long run, in a file: `next seed, lives, violations, trace`.
 struct Progress {
   std::uint64_t seed = 1, lives = 0, failed = 0, trace = 0;
 };
@@ -63,14 +63,12 @@ void silence_services() {
   dup2(null, STDIN_FILENO);
 }
 
-/// A life takes milliseconds: one that takes this long of processor time never
-/// ends [s].
+/// Longest processor time of a life [s], which takes milliseconds. A longer one would never end.
 constexpr int longest_life_s = 20;
 
 char hang_text[80];
 
-/// The code of the processes cannot be interrupted: the seed is named and
-/// everything ends.
+/// Names the seed and ends the program, as the code of the processes cannot be interrupted.
 void on_hang(int) {
   if (write(STDOUT_FILENO, hang_text, std::strlen(hang_text)) < 0) _exit(2);
   _exit(1);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t most_recent = 32;
 
-/// How long a solver took is the only thing in a message that the machine decides on which this runs.
+/// Clears the times of solvers, the only contents of messages that depend on the machine.
 void forget_timings(calibration_t& message) {
   message.solve_ns = message.verify_ns = 0;
 }
@@ -217,7 +217,7 @@ void Network::spread(const PacketPtr& packet, int from_host) {
   for (const std::weak_ptr<Inbox>& listener : inboxes_) {
     const std::shared_ptr<Inbox> inbox = listener.lock();
     if (!inbox) continue;
-    // what no process there receives cannot matter, however it arrives
+    // a datagram that no process of the host receives is dropped, however it arrives
     if (packet->whole && !faults_.corrupts()) {
       const auto wanted = inbox->wanted.find(packet->channel);
       if (wanted != inbox->wanted.end() && !wanted->second) continue;

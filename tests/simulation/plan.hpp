@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens in one simulated life, as plain data: drawn from a seed, shrunk when it fails, printed for
-// people.
+// The plan of one simulated life, as plain data: drawn from a seed, simplified when it fails, and printed.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace egocal::simulation {
 
-/// Of every datagram on its way to one listener, each by itself.
+/// Faults of each datagram to each listener, independently.
 struct NetworkFaults {
   double lost = 0;                      ///< share
   double burst = 0;                     ///< share with which a burst of losses begins
@@ -83,7 +82,7 @@ enum class Estimation {
   automatic,  ///< everything is chosen from the data
 };
 
-/// How long a process works at each of its turns: then nothing else of it happens [us].
+/// Time that a process takes for each turn; nothing else happens in it meanwhile [us].
 struct Burden {
   std::int64_t solvers_us = 0, listeners_us = 0;
 };
@@ -132,8 +131,8 @@ struct Plan {
 int processes(const Plan& plan);
 std::string process_name(const Plan& plan, int number);
 
-/// Each seed turns on its own random subset of the faults (swarm testing): what one fault hides another
-/// life shows.
+/// Draws the plan of a seed. Each seed enables its own random subset of the faults (swarm testing), as one
+/// fault may hide what another one shows.
 Plan draw(std::uint64_t seed);
 
 /// A fault that is on in the plan, and the plan without it.

@@ -42,7 +42,7 @@ bool is_silent(Part part) {
 
 /// One life. Members end in reverse order, as those of a main().
 struct Process::Instance {
-  /// That of the host; what the disk takes in a turn passes in that turn.
+  /// The clock of the host. The time that the disk takes within a turn passes in that turn.
   class OwnClock final : public bus::Clock {
    public:
     explicit OwnClock(const Host& host) : host_(host) {}

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What runs in a simulated process: the services themselves, and the few lines that their main() has.
+// Code of a simulated process: the services themselves, and the few lines of their main().
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ class Watcher {
   monitor::Delivery delivery_{model_};
 };
 
-/// What `egocal export` hears, and the answer that it would choose.
+/// `egocal export`: what it receives, and the answer that it would choose.
 class Exporter {
  public:
   Exporter(bus::Loop& loop, const bus::Rig& rig);
@@ -37,8 +37,8 @@ class Exporter {
   tools::Answers answers_;
 };
 
-/// Live odometry of one sensor: sends each message when it is measured, and never again. Started late or
-/// again it continues with what is measured then.
+/// Live odometry of one sensor: sends each message once, when it is measured. A process that starts late or
+/// again continues with the current measurement.
 class Odometry {
  public:
   Odometry(bus::Loop& loop, const Schedule& schedule, const Drive& drive, std::size_t channel);

@@ -11,8 +11,8 @@
 
 namespace egocal::simulation {
 
-/// The one clock of everything, and what is to happen at which time. What is planned for the same time
-/// happens in the order in which it was planned.
+/// The one clock of the simulation, and the events planned on it. Events of the same time happen in the order
+/// in which they were planned.
 class Schedule {
  public:
   using Action = std::function<void()>;

@@ -6,8 +6,8 @@
 
 namespace egocal::simulation {
 
-/// The simplest plan that is found to violate the same promise: faults are switched off one by one.
-/// most_lives: that may be tried.
+/// The simplest plan found that breaks the same promise: faults are switched off one by one. most_lives:
+/// number of lives to try.
 Plan shrink(const Plan& plan, char check, int most_lives = 300);
 
 }  // namespace egocal::simulation

@@ -15,7 +15,8 @@ namespace egocal::simulation {
 
 namespace {
 
-/// The last answers, after the player's end: as `egocal up` waits for, and a heartbeat's timeout.
+/// Time for the last answers after the end of the player: as long as `egocal up` waits, and a timeout of a
+/// heartbeat.
 constexpr std::int64_t settle_us = 5'000'000;
 /// Turns of processes while no time passes.
 constexpr int most_turns_at_once = 100'000;
@@ -76,7 +77,7 @@ class World {
   }
 
  private:
-  /// Of the life; with a player its end is known when the player's is.
+  /// End of the life; with a player it is known when the player ends.
   std::int64_t end_us() const {
     const std::int64_t data_us = plan_.disturbed_us + plan_.quiet_us;
     if (plan_.input == Input::live) return data_us + 2'000'000;
@@ -365,7 +366,7 @@ void World::send_foreign() {
   network_->send_from_outside(channel, message);
 }
 
-/// Somebody puts a backup back: what is kept now is what the file holds that long from now.
+/// A backup of the state is restored: later the file holds what it holds now.
 void World::go_back_to_state(std::int64_t by_us) {
   Process& pairing = process(0);
   const std::string name = pairing.spec().state_file;
@@ -420,7 +421,7 @@ void World::calm_down() {
   watch_answers();
 }
 
-/// Again and again: a process that is not there when the command comes stays paused.
+/// Repeats the command, as a process that is not there when it comes stays paused.
 void World::resume() {
   command("*", "resume", 0);
   if (schedule_.now_us() < plan_.disturbed_us + plan_.quiet_us / 2)

@@ -25,13 +25,14 @@ struct Outcome {
 };
 
 struct WorldOptions {
-  /// Called with every line of the story: incidents, deaths, starts, and with everything also each message.
+  /// Called with every line of the log of a life: incidents, deaths, starts; with `everything` also each
+  /// message.
   std::function<void(const std::string& line)> tell = nullptr;
   bool everything = false;
 };
 
-/// Lives one life: all processes, network, clocks and disks in this thread, in virtual time. The same plan
-/// gives the same outcome, on any machine.
+/// Simulates one life: all processes, network, clocks and disks in this thread, in virtual time. The same
+/// plan gives the same outcome on any machine.
 Outcome live(const Plan& plan, const WorldOptions& options = {});
 
 }  // namespace egocal::simulation

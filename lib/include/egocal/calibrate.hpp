@@ -65,10 +65,10 @@ Calibration calibrate(const Trajectory& a, const Trajectory& b, const Calibratio
 Calibration calibrate(std::span<const MotionPair> pairs, const CalibrationOptions& options = {});
 
 /// The same, one pose at a time, in bounded memory: the extrinsic after the last pose and finish() is that of
-/// calibrate() on the whole trajectories, to the last bit. No poses are kept, so three things are less: other
-/// explanations are not tried and `fit` is not measured (no answer is called good: calibrate() on the drive
-/// says that), the choice of outliers is not proven, and with estimate_time_offset the offset is followed
-/// while the poses come. Use one object per pair of sensors; one thread at a time.
+/// calibrate() on the whole trajectories, to the last bit. No poses are kept, which has three consequences.
+/// Other explanations are not tried and `fit` is not measured, so no verdict is `good`: use calibrate() on
+/// the recorded drive for that. The choice of outliers is not proven. With estimate_time_offset the offset is
+/// followed while the poses arrive. Use one object per pair of sensors; one thread at a time.
 class Calibrator {
  public:
   /// Throws Error where the options contradict each other, and for estimate_scale, which needs the whole

@@ -54,7 +54,7 @@ double axis_signal(const std::vector<MotionPair>& pairs) {
   return noise > 0 ? moment / noise : std::numeric_limits<double>::infinity();
 }
 
-/// Of the angle between two directions, neither of which need be of any length: a vanishing one is parallel.
+/// Sine of the angle between two directions of any length; a vanishing one counts as parallel.
 double real_sine(const Eigen::Vector4d& u1, const Eigen::Vector4d& u2) {
   Eigen::Matrix<double, 4, 2> U;
   U << u1, u2;

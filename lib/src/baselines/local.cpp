@@ -33,7 +33,7 @@ DualQuaternion exponential(const Vector6d& tangent) {
   return normalized(q);
 }
 
-/// The tangent whose exponential is q, of the shorter way round.
+/// The tangent whose exponential is q, the shorter way round.
 Vector6d logarithm(const DualQuaternion& q_any_sign) {
   const DualQuaternion q = canonical_sign(q_any_sign);
   const Eigen::Vector3d w = q.real.tail<3>(), v = q.dual.tail<3>();

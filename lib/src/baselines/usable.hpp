@@ -9,7 +9,7 @@
 
 namespace egocal {
 
-/// The pairs whose numbers can be computed with, both motions as unit dual quaternions with scalar part >= 0.
+/// The pairs with usable numbers, both motions as unit dual quaternions with scalar part >= 0.
 inline std::vector<MotionPair> usable_pairs(std::span<const MotionPair> pairs) {
   std::vector<MotionPair> usable;
   usable.reserve(pairs.size());

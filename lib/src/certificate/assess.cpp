@@ -48,7 +48,7 @@ Form<N> form_at(const Square<N>& Q, const Column<N>& v, const ProvenBound& prove
   return T.transpose().lazyProduct(ZT);
 }
 
-/// From the curvature in these directions, in double: a guess, to be proven.
+/// A guess from the curvature in these directions, in double; it is to be proven.
 template <int N>
 Curvatures guessed_curvatures(const Subject<N>& subject, Form<N> M) {
   // degrees of freedom of the problem
@@ -59,7 +59,7 @@ Curvatures guessed_curvatures(const Subject<N>& subject, Form<N> M) {
     M -= column * (column / column[out]).transpose();
   }
   Eigen::Matrix<double, free, free> H = M.template topLeftCorner<free, free>();
-  // where rounding alone may have made it positive it is no curvature
+  // a curvature that rounding may have made positive is none
   const double d = subject.v.template tail<N / 2>().norm();
   const double size = subject.sizes.A + subject.sizes.D * (1 + 2 * d);
   H.diagonal().array() -= 16 * epsilon * size * size;

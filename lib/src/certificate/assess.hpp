@@ -15,7 +15,7 @@ template <int N>
 struct Subject {
   Square<N> Q;
   Column<N> v;
-  Sizes sizes;            ///< of the whole 8 x 8 matrix: what cancelled may not be among the four variables
+  Sizes sizes;            ///< of the whole 8 x 8 matrix: entries of other variables may have cancelled
   double orthogonal = 0;  ///< lambda_2, proposed
 };
 

@@ -7,7 +7,7 @@
 
 #include "certificate/double_proof.hpp"
 
-// How far an extrinsic that is at least as good can be: docs/method.md, "Reach".
+// The distance within which any extrinsic that is at least as good lies: docs/method.md, "Reach".
 namespace egocal::detail {
 
 /// Rows P of linear forms of a competitor v'.

@@ -12,7 +12,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Of one parameter and pair, by the answer that fits better; residuals above `most` count as `most`.
+/// Noise of one parameter and pair, by the answer that fits better; residuals above `most` count as `most`.
 double noise_of(const std::vector<double>& fits, double most, Mode mode) {
   double noise = 0;
   for (const double fit : fits) noise += std::min(fit, most);
@@ -33,7 +33,8 @@ ChangePlace locate_change(std::span<const MotionPair> pairs, const Problem& prob
   }
   const double most = options.place_residual * median(fits);  // larger residuals do not decide
 
-  // cost of every division: `second` of all, then `first` of the pairs before it instead
+  // cost of every division: `second` for all pairs, then `first` in its place for the pairs before the
+  // division
   double sum = 0;
   for (const double value : second) sum += std::min(value, most);
   std::vector<double> total = {sum};

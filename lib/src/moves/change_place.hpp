@@ -15,9 +15,9 @@ struct ChangePlace {
   std::size_t earliest = 0, latest = 0;  ///< the least and the most that fit about as well
 };
 
-/// Where a change from `before` to `after` is (minimisers, planar mode: T_p), motion by motion, by the cost
-/// of both. Indices count from the first of `pairs`, at least two. correlation: variance of a mean of
-/// neighbours against that of independent ones; overlap: motions that share a pose.
+/// Locates a change from `before` to `after` (minimisers, planar mode: T_p) motion by motion, by the cost of
+/// both. Indices count from the first of `pairs`, at least two. correlation: variance of a mean of neighbours
+/// over that of independent motions; overlap: motions that share a pose.
 ChangePlace locate_change(std::span<const MotionPair> pairs, const Problem& problem,
                           const DualQuaternion& before, const DualQuaternion& after, double correlation,
                           std::size_t overlap, const MovesOptions& options);

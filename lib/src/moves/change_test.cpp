@@ -13,7 +13,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Reduction of the cost by an optimum of their own for blocks [from, to).
+/// Reduction of the cost when blocks [from, to) have an optimum of their own.
 class Gains {
  public:
   Gains(Blocks blocks, double borrowed) : borrowed_(borrowed) {
@@ -38,7 +38,7 @@ class Gains {
   std::vector<Parameters> g_;
 };
 
-/// Least squares of an extrinsic that changes evenly over the time, x0 + t v.
+/// Least-squares fit of an extrinsic that changes evenly over time, x0 + t v.
 struct EvenChange {
   Parameters x0, v;
   Parameters S;                       ///< what shows v
@@ -108,8 +108,8 @@ void test_even_change(Blocks blocks, const EvenChange& fit, const ChangeTestOpti
   test.even_covariance = 4 * correlation * slope.solve(ParameterMatrix(slope.solve(V).transpose()));
 }
 
-/// What one unknown reduces the cost by, by chance: from the differences of neighbouring residuals, as those
-/// themselves hold what the model does not explain.
+/// Reduction of the cost by one unknown through chance. It is estimated from differences of neighbouring
+/// residuals, as the residuals themselves contain what the model does not explain.
 double noise_of(const EvenChange& fit) {
   double sum = 0;
   for (std::size_t i = 1; i < fit.residuals.size(); ++i)
@@ -117,8 +117,8 @@ double noise_of(const EvenChange& fit) {
   return sum / (2 * static_cast<double>(fit.residuals.size() - 1) * static_cast<double>(fit.S.size()));
 }
 
-/// Whether an even change explains more than one division and than the best two, each unknown more of which
-/// must gain the logarithm of the number of blocks (the information criterion of Bayes).
+/// Whether an even change explains more than one division and more than the best two. Each further unknown
+/// must gain the logarithm of the number of blocks (Bayesian information criterion).
 bool is_even(Blocks blocks, const EvenChange& fit, std::size_t least_side, const ChangeTestOptions& options) {
   const std::size_t count = blocks.size();
   const double unknown = noise_of(fit) * std::log(static_cast<double>(count));

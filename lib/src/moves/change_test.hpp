@@ -8,7 +8,7 @@
 
 namespace egocal::detail {
 
-/// The best place to divide consecutive blocks in two with an extrinsic each, and what it is worth
+/// The best division of consecutive blocks into two parts with an extrinsic each, and its evidence
 /// (docs/moves.md, "The test").
 struct ChangeTest {
   std::size_t split = 0;        ///< index of the first block after it; 0: none could be tested
@@ -31,11 +31,11 @@ struct ChangeAt {
   double correlation = 1;  ///< as of ChangeTest
 };
 
-/// Of a change within block `split` - 1, which may belong to either side: that which shows more, counted as
-/// two trials. least_side: blocks on each side at least.
+/// Evidence of a change within block `split` - 1, which may belong to either side: the side that shows more
+/// counts, as two trials. least_side: least number of blocks on each side.
 ChangeAt test_change_at(std::span<const LinearBlock> blocks, std::size_t split, std::size_t least_side,
                         const ChangeTestOptions& options);
-/// Chance of the evidence of an even change where nothing changes.
+/// Chance of at least this evidence of an even change if nothing changes.
 double chance_of_even_change(std::span<const LinearBlock> blocks, const ChangeTestOptions& options);
 
 }  // namespace egocal::detail

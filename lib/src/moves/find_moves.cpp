@@ -28,7 +28,8 @@ using Pairs = std::span<const MotionPair>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// From tangent coordinates to (dt, dtheta) in sensor a's frame [m, rad], with unit lengths of the block.
+/// Converts tangent coordinates to (dt, dtheta) in the frame of sensor a [m, rad]; length: unit of the
+/// blocks.
 detail::Vector6d in_frame_a(const Parameters& x, double length, const Problem& problem) {
   detail::Vector6d result = detail::Vector6d::Zero();
   if (problem.mode == Mode::spatial) {
@@ -75,7 +76,7 @@ std::size_t least_side(std::size_t blocks, const MovesOptions& options) {
 
 class Finder {
  public:
-  /// pairs: of a vehicle that moves. Times are counted from origin_us.
+  /// pairs: only those in which the vehicle moves. Times are counted from origin_us.
   Finder(Pairs pairs, std::int64_t origin_us, const Problem& problem, const MovesOptions& options)
       : pairs_(pairs),
         origin_us_(origin_us),
@@ -245,7 +246,7 @@ class Finder {
     std::optional<std::array<Found, 2>> two = best_two(from, to);
     if (!two) return;
     auto& [moved, back] = *two;
-    // motion by motion: the rest of a block with the other extrinsic would be a change of its own
+    // motion by motion, as the rest of a block with the other extrinsic would be a change of its own
     move_to_place(moved);
     back.from = moved.at;
     move_to_place(back);
@@ -256,8 +257,8 @@ class Finder {
     search(back.at, to);
   }
 
-  /// Every change once more between its neighbours; what is no longer significant there was an echo of them,
-  /// or of noise that wanders. Only here, for other changes make neighbouring blocks alike as well.
+  /// Tests every change again between its neighbours. One that is no longer significant was an echo of them,
+  /// or of noise that wanders. Done last, because other changes also make neighbouring blocks alike.
   void settle() {
     std::sort(found_.begin(), found_.end(), [](const Found& x, const Found& y) { return x.at < y.at; });
     for (std::size_t i = 0; i < found_.size();) {
@@ -310,7 +311,7 @@ class Finder {
     if (at > found.from && at < found.to) found.at = at;
   }
 
-  /// A change within a block that was found from both ends of it is one.
+  /// Joins two changes that are one change within a block, found from both of its ends.
   void join_same() {
     for (std::size_t i = 0; i + 1 < found_.size();) {
       const Found &x = found_[i], &y = found_[i + 1];
@@ -326,8 +327,8 @@ class Finder {
     }
   }
 
-  /// By how much the motions of one side fit the other side's answer worse than their own: root mean squares,
-  /// without the tails.
+  /// How much worse the motions of one side fit the answer of the other side than their own: ratio of root
+  /// mean squares, without the tails.
   double contradiction(Pairs side, const DualQuaternion& own, const DualQuaternion& other) const {
     std::vector<double> fits;
     for (const MotionPair& pair : side) fits.push_back(detail::pair_residual(pair, own, problem_.balance));

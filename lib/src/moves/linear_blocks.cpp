@@ -46,7 +46,7 @@ Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& prob
   Problem result = problem;
   if (pairs.size() < 16) return result;
   const std::size_t count = std::clamp<std::size_t>(pairs.size() / 16, 1, 32);
-  // once more with the better weights: the first answer may be far from where the second one is
+  // a second pass with better weights, as the first answer may be far off
   for (int pass = 0; pass < 2; ++pass) {
     const DualQuaternion q = gated_blocks(pairs, result, count, options).q;
     std::vector<double> rotations, translations;
@@ -108,8 +108,8 @@ Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, st
 
 namespace {
 
-/// Mean time of pairs [from, to), from -1 at the begin of all to 1 at their end. A long drive is not kept
-/// evenly, so the index shows little of the time.
+/// Mean time of pairs [from, to), scaled to -1 at the beginning and 1 at the end. Long drives are thinned
+/// unevenly, so an index does not show the time.
 double time_of(std::span<const MotionPair> pairs, std::size_t from, std::size_t to) {
   const auto middle = [&](std::size_t i) {
     return 0.5 * static_cast<double>(pairs[i].begin_us - pairs.front().begin_us) +
@@ -121,7 +121,7 @@ double time_of(std::span<const MotionPair> pairs, std::size_t from, std::size_t 
   return from < to && span > 0 ? 2 * sum / (static_cast<double>(to - from) * span) - 1 : 0;
 }
 
-/// The common optimum of a block and its neighbours, with curvature borrowed from the whole.
+/// The common optimum of a block and its neighbours, with some curvature of the whole drive added.
 Parameters local_optimum(const std::vector<LinearBlock>& blocks, std::size_t k,
                          const ParameterMatrix& borrowed) {
   Parameters g = blocks[k].g;

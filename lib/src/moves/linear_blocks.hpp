@@ -32,7 +32,7 @@ struct Linearised {
   double length = 1;               ///< [m]
 };
 
-/// Motions of two sensors fit an extrinsic: |a q - q b|^2, weighted.
+/// How far a pair is from fitting an extrinsic: |a q - q b|^2, weighted.
 double pair_residual(const MotionPair& pair, const DualQuaternion& q, const Balance& balance);
 
 /// The problem with a balance by the inverse variances of both residuals. The balance that the jack-knife
@@ -44,7 +44,7 @@ Problem weighted_by_noise(std::span<const MotionPair> pairs, const Problem& prob
 /// Pairs that share time with the next ones: how many motions one step overlaps with.
 std::size_t overlap_of(std::span<const MotionPair> pairs);
 
-/// Statistics of the pairs, without those that fit far worse than their neighbours do.
+/// Statistics of the pairs without those that fit far worse than their neighbours.
 struct Gated {
   std::vector<Statistics> blocks;
   std::vector<std::vector<std::size_t>> kept;  ///< indices of each block's pairs

@@ -17,8 +17,8 @@ namespace {
 
 using Pairs = std::span<const MotionPair>;
 
-/// The motions from the move before number k to the one after it: others would pass for noise. Times of moves
-/// are counted from origin_us.
+/// The motions between the moves before and after number k; other motions would count as noise. Times of
+/// moves are counted from origin_us.
 Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k, std::int64_t origin_us) {
   const auto at = [&](const Move& move) {
     return origin_us + static_cast<std::int64_t>(second_us * move.time);
@@ -82,7 +82,7 @@ MovesResult find_moves_of_strides(std::span<const std::vector<MotionPair>> strid
     best = std::move(result);
     best.stride = i;
   }
-  // a mount that moved shows in motions of every length; errors of one length only are those of an odometry
+  // a moved mount shows in motions of every length; an error of one length only is one of an odometry
   std::vector<Move> confirmed;
   for (std::size_t k = 0; k < best.moves.size(); ++k) {
     bool shown = true;

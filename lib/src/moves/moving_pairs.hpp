@@ -9,10 +9,10 @@
 
 namespace egocal::detail {
 
-/// The pairs in whose time the vehicle moves: in both streams the turn or the way is at least this part of
-/// the root mean square of its turns or ways. While a vehicle stands nothing shows the extrinsic, and the
-/// errors of its odometry are others than on the move. All of them are the pairs themselves; some are copied
-/// to `kept`, which the result then refers to.
+/// The pairs in which the vehicle moves: in both streams the turn or the way is at least this part of the
+/// root mean square. A vehicle at rest shows nothing of the extrinsic, and its odometry has other errors than
+/// on the move. If all pairs qualify the result is `pairs`; otherwise it refers to `kept`, which gets the
+/// copies.
 std::span<const MotionPair> moving_pairs(std::span<const MotionPair> pairs, double least_motion,
                                          std::vector<MotionPair>& kept);
 

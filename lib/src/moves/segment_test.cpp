@@ -13,8 +13,8 @@ namespace egocal::detail {
 
 namespace {
 
-/// T^2 of any part of the blocks but for a factor that all parts have in common, from sums over the first
-/// blocks: with the noise that the blocks state, and around the common optimum.
+/// T^2 of any part of the blocks, up to a common factor, from prefix sums, with the stated noise of the
+/// blocks and around the common optimum.
 class Scan {
  public:
   Scan(Blocks blocks, const ChangeTestOptions& options) {
@@ -59,8 +59,7 @@ class Scan {
   std::vector<Sums> sums_;
 };
 
-/// The part with the largest T^2: of parts that end at a few places, moved block by block to where it is
-/// largest.
+/// The part with the largest T^2: parts that end at a few places are tried first, then moved block by block.
 Part best_part(Blocks blocks, std::size_t least_side, std::size_t least_part,
                const ChangeTestOptions& options) {
   const Scan scan(blocks, options);
@@ -92,7 +91,8 @@ std::vector<LinearBlock> without(Blocks blocks, Part part) {
   return others;
 }
 
-/// Chance of what tells a part from the others, at this place. change: of the part from the others.
+/// Chance of the evidence that the part differs from the others, at this place. change: of the part against
+/// the others.
 double chance_at(Blocks blocks, Part part, const ChangeTestOptions& options, Parameters& change) {
   const Division d = divide(blocks, part, options);
   change = d.x2 - d.x1;

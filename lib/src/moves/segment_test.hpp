@@ -8,21 +8,22 @@
 
 namespace egocal::detail {
 
-/// The part of consecutive blocks that differs most from the others, and what that is worth
-/// (docs/moves.md, "Falling back").
+/// The part of consecutive blocks that differs most from the others, and its evidence (docs/moves.md,
+/// "Falling back").
 struct SegmentTest {
   Part part;                    ///< none where `to` is 0
   double chance = 1;            ///< of such evidence in any part where nothing changes
   double chance_of_halves = 1;  ///< the larger one: of what each half of it shows, at its place
   double chance_of_rest = 1;    ///< of what tells the blocks after it from those before it
-  /// How far these differ, as a part of the change: lengths by the covariance of the change.
+  /// How far the parts before and after differ, as a part of the change; in lengths by the covariance of the
+  /// change.
   double rest_by_change = 0;
   double correlation = 1;      ///< as of ChangeTest
   Parameters change;           ///< of the part from the others
   ParameterMatrix covariance;  ///< of the change
 };
 
-/// Parts of at least `least_part` blocks with at least `least_side` on both sides of them.
+/// Tests parts of at least `least_part` blocks with at least `least_side` blocks on both sides.
 SegmentTest test_segment(Blocks blocks, std::size_t least_side, std::size_t least_part,
                          const ChangeTestOptions& options);
 

@@ -9,7 +9,7 @@ namespace egocal {
 
 namespace {
 
-/// Of three components: of those that are significant, or of all.
+/// Length of three components: of the significant ones, or of all.
 double length_of(const Move& move, std::size_t first, double least_sigmas) {
   double sum = 0;
   for (std::size_t i = first; i < first + 3; ++i)
@@ -17,7 +17,7 @@ double length_of(const Move& move, std::size_t first, double least_sigmas) {
   return std::sqrt(sum);
 }
 
-/// Of three components of two changes together.
+/// Standard deviation of three components of two changes together.
 double stddev_of(const Move& x, const Move& y, std::size_t first) {
   double variance = 0;
   for (std::size_t i = first; i < first + 3; ++i)

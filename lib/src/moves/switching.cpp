@@ -57,7 +57,8 @@ Parameters largest_direction(ParameterMatrix G, const ParameterMatrix& N) {
   return v;
 }
 
-/// Blocks on either side of the direction in which their gradients differ most from their noise.
+/// Divides the blocks by the sign of their gradients along the direction in which these differ most from
+/// their noise.
 std::vector<bool> first_sides(Blocks blocks) {
   ParameterMatrix gradients = zero_matrix(blocks), noise = gradients;
   for (const LinearBlock& block : blocks) {
@@ -119,8 +120,8 @@ TwoPlaces two_places(Blocks blocks, const SwitchingOptions& options) {
   return two;
 }
 
-/// Each side as most of it and its neighbours: a block in which the mount goes to the other place, or one
-/// that shows little, has either.
+/// Gives each block the side of most of its neighbours and itself. A block in which the mount changes its
+/// place, or one that shows little, may have either side.
 std::vector<bool> without_single_ones(const std::vector<bool>& sides) {
   std::vector<bool> smooth = sides;
   for (std::size_t k = 0; k < sides.size(); ++k) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A mount that goes back and forth between two places: a loose bolt, a hinge, a gimbal.
+// A mount that moves back and forth between two places: a loose bolt, a hinge, a gimbal.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ struct Switching {
   double left = 1;  ///< as most_left
 };
 
-/// Empty where one extrinsic suits the blocks, or two do not suit them far better. Spatial mode.
+/// Empty: one extrinsic suits the blocks, or two do not suit them far better. Spatial mode only.
 std::optional<Switching> find_switching(std::span<const MotionPair> pairs, const Problem& problem,
                                         const SwitchingOptions& options = {});
 

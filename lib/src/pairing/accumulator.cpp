@@ -85,8 +85,8 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
   bool doubtful = false;
   std::vector<MotionPair> pairs = add_motions(instant, problem, doubtful);
   if (options_.robust && !(options_.stride && options_.balance)) {
-    // A look for outliers costs as much as a hundred poses: those that the choice needs are spread over the
-    // poses before it, one stride each.
+    // A search for outliers costs as much as a hundred poses, so those that a choice needs are spread over
+    // the poses before it, one stride each.
     const std::uint64_t choice = state_.next_choice + choice_delay();
     const auto newest_look = choice > 0 ? choice - 1 : 0;
     for (std::size_t i = 0; i < state_.strides.size(); ++i) {
@@ -106,7 +106,7 @@ std::vector<MotionPair> Accumulator::add(const Instant& instant) {
     defer(instant, doubtful, chosen_anew);
   } else if (sums_) {
     sums_->add(instant, doubtful);
-    // in one step both choices would take 0.7 ms (docs/benchmarks.md)
+    // both choices in one step would take 0.7 ms (docs/benchmarks.md)
     if (sums_->choice_is_due() && !chosen_anew) {
       sums_->choose(SingleStride{state_.choice.stride, state_.choice.balance, single_stride_problem()});
       chosen_anew = true;
@@ -122,7 +122,7 @@ void Accumulator::defer_sums() {
   deferred_choice_ = options_.accumulator.first_choice;
 }
 
-/// The best single stride is that of now: it goes with what is left for later.
+/// Defers a step of the sums. The best single stride is stored with it, as later steps may change it.
 void Accumulator::defer(const Instant& instant, bool doubtful, bool chosen_anew) {
   SumsStep step{SumsStep::Kind::instant, instant, 0, doubtful, false, nullptr};
   const detail::SumsSchedule schedule(tuning_.sums, options_.accumulator);
@@ -156,8 +156,8 @@ void Accumulator::add_to_sums(const std::vector<SumsStep>& steps) {
   }
 }
 
-/// The motions of all strides that end at the newest instant. Returns that of the chosen stride; doubtful: it
-/// contradicts the others.
+/// Adds the motions of all strides that end at the newest instant. Returns that of the chosen stride.
+/// doubtful: it contradicts the others.
 std::vector<MotionPair> Accumulator::add_motions(const Instant& instant, const Problem& problem,
                                                  bool& doubtful) {
   std::vector<MotionPair> pairs;
@@ -183,7 +183,7 @@ std::vector<MotionPair> Accumulator::add_motions(const Instant& instant, const P
       entry.statistics.add_unjudged(*pair);
     if (is_chosen(entry)) look_at_chosen(entry, *pair);
   };
-  // a few at a time: most agree with the others, and their squares are all that is needed
+  // several at a time: most motions agree with the others, and only their squares are needed
   constexpr std::size_t at_once = detail::MotionsToOne::count;
   const Agreement none;
   std::array<AccumulatorState::PerStride*, at_once> entries;

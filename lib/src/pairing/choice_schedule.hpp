@@ -10,15 +10,15 @@
 
 namespace egocal::detail {
 
-/// By how many instants a choice is delayed that would be due at `next`, where another one follows after next
-/// / part more. phase: AccumulatorOptions::choice_phase.
+/// By how many instants a choice due at `next` is delayed, if the following one comes after next / part more.
+/// phase: AccumulatorOptions::choice_phase.
 inline std::uint64_t choice_delay(std::uint64_t next, std::uint64_t part, double phase) {
   const std::uint64_t between = next / part;
   return static_cast<std::uint64_t>(phase * static_cast<double>(between));
 }
 
-/// When the sums over strides choose again: it depends on the number of instants alone, so that it is known
-/// before the sums are.
+/// When the sums over strides choose again. It depends on the number of instants alone, so it is known before
+/// the sums are.
 class SumsSchedule {
  public:
   SumsSchedule(const StrideSumsOptions& tuning, const AccumulatorOptions& options)

@@ -64,8 +64,8 @@ std::vector<ReleasedPose> ClockFollower::push(Side side, const StampedPose& pose
   return released;
 }
 
-/// Whether the pose is near the others of its stream in time. One that is not waits for the next one: two
-/// that agree show that the clock was set, one alone is dropped.
+/// Whether the pose is near the others of its stream in time. A pose that is not waits for the next one: if
+/// both agree the clock was set, otherwise the pose is dropped.
 bool ClockFollower::admit(ClockState::Stream& stream, const StampedPose& pose) {
   const auto far = [this](std::int64_t x, std::int64_t y) { return std::abs(x - y) > us(options_.longest); };
   if (stream.newest_us && far(pose.time_us, *stream.newest_us)) {
@@ -109,7 +109,7 @@ void ClockFollower::begin_search() {
   TimeOffsetOptions options;
   options.max_gap = max_gap_;
   if (state_.near) options.near = *seconds();
-  // streams that did not begin together overlap only in the longer window
+  // streams with different beginnings overlap only in the longer window
   const std::int64_t begin = state_.next_us - us(state_.in_force ? options_.window : options_.longest);
   search_ = std::make_unique<TimeOffsetSearch>(part(state_.streams[0], begin, state_.next_us),
                                                part(state_.streams[1], begin, state_.next_us), options);
@@ -144,7 +144,7 @@ void ClockFollower::conclude(std::vector<ReleasedPose>& released) {
   state_.next_us += us(state_.in_force ? options_.every : options_.first);
 }
 
-/// For the first time: from here on the times of both streams count from the same instant.
+/// On the first estimate: from now on the times of both streams count from the same instant.
 void ClockFollower::take_force(const TimeOffset& offset) {
   ClockState::Stream& b = state_.streams[1];
   const std::int64_t begin_us = *state_.streams[0].begin_us - us(offset.seconds);
@@ -155,7 +155,7 @@ void ClockFollower::take_force(const TimeOffset& offset) {
   ++state_.changes;
 }
 
-/// What is held up to the boundary, in the order of time on the clock of a.
+/// Releases the held poses up to the boundary, in the order of time on the clock of a.
 void ClockFollower::release(std::vector<ReleasedPose>& released) {
   const std::size_t first = released.size();
   for (const Side side : {Side::a, Side::b}) {

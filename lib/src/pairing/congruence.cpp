@@ -17,13 +17,12 @@ namespace {
 
 using Seen = TypicalDifference::Seen;
 
-/// Of a normal distribution: its standard deviation by the lower quartile and by the median of absolute
-/// values (mathematics, not tuning).
+/// Standard deviation of a normal distribution over the lower quartile and over the median of its absolute
+/// values (mathematics, no tuning).
 constexpr double deviations_per_quartile = 3.1386, deviations_per_median = 1.4826;
-/// Standard deviation of most of the values (absolute ones). It begins with a lower quartile: where a fifth
-/// of the poses is wrong, more than a third of the motions are, and nearly two thirds of interpolated ones.
-/// Then the median of what is near.
-/// before: what it was the last time, to find it faster.
+/// Robust standard deviation of absolute values. It starts from the lower quartile: if a fifth of the poses
+/// is wrong, more than a third of the motions are, and nearly two thirds of interpolated ones. Then it takes
+/// the median of the near values. before: the last result, to find this one faster.
 double robust_deviation(std::span<const double> values, double before,
                         const detail::ExpectedOptions& expected = {}) {
   const double lower = expected.lower, upper = expected.upper;
@@ -42,7 +41,7 @@ double robust_deviation(std::span<const double> values, double before,
   return deviation;
 }
 
-/// What is remembered, in the order of time: an estimate goes through it many times.
+/// The remembered motions in the order of time: an estimate reads them many times.
 struct Remembered {
   std::vector<double> sizes, differences;
 
@@ -74,8 +73,8 @@ struct Halves {
   std::vector<double> small, large;  ///< differences
   std::vector<double> large_sizes;
 
-  /// Of motions that are as large as `least`, where enough are smaller to reach the lower quartile of the
-  /// smaller half: an eighth of all. least: at most moving_size() of these motions, so that some are left.
+  /// Uses motions of at least `least`, if enough are smaller to reach the lower quartile of the smaller half:
+  /// an eighth of all. least: at most moving_size() of these motions, so that some are left.
   Halves(Remembered all, double least) {
     const std::vector<double>&sizes = all.sizes, &differences = all.differences;
     std::size_t standing = 0;
@@ -106,14 +105,14 @@ struct Halves {
   }
 };
 
-/// What a vehicle that moves exceeds in at least half of its motions, or in enough for an estimate.
+/// The size that a moving vehicle exceeds in at least half of its motions, or in enough for an estimate.
 double moving_size(const Remembered& all, const CongruenceOptions& options) {
   if (all.sizes.empty()) return 0;
   const std::size_t larger = std::min(options.first_estimate, (all.sizes.size() + 1) / 2);
   return detail::order_statistic(all.sizes, all.sizes.size() - larger);
 }
 
-/// The smaller half shows what there is without motion, the larger half what grows with it.
+/// The smaller half shows the noise without motion, the larger half the noise that grows with it.
 void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
   if (typical.newest.size() < 4) return;
   Remembered all(typical.newest);
@@ -132,7 +131,8 @@ void estimate(TypicalDifference& typical, const CongruenceOptions& options) {
           : 0;
 }
 
-/// From the motions that turn more than others: three times the median covers the directions in between.
+/// Lever arm from the motions that turn more than others: three times the median covers the directions
+/// between the axes.
 double arm_of(const TypicalDifference& lever, const CongruenceOptions& options) {
   if (lever.newest.empty()) return 0;
   Remembered all(lever.newest);
@@ -171,14 +171,14 @@ void estimate(CongruenceScale& scale, const CongruenceOptions& options) {
   scale.arm = arm_of(scale.lever, options);
 }
 
-/// Whether a vehicle that moved as much at one time would stand at the other.
+/// Whether the vehicle stood at one of two times, by the sizes of its motions then.
 bool stood_or_stands(double before, double now, const CongruenceOptions& options) {
   return std::min(before, now) < options.still * std::max(before, now);
 }
 
-/// One of the four, in turn: once the memory is full they change slowly, and no pose takes the time of all.
-/// All of them where the vehicle parked for as long as is remembered, or drives again: what is typical of one
-/// and not of the others would reject the drive.
+/// Updates one of the four estimates in turn: with a full memory they change slowly, and no single pose takes
+/// the time of all. Updates all of them when the vehicle has parked for as long as the memory reaches, or
+/// drives again: a mixture of estimates would reject the drive.
 void estimate_next(CongruenceScale& scale, const CongruenceOptions& options) {
   TypicalDifference* const in_turn[] = {&scale.angle, &scale.slide, &scale.length};
   const std::uint64_t turn = scale.remembered / options.estimate_every_when_full % 4;
@@ -197,13 +197,13 @@ double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
   return seen.difference / (typical.constant + typical.growing * seen.size + floor);
 }
 
-/// By far more than the larger motions seen: the first turn in place after a straight road.
+/// Whether it turns far more than the larger motions seen: the first turn in place after a straight road.
 bool turns_unlike_those_seen(const MotionDifference& d, double steps, const CongruenceScale& scale,
                              const CongruenceOptions& options) {
   return d.angle.size > options.turns_more * steps * scale.angle.large;
 }
 
-/// How noise grows with turning is not known of such a turn either.
+/// Nor is it known how the noise of such a turn grows.
 double sigmas_of_angle(const MotionDifference& d, double steps, const CongruenceScale& scale,
                        const CongruenceOptions& options) {
   double floor = options.angle_floor;
@@ -211,7 +211,7 @@ double sigmas_of_angle(const MotionDifference& d, double steps, const Congruence
   return sigmas(d.angle, scale.angle, floor, options);
 }
 
-/// A straight road shows the lever arm along the road alone, a turn unlike those seen may show all of it.
+/// A straight road shows the lever arm along the road only; another kind of turn may show all of it.
 double unexplained_length(const MotionDifference& d, double steps, const CongruenceScale& scale,
                           const CongruenceOptions& options) {
   const bool unlike = turns_unlike_those_seen(d, steps, scale, options);
@@ -219,12 +219,12 @@ double unexplained_length(const MotionDifference& d, double steps, const Congrue
   return std::max(0.0, d.length.difference - arm * d.angle.size);
 }
 
-/// The first motions after a vehicle stood: what was seen says nothing of them.
+/// Whether these are the first motions after the vehicle stood: earlier motions say nothing about them.
 bool longer_than_all_seen(const MotionDifference& d, double steps, const CongruenceScale& scale,
                           const CongruenceOptions& options) {
   return d.length.size > options.beyond * steps * std::max(scale.length.moving, options.length_floor);
 }
-/// Angles change by as much between a straight road and a turn, so they count where nothing went anywhere.
+/// Angles also change this much between a straight road and a turn, so they count only if nothing moved.
 bool turns_more_than_all_seen(const MotionDifference& d, double steps, const CongruenceScale& scale,
                               const CongruenceOptions& options) {
   return scale.length.moving <= options.length_floor &&

@@ -33,7 +33,7 @@ double sides_of(const InterpolatedPart& interpolated) {
   return interpolated.part * (1 - interpolated.part) * interpolated.gap_us * interpolated.gap_us;
 }
 
-/// sides: the product of the times to both poses that are interpolated [us^2]. typical: of the stream.
+/// sides: product of the times to both poses that are interpolated [us^2]. typical: step of the stream.
 DualQuaternion cut(const DualQuaternion& pose, const Corner& corner, double sides, const KeyStep& typical,
                    const SynchroniserOptions& options) {
   const double part = sides / (corner.before_us * corner.after_us);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What interpolation takes off the path of one stream is taken off the path of the other one as well.
+// Interpolation cuts the corners of the path of one stream. The path of the other stream is cut alike, so
+// that both lose the same.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@ struct Neighbours {
   const StampedPose& after;
 };
 
-/// Where between two poses the other stream is interpolated, by a clock that may not be that of the stamps.
+/// The place between two poses at which the other stream is interpolated; its clock may differ from that of
+/// the stamps.
 struct InterpolatedPart {
   double part = 0;              ///< of the way to the second one
   double gap_us = 0;            ///< time between the two
@@ -38,8 +40,8 @@ KeyStep typical(const std::deque<KeyStep>& steps);
 DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
                          const KeyStep& typical, const SynchroniserOptions& options);
 
-/// The same for any pose of a recorded stream: the shorter one of the steps to and from it is what is
-/// typical.
+/// The same for any pose of a recorded stream. The typical step is the shorter one of the steps to and from
+/// it.
 DualQuaternion cut_alike(const Neighbours& neighbours, const InterpolatedPart& interpolated,
                          const SynchroniserOptions& options);
 

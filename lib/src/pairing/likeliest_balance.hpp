@@ -9,9 +9,9 @@
 
 namespace egocal::detail {
 
-/// Where no answer has a spread: the balance of rotation 1 and a translation of `balances` [1/m^2] with the
-/// most likely answer by the motions (estimation/misfit.hpp). Empty where they are too few to choose
-/// (SelectionOptions::least_parts).
+/// For drives in which no answer has a spread: the balance with rotation 1 and one of the translation weights
+/// `balances` [1/m^2] that has the most likely answer (estimation/misfit.hpp). Empty: too few motions to
+/// choose (SelectionOptions::least_parts).
 std::optional<Balance> likeliest_balance(const Problem& problem, const MotionsOfStride& motions,
                                          std::span<const double> balances,
                                          const SelectionOptions& options = {});

@@ -11,7 +11,7 @@ namespace egocal {
 
 namespace {
 
-/// Finite, within egocal::limits, the rotation near unit length.
+/// Whether the pose is finite, within egocal::limits, and its rotation near unit length.
 bool plausible(const StampedPose& pose) {
   return pose.pose.real.allFinite() && pose.pose.dual.allFinite() && plausible_norm(pose.pose.real.norm()) &&
          plausible_relative_time(pose.time_us) && plausible_distance(translation_length(pose.pose));
@@ -94,7 +94,7 @@ void MotionPairing::take(const std::vector<Instant>& instants, std::vector<Motio
     if (screened.replaces) accumulator_.restart();
     for (const Instant& accepted : screened.accepted) {
       std::vector<MotionPair> more = accumulator_.add(accepted);
-      // pairs of instants that come a second time were handed out already
+      // pairs of instants that are screened a second time were handed out before
       if (screened.replaces && accepted.time_us != instant.time_us) continue;
       if (pairs.empty())
         pairs = std::move(more);

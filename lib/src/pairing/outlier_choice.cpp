@@ -8,7 +8,7 @@ namespace egocal {
 
 namespace {
 
-/// Blocks of instants, as StrideSums judges them: by the motions within each.
+/// Proves the choice among blocks of instants, which StrideSums judges by the motions within each.
 std::optional<OutlierProof> prove_sums(const StrideSumsState& sums, Problem problem) {
   StrideBlocks all = sums.committed;
   all.leave_out(std::vector<std::uint8_t>(all.blocks(), 0));

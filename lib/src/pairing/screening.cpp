@@ -12,8 +12,8 @@ namespace egocal {
 
 namespace {
 
-/// One sensor repeats its pose to the last digit while the other one moves. (At rest, both may.) Rounding of
-/// the interpolation is no motion.
+/// Whether one sensor repeats its pose to the last digit while the other one moves (at rest both may).
+/// Rounding of the interpolation is no motion.
 bool one_repeats(const Instant& before, const Instant& now, double repeated) {
   const auto repeats = [repeated](const DualQuaternion& x, const DualQuaternion& y) {
     const double most = repeated * std::max(1.0, y.dual.norm());
@@ -33,7 +33,7 @@ MotionDifference difference(const Instant& from, const Instant& to, const Congru
   return difference_of(motions.a, motions.b, options);
 }
 
-/// How far the motion is from congruent, in standard deviations; noise grows with the root of the steps.
+/// How far the motion is from congruent, in standard deviations. Noise grows with the root of the steps.
 double sigmas(const MotionDifference& difference, double steps, const CongruenceScale& scale,
               const CongruenceOptions& options) {
   return incongruence(difference, steps, scale, options) / std::sqrt(steps);
@@ -65,7 +65,8 @@ Screened Screening::push(const Instant& instant, std::int64_t period_us) {
   return result;
 }
 
-/// Another clock: what waits for a confirmation gets none, and what comes is not compared with what was.
+/// On another clock: what waits for a confirmation gets none, and new instants are not compared with earlier
+/// ones.
 void Screening::begin_chain() {
   finish();
   ++state_.chain;
@@ -77,7 +78,7 @@ void Screening::finish() {
   state_.doubtful.clear();
 }
 
-/// The motions were remembered already: they are not added a second time.
+/// Screens the first instants again. Their motions are remembered already and are not added a second time.
 std::vector<Instant> Screening::screen_first_ones_again(double period_us) {
   const std::vector<Instant> first = std::exchange(state_.first, {});
   const CongruenceScale estimated = state_.congruence;
@@ -130,7 +131,7 @@ void Screening::screen(const Instant& instant, double period_us, std::vector<Ins
   }
 }
 
-/// The instant and the doubtful ones that it confirms are good; the other doubtful ones are not.
+/// Accepts the instant and the doubtful ones that it confirms; rejects the other doubtful ones.
 void Screening::confirm(const std::vector<Instant>& confirmed, const Instant& instant,
                         std::vector<Instant>& accepted) {
   state_.rejections.add(Rejection::screw_congruence, state_.doubtful.size() - confirmed.size());

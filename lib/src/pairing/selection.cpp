@@ -45,7 +45,7 @@ DualQuaternion minimiser_of(const DualQuaternion& T_a_b, const Problem& problem)
   return planar_from_extrinsic(T_a_b, plane_frame(problem.plane_a), plane_frame(problem.plane_b));
 }
 
-/// parts: with blocks of at least two strides' length. Empty where they are too few for a spread.
+/// parts: with blocks of at least two strides. Empty: too few for a spread.
 std::optional<Trial> tried(const Problem& parts, const SelectionOptions& options) {
   if (parts.blocks.size() < options.least_parts) return std::nullopt;
   const Matrix8d Q = cost_matrix(parts);
@@ -66,7 +66,7 @@ std::optional<Trial> tried(const Problem& parts, const SelectionOptions& options
   return result;
 }
 
-/// Whether longer motions have another answer in a direction that the shorter ones claim to know better.
+/// Whether longer motions contradict the answer in a direction that the shorter ones claim to know better.
 bool contradicted(const Trial& shorter, const Trial& longer, const SelectionOptions& options) {
   const detail::Vector6d difference = detail::frame_a_difference(shorter.T_a_b, longer.T_a_b);
   for (std::size_t i = 0; i < 6; ++i) {
@@ -82,8 +82,8 @@ std::uint64_t two_motions(int stride) {
   return 2 * static_cast<std::uint64_t>(stride);
 }
 
-/// Translation weights below `least` that are to be tried after `chosen` won (SelectionOptions::imbalance),
-/// in falling order; mostly none [1/m^2].
+/// Translation weights below `least` to try after `chosen` won (SelectionOptions::imbalance), in falling
+/// order [1/m^2]; usually none.
 std::vector<double> smaller_balances(const Problem& problem, const Candidate& chosen, double least,
                                      const SelectionOptions& options) {
   if (problem.mode == Mode::planar) return {};
@@ -158,7 +158,7 @@ std::optional<Selection> select_candidate(const Problem& problem, std::span<cons
     const int here = trials[i]->spread.directions, there = trials[than]->spread.directions;
     return here > there || (here == there && score_of(i) < score_of(than));
   };
-  // from the longest motions on, each against the best balance of every longer stride
+  // from the longest motions to the shortest, each against the best balance of every longer stride
   std::vector<std::size_t> by_stride(candidates.size());
   std::iota(by_stride.begin(), by_stride.end(), std::size_t{0});
   std::stable_sort(by_stride.begin(), by_stride.end(),

@@ -17,7 +17,7 @@ constexpr double nugget = 1e-6;         ///< poses of nearly one time would have
 
 using Values = std::array<double, most_poses>;
 
-/// The value at count / 2 if they were sorted. Of so few it is the one that as many are smaller than.
+/// The value at count / 2 of the sorted values, found by counting smaller ones, which is fast for so few.
 double median_of(const Values& values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     std::size_t smaller = 0, equal = 0;
@@ -30,7 +30,7 @@ double median_of(const Values& values, std::size_t count) {
   return values[count / 2];
 }
 
-/// How far the poses are from the instant, in typical periods. Empty where the periods are too uneven.
+/// Distances of the poses from the instant, in typical periods. Empty: the periods are too uneven.
 std::optional<Values> places_of(std::span<const StampedPose> poses, double part,
                                 const SynchroniserOptions& options) {
   const std::size_t n = poses.size(), before = n / 2 - 1;
@@ -121,7 +121,7 @@ SeenPoses seen_from(std::span<const StampedPose> poses, const QuaternionVector& 
   return seen;
 }
 
-/// Whether each pose is about where its neighbours are, in typical steps.
+/// Whether each pose is about where its neighbours predict it, in typical steps.
 bool is_smooth(const SeenPoses& seen, const Values& places, std::size_t n,
                const SynchroniserOptions& options) {
   Values lengths{}, angles{};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A pose of a stream between two of its poses, from several on both sides.
+// Interpolates a pose of a stream from several poses on both sides.
 #pragma once
 
 #include <optional>

@@ -23,7 +23,7 @@ Stream::Stream(const StreamOptions& options) : options_(options) {
   state_.recent.fill(detail::no_time);
 }
 
-/// A new message with the stamp of the one before it. Its number has come, and is not missing.
+/// Whether a new message has the stamp of the one before. Its number has then arrived and is not missing.
 bool Stream::repeats_a_stamp(const NumberedPose& sample) const {
   if (sample.seq < 0 || !state_.next_seq || sample.seq < *state_.next_seq) return false;
   const auto next = state_.early.lower_bound(sample.seq);
@@ -53,8 +53,8 @@ void Stream::remember(std::int64_t time_us) {
   state_.recent_next = (state_.recent_next + 1) % state_.recent.size();
 }
 
-/// Counted, and remembered: what is sent again and again is late once, then a duplicate, and begins no new
-/// timeline.
+/// Counts and remembers a late message. One that is sent repeatedly is late once, then a duplicate, and
+/// begins no new timeline.
 void Stream::reject_late(const NumberedPose& sample) {
   ++state_.counts.out_of_order;
   remember(sample.pose.time_us);
@@ -68,7 +68,7 @@ void Stream::release(NumberedPose sample, std::vector<NumberedPose>& out) {
   }
   if (late && sample.seq >= 0) return reject_late(sample);
   if (late) {
-    // not numbered, so nothing waited for it: the synchroniser knows whether it can still use it
+    // without numbers nothing waited for it; the synchroniser decides whether it can still be used
     remember(sample.pose.time_us);
     out.push_back(std::move(sample));
     return;
@@ -79,10 +79,11 @@ void Stream::release(NumberedPose sample, std::vector<NumberedPose>& out) {
   out.push_back(std::move(sample));
 }
 
-/// What comes after all is known to be late, however old it is, and is no longer counted as lost.
+/// A lost message that arrives after all is known to be late, however old it is, and no longer counts as
+/// lost.
 void Stream::give_up_until(std::int64_t number) {
   state_.counts.lost += number - *state_.next_seq;
-  // only the newest are remembered: a large gap costs no more than a small one
+  // only the newest are remembered, so that a large gap costs no more than a small one
   for (std::int64_t lost = std::max(*state_.next_seq, number - options_.most_missing); lost < number; ++lost)
     state_.lost.insert(lost);
   state_.next_seq = number;
@@ -103,7 +104,7 @@ void Stream::release_early(std::vector<NumberedPose>& out, bool give_up) {
     state_.next_seq = first->first + 1;
     release(first->second, out);
     state_.early.erase(first);
-    // a damaged number may have put one far ahead that will not be of use there
+    // a damaged number may have put a pose far ahead, where it will be of no use
     state_.counts.out_of_order += static_cast<std::int64_t>(std::erase_if(
         state_.early, [this](const auto& entry) { return entry.second.pose.time_us < *state_.newest_us; }));
   }
@@ -139,7 +140,8 @@ std::vector<NumberedPose> Stream::push(NumberedPose sample) {
   return options_.look_ahead ? look_ahead(std::move(sample)) : in_order(std::move(sample));
 }
 
-/// Where a patient stream gets the first message behind a gap again and again, nothing will fill the gap.
+/// Counts repetitions of the first message behind a gap. When a patient stream gets it again and again,
+/// nothing will fill the gap.
 std::vector<NumberedPose> Stream::count_repeated(std::int64_t time_us) {
   ++state_.counts.duplicate;
   drop_late_candidates(time_us);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages whose time or number is far off: kept until others confirm them.
+// Messages whose time or number is far off: they are kept until others confirm them.
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -12,8 +12,8 @@ namespace egocal {
 
 namespace {
 
-/// After a gap in time: whether the numbers in between are of messages that were lost. Where they are many
-/// more than the time allows, the sender has begun to count elsewhere.
+/// After a gap in time: whether the missing numbers are lost messages. If they are many more than the time
+/// allows, the sender has started another count.
 bool lost_between(const StreamState& state, const NumberedPose& next, const StreamOptions& options) {
   if (next.seq < 0 || !state.next_seq || next.seq < *state.next_seq) return false;
   const std::int64_t ahead = next.seq - *state.next_seq, gap_us = next.pose.time_us - *state.newest_us;
@@ -30,8 +30,8 @@ bool Stream::follows(const NumberedPose& x, const NumberedPose& y) const {
   return detail::sent_in_order(x, y) && y.seq - x.seq <= options_.most_missing;
 }
 
-/// Behind the one that it follows and before the one that follows it; the network may have changed their
-/// order. -1: it contradicts them.
+/// The place of the message among the candidates, after the one that it follows and before the one that
+/// follows it, as the network may have changed their order. -1: it contradicts them.
 std::ptrdiff_t Stream::place_among_candidates(const NumberedPose& sample) const {
   const std::vector<NumberedPose>& others = state_.candidates;
   const auto next = std::find_if(others.begin(), others.end(), [&](const NumberedPose& other) {
@@ -46,8 +46,8 @@ std::int64_t Stream::largest_jump_us() const {
   return std::max(detail::microseconds(options_.largest_jump), options_.jump_periods * state_.period_us);
 }
 
-/// A sender that repeats this one goes over the same timeline again: what came just before it for the first
-/// time had been lost, is late now, and begins nothing.
+/// A sender that repeats this message is sending the same timeline again. A message just before it that came
+/// for the first time had been lost: it is late now and begins no new timeline.
 void Stream::drop_late_candidates(std::int64_t repeated_us) {
   if (state_.candidates.empty() || !state_.newest_us) return;
   const std::int64_t last_us = state_.candidates.back().pose.time_us;
@@ -55,8 +55,8 @@ void Stream::drop_late_candidates(std::int64_t repeated_us) {
   for (const NumberedPose& candidate : std::exchange(state_.candidates, {})) reject_late(candidate);
 }
 
-/// Without numbers: from among the messages that a player may still send again (as many as are remembered).
-/// They were lost the first time, and begin no new timeline, however many come in a row.
+/// Without numbers: whether the message is among those that a player may still repeat (as many as are
+/// remembered). Such messages were lost the first time, and begin no new timeline however many come in a row.
 bool Stream::sent_again_too_late(const NumberedPose& sample) const {
   if (!state_.patient || sample.seq >= 0 || !state_.newest_us || sample.pose.time_us >= *state_.newest_us)
     return false;
@@ -112,7 +112,7 @@ std::vector<NumberedPose> Stream::take_candidates() {
   return out;
 }
 
-/// In a row with others from there. A copy, which the network made, contradicts nothing.
+/// Confirms a jump by messages in a row. A copy made by the network contradicts nothing.
 std::vector<NumberedPose> Stream::confirm_jump(NumberedPose sample) {
   const auto same = [&](const NumberedPose& candidate) {
     return candidate.pose.time_us == sample.pose.time_us && candidate.seq == sample.seq;
@@ -135,7 +135,7 @@ std::vector<NumberedPose> Stream::confirm_jump(NumberedPose sample) {
   return take_candidates();
 }
 
-/// One that is not far off has come instead of what would confirm the candidates.
+/// A message that is not far off has come instead of one that would confirm the candidates.
 std::vector<NumberedPose> Stream::place_before_candidates(NumberedPose sample) {
   const std::vector<NumberedPose> candidates = std::exchange(state_.candidates, {});
   const NumberedPose believed = sample;

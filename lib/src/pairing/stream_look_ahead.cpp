@@ -16,8 +16,8 @@ std::vector<NumberedPose> Stream::look_ahead(NumberedPose sample) {
   return out;
 }
 
-/// The first of those ahead is accepted, unless its time contradicts the next one's and order is restored by
-/// leaving it out. Where that holds for the next one as well, that one will be too late.
+/// Passes the first of those ahead, unless its time contradicts that of the next one and leaving it out
+/// restores the order. If that also holds for the next one, that one will be late.
 void Stream::pass_checked(std::vector<NumberedPose>& out) {
   std::vector<NumberedPose>& ahead = state_.ahead;
   const std::int64_t time = ahead[0].pose.time_us;

@@ -19,7 +19,8 @@ inline std::int64_t microseconds(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e6);
 }
 
-/// What every calculation with it relies on: differences and products of such values do not overflow.
+/// Whether values are in the range that every calculation relies on: differences and products do not
+/// overflow.
 bool possible(const NumberedPose& sample);
 
 /// They are recorded in the order in which they were sent.
@@ -27,7 +28,8 @@ bool sent_in_order(const NumberedPose& x, const NumberedPose& y);
 
 void append(std::vector<NumberedPose>& out, std::vector<NumberedPose> more);
 
-/// Of all that wait (not none) [us]: a damaged number may be the highest with an early time.
+/// The newest time of those that wait (at least one) [us]. A damaged number may be the highest and have an
+/// early time.
 std::int64_t newest_time(const std::map<std::int64_t, NumberedPose>& samples);
 
 }  // namespace egocal::detail

@@ -32,7 +32,7 @@ std::vector<NumberedPose> Stream::settled() {
 
 std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
   if (std::exchange(state_.held_before, false)) {
-    // not acknowledged: the sender is there, and they come again, in order
+    // not acknowledged: the sender is there, and will send them again in order
     state_.counts.duplicate += static_cast<std::int64_t>(state_.held.size());
     state_.held.clear();
   }
@@ -57,8 +57,8 @@ std::vector<NumberedPose> Stream::hold(NumberedPose sample) {
   return out;
 }
 
-/// Among held messages without numbers a missing one cannot be seen. So each is released only when the sender
-/// repeats it: whatever belongs before it has been sent by then.
+/// Without numbers a missing message cannot be noticed among held ones. So each is released only when the
+/// sender repeats it, as whatever precedes it has been sent by then.
 std::vector<NumberedPose> Stream::go_over(NumberedPose sample) {
   const std::int64_t time_us = sample.pose.time_us;
   if (!state_.held.emplace(time_us, std::move(sample)).second) ++state_.counts.duplicate;

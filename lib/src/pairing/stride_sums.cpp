@@ -71,15 +71,14 @@ void StrideSums::append(JudgedInstant& judged, const JudgedInstant* before,
   judged.total_variance = before ? before->total_variance + verdict.extra_variance : 0;
 }
 
-/// Of a motion between two instants, among those of its stride: the variances of its steps add up. One where
-/// all steps are typical.
+/// Certainty of a motion among those of its stride: the variances of its steps add up. One if all steps are
+/// typical.
 double StrideSums::certainty(const JudgedInstant& from, const JudgedInstant& to) const {
   const double extra = to.total_variance - from.total_variance;
   return extra > tuning_.least_extra_variance ? 1 / (1 + extra) : 1;
 }
 
-/// Adds the motions that end at the instant with this index to each that is given; weighted by the choice in
-/// force.
+/// Adds the motions that end at this instant to each sum that is given, weighted by the choice in force.
 void StrideSums::add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBlocks* weighted) const {
   const auto position = static_cast<std::size_t>(index - state_.instants.front().index);
   const JudgedInstant& to = state_.instants[position];
@@ -137,7 +136,7 @@ void StrideSums::add_motions(std::uint64_t index, StrideBlocks* sums, WeightedBl
   add_waiting();
 }
 
-/// Whether what `all_` holds is as judged now; motions that end later may be missing.
+/// Whether `all_` agrees with the current verdicts; motions that end later may be missing in it.
 bool StrideSums::all_is_valid() const {
   return !all_stale_ && all_until_ >= state_.first_open;
 }
@@ -209,7 +208,7 @@ void StrideSums::add(const Instant& instant, bool doubtful) {
     state_.next_look = state_.next_index + std::clamp(state_.next_index / tuning_.look_part,
                                                       tuning_.least_look, tuning_.most_look);
     const Changes changes = rejudge(state_.choice->q);
-    // what looks like a jump may be the first motion that shows a new direction
+    // an apparent jump may be the first motion that shows a new direction
     if (changes.jumps) rejudge(std::nullopt);
     if (changes.jumps || changes.variances) weigh_all(TouchingSums(sums()));
   }
@@ -229,7 +228,7 @@ void StrideSums::commit_oldest() {
   if (first_kept + longest < state_.first_open) state_.instants.pop_front();
 }
 
-/// So that measured_ holds the steps to the instants from this place on.
+/// Extends measured_ to the steps to the instants from this place on.
 void StrideSums::measure_steps(std::size_t first) {
   const std::uint64_t from = state_.instants[first].index;
   const auto passed = std::min<std::uint64_t>(from - measured_from_, measured_.size());
@@ -239,7 +238,7 @@ void StrideSums::measure_steps(std::size_t first) {
     measured_.emplace_back(step(state_.instants[i - 1], state_.instants[i]));
 }
 
-/// Verdicts on the steps to all open instants. Returns what changed.
+/// Judges the steps to all open instants again. Returns what changed.
 StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) {
   std::size_t first = 0;
   while (first < state_.instants.size() && state_.instants[first].index < state_.first_open) ++first;
@@ -256,7 +255,7 @@ StrideSums::Changes StrideSums::rejudge(const std::optional<DualQuaternion>& q) 
     changes.variances = changes.variances || differ(verdict.extra_variance, before, tuning_.least_change);
     changes.any = changes.any || verdict.extra_variance != before;
   }
-  // all motions are weighed anew after a change, except for one that is too small for that
+  // after a change all motions are weighted again, except if the change is too small for that
   if (changes.any && !changes.jumps && !changes.variances) settle();
   all_stale_ = all_stale_ || changes.any || changes.jumps;
   for (std::size_t i = first; i < state_.instants.size(); ++i)
@@ -280,8 +279,8 @@ void StrideSums::choose(const std::optional<SingleStride>& rival) {
   weigh_all(touching);
 }
 
-/// Verdicts on the open instants and the weights depend on each other. Mostly there is no jump, and none by
-/// the weights without any: that is the end of it. Returns the sums.
+/// Judges the open instants and chooses the weights, which depend on each other. Usually there is no jump,
+/// nor one by the weights made without jumps, and the first round is the last. Returns the sums.
 StrideBlocks& StrideSums::judge_open() {
   StrideBlocks& all = sums();
   std::optional<WeightChoice> suggested = residual_weights(all, options_.mode, tuning_.weighting.residuals);
@@ -311,7 +310,7 @@ void StrideSums::leave_out_blocks(StrideBlocks& all) {
   Problem problem = empty_problem();
   problem.balance = {0, 1};
   const std::vector<Statistics> parts = all.within(suggested->weights);
-  // Motions of a block share their ends: no block is long enough to have an extrinsic of its own.
+  // motions of a block share their ends, so no block is long enough for an extrinsic of its own
   const auto overlap = static_cast<int>(all.state().block_length);
   if (const std::optional<Consensus> consensus = find_consensus(problem, parts, overlap, tuning_.consensus))
     state_.outlier.assign(consensus->outlier.begin(), consensus->outlier.end());

@@ -21,7 +21,7 @@ std::size_t index(Side side) {
   return side == Side::a ? 0 : 1;
 }
 
-/// Of the first `count` poses. 0 where there are fewer than two.
+/// Median period of the first `count` poses; 0: fewer than two.
 std::int64_t median_period(const std::deque<StampedPose>& poses, std::size_t count) {
   std::vector<std::int64_t> periods;
   for (std::size_t i = 1; i < std::min(poses.size(), count); ++i)
@@ -41,7 +41,7 @@ Synchroniser::Synchroniser(const PairingOptions& options, SynchroniserState stat
 std::vector<Instant> Synchroniser::push(Side side, const StampedPose& pose) {
   auto& newest = state_.newest_us[index(side)];
   auto& waiting = state_.waiting[index(side)];
-  // a late pose still has its place while nothing after it has been paired
+  // a late pose can still be inserted while nothing after it has been paired
   auto place = waiting.end();
   if (newest && pose.time_us <= *newest) {
     while (place != waiting.begin() && std::prev(place)->time_us > pose.time_us) --place;
@@ -83,7 +83,7 @@ std::vector<Instant> Synchroniser::begin_chain() {
 }
 
 void Synchroniser::decide_keys() {
-  // the first poses decide, however many of one stream came before the other one's first
+  // the first poses decide which stream is slower, however many of one stream came before the other began
   const std::int64_t period_a = median_period(state_.waiting[0], options_.poses_to_decide);
   const std::int64_t period_b = median_period(state_.waiting[1], options_.poses_to_decide);
   const bool a_is_slower = static_cast<double>(period_a) > options_.slower_by * static_cast<double>(period_b);
@@ -106,7 +106,7 @@ std::vector<Instant> Synchroniser::synchronise() {
     state_.previous_key = keys.front();
     keys.pop_front();
   };
-  // so many poses on each side of an instant are there before it is interpolated
+  // an instant is interpolated when this many poses on each side are there
   const std::size_t side = std::max<std::size_t>(1, options_.smooth_poses / 2);
   while (!keys.empty() && !others.empty()) {
     const StampedPose key = keys.front();

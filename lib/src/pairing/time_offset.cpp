@@ -48,7 +48,7 @@ struct TimeOffsetSearch::Impl {
     for (Stream* stream : {&a, &b})
       stream->poses = dense_part(stream->poses, max_gap_us, options.most_sparse);
     if (!long_enough()) return;
-    // several times: of neighbouring glitches only the furthest one is found at once
+    // several rounds, as one round finds only the furthest one of neighbouring glitches
     for (int round = 0; round < options.glitch_rounds; ++round)
       for (Stream* stream : {&a, &b}) schedule.add(1, [this, stream] { remove_glitches(*stream); });
     for (Stream* stream : {&a, &b}) schedule.add(1, [this, stream] { remove_lasting_jumps(*stream); });
@@ -129,7 +129,7 @@ struct TimeOffsetSearch::Impl {
     const Correlation found = lags->best();
     std::vector<Peak> here = significant_peaks(lags->significances(), lags->first_lag(), found.significance);
     lags.reset();
-    // a drift smears the correlation of a long drive: its liveliest part shows the offset there
+    // a drift smears the correlation of a long drive, so its part with most turning is used
     const bool smeared = !searched_part && found.value < options.smeared_correlation &&
                          b.angles.size() > 2 * points(options.liveliest_part);
     if (best.value == 0 || found.value > best.value) {
@@ -153,7 +153,7 @@ struct TimeOffsetSearch::Impl {
     return found;
   }
 
-  /// The series, known only in the part of this length that turns most.
+  /// The series with only the part of this length that turns most; the rest is unknown.
   static Series liveliest_part(const Series& series, std::size_t length) {
     const auto turn = [&](std::size_t i) { return std::max(0.0, series[i]); };
     double here = 0, most = -1;
@@ -194,9 +194,9 @@ struct TimeOffsetSearch::Impl {
     refinement->begin(model, static_cast<double>(step_us));
   }
 
-  /// The offset that is taken where several fit equally well [us]: that which is known, or none where most of
-  /// the shorter stream was recorded while the other one was by their stamps. Clocks that share nothing have
-  /// no such offset: it is that of the best correlation.
+  /// The offset to prefer among those that fit equally well [us]: the given one, or zero if by the stamps
+  /// most of the shorter stream overlaps the other one. Clocks that share nothing have no such offset; then
+  /// it is that of the best correlation.
   double preferred_us(double best_us) const {
     if (options.near) return *options.near * second_us;
     const auto lasts = [](const Trajectory& poses) { return poses.back().time_us - poses.front().time_us; };
@@ -205,7 +205,7 @@ struct TimeOffsetSearch::Impl {
     return 2 * common > std::min(lasts(a.poses), lasts(b.poses)) ? 0 : best_us;
   }
 
-  /// Whether the motion repeats, so that another offset fits as well.
+  /// Compares candidates: the motion may repeat, so that another offset fits as well.
   void compare_candidates() {
     if (!refinement->result()) return;
     result = refinement->result();

@@ -52,7 +52,7 @@ class Search {
   }
 
   ChoiceSearch run() {
-    // the outliers may be the better choice: a search in order would find that late
+    // the outliers may be the better choice, which a search in order would find late
     for (const Matrix8d& Q : {all_, outliers_}) {
       ++result_.solves;
       if (cheaper(minimum_of(Q).q)) return result_;
@@ -62,8 +62,8 @@ class Search {
   }
 
  private:
-  /// Whether no choice of the parts from `next` on is cheaper than the given one. What is undecided costs
-  /// nothing at least.
+  /// Whether no choice of the parts from `next` on costs less than the given one. Undecided parts count with
+  /// their least cost, zero.
   bool excluded(const Matrix8d& Q, double limits, std::size_t next) {
     if (result_.better || result_.solves >= options_.most_solves) return false;
     ++result_.solves;

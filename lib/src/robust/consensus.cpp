@@ -13,8 +13,8 @@ namespace egocal {
 
 namespace {
 
-/// Mean squared size of a part's motions in the metric of the cost (16): what a wrong extrinsic of the same
-/// scale costs.
+/// Mean squared size of the motions of a part in the metric of the cost (16): the cost of a wrong extrinsic
+/// of this scale.
 double squared_size(const Matrix8d& Q) {
   return Q.topLeftCorner<4, 4>().trace();
 }
@@ -59,7 +59,7 @@ class Search {
       parts_.push_back({Q, part.weight, static_cast<double>(part.count), squared_size(Q),
                         detail::excess_limit(part.count, options)});
     }
-    // a wrong pose makes motions that may be longer than all others together
+    // a wrong pose may make motions longer than all others together
     const double most = options.most_size * typical_size();
     for (Part& part : parts_) {
       part.motion = part.weight * std::min(part.size, most);
@@ -67,7 +67,7 @@ class Search {
     }
   }
 
-  /// Motion there is, in all [weight times squared size, of which a part has a limited one].
+  /// The motion of all parts [weight times squared size, which is limited for a part].
   double motion() const { return all_; }
 
   Candidate fit(const std::vector<double>& factors) const {
@@ -159,8 +159,8 @@ class Search {
     return fit;
   }
 
-  /// Drops the run that would gain most by an extrinsic of its own, repeatedly, as long as one would gain far
-  /// more than others do and a majority stays.
+  /// Drops the run that would gain most by an extrinsic of its own, again and again, as long as its gain is
+  /// far above the others and a majority stays.
   Candidate without_dissenters(Candidate fit, std::vector<double>& factors) const {
     const std::vector<Alone> alone = fit_alone();
     while (const std::optional<std::size_t> i = dissenter(fit, alone, factors)) {
@@ -182,8 +182,8 @@ class Search {
   std::size_t size() const { return parts_.size(); }
 
  private:
-  /// The squared size that half of the way is made at or below: lengths rather than squares, of which few
-  /// wrong motions are most.
+  /// The squared size at or below which half of the way is made. Lengths and not squares, most of which
+  /// belong to few wrong motions.
   double typical_size() const {
     std::vector<std::pair<double, double>> sizes;
     for (const Part& part : parts_) sizes.emplace_back(part.size, part.weight * std::sqrt(part.size));
@@ -219,8 +219,8 @@ class Search {
     return alone;
   }
 
-  /// The run that stands out, of those that count. The gain is about that of the six numbers of an extrinsic
-  /// fitted to noise: six times the noise of one motion, more where motions overlap.
+  /// The run that stands out among those that count. The gain is about that of six parameters fitted to
+  /// noise: six times the noise of one motion, more if motions overlap.
   std::optional<std::size_t> dissenter(const Candidate& fit, const std::vector<Alone>& alone,
                                        const std::vector<double>& factors) const {
     std::vector<std::pair<double, double>> gains;
@@ -307,8 +307,8 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
     if (product(here) < product(scale)) scale = here;
   };
   for (const Candidate& start : starts) tighten(start);
-  // Mostly nothing is wrong: where the fit of the whole is good, and nowhere worse than noise explains, it is
-  // all there is to find. (Gross errors of many parts make it bad for all; those of few are outliers.)
+  // Usually nothing is wrong: if the fit of the whole is good, and no part is worse than noise explains, the
+  // search is over. (Gross errors of many parts make the fit bad for all; those of few are outliers.)
   if (scale.relative < options.good_fit &&
       search.largest_excess(starts.front(), scale) < options.unsuspicious)
     return search.consensus(std::move(starts.front()), scale, std::vector<double>(parts.size(), 1.0));
@@ -336,7 +336,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
     }
     tighten(best);
   }
-  // the tightest fit may have been tight by chance, on less than a majority
+  // the tightest fit may be tight by chance, with less than a majority
   best = search.settled(std::move(best), scale);
   std::vector<double> factors = search.agreeing(best, scale);
   const double majority = options.majority * search.motion();

@@ -51,7 +51,7 @@ double proven_leverage(const Curvature& curvature, const Eigen::LLT<Eigen::Matri
   return infinity;
 }
 
-/// A part may be on the other side from this distance Y = y + sqrt(gap) on.
+/// The distance Y = y + sqrt(gap) from which on a part may change sides.
 double first_change(const PartLeverage& part, bool outlier, double rotation_leverage) {
   const double root = std::sqrt(part.cost), limit = std::sqrt(part.limit), eta = std::sqrt(part.leverage);
   if (!outlier) return (limit - root) / eta * (1 - slack);
@@ -68,8 +68,8 @@ struct Candidates {
   std::size_t size() const { return kept.size() + outliers.size(); }
 };
 
-/// The most that a competitor at distance Y can save by rejecting kept parts, whose limits may not cost more
-/// than `budget` in all: the fractional knapsack.
+/// Bound of what a competitor at distance Y can save by rejecting kept parts whose limits cost at most
+/// `budget` together: the fractional knapsack.
 double most_saved(const LeverageBound& bound, const Candidates& candidates, double Y, double budget,
                   bool with_limits) {
   struct Item {
@@ -94,11 +94,11 @@ double most_saved(const LeverageBound& bound, const Candidates& candidates, doub
   return saved * (1 + slack);
 }
 
-/// No competitor that is as good lies at this distance or further; at most `last`.
+/// A distance beyond which no competitor is as good; infinite: none is found.
 double furthest_competitor(const LeverageBound& bound, const Candidates& candidates, double step) {
   double accepted = 0;  // what accepting outliers can save at most
   for (const std::size_t k : candidates.outliers) accepted += bound.parts[k].limit;
-  // a competitor pays for each part that it rejects, and is not dearer than the answer
+  // a competitor pays for each part that it rejects, and costs at most as much as the answer
   const double budget = (bound.kept_cost + accepted) * (1 + slack);
   const double root_gap = std::sqrt(bound.gap);
   const auto excluded = [&](double low, double high) {

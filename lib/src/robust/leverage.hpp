@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How much a competitor at some distance from the answer can save by other outliers. docs/method.md,
+// Bounds of what a competitor at some distance from the answer can save by other outliers. docs/method.md,
 // "Outliers".
 #pragma once
 
@@ -29,11 +29,11 @@ struct LeverageBound {
   double rotation_leverage = 0;  ///< sin^2(half the angle) <= this times w'Zw; proven
 };
 
-/// Empty where the kept parts do not show every direction, so that nothing can be proven.
+/// Empty: the kept parts do not show every direction, so nothing can be proven.
 std::optional<LeverageBound> leverage_bound(std::span<const TruncatedPart> parts,
                                             const std::vector<bool>& outlier);
 
-/// The parts that may be on the other side for some competitor that is as good. None: the choice is proven.
+/// The parts that may be on the other side for some competitor that is as good. Empty: the choice is proven.
 std::vector<std::size_t> undecided_parts(const LeverageBound& bound, const std::vector<bool>& outlier,
                                          double distance_step);
 

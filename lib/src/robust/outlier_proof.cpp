@@ -15,7 +15,7 @@ namespace {
 
 using namespace detail;
 
-/// The split as its own limits have it: every kept part below its limit, every outlier above.
+/// Whether the choice agrees with its own limits: every kept part is below its limit, every outlier above.
 bool settled(const LeverageBound& bound, const std::vector<bool>& outlier) {
   for (std::size_t k = 0; k < outlier.size(); ++k) {
     const bool above = bound.parts[k].cost > bound.parts[k].limit;

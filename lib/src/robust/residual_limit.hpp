@@ -10,7 +10,8 @@ namespace egocal::detail {
 double residual_limit(const Statistics& part, const Balance& balance, const ResidualScale& scale,
                       const ConsensusOptions& options = {});
 
-/// Of the excess of a part of so many motions over the typical residual: above it the part disagrees.
+/// Limit of the ratio of the residual of a part of this many motions to the typical one; a larger ratio
+/// disagrees.
 double excess_limit(std::uint64_t motions, const ConsensusOptions& options);
 
 /// disagreement() of a single motion.

@@ -10,8 +10,8 @@
 
 namespace egocal::detail {
 
-/// Pairs of which the lengths of both motions have a ratio within a factor of two of the median one. Lever
-/// arms change it by less while the vehicle drives on; a jump of one stream by more.
+/// The pairs whose ratio of lengths is within a factor of two of the median ratio. Lever arms change it by
+/// less while the vehicle drives on; a jump of one stream changes it by more.
 std::vector<MotionPair> of_plausible_length(std::span<const MotionPair> pairs);
 
 /// |a q - q b|^2, weighted as in the solution, with the scale on its side.

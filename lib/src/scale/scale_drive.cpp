@@ -71,7 +71,7 @@ std::vector<MotionPair> ScaleDrive::push(Side side, const StampedPose& pose) {
     interpolation_.step(step, pairing_.state().synchroniser.keys.value_or(Side::b));
     const std::size_t before = completed.size();
     grow(step, completed);
-    // one step after the other: what a solution holds must not depend on how many came at once
+    // one step after the other, so that a solution does not depend on how many steps came at once
     for (std::size_t i = before; i < completed.size(); ++i) {
       state_.recent.push_back(completed[i]);
       ++state_.motions;
@@ -88,7 +88,7 @@ std::int64_t ScaleDrive::on_clock_of_a(Side side, std::int64_t time_us) const {
   return side == Side::b ? time_us + std::llround(options_.pairing.time_offset * 1e6) : time_us;
 }
 
-/// Motions of the wanted length from single steps. A gap ends all that have begun.
+/// Builds motions of the wanted length from single steps. A gap ends all that have begun.
 void ScaleDrive::grow(const MotionPair& step, std::vector<MotionPair>& completed) {
   std::vector<MotionPair>& open = state_.open;
   state_.step_us = step.end_us - step.begin_us;
@@ -114,7 +114,7 @@ void ScaleDrive::grow(const MotionPair& step, std::vector<MotionPair>& completed
   }
 }
 
-/// The older half of the newest motions, judged for the last time.
+/// Judges the older half of the newest motions for the last time, and adds it to the sums.
 void ScaleDrive::commit_old() {
   const std::size_t count = state_.recent.size() / 2;
   if (state_.old_block == 0)
@@ -207,7 +207,7 @@ std::optional<Problem> ScaleDrive::problem() const {
   problem.mode = options_.pairing.mode;
   problem.plane_a = pairing_.options().plane_a;
   problem.plane_b = pairing_.options().plane_b;
-  // the planes as the user gave them: their distances place the extrinsic along the normal
+  // the planes as the user gave them, as their distances place the extrinsic along the normal
   problem.plane_a.distance = options_.pairing.plane_a.distance;
   problem.plane_b.distance = options_.pairing.plane_b.distance;
   problem.balance = state_.solution.balance;

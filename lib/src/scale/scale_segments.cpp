@@ -17,7 +17,7 @@ using Samples = std::span<const ScaleSample>;
 using Blocks = std::vector<ScaleBlock>;
 using Splits = std::vector<std::size_t>;
 
-/// How many ways there are to put so many splits between the blocks, and a little more.
+/// At least the number of ways to put this many splits between the blocks.
 double places_of(std::size_t splits, std::size_t blocks) {
   double places = 1;
   for (std::size_t k = 0; k < splits; ++k)
@@ -64,7 +64,7 @@ class Search {
     add(from, to, 0);
   }
 
-  /// The best step, and the best one beside it: any two would fit noise on a drift as well as the drift.
+  /// Cost of the best step and the best second one. Any two would fit noise on a drift as well as the drift.
   double cost_of_two_steps(const Blocks& blocks) const {
     const std::size_t first = best_splits(blocks, 1, 1).front();
     double least = std::numeric_limits<double>::infinity();
@@ -80,7 +80,8 @@ class Search {
         2, static_cast<std::size_t>(options_.least_part * static_cast<double>(blocks.size())));
   }
 
-  /// All of these changes together, against one scale, and each one between its neighbours.
+  /// Whether all of these changes are significant together against one scale, and each one between its
+  /// neighbours.
   bool shown(std::span<const ScaleBlock> blocks, const BlockFit& one, const Splits& splits) const {
     const BlockFit fit = fit_steps(blocks, splits);
     const std::size_t count = splits.size();
@@ -102,7 +103,7 @@ class Search {
     return true;
   }
 
-  /// The samples with which the parts begin, and `to`; empty where a part would have none.
+  /// First sample of each part, and `to`; empty: a part would have none.
   std::vector<std::size_t> places(const Blocks& blocks, const Splits& splits, std::size_t from,
                                   std::size_t to) const {
     const BlockFit fit = fit_steps(blocks, splits);

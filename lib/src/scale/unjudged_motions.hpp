@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions of streams whose scale is not known: nothing is congruent at a wrong one, so none is rejected.
+// Motions of streams with unknown scale. At a wrong scale no motions are congruent, so none is rejected.
 #pragma once
 
 #include <vector>

@@ -70,7 +70,7 @@ struct Search {
   std::optional<detail::ProvenBound> proven;
 };
 
-/// Is no unit dual quaternion better than the best by more than rounding?
+/// Whether it is proven that no unit dual quaternion is better than the best one by more than rounding.
 bool proven_optimal(Search& search) {
   const Vector8d v = search.best.q.vec();
   const double rounding = detail::rounding_of<8>(search.sizes, v);
@@ -107,8 +107,7 @@ Sample sample(const DualFunction& phi, double m) {
   return here;
 }
 
-/// Keeps the better of the best and what Newton steps on the KKT system of the true Q reach from r; is it
-/// proven?
+/// Runs Newton steps on the KKT system of the true Q from r and keeps the better answer. True: it is proven.
 bool polish(Search& search, const DualFunction& phi, const Vector4d& r, double m) {
   Solution polished = detail::newton_on_kkt(search.Q, {r, phi.dual_part(r, m)});
   if (polished.cost < search.best.cost) {

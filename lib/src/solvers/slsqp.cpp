@@ -55,8 +55,8 @@ double unit_planar(unsigned, const double* x, double* gradient, void*) {
   return 1 - x[0] * x[0] - x[1] * x[1];
 }
 
-/// Whether the numbers can be handed to NLopt at all (a NaN makes it loop for ever), and the units in which
-/// they are near one: trace(A) for the cost, and a length that makes trace(D) as large.
+/// Whether NLopt can take the numbers (a NaN makes it loop for ever), and units in which they are near one:
+/// trace(A) for the cost, and a length that makes trace(D) as large.
 struct Units {
   double cost = 0, length = 1;
 };
@@ -107,8 +107,7 @@ LocalMinimum<N> minimise(const Eigen::Matrix<double, N, N>& Q, const Units& unit
     return result;
   }
   result.x = x.cwiseProduct(scale);
-  // NLOPT_ROUNDOFF_LIMITED is how a start at the solution ends, and many a good answer: the point is what
-  // counts.
+  // NLOPT_ROUNDOFF_LIMITED ends a start at the solution and many good answers, so the point decides
   if (code == NLOPT_MAXEVAL_REACHED || code == NLOPT_MAXTIME_REACHED) {
     result.status = SolverStatus::iteration_limit;
   } else if (code < 0 && code != NLOPT_ROUNDOFF_LIMITED) {
@@ -144,7 +143,7 @@ Eigen::Vector4d finished_planar(const Eigen::Matrix4d& Q, const Eigen::Vector4d&
   return x.allFinite() ? x : start;
 }
 
-/// Projects on the constraints; keeps the start where the numbers allow nothing better.
+/// Projects on the constraints; returns the start if the numbers allow nothing better.
 Solution finished(const Matrix8d& Q, const DualQuaternion& start, const DualQuaternion& found,
                   SolverStatus status, int evaluations) {
   Solution solution;

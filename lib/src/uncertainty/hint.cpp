@@ -29,7 +29,7 @@ std::string spatial_hint(int hidden_translations, bool rotation_hidden,
 
 std::string planar_hint(bool translation_hidden, bool yaw_hidden, int hidden) {
   if (hidden == 0) return "";
-  // along circles of one radius the sensor may be turned on its circle as well as moved along it
+  // on circles of one radius the sensor may be turned on its circle as well as moved along it
   if (translation_hidden && yaw_hidden && hidden == 1)
     return "still needed: curves of other radii, or a straight stretch";
   return translation_hidden ? "still needed: turns" : "still needed: motion";

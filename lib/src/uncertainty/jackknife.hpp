@@ -17,8 +17,9 @@ namespace egocal::detail {
 /// al. 1999).
 class Jackknife {
  public:
-  /// Of the correlations that count, in blocks. Each lag more adds chance; with three instead of four, noise
-  /// on poses and on motions in drives of 20 motions is covered to 90.5 instead of 91.5 % (docs/accuracy.md).
+  /// Largest lag of the correlations that count, in blocks. Each further lag adds chance; with three instead
+  /// of four, noise on poses and on motions in drives of 20 motions is covered to 90.5 instead of 91.5 %
+  /// (docs/accuracy.md).
   static constexpr std::size_t most_lag = 4;
 
   explicit Jackknife(double pairs) : pairs_(pairs) {}
@@ -60,8 +61,8 @@ class Jackknife {
       return (*found + 1 / m) / std::max(least_left, 1 - 3 / m);
     });
   }
-  /// The sum of the correlations of blocks up to most_lag apart, the mean over the parts. What their own
-  /// mean takes from each, about 1 / m, is undone.
+  /// Sum of the correlations of blocks up to most_lag apart, averaged over the parts. The mean of the blocks
+  /// takes about 1 / m from each, which is corrected.
   double sum_of_correlations(double least_equal_blocks) const {
     const double m = mean_equal_blocks(least_equal_blocks);
     return mean_over_parts([&](int i) -> std::optional<double> {
@@ -95,7 +96,7 @@ class Jackknife {
     return std::clamp(squares > 0 ? sum * sum / squares : count_, least, count_);
   }
 
-  /// The mean over the directions that the blocks know something of.
+  /// Mean over the directions about which the blocks hold information.
   double mean_equal_blocks(double least) const {
     double sum = 0, directions = 0;
     for (int i = 0; i < 6; ++i) {
@@ -139,7 +140,8 @@ class Jackknife {
       last[count % most_lag] = parts;
       ++count;
     }
-    /// Of more blocks than the lag. Empty where nothing changes, or a block cannot be omitted.
+    /// Correlation at this lag; there must be more blocks than it. Empty: nothing changes, or a block cannot
+    /// be omitted.
     std::optional<double> correlation(int part, std::size_t lag) const {
       const double blocks = static_cast<double>(count), pairs = static_cast<double>(count - lag);
       const double total = sum[part], mean = total / blocks;

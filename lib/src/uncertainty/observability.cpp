@@ -85,7 +85,7 @@ Surroundings look_around(const Problem& problem, const Matrix8d& Q_metres, const
       errors == ErrorCorrelation::correlated && blocks_to_omit(problem) >= options.least_blocks;
   const double doubtful =
       floor + (may_share ? 0.25 * around.noise * (options.shared_noise - options.independent_noise) : 0);
-  // mostly all directions are seen beyond doubt, which a factorisation shows at a tenth of the cost
+  // usually all directions are seen clearly, which a factorisation shows at a tenth of the cost
   if (exceeds(clean, doubtful)) return around;
   const Spectrum seen = spectrum(clean);
   int hidden = 0;

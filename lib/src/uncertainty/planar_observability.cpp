@@ -40,7 +40,7 @@ Vector6d pull_in_plane(const Problem& problem, const DualQuaternion& T_a_b, cons
   return pull;
 }
 
-/// Around T_p, whose frame has its origin below sensor a: the axes are a's.
+/// The directions around T_p, whose frame has its origin below sensor a and the axes of a.
 ShownDirections shown_in_plane(const Problem& problem, const DualQuaternion& T_a_b,
                                const Surroundings& around) {
   const DualQuaternion G_a = plane_frame(problem.plane_a), G_b = plane_frame(problem.plane_b);

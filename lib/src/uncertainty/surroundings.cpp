@@ -78,7 +78,7 @@ Vector6d variance_of_hidden(const Surroundings& around, bool has_prior, const Ob
   const auto hidden = around.hidden_vectors();
   const DualQuaternion& q = around.q;
   const Eigen::Vector3d t = 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
-  // without a prior, what the answer claims there is as little known
+  // without a prior the value of the answer along it is just as unknown
   const double claimed = (hidden.topRows<3>().transpose() * t).norm();
   const double translation = has_prior ? options.prior_translation / around.length
                                        : std::hypot(options.unknown_translation / around.length, claimed);

@@ -10,7 +10,7 @@
 
 namespace egocal::detail {
 
-/// What the curvature of the cost shows around the minimiser; lengths in units of `length` [m].
+/// What the curvature of the cost shows around the minimiser. Lengths in units of `length` [m].
 struct Surroundings {
   double length = 1, pairs = 0;
   DualQuaternion q;
@@ -23,8 +23,8 @@ struct Surroundings {
   auto hidden_vectors() const { return vectors.leftCols(hidden); }
 };
 
-/// Rotation noise, as it enters D: without noise r'Dr is zero; with noise, independent of sensor and motion,
-/// it is added to D in every direction alike.
+/// Rotation noise in D: without noise r'Dr is zero; noise that is independent of sensor and motion adds it to
+/// D alike in every direction.
 double rotation_noise(const Matrix8d& Q, const DualQuaternion& q);
 
 /// A rotation of the answer about a line that the motions do not show, in sensor a's frame; lengths in units
@@ -35,8 +35,8 @@ struct HiddenTurn {
   double rotation_part;  ///< of the unit hidden direction
 };
 
-/// Those among the hidden directions that differ from hidden translations by more than noise mixes into them.
-/// None where all rotations are seen.
+/// The rotations among the hidden directions: those that differ from hidden translations by more than noise
+/// mixes into them. Empty if all rotations are seen.
 std::vector<HiddenTurn> hidden_turns(const Surroundings& around, const ObservabilityOptions& options);
 
 /// A turn that is hidden may be wrong by any angle, so a coordinate must hardly change anywhere along it. The
@@ -53,8 +53,8 @@ std::array<bool, 6> observable_around(const Surroundings& around, ErrorCorrelati
 Vector6d with_hidden_turns(const std::vector<HiddenTurn>& turns, Vector6d variance, double lengths,
                            bool has_prior, const ObservabilityOptions& options);
 
-/// What errors along the hidden directions add to the variances of the coordinates that they lean into: the
-/// covariance of such errors, independent in each coordinate, when they are confined to these directions.
+/// Variance that errors along the hidden directions add to the coordinates with a part in them: the
+/// covariance of errors that are independent in each coordinate, restricted to these directions.
 Vector6d variance_of_hidden(const Surroundings& around, bool has_prior, const ObservabilityOptions& options);
 
 /// Rotation noise pulls the translation towards where it costs least, by the part of D that is noise, and the

@@ -9,8 +9,8 @@
 
 namespace egocal::detail {
 
-/// Blocks need not be disjoint: then a last one with a negative weight takes off what is in two of them. It
-/// is no part of the drive to omit.
+/// Whether this block is subtracted: blocks may share motions, and then a last block with a negative weight
+/// takes off what is in two of them. It is no part of the drive, so it is never omitted.
 inline bool takes_off(const Statistics& block) {
   return block.weight < 0;
 }

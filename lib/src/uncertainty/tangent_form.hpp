@@ -12,9 +12,9 @@
 
 namespace egocal::detail {
 
-/// What one Newton step from an extrinsic q needs of a sum of motions S: 42 numbers, linear in S. Forms of
-/// blocks are added and subtracted instead of the blocks, so omitting a block costs one small
-/// factorisation. Not normalised by the weight, which no Newton step depends on.
+/// A sum of motions S as one Newton step from an extrinsic q needs it: 42 numbers, linear in S. Forms of
+/// blocks are added and subtracted in place of the blocks, so omitting a block costs one small factorisation.
+/// Not normalised by the weight, on which no Newton step depends.
 struct TangentForm {
   Matrix6d curvature = Matrix6d::Zero();  ///< T'ZT, see TangentSpace
   Vector6d gradient = Vector6d::Zero();   ///< T'Sq
@@ -32,7 +32,7 @@ struct TangentForm {
   friend TangentForm operator-(TangentForm x, const TangentForm& y) { return x -= y; }
 };
 
-/// Of four problems, number by number, as four of them are computed at the cost of one.
+/// Numbers of four problems side by side, as four are computed at the cost of one.
 template <std::size_t n>
 using Fours = std::array<std::array<double, 4>, n>;
 
@@ -41,7 +41,7 @@ inline Vector6d column(const Fours<6>& numbers, std::size_t k) {
   return {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k], numbers[4][k], numbers[5][k]};
 }
 
-/// Forms of four blocks. Of the curvatures the lower triangles, by columns.
+/// Forms of four blocks: the lower triangles of their curvatures, by columns.
 struct FourForms {
   static constexpr std::size_t count = 4;  // numbers in 32 bytes, the width of AVX2
   Fours<21> curvature{};
@@ -51,7 +51,7 @@ struct FourForms {
   TangentForm form(std::size_t k) const;  ///< symmetric
 };
 
-/// What a TangentSpace keeps, as plain numbers: columns of 4 or of 6.
+/// The content of a TangentSpace as plain numbers: columns of 4 or of 6.
 struct TangentNumbers {
   double rotation = 1, translation = 1;
   double upper[7][4], lower[7][4];      ///< [tangent, q], the dual rows counted in metres
@@ -77,8 +77,8 @@ class TangentSpace {
   /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
   /// Infinite where the curvature is not positive definite.
   static Vector6d newton_step(const TangentForm& form, int directions = 6);
-  /// Without one of four parts of a sum, in all six coordinates: the same bits as newton_step() of the
-  /// differences, at little more than the cost of one.
+  /// Newton steps of the sum without each of four parts, in all six coordinates: the same bits as
+  /// newton_step() of the differences, at little more than the cost of one.
   static Fours<6> newton_steps_without(const TangentForm& all, const FourForms& parts, bool in_pairs = false);
 
  private:

@@ -22,7 +22,7 @@ std::size_t fours(std::size_t count) {
   return (count + four - 1) / four;
 }
 
-/// Blocks around the minimiser, by fours; nothing is said of the places behind the last one.
+/// Blocks around the minimiser, by fours; places after the last block are unspecified.
 struct Blocks {
   std::vector<double> pairs;  ///< of each
   std::vector<FourForms> forms;
@@ -125,7 +125,7 @@ std::vector<FourForms> forms_of(const std::vector<const Statistics*>& blocks, co
   return forms;
 }
 
-/// All blocks but those that take off, around the minimiser. sum: of all, in their order.
+/// All blocks except those that are subtracted, around the minimiser. sum: of all, in their order.
 Blocks blocks_around(const Problem& problem, const ShownDirections& directions, TangentForm& sum) {
   std::vector<const Statistics*> staying, taking_off;
   staying.reserve(problem.blocks.size());
@@ -171,7 +171,7 @@ struct Sharing {
   }
   double of_neighbours() const { return of_overlap * overlap_ * (1 - spread_of_longest * longest_); }
   double of_near_blocks() const { return of_overlap * overlap_ * (1 - longest_); }
-  /// How many times the correlations of near blocks count: they show half of what the longest motions make.
+  /// Factor of the correlations of near blocks: they show half of what the longest motions cause.
   double near_blocks_count() const { return 1 + longest_; }
 
  private:
@@ -196,7 +196,7 @@ double of_memory(const Jackknife& single, double overlap, const ObservabilityOpt
   return std::max(fading, 1 + 2 * sharing.near_blocks_count() * of_near);
 }
 
-/// The largest part of what is known of a direction that is in a block.
+/// The largest part of the information about a direction that one block holds.
 double largest_share(const Blocks& blocks, std::size_t block) {
   const Vector6d own = column(blocks.information[block / four], block % four);
   double share = 0;
@@ -231,8 +231,8 @@ double count_once(Blocks& blocks, const TangentForm& all, int shown) {
   return std::min(times - 1, 1.0);
 }
 
-/// A coordinate that no shown direction has a part of is rounding: it must not count in what is a mean, or a
-/// largest one, over the coordinates.
+/// Removes rounding: a coordinate without a part in any shown direction must not count in a mean, or a
+/// maximum, over the coordinates.
 ShownDirections without_rounding(ShownDirections directions) {
   constexpr double least_part = 1e-6;  // far above rounding; less is not observable
   for (int i = 0; i < 6; ++i)

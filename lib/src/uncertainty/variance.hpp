@@ -7,17 +7,16 @@
 
 namespace egocal::detail {
 
-/// Coordinates in which the first `shown` directions are seen; basis: from them to (dt in units of length,
-/// dtheta).
+/// Coordinates whose first `shown` directions are seen. basis: from them to (dt in units of length, dtheta).
 struct ShownDirections {
   TangentSpace space;
   Matrix6d basis;
   int shown;
 };
 
-/// Of the coordinates in sensor a's frame, by the jack-knife over the blocks of a problem. Errors that near
-/// blocks may share make it as many times larger as their correlations say, beyond what blocks correlate
-/// because a motion is in two of them. pairs: in all blocks. Lengths in units of the space.
+/// Variance of the coordinates in the frame of sensor a, by the jack-knife over the blocks of a problem.
+/// Errors that near blocks may share increase it as their correlations say, beyond the correlation of blocks
+/// that have a motion in common. pairs: in all blocks. Lengths in units of the space.
 Vector6d variance_by_blocks(const Problem& problem, double pairs, const ShownDirections& directions,
                             ErrorCorrelation errors, const ObservabilityOptions& options);
 

@@ -9,23 +9,23 @@
 namespace egocal::bus {
 
 struct AnswerAgeOptions {
-  /// An answer is old where motions have come for this time that it does not know [s]. A solver answers
-  /// within milliseconds, and one that was killed is back within a second; of the 5 s four are a margin for
-  /// machines under load. Study: tests/e2e/chaos.cpp, whose solvers are killed all the time.
+  /// An answer is old when motions that it does not contain have arrived for this long [s]. A solver answers
+  /// within milliseconds, and one that was killed is restarted within a second; the other four seconds are a
+  /// margin for machines under load. Study: tests/e2e/chaos.cpp, whose solvers are killed all the time.
   double answered_within = 5;
 };
 
-/// How long ago the answer that counts was one of the present.
+/// For how long newer problems have gone unanswered.
 class AnswerAge {
  public:
   using Number = std::pair<std::int64_t, std::int64_t>;  ///< session and number of an answer
 
-  /// To be called where a problem or an answer may be new. behind: problems have come that this answer does
-  /// not know. Each new answer starts the time anew: a solver that is slow skips problems and still follows.
+  /// Call it when a problem or an answer may be new. behind: the newest problem is newer than this answer.
+  /// Each new answer restarts the time: a slow solver skips problems and still follows.
   void note(const Number& answer, bool behind, std::int64_t now_us);
-  /// There is no answer, or none is awaited.
+  /// Call it when there is no answer, or none is expected.
   void forget() { behind_since_us_.reset(); }
-  /// For so long nothing has answered what came since [s]; 0: the answer is one of the present.
+  /// For how long newer problems have gone unanswered [s]; 0: the answer is current.
   double old(std::int64_t now_us, const AnswerAgeOptions& options) const;
 
  private:

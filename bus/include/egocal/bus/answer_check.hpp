@@ -39,12 +39,12 @@ struct CheckedAnswer {
 /// with a prior. Memory is bounded whatever arrives. Not thread-safe.
 class AnswerCheck {
  public:
-  /// The reason why it was refused; empty: taken.
+  /// Returns the reason of a refusal; empty: the message was accepted.
   std::string take(const problem_t& message);
   CheckedAnswer check(const calibration_t& message) const;
-  /// The reason why a verdict is refused: it calls an answer good that its problem denies to be the optimum.
-  /// Empty: it is not refused, or its problem is not known here. Whether the motions agree is the sender's
-  /// word: that takes the poses.
+  /// Returns the reason why a verdict is refused: it calls an answer good although its problem shows that the
+  /// answer is not the optimum. Empty: it is not refused, or its problem is not known here. Whether the
+  /// motions agree cannot be checked without the poses: the sender is believed.
   std::string refusal(const verdict_t& message, const ReceivedVerdict& received) const;
 
   static constexpr std::size_t max_pairs = bus::max_pairs;

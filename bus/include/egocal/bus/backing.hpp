@@ -9,13 +9,12 @@
 
 namespace egocal::bus {
 
-/// What the numbers of an answer to this problem rest on, of x y z roll pitch yaw. Its blocks are not looked
-/// at.
+/// What each direction (x y z roll pitch yaw) of an answer to this problem is based on. The blocks of the
+/// problem are not used.
 std::array<Backing, 6> backing_of(const std::array<bool, 6>& observable, const Problem& problem);
 
-/// Of an answer heard on the bus. Where its problem was not received, its method says of some whether it is
-/// planar, and then z, roll and pitch are taken to come from the planes; has_nominal: what is known of the
-/// problem otherwise, from the rig.
+/// The same for an answer that was heard on the bus. If its problem was not received, has_nominal says what
+/// the rig file knows of it. Some methods are planar only; then z, roll and pitch are taken from the planes.
 std::array<Backing, 6> backing_of(const CheckedAnswer& checked, const std::string& method, bool has_nominal);
 
 }  // namespace egocal::bus

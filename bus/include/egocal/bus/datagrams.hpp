@@ -32,19 +32,19 @@ struct Datagram {
 /// Whether LCM's format can carry the message at all.
 bool fits_datagrams(std::string_view channel, Bytes bytes);
 
-/// Calls send for each datagram of the message, in order, until it returns false. False: then, or where the
-/// message does not fit. number: counts the messages of this sender; receivers tell by it which fragments
-/// belong together.
+/// Calls send for each datagram of the message, in order, until it returns false. Returns false then, and if
+/// the message does not fit. number: counts the messages of this sender; receivers use it to tell which
+/// fragments belong together.
 bool for_each_datagram(std::string_view channel, Bytes bytes, std::uint32_t number,
                        const std::function<bool(const Datagram&)>& send);
 
 struct ReassemblyOptions {
-  /// Larger messages are dropped [bytes]. The largest of ours, problem_t with 128 blocks, has 40 kB.
+  /// Larger messages are dropped [bytes]. Our largest one, problem_t with 128 blocks, has 40 kB.
   std::size_t max_message = std::size_t{4} << 20;
-  /// All messages that are not complete yet [bytes]: the oldest are dropped beyond. Four of the largest.
+  /// Size of all incomplete messages [bytes]; beyond it the oldest are dropped. Four of the largest.
   std::size_t max_total = std::size_t{16} << 20;
-  /// Senders with a message that is not complete yet. A bus has a few dozen processes; a flood of invented
-  /// senders costs at most this.
+  /// Senders with an incomplete message. A bus has a few dozen processes, and a flood of forged senders costs
+  /// at most this.
   std::size_t max_senders = 64;
 };
 
@@ -60,7 +60,7 @@ class Reassembly {
 
   explicit Reassembly(const ReassemblyOptions& options = {}) : options_(options) {}
 
-  /// sender: address and port, or any other number that tells senders apart.
+  /// sender: address and port, or any other number that distinguishes senders.
   std::optional<Message> take(Bytes datagram, std::uint64_t sender, const Wanted& wanted);
 
   std::int64_t malformed() const { return malformed_; }

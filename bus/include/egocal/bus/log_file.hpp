@@ -67,11 +67,11 @@ class EventNumbers {
   std::optional<Restart> restart_;  ///< the last event began another log: what was known before it
 };
 
-/// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs what it held: the
-/// reader continues at the next event that makes sense (liblcm's own reader ends there silently). An
-/// event with impossible lengths is skipped; what else is damaged inside of one only its decoder can tell.
-/// Memory is that of one event, no length field of a damaged event makes it more than 64 MiB, and the time is
-/// proportional to the file.
+/// Reads the event logs of lcm-logger from a file, not from a pipe. A damaged region costs only its own
+/// events: the reader continues at the next plausible event (liblcm's own reader ends there silently). An
+/// event with impossible lengths is skipped. Other damage inside an event is visible only to its decoder. The
+/// memory is that of one event, at most 64 MiB whatever a damaged length field says, and the time is
+/// proportional to the size of the file.
 class LogReader {
  public:
   /// Throws Error where the file cannot be opened or is not a log at all (no event in it).
@@ -81,10 +81,10 @@ class LogReader {
   std::optional<LogEvent> next();
   /// Back to the first event.
   void rewind();
-  /// To a place before every event recorded at time_us or later, found by bisection: next() continues there,
-  /// with events that may be a little earlier. Times must ascend except for the disorder of several sources
-  /// (1 s) and single damaged ones; where they do not, it begins earlier than necessary, at worst at the
-  /// start. Damage is counted from there on.
+  /// Moves by bisection to a place before every event that was recorded at time_us or later. next() continues
+  /// there, possibly with events that are a little earlier. Times must ascend, except for the disorder of
+  /// several sources (1 s) and single damaged times; otherwise the place is earlier than necessary, at worst
+  /// the start of the file. Damage is counted from there on.
   void seek(std::int64_t time_us);
 
   const LogDamage& damage() const { return damage_; }

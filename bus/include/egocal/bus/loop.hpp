@@ -119,15 +119,15 @@ class Loop {
   /// Why the last message could not be sent, one line; empty: it was sent.
   const std::string& send_error() const;
 
-  /// What is wrong with the network, with its remedy; empty: nothing. Looked at once a second.
+  /// The problem of the network, with its remedy; empty: there is none. Checked once a second.
   const std::string& network_error() const;
-  /// Called with network_error() each time when it changes.
+  /// Sets a callback that receives network_error() whenever it changes.
   void on_network(std::function<void(const std::string& error)> callback);
 
   LoopCounts counts() const;
 
-  /// Called when all messages that were waiting have been handled, and under a flood at least every 5 ms: the
-  /// place for work that needs only the newest message. caught_up: nothing more is waiting.
+  /// Sets a callback for work that needs only the newest message. It is called when all waiting messages have
+  /// been handled, and under a flood at least every 5 ms. caught_up: no more messages are waiting.
   void after_batch(std::function<void(bool caught_up)> callback);
 
   using TimerId = std::uint64_t;

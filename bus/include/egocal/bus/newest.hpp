@@ -29,7 +29,8 @@ class Newest {
   Newest(const Newest&) = delete;
   Newest& operator=(const Newest&) = delete;
 
-  /// The newest message, once. False where there is none. What cannot be decoded is counted by the loop.
+  /// Takes the newest message. False: there is none since the last call. The loop counts what cannot be
+  /// decoded.
   bool take(Message& message) {
     if (!std::exchange(fresh_, false)) return false;
     message = Message{};

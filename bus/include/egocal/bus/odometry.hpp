@@ -16,9 +16,9 @@ struct ReceivedOdometry {
   std::int64_t seq = -1;  ///< -1: not counted
 };
 
-/// Time of the measurement in a message of either odometry type, even a damaged one: both begin with the
-/// fingerprint and then utime, 8 bytes each, big endian. What a player and pairing know a message by [us];
-/// 0: too short.
+/// Time of the measurement in a message of either odometry type [us], also in a damaged one: both types begin
+/// with the fingerprint and then utime, 8 bytes each, big endian. Player and pairing identify a message by
+/// it. 0: too short.
 std::int64_t utime_in(Bytes message);
 
 /// With the scale of the sensor applied.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages about one pair of sensors: each has a channel of its own, and the pair's names inside as well.
+// Messages about one pair of sensors. Each has a channel of its own and also holds the names of the pair.
 #pragma once
 
 #include <string>
@@ -27,9 +27,9 @@ inline std::string channel_of(const scale_t& message) {
   return scale_channel(message.sensor_a, message.sensor_b);
 }
 
-/// Hands on all messages about a pair: hear(message, arrival) takes each of the types above. Names that are
-/// not the pair's are damaged, or somebody else's: such a message must not count as one of another pair. It
-/// is not what its channel promises, see Loop::undecodable().
+/// Subscribes to all messages about a pair: hear(message, arrival) takes each of the types above. A message
+/// with other names than those of the pair is damaged, or sent by another program. It must not count for
+/// another pair, so it is counted in Loop::undecodable().
 template <class Hear>
 void subscribe_pair(Loop& loop, const std::string& a, const std::string& b, const Hear& hear) {
   const auto subscribe = [&]<class Message>(const Message&, const std::string& channel) {

@@ -16,12 +16,13 @@ namespace egocal::bus {
 /// Pairs that a rig may have, and that a listener remembers at once: a limit on memory.
 inline constexpr std::size_t max_pairs = 256;
 
-/// What a listener remembers of each pair. A forger can invent any number of names: the pair that was not
-/// touched for longest is forgotten for a new one, and is back with its next message.
+/// One value of type T for each pair that a listener heard. A forger can invent any number of names, so the
+/// number of pairs is bounded: a new pair replaces the one that was not touched for longest, which returns
+/// with its next message.
 template <class T>
 class RecentPairs {
  public:
-  /// Of this pair, which is the newest now; a new T where it was not known.
+  /// The value of this pair, which becomes the most recent one; a new T if the pair was not known.
   T& touch(const std::string& a, const std::string& b) {
     Key key{a, b};
     if (pairs_.size() >= max_pairs && !pairs_.contains(key))

@@ -37,11 +37,11 @@ enum class OnMove {
 struct PairConfig {
   std::string a, b;  ///< names of sensors; T is the pose of b in a
   Mode mode = Mode::spatial;
-  std::optional<Pose> truth;              ///< known extrinsic, for showing errors
-  std::optional<Pose> nominal;            ///< mounting drawing: the prior in unobservable directions
-  std::optional<int> stride;              ///< empty: auto
-  std::optional<Balance> balance;         ///< empty: auto
-  bool robust = true;                     ///< reject what is not screw congruent or contradicts the rest
+  std::optional<Pose> truth;       ///< known extrinsic, for showing errors
+  std::optional<Pose> nominal;     ///< mounting drawing: the prior in unobservable directions; NaN: not given
+  std::optional<int> stride;       ///< empty: auto
+  std::optional<Balance> balance;  ///< empty: auto
+  bool robust = true;              ///< reject what is not screw congruent or contradicts the rest
   std::optional<double> time_offset = 0;  ///< [s] added to the stamps of b; empty: auto, found and followed
   std::optional<GoalOptions> goal;        ///< how well each direction is to be known; empty: none is stated
   OnMove on_move = OnMove::report;

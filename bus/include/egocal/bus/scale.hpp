@@ -37,14 +37,14 @@ struct CheckedScale {
 /// proof, and solving costs a fraction of a millisecond. Memory is bounded whatever arrives. Not thread-safe.
 class ScaleCheck {
  public:
-  /// The reason why it was refused; empty: taken.
+  /// Returns the reason of a refusal; empty: the message was accepted.
   std::string take(const scale_problem_t& message);
   std::string take(const scale_t& message);
-  /// Of this pair and session; null: none. Not certified unless verified.
+  /// The newest checked scale of this pair and session; null: there is none. Certified only if verified.
   const CheckedScale* find(const std::string& a, const std::string& b, std::int64_t session) const;
-  /// The scale that the pair's problem_t is made with; empty where there is none yet.
+  /// The scale with which the problem_t of the pair is made; empty: there is none yet.
   std::optional<double> in_force(const std::string& a, const std::string& b, std::int64_t session) const;
-  /// The solution of this pair's newest problem, solved here; null where there is none of this session.
+  /// Solves the newest scale problem of this pair; null: there is none of this session.
   const ScaleSolution* solution(const std::string& a, const std::string& b, std::int64_t session);
 
  private:

@@ -87,19 +87,20 @@ struct SynchroniserOptions {
   /// rate jitter by a few percent and must not swap roles from drive to drive.
   double slower_by = 10.0 / 9.0;
   /// Interpolation cuts the corners of the path of the interpolated stream. The pose that it is paired with
-  /// cuts them alike: it moves towards the path between its neighbours. It does not where that were more than
-  /// most_cut of the way (beyond 1 it moves to the other side: poses of the interpolated stream are missing),
-  /// or where it is off that path by more than most_bent of the typical step of its stream, the median of the
-  /// last `typical_steps`: an outlier or a jump. Study: docs/method.md, "Interpolation".
+  /// is moved towards the path between its own neighbours, so that both cut corners alike. There are two
+  /// exceptions: the move would be more than most_cut of the distance to that path (beyond 1 it crosses it:
+  /// poses of the interpolated stream are missing), or the pose is off that path by more than most_bent
+  /// typical steps, the median of the last `typical_steps` (an outlier or a jump). Study: docs/method.md,
+  /// "Interpolation".
   bool cut_alike = true;
   double most_cut = 4, most_bent = 1;
   std::size_t typical_steps = 9;  ///< two outliers are four steps
-  /// So many poses of the faster stream, half of them on each side of an instant, make the pose there
-  /// (universal kriging with a Gaussian correlation over correlation_length periods). Each of them is off the
-  /// path between its neighbours by at most most_rough typical steps; the period at the instant is at most
-  /// most_uneven_here times as long as the typical one, no other most_uneven times as long or short. Where
-  /// that does not hold it is the screw between two, and both streams are cut alike. Even, at most
-  /// most_smooth_poses; 0: never. Study: docs/method.md, "Interpolation".
+  /// Number of poses of the faster stream, half of them on each side of an instant, from which the pose there
+  /// is interpolated (universal kriging with a Gaussian correlation over correlation_length periods). A screw
+  /// between two poses is used instead, and both streams are cut alike, if one of the poses is off the path
+  /// between its neighbours by more than most_rough typical steps, if the period at the instant is more than
+  /// most_uneven_here times the typical one, or if another period is more than most_uneven times as long or
+  /// short. Even, at most most_smooth_poses; 0: never. Study: docs/method.md, "Interpolation".
   std::size_t smooth_poses = 8;
   double correlation_length = 1.5, most_rough = 2, most_uneven_here = 1.5, most_uneven = 3;
   static constexpr std::size_t most_smooth_poses = 16;  ///< bounds the time of one interpolation

@@ -66,8 +66,8 @@ void CandidateComparison::take_refined() {
   schedule_.add(1, [this] { refine_next(); });
 }
 
-/// As it is, not refined. Where the turning is even the noise of the poses, which depends on how they are
-/// interpolated, moves the minimum.
+/// Adds the preferred offset without refining it. If the turning is even, the noise of the poses, which
+/// depends on the interpolation, moves the minimum.
 void CandidateComparison::add_preferred() {
   for (std::size_t i = 0; i < candidates_.size(); ++i)
     if (std::abs(offset_us(candidates_[i]) - preferred_us_) < 2 * arm_us_) twin_ = i;

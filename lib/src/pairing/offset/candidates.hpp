@@ -20,9 +20,9 @@ struct CandidateOptions {
   double sure = 2.5;
 };
 
-/// Offsets that the turning rates allow, compared by how well an extrinsic explains the motions under each.
-/// The size of what a body turns by repeats where its direction, or its way, need not: half a figure eight
-/// later a vehicle turns as fast, but the other way.
+/// Compares offsets that the turning rates allow, by how well an extrinsic explains the motions with each.
+/// The rate of turning may repeat when its direction or the way does not: half a figure eight later a vehicle
+/// turns as fast, but the other way.
 class CandidateComparison {
  public:
   /// The arguments of a Refinement.
@@ -30,8 +30,9 @@ class CandidateComparison {
                       std::int64_t max_gap_us, Schedule& schedule, std::function<void()> done,
                       const CandidateOptions& tuning = {});
 
-  /// Refines each, compares them, and takes the one nearest to `preferred_us` of those that fit equally well.
-  /// All have the same at_b_us; the first one is exact already. arm_us: how far the others may be off.
+  /// Refines and compares the offsets. Of those that fit equally well it takes the one nearest to
+  /// `preferred_us`. All have the same at_b_us; the first one is exact already. arm_us: error of the others
+  /// at most.
   void begin(std::vector<ClockLine> starts, double arm_us, double preferred_us);
 
   /// Whether the first one was taken.
@@ -40,10 +41,11 @@ class CandidateComparison {
   const ClockLine& clock() const { return candidates_[taken_]; }
   /// Whether no other one fits as well.
   bool alone() const { return nearest_us_ == 0; }
-  /// From the one that was taken to the nearest and to the farthest of the others that fit as well [us].
+  /// Distance from the offset taken to the nearest and to the farthest other one that fits as well [us].
   double nearest_us() const { return nearest_us_; }
   double farthest_us() const { return farthest_us_; }
-  /// From the one that was taken to the preferred offset, where that fits as well as it is [us]; else 0.
+  /// Distance from the offset taken to the preferred one, if that fits as well without refinement [us]; else
+  /// 0.
   double unsure_us() const { return unsure_us_; }
 
  private:

@@ -22,7 +22,7 @@ Correlation correlation_of(const Sums& s, std::ptrdiff_t lag, std::size_t least_
                            double least_b = 0) {
   if (s.n < static_cast<double>(std::max<std::size_t>(4, least_count))) return {0, 0, lag, s.n};
   const double va = s.aa - s.a * s.a / s.n, vb = s.bb - s.b * s.b / s.n;
-  // what is left of numbers that cancel to rounding is no variance
+  // the rounding left by numbers that cancel is no variance
   if (!(va > 1e-9 * s.aa && vb > 1e-9 * s.bb && va > least_a && vb > least_b)) return {0, 0, lag, s.n};
   const double r = std::clamp((s.ab - s.a * s.b / s.n) / std::sqrt(va * vb), -0.9999999, 0.9999999);
   return {r, std::atanh(r) * std::sqrt(s.n - 3), lag, s.n};
@@ -60,7 +60,7 @@ LagSearch::LagSearch(Series a, Series b, std::size_t least_count)
         std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size_)));
 }
 
-/// Two real series in one complex one: the values and whether they are known, or the squares.
+/// Packs two real series into one complex one: the values and whether they are known, or the squares.
 std::vector<LagSearch::Complex> LagSearch::packed(const Series& series, bool squares) const {
   std::vector<Complex> values(size_);
   for (std::size_t i = 0; i < series.size(); ++i)

@@ -20,19 +20,19 @@ struct Correlation {
   double count = 0;         ///< points that are known in both
 };
 
-/// Of a and the points [begin, end) of b, shifted by `lag`. Zero where fewer than least_count points are
-/// known in both.
+/// Correlation of a and the points [begin, end) of b, shifted by `lag`. Zero if fewer than least_count points
+/// are known in both.
 Correlation correlation_at(std::span<const double> a, std::span<const double> b, std::size_t begin,
                            std::size_t end, std::ptrdiff_t lag, std::size_t least_count);
 
-/// The most significant one over all lags at which the series overlap, in n log n by Fourier transforms; in
-/// steps, for one takes as long as n poses. Call next() until it returns true, then best().
+/// Finds the most significant correlation over all lags at which the series overlap, in n log n by Fourier
+/// transforms. In steps, as one takes as long as n poses: call next() until it returns true, then best().
 class LagSearch {
  public:
   LagSearch(Series a, Series b, std::size_t least_count);
   bool next();
   const Correlation& best() const { return best_; }
-  /// Of every lag, from first_lag() on; to the rounding of the transforms.
+  /// Significance of every lag, from first_lag() on, to the rounding of the transforms.
   const std::vector<float>& significances() const { return significances_; }
   std::ptrdiff_t first_lag() const { return -static_cast<std::ptrdiff_t>(b_.size()) + 1; }
   std::size_t size() const { return size_; }  ///< of a transform
@@ -58,8 +58,8 @@ struct Peak {
   std::ptrdiff_t lag = 0;
   double significance = 0;
 };
-/// The peaks that are at least `least` high, in the order of their lags. Between two of them the significance
-/// falls by `depth` and rises again: noise on top of a wide peak makes no peaks.
+/// The peaks of at least this height, in the order of their lags. Between two peaks the significance falls by
+/// `depth` and rises again, so noise on a wide peak makes no peaks.
 std::vector<Peak> peaks_of(std::span<const float> significances, std::ptrdiff_t first_lag, double least,
                            double depth);
 

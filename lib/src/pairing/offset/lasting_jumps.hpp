@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracking that is lost and found again elsewhere: one step that is not motion.
+// Jumps that last: tracking is lost and found again elsewhere, so one step is no motion.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ struct LastingJumpOptions {
   double outlier = 8;  ///< typical differences between a step and the mean of its neighbours
   /// Of the larger neighbour: a sensor that begins to move, or turns a corner, differs by less.
   double least_part = 1;
-  /// Of all steps. Where more look like jumps, the stream is one of steps: an odometry that repeats its
-  /// poses.
+  /// Largest part of the steps. If more look like jumps, the stream is one of steps: an odometry that repeats
+  /// its poses.
   double most = 0.05;
   double angle_floor = 1e-3, length_floor = 1e-3;  ///< differences that matter to no clock [rad, m]
 };
@@ -28,11 +28,11 @@ struct StepDifference {
   double neighbour_angle = 0, neighbour_length = 0;  ///< of the larger neighbour, in the same time
   bool known = false;
 };
-/// Of the step from pose i; not known at both ends, nor beside a gap of more than max_gap_us.
+/// Difference of the step from pose i; unknown at both ends, and beside a gap of more than max_gap_us.
 StepDifference step_difference(const Trajectory& trajectory, std::size_t i, std::int64_t max_gap_us);
 
-/// The trajectory whose steps that are lasting jumps are replaced by the mean velocity of both neighbours;
-/// the poses after them follow. differences: of each step.
+/// The trajectory with the mean velocity of both neighbours in place of each step that is a lasting jump;
+/// later poses follow. differences: of each step.
 Trajectory without_lasting_jumps(const Trajectory& trajectory, const std::vector<StepDifference>& differences,
                                  const LastingJumpOptions& options = {});
 

@@ -4,7 +4,7 @@
 
 namespace egocal::detail {
 
-/// A clock that drifts: offsets = level + slope * time, by least squares over the parts of a drive.
+/// Fit of a drifting clock: offsets = level + slope * time, by least squares over the parts of a drive.
 class LineFit {
  public:
   void add(double time, double offset) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t comparison_cost = 8;  ///< of a motion's four poses, in poses looked at
 
-/// Motion from one time to another on a stream's own clock, relative to at_us [us]; empty where not known.
+/// Motion from one time to another on the clock of the stream, relative to at_us [us]; empty: not known.
 std::optional<DualQuaternion> motion_at(const Trajectory& poses, std::int64_t at_us, double from, double to,
                                         double max_gap_us, const SynchroniserOptions& options = {}) {
   std::size_t before = first_before(poses, at_us, from);
@@ -116,7 +116,7 @@ void OffsetFits::sample(const ClockLine& clock, std::size_t begin, std::size_t e
   }
 }
 
-/// The extrinsic that suits the motions best, by weighted global solutions of (18), and what it leaves.
+/// Fits the extrinsic by weighted global solutions of (18), and sets its residuals.
 void OffsetFits::fit(DualQuaternion extrinsic) {
   std::vector<Left> left(count_);
   const Balance balance{1, options_.translation_weight};
@@ -165,9 +165,9 @@ std::optional<OffsetFits::Comparison> OffsetFits::compare(std::size_t first, std
     return std::min(median(std::move(of_one)), median(std::move(of_other))) + floor_.*square;
   };
   const double rotation = noise(&Left::rotation), translation = noise(&Left::translation);
-  // The noise of the rotations of a moves the end of the lever arm: a longer one leaves more, but is not
-  // worse for it. How much more depends on whose noise it is: the first must be worse both without it and at
-  // most.
+  // The noise of the rotations of a moves the end of the lever arm: a longer arm leaves larger residuals
+  // without being worse. By how much depends on whose noise it is, so the first clock must be worse both
+  // without this effect and with all of it.
   Comparison least;
   for (const double share : {0.0, 1.0}) {
     const auto loss = [&](const Fit& fit, std::size_t k) {

@@ -20,20 +20,20 @@ struct OffsetFitOptions {
   std::size_t least_parts = 6;  ///< fewer show no scatter
 };
 
-/// How well an extrinsic explains the motions of two streams under several clocks. Motions that were taken at
-/// the stamps cannot tell: a pose that is interpolated has less noise than one that was measured, and the
-/// errors of interpolation are the same in both streams where the stamps coincide. So these begin at times
-/// that are spread evenly between the poses of both.
+/// How well an extrinsic explains the motions of two streams under several clocks. Motions between stamps
+/// cannot tell: an interpolated pose has less noise than a measured one, and where the stamps coincide both
+/// streams have the same interpolation errors. So the motions begin at times spread evenly between the poses
+/// of both.
 class OffsetFits {
  public:
-  /// a, b: without glitches; both must outlive it, as must the schedule.
+  /// a, b: without glitches. Both and the schedule must outlive the object.
   OffsetFits(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options,
              std::int64_t max_gap_us, Schedule& schedule, const OffsetFitOptions& tuning = {});
 
-  /// Adds the work for one more clock to the schedule. start: an extrinsic to begin with.
+  /// Adds the work for one more clock to the schedule. start: an extrinsic to start from.
   void add(const ClockLine& clock, const DualQuaternion& start);
 
-  /// Of the motions known under both: how much worse the first clock is than the second.
+  /// By how much the first clock is worse than the second, over the motions known under both.
   struct Comparison {
     double gain = 0;    ///< mean logarithm of the ratio of the squares, above their noise
     double sigmas = 0;  ///< Student's t of the gains of the parts of the drive

@@ -105,7 +105,7 @@ void PartSearch::fit_line() {
   if (near.size() >= 3) std::tie(level, slope) = line_through(near);
   const double step = static_cast<double>(step_us_) / second_us;
   const double rate = slope * step;
-  // what three grid points at both ends cannot show is left to the refinement
+  // a drift that moves the offset by less than three grid points is left to the refinement
   if (!(std::abs(rate) < 2 * options_.part_drift) || std::abs(rate) * middle() < 3 * step)
     return done_(global, 0);
   done_(level + slope * middle(), rate);

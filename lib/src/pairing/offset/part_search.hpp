@@ -13,15 +13,15 @@
 
 namespace egocal::detail {
 
-/// The offset in each part of a long drive, outwards from the part in which both streams agree best. A clock
-/// that drifts smears the correlation of the whole drive.
+/// Finds the offset in each part of a long drive, outwards from the part in which both streams agree best. A
+/// drifting clock smears the correlation of the whole drive.
 class PartSearch {
  public:
   /// lag: in the middle of b where the clock drifts [grid steps]; rate: of the drift [s/s], 0: none is shown.
   using Done = std::function<void(double lag, double rate)>;
 
-  /// Angles of both streams on a grid of step_us. The work is added to the schedule; all references must
-  /// outlive it.
+  /// a, b: angles on a grid of step_us. The work is added to the schedule; all references must outlive the
+  /// object.
   PartSearch(const Series& a, const Series& b, std::int64_t step_us, const TimeOffsetOptions& options,
              Schedule& schedule, Done done);
 

@@ -11,8 +11,8 @@
 
 namespace egocal::detail {
 
-/// Pose at a time [us] relative to `at_us`, interpolated as pairing does; empty where not known. `from`:
-/// where to begin looking; moves on.
+/// Pose at a time [us] relative to `at_us`, interpolated as in pairing; empty: not known. `from`: index to
+/// search from; it is moved forwards.
 std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t at_us, double time_us,
                                       double max_gap_us, std::size_t& from,
                                       const SynchroniserOptions& options = {});

@@ -23,8 +23,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t interpolation_cost = 4;  ///< of a motion's two poses, in poses looked at
 
-/// Marks those that are `outlier` times further off than is typical of the motions of their size: what a
-/// wrong offset does to the large ones must not make outliers of them.
+/// Marks as outliers the motions that are `outlier` times farther off than is typical of their size. A wrong
+/// offset moves large motions most, which must not make them outliers.
 void mark_outliers(const std::vector<double>& sizes, const std::vector<double>& differences, double outlier,
                    double floor, const RefinementOptions& tuning, std::vector<char>& inlier) {
   std::vector<std::size_t> order;
@@ -144,7 +144,7 @@ MotionPair Refinement::pair(std::size_t which, std::size_t k) const {
   return keys_are_b_ ? MotionPair{other, key} : MotionPair{key, other};
 }
 
-/// First by the angles alone, for which no extrinsic is needed; then by the residuals, too.
+/// First by the angles alone, which need no extrinsic; then also by the residuals.
 void Refinement::find_outliers() {
   const std::size_t n = motions_.size();
   inlier_.assign(n, 0);
@@ -184,10 +184,10 @@ void Refinement::accumulate(std::size_t begin, std::size_t end) {
   }
 }
 
-/// The step in offset and rate (s, s/s) to the minimum of the cost, from how the costs of the parts of the
-/// drive change with the offset. The extrinsic follows: it is eliminated by its Schur complement, for a
-/// constant velocity with another offset looks like another lever arm. Standard deviations from the scatter
-/// of the parts: neighbouring motions share poses and errors.
+/// Newton step in offset and rate (s, s/s) to the minimum of the cost, from how the costs of the parts of the
+/// drive change with the offset. The extrinsic is eliminated by its Schur complement: at constant velocity
+/// another offset looks like another lever arm. Standard deviations come from the scatter of the parts, as
+/// neighbouring motions share poses and errors.
 Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balance) const {
   using Matrix86 = Eigen::Matrix<double, 8, 6>;
   using Matrix62 = Eigen::Matrix<double, 6, 2>;
@@ -262,7 +262,7 @@ Refinement::NewtonStep Refinement::newton_step(double arm, const Balance& balanc
   return result;
 }
 
-/// Goes to the minimum that three costs show, or ends the search there.
+/// Moves to the minimum that three costs show, or ends the search.
 void Refinement::conclude() {
   const Balance balance{1, options_.translation_weight};
   std::array<Solution, 3> solutions;
@@ -309,7 +309,7 @@ void Refinement::conclude() {
 
 void Refinement::report(double stddev, double rate, double rate_stddev) {
   TimeOffset result;
-  // whole microseconds first: dates leave no digits for parts of one
+  // whole microseconds first, as a date leaves no digits for fractions of them
   result.seconds = to_seconds(model_.at_a_us - model_.at_b_us) + 1e-6 * model_.shift_us;
   result.stddev = stddev;
   result.rate = rate;

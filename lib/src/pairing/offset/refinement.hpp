@@ -28,9 +28,9 @@ struct RefinementOptions {
   std::size_t blocks = 32;        ///< parts of the drive, for the standard deviation: as StrideBlocks has
   std::size_t size_classes = 4;   ///< of the motions, each with its own typical difference: quartiles
   std::size_t least_motions = 8;  ///< of all classes; fewer show nothing typical
-  /// The three offsets are at least this far apart, in periods of the slower stream. Half a period, as before
-  /// interpolation was smooth, is no parabola where a car is shaken at a third of the rate: offsets were up
-  /// to 16 ms wrong (test_time_offset.cpp).
+  /// Least distance of the three offsets, in periods of the slower stream. Half a period, as before
+  /// interpolation was smooth, is no parabola when a car is shaken at a third of the rate: offsets were wrong
+  /// by up to 16 ms (test_time_offset.cpp).
   double least_arm = 0.15;
 };
 
@@ -39,7 +39,7 @@ struct RefinementOptions {
 /// outliers at all three offsets are not looked at.
 class Refinement {
  public:
-  /// a, b: without glitches. arm: how far the model may be off [us]. The work is added to the schedule, which
+  /// a, b: without glitches. arm: error of the model at most [us]. The work is added to the schedule, which
   /// calls `done` at its end.
   Refinement(const Trajectory& a, const Trajectory& b, const TimeOffsetOptions& options,
              std::int64_t max_gap_us, Schedule& schedule, std::function<void()> done,

@@ -12,7 +12,8 @@
 
 namespace egocal::detail {
 
-/// Work in small pieces, done in the order in which it was added. What a piece adds is done right after it.
+/// Work in small pieces, done in the order in which it was added. Work that a piece adds is done right after
+/// that piece.
 class Schedule {
  public:
   /// cost: about as many poses as the piece looks at.
@@ -28,7 +29,7 @@ class Schedule {
     }
   }
 
-  /// Does at least one piece, and more until `cost` is spent. Returns whether nothing is left.
+  /// Does at least one piece, and more until `cost` is spent. True: nothing is left.
   bool run(std::size_t cost) {
     std::size_t spent = 0;
     while (take_added()) {

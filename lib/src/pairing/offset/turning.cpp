@@ -105,7 +105,7 @@ Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Deto
   if (angles.size() < 3) return trajectory;
   const double angle = options.outlier * median(std::move(angles)),
                length = options.outlier * median(std::move(lengths));
-  // below 1 how far a pose is off by angle or length, whichever is further
+  // how far off a pose is, by angle or length, whichever is larger; 1 is the limit
   const auto excess = [&](const Detour& one) {
     const double by_angle =
         one.angle / std::max({angle, options.least_detour * one.past_angle, options.angle_floor});
@@ -142,7 +142,7 @@ void limit_largest(Series& angles) {
   for (const double angle : angles)
     if (angle >= 0) known.push_back(angle);
   if (known.empty()) return;
-  // the largest 3 % are turns of a drive that is mostly straight, too: they keep some of their size
+  // the largest 3 % are also the turns of a mostly straight drive, so they keep some of their size
   const double most = order_statistic_in_place(known, known.size() * 97 / 100);
   const double limit = most > 0 ? 2 * most : *std::max_element(known.begin(), known.end());
   for (double& angle : angles) angle = std::min(angle, limit);
