@@ -12,14 +12,14 @@ namespace egocal::detail {
 struct BestReading {
   Explanation best;
   std::optional<Explanation> twin{};  ///< fits as well
-  /// Rotations of both files that are those of the inverse poses, where the motions show it but do not prove
-  /// it (CommonAxesOptions); whatever the best reading is.
+  /// Rotations of both files are those of the inverse poses: set if the motions show it but do not prove it
+  /// (CommonAxesOptions), whatever the best reading is.
   std::optional<Explanation> inverse_rotations{};
-  /// Axes of one file that are turned by a few degrees, likewise (TurnedAxesOptions).
+  /// Axes of one file are turned by a few degrees, likewise (TurnedAxesOptions).
   std::optional<Explanation> turned_axes{};
 };
 
-/// As given unless another reading is clearly better; with a scale of b where that is shown besides.
+/// The reading as given, unless another one is clearly better; with a scale of b if the motions show one.
 BestReading best_reading(const Evidence& evidence, const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

@@ -14,14 +14,15 @@ namespace egocal::detail {
 /// its target, by 1.5.
 constexpr double decisive_loss = 3;
 
-/// Both files inverted is no contradiction by itself: the answer is then that of the two odometry frames. It
-/// is certain where a vehicle's way points forward under it alone, or where as given both sensors are faster
-/// than anything. Noise that grows with the distance from the start supports the streams as given, but not
-/// the inverted ones: a mount that moved looks the same. Otherwise both answers stand.
+/// Finding inverted_both. Two inverted files do not contradict each other: their answer is the transform
+/// between the two odometry frames. The finding is certain if the vehicle moves forward under that reading
+/// alone, or if as given both sensors are impossibly fast. Noise that grows with the distance from the start
+/// supports the streams as given. It does not support inverted ones, because a mount that moved looks the
+/// same. In all other cases the finding is uncertain, and both answers are named.
 std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOptions& options);
 
-/// The order of the quaternions wrong in both streams alike: where both sensors move in nearly the same way
-/// that is nearly consistent. Short motions, of which there are many, show it.
+/// Finding quaternion_order_both: the same wrong order in both streams. It is nearly consistent if both
+/// sensors move in nearly the same way. Short motions, of which there are many, show it.
 std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options);
 
 }  // namespace egocal::detail

@@ -16,19 +16,20 @@ namespace egocal::detail {
 struct HeldStreamOptions {
   HeldOptions rows;
   std::size_t most = 700;  ///< held values that are looked at, evenly spread; as motions elsewhere
-  /// Least ratio of two medians: what the sensor moves while a value repeats, and what the motions between
-  /// new values leave unexplained. Rounding makes them alike. An arm that turns in one place hardly moves. A
-  /// held value is wrong by a whole step.
+  /// Least ratio of two medians: the motion of the sensor while a value repeats, to the residual of motions
+  /// between new values. With rounding alone the two are alike, and an arm that turns in one place hardly
+  /// moves; a held value is wrong by a whole step.
   double moved = 3;
 };
 
-/// held_a, held_b, certain: the positions, or the rotations, of a stream repeat although the sensor moves on,
-/// as the other stream says. With the answer of the poses that are new. max_gap: of interpolation [s].
-/// beside: what else was found; the other stream says so on the clock and at the scale that are certain.
+/// Findings held_a, held_b, certain: the positions, or the rotations, of a stream repeat (sample and hold)
+/// although the other stream shows that the sensor moves. The finding has the answer of the new poses alone.
+/// max_gap: of interpolation [s]. beside: the other findings; of these a certain clock and scale are applied.
 std::vector<Finding> held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
                                   const std::vector<Finding>& beside, const HeldStreamOptions& options = {});
 
-/// Puts them before the others, without those that are the same with less certainty: held values are late.
+/// Adds these findings before the others, and removes those that describe the same fault less precisely: held
+/// values are also late.
 void name_held_streams(const Evidence& evidence, double max_gap, const DiagnosisOptions& diagnosis,
                        std::vector<Finding>& findings);
 

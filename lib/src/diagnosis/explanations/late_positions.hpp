@@ -30,25 +30,25 @@ struct LatePositions {
   Comparison comparison;  ///< with the motions as they are
 };
 
-/// The stream whose late positions suit the motions better, and the other one where its own suit them about
-/// as well: positions of one that are late are those of the other one early, but for what the lever arm turns
-/// meanwhile.
+/// The stream whose late positions fit the motions better, and the other stream if it fits about as well.
+/// Late positions of one stream look like early positions of the other one, except for the turn of the lever
+/// arm in that time.
 struct LateOfEither {
   LatePositions best;
   std::optional<LatePositions> other;
   bool other_first = false;  ///< it is the likelier one
 };
 
-/// instants, given: the drive, and its motions with the extrinsic that suits them as they are. behind: the
-/// likelier stream where either may be the one; empty: the one whose positions are late, as filters delay.
-/// Empty where there are too few motions.
+/// instants: the drive. given: its motions as they are, with their extrinsic. behind: the stream to prefer if
+/// either may be the one; empty: the one whose positions are late, because filters delay. Returns nothing if
+/// there are too few motions.
 std::optional<LateOfEither> best_late_positions(const Instants& instants, const Explained& given,
                                                 const DiagnosisOptions& options,
                                                 std::optional<Side> behind = {},
                                                 const LatePositionsOptions& late = {});
 
-/// Whether the delay explains the drive, and more than chance. Along a straight way at one speed, and in
-/// steady turns, a delay cannot be seen: it looks like a longer lever arm.
+/// Whether the delay explains the drive, and better than by chance. On a straight path at constant speed and
+/// in steady turns a delay is not observable: it looks like a longer lever arm.
 bool certain(const LateOfEither& found, const DiagnosisOptions& options,
              const LatePositionsOptions& late = {});
 

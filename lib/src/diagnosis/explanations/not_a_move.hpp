@@ -31,10 +31,12 @@ std::vector<PoseReading> readings_of_both(const std::vector<Finding>& findings);
 std::optional<Finding> inverse_rotations_instead(const Evidence& evidence, const std::vector<Finding>& moves,
                                                  const Answered& answered, const DiagnosisOptions& options);
 
-/// Findings mount_moved as they are; or scale_change instead; or none, where a scale that wanders as those of
-/// odometries do explains the motions as well; or uncertain, where no mount moves under one of these readings
-/// of both streams, and one extrinsic explains the motions about as well as one for each part between the
-/// moves.
+/// Judges findings mount_moved by their rivals. They are
+/// - replaced by scale_change if that explains the motions better,
+/// - dropped if a scale that wanders as those of odometries do explains the motions as well,
+/// - made uncertain if, under one of the readings of_both of both streams, no mount moves and one extrinsic
+///   explains the motions about as well as one for each part between the moves,
+/// - otherwise returned as they are.
 std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOptions& pairing,
                                    const Evidence& evidence, const Answered& answered,
                                    const std::vector<PoseReading>& of_both, const DiagnosisOptions& options);

@@ -43,11 +43,9 @@ TurnSums sum_without(const std::vector<TurnSums>& parts, std::size_t without) {
   return sum;
 }
 
-/// Standard deviation of a direction, from the directions without each part: the jack-knife.
-double jackknife(const Eigen::Vector3d& all, const std::vector<Eigen::Vector3d>& without) {
-  double sum = 0;
-  for (const Eigen::Vector3d& one : without) sum += (one - all).squaredNorm();
-  const auto n = static_cast<double>(without.size());
+/// Standard deviation by the jack-knife over n parts. sum: of the squared changes that omitting each makes.
+double jackknife(double sum, std::size_t parts) {
+  const auto n = static_cast<double>(parts);
   return std::sqrt(sum * (n - 1) / n);
 }
 
@@ -68,10 +66,10 @@ TurningAxis axis_of(const std::vector<TurnSums>& parts, Eigen::Matrix3d TurnSums
   TurningAxis result;
   result.axis = main_axis(sum_without(parts, parts.size()).*squares, normal, &result.ratio);
   result.off = angle_between(result.axis, normal);
-  std::vector<Eigen::Vector3d> without;
+  double sum = 0;
   for (std::size_t k = 0; k < parts.size(); ++k)
-    without.push_back(main_axis(sum_without(parts, k).*squares, result.axis, nullptr));
-  result.stddev = jackknife(result.axis, without);
+    sum += (main_axis(sum_without(parts, k).*squares, result.axis, nullptr) - result.axis).squaredNorm();
+  result.stddev = jackknife(sum, parts.size());
   return result;
 }
 
@@ -110,8 +108,7 @@ NormalsApart apart_by_turns(const std::vector<TurnSums>& parts, const Eigen::Mat
     const double change = angle_between(without * normal_b, normal_a) - angle;
     sum += change * change;
   }
-  const auto n = static_cast<double>(parts.size());
-  return {angle, std::sqrt(sum * (n - 1) / n), alike};
+  return {angle, jackknife(sum, parts.size()), alike};
 }
 
 }  // namespace

@@ -13,19 +13,20 @@
 
 namespace egocal::detail {
 
-/// What may be wrong with one stream alone. Each is looked for when it is asked for, once: the evidence and
-/// the options must still be there. In planar mode nothing is.
+/// Faults of one stream alone. Each kind is searched for once, when it is first asked for, so the evidence
+/// and the options must outlive this object. In planar mode nothing is searched for.
 class WrongStream {
  public:
   WrongStream(const Evidence& evidence, Mode mode, const DiagnosisOptions& options)
       : evidence_(evidence), mode_(mode), options_(options) {}
 
-  /// Other contents than poses in metres, and unlike columns.
+  /// Contents other than poses in metres; and columns in unlike units.
   const std::vector<Finding>& contents();
   const std::vector<Finding>& columns();
-  /// Certain or not; empty where there are too few motions.
+  /// Late positions, certain or not; empty if there are too few motions.
   const std::optional<LateOfEither>& late();
-  /// What explains most of these, late positions, a lever arm that was turned wrongly, and turning too far.
+  /// The fault that explains most: contents, columns, late positions, a lever arm that was turned wrongly, or
+  /// turns that are too large.
   const std::vector<Finding>& best();
 
  private:
@@ -36,23 +37,23 @@ class WrongStream {
   std::optional<std::optional<LateOfEither>> late_;
 };
 
-/// A mount that moved by much looks like other axes, another clock or another recording: it is named instead
-/// of them where it explains more.
+/// Replaces findings of other axes, another clock or another recording by a large move of the mount if that
+/// explains more: such a move looks like each of them. Returns whether it did.
 bool replace_by_large_move(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                            const DiagnosisOptions& options, WrongStream& wrong,
                            std::vector<Finding>& findings);
 
-/// Axes that are turned alike in both files by any angle explain a part of what a mount that moved does, or
-/// of one that fell back: the moves are named instead where they explain more.
+/// Replaces axes that are turned alike in both files by moves of the mount if those explain more: such axes
+/// explain a part of one move, and of a move and the way back. Returns whether it did.
 bool replace_by_moves(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                       const DiagnosisOptions& options, std::vector<Finding>& findings);
 
-/// Other readings and clocks of streams that hold something else than poses explain a part of their motions:
-/// what explains more of them is named instead, and besides where it explains as much.
+/// Replaces other readings and clocks by other contents of a stream (no poses in metres) if those explain
+/// more of its motions. If they explain as much, both are named.
 void replace_by_contents(const DiagnosisOptions& options, WrongStream& wrong, std::vector<Finding>& findings);
 
-/// The same of what one stream alone explains more of than axes that are wrong in both, and of unlike columns
-/// that look like another scale.
+/// Likewise replaces axes that are wrong in both streams by a fault of one stream, and another scale by
+/// columns in unlike units.
 bool replace_by_wrong_stream(WrongStream& wrong, std::vector<Finding>& findings);
 
 }  // namespace egocal::detail
