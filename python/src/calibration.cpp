@@ -65,10 +65,8 @@ CalibrationOptions options_of(const std::string& method, const py::object& plane
     options.pairing.time_offset = to_number(time_offset, "time_offset", "seconds or 'auto'");
   }
   options.pairing.max_gap = max_gap;
-  if (!nominal.is_none()) {
+  if (!nominal.is_none())
     options.pairing.prior = to_dual_quaternion(to_pose(to_matrix4(nominal, "nominal"), "nominal"));
-    if (a) throw py::value_error("nominal: does not go with plane_a, plane_b, which take nothing from it");
-  }
   return options;
 }
 
@@ -113,7 +111,7 @@ stride: steps of the slower stream in one motion; None: chosen.
 weights: 'auto', 'equal' (the paper's plain method) or (rotation, translation).
 time_offset: added to the times of b [s], or 'auto'.
 max_gap: poses further apart are never interpolated between [s].
-nominal: (4, 4), taken where the motions show nothing.
+nominal: (4, 4), taken where the motions show nothing; with plane_a, plane_b the answer is compared with it.
 
 Returns a Calibration. Its verdict tells whether it can be used: an EgocalWarning is given where that is not
 'good', for certain findings (Calibration.findings) of one that is, and for what was assumed, repaired or lost while
