@@ -59,12 +59,114 @@ bool one_is_inverted(const std::vector<Finding>& findings, const DiagnosisOption
   return named("inverted_a") && named("inverted_b");
 }
 
-/// What is unknown by that counts as unknown.
-void add_lost_on_lines(const Evidence& evidence, Side side, double max_gap, const DiagnosisOptions& options,
-                       Answered& answered) {
-  const std::array<double, 6> lost = lost_on_lines(evidence, side, max_gap, answered, options);
-  for (std::size_t i = 0; i < 6; ++i)
-    answered.timing_stddev[i] = std::hypot(answered.timing_stddev[i], lost[i]);
+Fit fit_of(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options) {
+  return fit_at(evidence.given.explained.motions, to_pose(answered.T_a_b),
+                evidence.stride * evidence.instants.period, options.motions);
+}
+
+Diagnosis of_too_few_motions(const Evidence& evidence, const Answered& answered,
+                             const DiagnosisOptions& options) {
+  Diagnosis result = diagnose(answered, options);
+  result.fit = fit_of(evidence, answered, options);
+  result.findings.push_back(too_little_motion(evidence.given.explained.motions.all.size(), options));
+  judge(result, answered, {}, options);
+  return result;
+}
+
+/// What can be seen of the planes and of single poses, before anything is compared.
+void add_faults_of_poses(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
+                         std::vector<Finding>& findings) {
+  const bool metres = options.unit == LengthUnit::metres;
+  if (answered.problem.mode == Mode::planar)
+    for (Finding& finding : check_planes(evidence.given.explained, answered.problem.plane_a,
+                                         answered.problem.plane_b, metres, options.planes))
+      findings.push_back(std::move(finding));
+  // single steps show it; longer motions may all begin and end in one of the frames
+  if (std::optional<Finding> mixed = mixed_frames(evidence.instants, to_pose(answered.T_a_b), metres))
+    findings.insert(findings.begin(), *std::move(mixed));
+}
+
+/// That one stream was made from the other explains an answer that is the identity, too.
+void add_same_stream(const Answered& answered, const DiagnosisOptions& options, Diagnosis& result) {
+  StreamCheckOptions checks;
+  checks.metres = options.unit == LengthUnit::metres;
+  if (options.unit == LengthUnit::unknown) {
+    const double of_a_metre = options.tolerance_translation / DiagnosisOptions().tolerance_translation;
+    checks.close *= of_a_metre;
+    checks.known_translation *= of_a_metre;
+  }
+  if (std::any_of(result.findings.begin(), result.findings.end(), certain_of_either)) return;
+  for (const std::vector<Finding>& found : {made_from_each_other(result.fit), in_one_frame(answered, checks)})
+    if (!has(result.findings, "same_stream"))
+      result.findings.insert(result.findings.end(), found.begin(), found.end());
+}
+
+/// A speed that no vehicle has, unless the streams are read otherwise: the pace is that of inverse poses
+/// then.
+void add_impossible_pace(const Evidence& evidence, const DiagnosisOptions& options,
+                         std::vector<Finding>& findings) {
+  const auto reads_otherwise = [](const Finding& one) {
+    return one.certain && one.code.starts_with("inverted_");
+  };
+  if (std::any_of(findings.begin(), findings.end(), reads_otherwise)) return;
+  const double period = evidence.instants.period;
+  if (std::optional<Finding> pace =
+          impossible_pace(evidence.given.explained.motions, evidence.stride * period, period,
+                          options.unit == LengthUnit::metres, options.pace))
+    findings.insert(findings.begin(), *std::move(pace));
+}
+
+/// Poses on lines between measured ones. What that leaves unknown counts as unknown.
+void add_interpolated_streams(const Foreseen& foreseen, const DiagnosisOptions& options, Answered& answered,
+                              Diagnosis& result) {
+  const PairingOptions& pairing = foreseen.pairing;
+  for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b)) {
+    if (pairing.mode != Mode::planar) {
+      const Side side = finding.code.ends_with("_a") ? Side::a : Side::b;
+      const std::array<double, 6> lost =
+          lost_on_lines(foreseen.evidence, side, pairing.max_gap, answered, options);
+      for (std::size_t i = 0; i < 6; ++i)
+        answered.timing_stddev[i] = std::hypot(answered.timing_stddev[i], lost[i]);
+      result.timing_stddev = answered.timing_stddev;
+    }
+    if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
+  }
+}
+
+/// Whether the findings, or what replaces them, explain the drive.
+bool are_explained(const Foreseen& foreseen, const Answered& answered, const DiagnosisOptions& options,
+                   bool more_than_frozen, WrongStream& wrong_stream, std::vector<Finding>& findings) {
+  const Evidence& evidence = foreseen.evidence;
+  const auto is_explanation = [&](const Finding& one) {
+    return explains(one, options) && !(more_than_frozen && of_frozen_stream(one));
+  };
+  return replace_by_large_move(foreseen.pairing, evidence, answered, options, wrong_stream, findings) ||
+         replace_by_moves(foreseen.pairing, evidence, answered, options, findings) ||
+         replace_by_wrong_stream(wrong_stream, findings) || one_is_inverted(findings, options) ||
+         std::any_of(findings.begin(), findings.end(), is_explanation);
+}
+
+/// Faults that are named beside others, in the order in which they depend on each other.
+void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& options, WrongStream& wrong_stream,
+                        Answered& answered, Diagnosis& result) {
+  const Evidence& evidence = foreseen.evidence;
+  const PairingOptions& pairing = foreseen.pairing;
+  name_wrong_scale(evidence, pairing, answered, options, result.findings);
+  add_same_stream(answered, options, result);
+  add_impossible_pace(evidence, options, result.findings);
+  look_at_times(foreseen, answered, result);
+  name_small_scale(evidence, options, answered, result);
+  if (pairing.mode != Mode::planar)
+    name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
+  name_askew_rotations(evidence, answered, options, result.findings);
+  add_interpolated_streams(foreseen, options, answered, result);
+  name_held_streams(evidence, pairing.max_gap, options, result.findings);
+  // their single steps contradict each other, too
+  if (has(result.findings, "held_a") || has(result.findings, "held_b"))
+    std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("mixed_frames_"); });
+  // what else was found may be of the stamps alone
+  const std::vector<Finding> bursts = stamps_in_bursts(foreseen.a, foreseen.b, result.fit);
+  result.findings.insert(result.findings.begin(), bursts.begin(), bursts.end());
 }
 
 Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
@@ -76,23 +178,10 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (!evidence.instants.empty())
     answered.seconds = evidence.instants.time(evidence.instants.size() - 1) - evidence.instants.time(0);
   answered.platform = forward(heading(motions), options.heading) ? Platform::car : Platform::handheld;
-  if (motions.all.size() < options.motions.least) {
-    Diagnosis result = diagnose(answered, options);
-    result.fit =
-        fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period, options.motions);
-    result.findings.push_back(too_little_motion(motions.all.size(), options));
-    judge(result, answered, {}, options);
-    return result;
-  }
+  if (motions.all.size() < options.motions.least) return of_too_few_motions(evidence, answered, options);
   Diagnosis result;
-  result.fit =
-      fit_at(motions, to_pose(answered.T_a_b), evidence.stride * evidence.instants.period, options.motions);
+  result.fit = fit_of(evidence, answered, options);
   result.findings = foreseen.findings;
-  if (answered.problem.mode == Mode::planar)
-    for (Finding& finding :
-         check_planes(evidence.given.explained, answered.problem.plane_a, answered.problem.plane_b,
-                      options.unit == LengthUnit::metres, options.planes))
-      result.findings.push_back(std::move(finding));
   // while the sensors stand, noise would be compared with noise
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
@@ -104,66 +193,15 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (more_than_frozen)
     result.findings.insert(result.findings.begin(), foreseen.beside_frozen.begin(),
                            foreseen.beside_frozen.end());
-  const auto is_explanation = [&](const Finding& one) {
-    return explains(one, options) && !(more_than_frozen && of_frozen_stream(one));
-  };
-  // single steps show it; longer motions may all begin and end in one of the frames
-  if (std::optional<Finding> mixed =
-          mixed_frames(evidence.instants, to_pose(answered.T_a_b), options.unit == LengthUnit::metres))
-    result.findings.insert(result.findings.begin(), *std::move(mixed));
+  add_faults_of_poses(evidence, answered, options, result.findings);
   WrongStream wrong_stream(evidence, answered.problem.mode, options);
   replace_by_contents(options, wrong_stream, result.findings);
   const bool explained =
-      replace_by_large_move(pairing, evidence, answered, options, wrong_stream, result.findings) ||
-      replace_by_moves(pairing, evidence, answered, options, result.findings) ||
-      replace_by_wrong_stream(wrong_stream, result.findings) || one_is_inverted(result.findings, options) ||
-      std::any_of(result.findings.begin(), result.findings.end(), is_explanation);
+      are_explained(foreseen, answered, options, more_than_frozen, wrong_stream, result.findings);
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained)
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
-  name_wrong_scale(evidence, pairing, answered, options, result.findings);
-  StreamCheckOptions checks;
-  checks.metres = options.unit == LengthUnit::metres;
-  if (options.unit == LengthUnit::unknown) {
-    const double of_a_metre = options.tolerance_translation / DiagnosisOptions().tolerance_translation;
-    checks.close *= of_a_metre;
-    checks.known_translation *= of_a_metre;
-  }
-  if (std::none_of(result.findings.begin(), result.findings.end(), certain_of_either))
-    // that one stream was made from the other explains an answer that is the identity, too
-    for (const std::vector<Finding>& found :
-         {made_from_each_other(result.fit), in_one_frame(answered, checks)})
-      if (!has(result.findings, "same_stream"))
-        result.findings.insert(result.findings.end(), found.begin(), found.end());
-  const auto reads_otherwise = [](const Finding& one) {
-    return one.certain && one.code.starts_with("inverted_");
-  };
-  if (std::any_of(result.findings.begin(), result.findings.end(), reads_otherwise)) {
-    // the pace is that of inverse poses
-  } else if (std::optional<Finding> pace =
-                 impossible_pace(motions, evidence.stride * evidence.instants.period,
-                                 evidence.instants.period, options.unit == LengthUnit::metres, options.pace))
-    result.findings.insert(result.findings.begin(), *std::move(pace));
-  look_at_times(foreseen, answered, result);
-  name_small_scale(evidence, options, answered, result);
-  if (pairing.mode != Mode::planar)
-    name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
-  name_askew_rotations(evidence, answered, options, result.findings);
-  for (Finding& finding : interpolated_streams(foreseen.a, foreseen.b)) {
-    if (pairing.mode != Mode::planar) {
-      add_lost_on_lines(evidence, finding.code.ends_with("_a") ? Side::a : Side::b, pairing.max_gap, options,
-                        answered);
-      result.timing_stddev = answered.timing_stddev;
-    }
-    if (!has(result.findings, finding.code)) result.findings.push_back(std::move(finding));
-  }
-  name_held_streams(evidence, pairing.max_gap, options, result.findings);
-  // their single steps contradict each other, too
-  if (has(result.findings, "held_a") || has(result.findings, "held_b"))
-    std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("mixed_frames_"); });
-  // what else was found may be of the stamps alone
-  const std::vector<Finding> bursts = stamps_in_bursts(foreseen.a, foreseen.b, result.fit);
-  result.findings.insert(result.findings.begin(), bursts.begin(), bursts.end());
+  add_what_is_beside(foreseen, options, wrong_stream, answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   judge(result, answered, misfit, options);
   return result;
