@@ -35,13 +35,13 @@ struct Disagreements {
 };
 
 /// What the motions show, or the ground planes give, and its standard deviation.
-struct Known {
+struct SeenDirections {
   std::array<bool, 6> directions{};
   std::array<double, 6> stddev{};  ///< 0 of what the planes give
 };
 
-Known known_without_nominal(const Answered& answered) {
-  Known known{answered.observability.observable, answered.observability.stddev};
+SeenDirections known_without_nominal(const Answered& answered) {
+  SeenDirections known{answered.observability.observable, answered.observability.stddev};
   for (std::size_t k = 0; k < 6; ++k) {
     known.directions[k] = known.directions[k] && std::isfinite(known.stddev[k]);
     if (answered.problem.mode != Mode::planar || in_plane(answered.problem.plane_a, k)) continue;
@@ -51,8 +51,8 @@ Known known_without_nominal(const Answered& answered) {
   return known;
 }
 
-Disagreement disagreement(const Vector6d& difference, std::size_t first, double tolerance, const Known& known,
-                          const NominalCheckOptions& check) {
+Disagreement disagreement(const Vector6d& difference, std::size_t first, double tolerance,
+                          const SeenDirections& known, const NominalCheckOptions& check) {
   Disagreement result;
   double squares = 0, variance = 0;
   for (std::size_t k = first; k < first + 3; ++k) {
@@ -77,7 +77,7 @@ Disagreements disagreements_of(const Pose& nominal, const Answered& answered, co
   problem.prior = to_dual_quaternion(nominal);
   const Vector6d difference = frame_a_difference(solve(problem, Method::dual).T_a_b, *problem.prior);
   const ObservabilityOptions drawing;
-  const Known known = known_without_nominal(answered);
+  const SeenDirections known = known_without_nominal(answered);
   Disagreements result;
   // lengths of an unknown unit cannot be compared with metres
   if (options.unit != LengthUnit::unknown)
