@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/other_contents_steps.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -212,12 +213,9 @@ Finding worded_contents(const Fitted& fitted) {
   return finding;
 }
 
-}  // namespace
-
-std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOptions& options,
-                                    const OtherContentsOptions& search) {
+std::vector<Finding> of_catalogue(const Evidence& evidence, const DiagnosisOptions& options,
+                                  const OtherContentsOptions& search) {
   const Explained& given = evidence.given.explained;
-  if (given.motions.all.size() < options.motions.least) return {};
   const auto span = static_cast<std::size_t>(given.motions.stride);
   const std::size_t each = std::max<std::size_t>(1, given.motions.all.size() / options.motions.first_look);
   const bool agree = explains(evidence.scaled.explained, options);
@@ -265,6 +263,18 @@ std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOpt
     findings.push_back(worded_contents(one));
   }
   return findings;
+}
+
+}  // namespace
+
+std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOptions& options,
+                                    const OtherContentsOptions& search) {
+  if (evidence.given.explained.motions.all.size() < options.motions.least) return {};
+  std::vector<Finding> contents = of_catalogue(evidence, options, search);
+  std::vector<Finding> steps = worded_steps(turned_steps(evidence, options), evidence, options);
+  if (contents.empty() || (!steps.empty() && steps.front().improvement > contents.front().improvement))
+    return steps.empty() ? contents : steps;
+  return contents;
 }
 
 }  // namespace egocal::detail
