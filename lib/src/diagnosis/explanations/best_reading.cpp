@@ -27,8 +27,7 @@ struct Ranked {
 
 std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptions& options) {
   std::vector<std::pair<double, std::size_t>> looks;
-  std::vector<Candidate> candidates = common_mistakes();
-  for (const Candidate& two : combined_mistakes()) candidates.push_back(two);
+  const std::vector<Candidate> candidates = common_mistakes();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (std::string_view(candidates[i].code) == "inverted_both") continue;  // decided by itself
     const Motions motions = motions_of(evidence.instants, candidates[i].a, candidates[i].b, evidence.stride,
@@ -46,6 +45,18 @@ std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptio
     ranked.push_back({std::move(here), std::move(scaled)});
   }
   return ranked;
+}
+
+/// Two mistakes in one stream, which are looked for where none alone explains the drive: of those that do.
+std::vector<Ranked> combined_readings(const Evidence& evidence, const DiagnosisOptions& options) {
+  std::vector<Ranked> readings;
+  for (const Candidate& candidate : combined_mistakes()) {
+    Explanation here = explained(evidence, candidate.code, candidate.a, candidate.b, options);
+    if (here.explained.motions.all.empty()) continue;
+    Explanation scaled = with_scale(here, options);
+    if (explains(scaled.explained, options)) readings.push_back({std::move(here), std::move(scaled)});
+  }
+  return readings;
 }
 
 bool inverts_one(const Explanation& explanation) {
@@ -81,6 +92,8 @@ BestReading best_common_mistake(const Evidence& evidence, const DiagnosisOptions
     return better(compare(evidence.scaled.explained, reading.scaled.explained), 0.01, options);
   };
   const auto fits = [&](const Ranked& reading) { return explains(reading.scaled.explained, options); };
+  if (!explains(evidence.scaled.explained, options) && std::none_of(readings.begin(), readings.end(), fits))
+    for (Ranked& combined : combined_readings(evidence, options)) readings.push_back(std::move(combined));
   const auto any_inverted = [&](const auto& holds) {
     return std::any_of(readings.begin(), readings.end(),
                        [&](const Ranked& reading) { return inverts_one(reading.as_is) && holds(reading); });

@@ -180,6 +180,10 @@ class JumpsOfHalf {
     if (frame.noise > options_.most_noise) return std::nullopt;
     frame.side = contrast(Side::a) > contrast(Side::b) ? Side::a : Side::b;
     frame.share = share_of(steps_, labels_);
+    // two jumps for each of its rows
+    const auto jumped = static_cast<double>(std::count_if(labels_.begin(), labels_.end(), jumps));
+    if (2 * frame.share * static_cast<double>(labels_.size()) > options_.most_in_a_row * jumped)
+      return std::nullopt;
     measure(frame);
     frame.certain = across_the_way(frame) || constant(frame);
     return frame;

@@ -16,7 +16,7 @@ namespace egocal::detail {
 /// of the poses 1 m, 2 deg or 120 deg from the others, by chance or by turns, and two drives of 60 s with a
 /// second publisher of 1 to 3 Hz. None is found in these as they are, nor with noise on each pose (1 cm to 1
 /// m, four kinds), 5 to 30 % outliers, jumps that last, held values, rounded positions or three frames. A
-/// mount that rattles between two places is found as well: it has two frames.
+/// mount that rattles at nearly the rate of the poses is found as well: it has two frames.
 struct FrameJumpsOptions {
   std::size_t most = 2000;  ///< single steps that are looked at, for time
   std::size_t run = 100;    ///< of these follow one another; the runs are spread evenly over the drive
@@ -28,6 +28,9 @@ struct FrameJumpsOptions {
   /// interpolated between two frames 0.75 and more. Noise of a pose that is uniform in one direction: 0.69.
   double least_explained = 0.75;
   double least_jumps = 0.1;  ///< of the steps; below, pairing omits the poses as outliers
+  /// Poses in a row of the frame that has fewer, in the mean: 1 of a slower publisher, 1.1 to 2 by chance. A
+  /// mount that moves between two places stays there for longer.
+  double most_in_a_row = 3;
   /// Of the jumps that follow another one, those to the other frame: 0.95 to 1, by chance 0.5.
   double least_alternating = 0.9;
   /// Median residual of steps that stay, and deviation of the jumps from each other, over the offset: 0.1 %
