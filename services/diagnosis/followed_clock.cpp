@@ -14,7 +14,10 @@ namespace egocal::services {
 
 void FollowedClock::add(std::int64_t time_us, std::int64_t offset_us) {
   const std::size_t n = offsets_.size();
-  if (n > 0 && time_us <= offsets_.back().time_us) return;
+  if (n > 0 && time_us <= offsets_.back().time_us) {
+    if (time_us == offsets_.back().time_us) offsets_.back().offset_us = offset_us;
+    return;
+  }
   const auto changed = [&](std::int64_t from, std::int64_t to) {
     return std::abs(to - from) >= options_.least_change_us;
   };

@@ -31,7 +31,8 @@ class FollowedClock {
  public:
   explicit FollowedClock(const FollowedClockOptions& options = {}) : options_(options) {}
 
-  /// The offset in force at a time of a [us]. Times that do not ascend are ignored.
+  /// The offset in force at a time of a [us]. Of equal times the last offset counts; earlier
+  /// times are ignored.
   void add(std::int64_t time_us, std::int64_t offset_us);
   void clear() { offsets_.clear(); }
   /// The poses of b with stamps such that the newest offset holds for all of them. Before the first offset

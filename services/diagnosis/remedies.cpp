@@ -45,7 +45,10 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
                                  " has to send the inverse: poses of the sensor in its start frame."
                            : "Make sure that the odometry sends poses of the sensor in its start frame.";
   if (code.starts_with("quaternion_order_"))
-    return "The odometry of " + one() + " has to fill quat in the order w x y z.";
+    return "The odometry of " + one() + " has to fill quat in the order w x y z." +
+           (finding.remedy.find("--invert-") != std::string::npos
+                ? " It also has to send the inverse: poses of the sensor in its start frame."
+                : "");
   if (code == "scale_change")
     return "Live, a session has one scale: reset the pair (key r in the monitor) after it has changed. In a "
            "recording egocal solve --scale-b auto finds the factors, --scale auto where " +

@@ -177,5 +177,24 @@ TEST(MixedFrames, ASlowStreamIsNoneOfTwoFrames) {
   }
 }
 
+// Stamps that are late by turns may look like two frames. Such a finding ended the search, and a mount that
+// had turned by 2 deg was not named: the verdict was good.
+TEST(MixedFrames, WhatMayBeLateStampsHidesNoMove) {
+  SimulationOptions simulation;
+  simulation.terrain = Terrain::rough;
+  simulation.roughness = 0.2;
+  simulation.relative_noise = 0.001;
+  simulation.poses = 1201;
+  simulation.seed = 3;
+  simulation.faults.resize(2);
+  const Pose bump{rotation_exp({0, 0, 2 * std::numbers::pi / 180}), Eigen::Vector3d::Zero()};
+  simulation.faults[1].mount_changes = {{100, 100, bump}};
+  testing::Streams streams = testing::simulated_drive(simulation);
+  for (std::size_t i = 1; i < streams.b.size(); i += 2) streams.b[i].time_us += 20'000;
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+  EXPECT_NE(testing::find(calibration, "mount_moved"), nullptr) << calibration.reason;
+}
+
 }  // namespace
 }  // namespace egocal::test_mixed_frames

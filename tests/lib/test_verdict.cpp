@@ -147,6 +147,7 @@ TEST(Verdict, AClockContradictsTheAnswerBeyondWhatItStates) {
     Answered answered;
     answered.observability.observable.fill(true);
     answered.observability.stddev.fill(stddev);
+    answered.timing_stddev[0] = 1.5;  // what the clock moves is stated as well
     Diagnosis diagnosis;
     Finding finding;
     finding.code = "clock_offset";

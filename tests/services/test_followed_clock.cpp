@@ -55,6 +55,16 @@ TEST(FollowedClock, AChangeOfTheOffsetIsWhereItWas) {
   EXPECT_EQ(corrected[1].time_us, start_us + 90 * second);
 }
 
+// Of a pair whose scale is found, a problem may come again with a newer offset.
+TEST(FollowedClock, TheLastOffsetOfOneTimeCounts) {
+  FollowedClock clock;
+  clock.add(start_us, 1000);
+  clock.add(start_us, 3000);
+  clock.add(start_us - 1, 9000);
+  ASSERT_EQ(clock.offsets().size(), 1u);
+  EXPECT_EQ(clock.offsets().front().offset_us, 3000);
+}
+
 TEST(FollowedClock, PosesNeverRunBackwards) {
   FollowedClock clock;
   for (std::int64_t i = 0; i < 20; ++i) clock.add(start_us + i * second / 10, i < 10 ? 2 * second : 0);

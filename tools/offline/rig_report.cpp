@@ -315,7 +315,7 @@ std::vector<std::string> tree_remarks(const RigReport& report) {
     const auto index = static_cast<std::size_t>(pair - report.solution.pairs.begin());
     Calibration calibration = report.pairs[index];
     if (!edge.usable) {  // in the words of the rig
-      calibration.verdict = Verdict::contradictory;
+      calibration.verdict = std::max(calibration.verdict, Verdict::doubtful);
       calibration.reason = edge.reason;
       calibration.findings.clear();
     }

@@ -69,7 +69,10 @@ std::string cure(const Finding& found, const RigWords& words) {
     return found.certain ? "Give the inverse of each pose of " + whose + ": sensor to world."
                          : "Make sure that the poses of " + whose + " are sensor-to-world.";
   if (code.starts_with("quaternion_order_"))
-    return "Give the quaternions of " + whose + " in the order that their format says.";
+    return "Give the quaternions of " + whose + " in the order that their format says." +
+           (found.remedy.find("--invert-") != std::string::npos
+                ? " Its poses are world-to-sensor: give the inverse of each."
+                : "");
   if (code == "scale_change")
     return "Calibrate " + words.name_a + " and " + words.name_b +
            " by themselves: solve A B --scale-b auto finds the factors, --scale auto where " + words.name_b +

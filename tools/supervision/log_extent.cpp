@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "egocal/bus/odometry.hpp"
+#include "egocal/limits.hpp"
 #include "egocal/pairing/stream.hpp"
 
 namespace egocal::tools {
@@ -44,14 +45,16 @@ class Counting {
 /// When the messages of a log were recorded, by sensor.
 class Silences {
  public:
+  /// A damaged time is none of a message.
   void add(const std::string& name, std::int64_t time_us, LogExtent::Stream& stream) {
+    if (!plausible_relative_time(time_us) || (begin_us_ && time_us - end_us_ > longest_us)) return;
     if (!begin_us_) begin_us_ = end_us_ = time_us;
     end_us_ = std::max(end_us_, time_us);
     ++stream.messages;
     keep_longest(last_us_.try_emplace(name, *begin_us_).first->second, time_us, stream);
   }
   void finish(LogExtent& extent) {
-    for (auto& [name, stream] : extent.sensors) keep_longest(last_us_.at(name), end_us_, stream);
+    for (auto& [name, last_us] : last_us_) keep_longest(last_us, end_us_, extent.sensors.at(name));
   }
 
  private:
@@ -63,6 +66,8 @@ class Silences {
     last_us = std::max(last_us, time_us);
   }
 
+  /// Between messages of a log, whatever sensor they are of: a longer step is a damaged time.
+  static constexpr std::int64_t longest_us = std::int64_t{24} * 3600 * 1'000'000;
   std::optional<std::int64_t> begin_us_;
   std::int64_t end_us_ = 0;
   std::map<std::string, std::int64_t> last_us_;  ///< by sensor

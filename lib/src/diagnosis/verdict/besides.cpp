@@ -15,8 +15,10 @@
 namespace egocal::detail {
 
 bool explains(const Finding& finding, const DiagnosisOptions& options) {
+  // late stamps look like two frames, and hide neither a move nor a scale
+  const bool may_be_beside = finding.code == "inverted_both" || finding.code.starts_with("mixed_frames_");
   return certain_of_either(finding) || finding.code == "samples" ||
-         (finding.code != "inverted_both" && finding.improvement > options.overwhelming);
+         (!may_be_beside && finding.improvement > options.overwhelming);
 }
 
 void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, const Answered& answered,

@@ -154,7 +154,11 @@ bool misread(const Finding& finding) {
 bool within_what_is_stated(const Finding& finding, const Answered& answered) {
   const bool unknown =
       finding.code == "scale" || finding.code == "clock_offset" || finding.code == "clock_drift";
-  return unknown && in_stated_stddevs(finding, answered) < two_sided_95;
+  if (!unknown) return false;
+  // what such a finding moves is in there already
+  Answered by_motions = answered;
+  by_motions.timing_stddev = {};
+  return in_stated_stddevs(finding, by_motions) < two_sided_95;
 }
 
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
@@ -251,8 +255,10 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
   const Opinion fit = of_fit(misfit, answered, options);
   // an answer that is wrong itself, or noise, contradicts a right nominal value
-  const auto contradicts_itself = [](const Finding& one) {
-    return one.code == "too_little_motion" || one.code == "mount_moved" || one.code == "scale_change" ||
+  const auto contradicts_itself = [&](const Finding& one) {
+    const bool moved =
+        one.code == "mount_moved" && !slight_move(one, far_off(one, answered, options), diagnosis.findings);
+    return one.code == "too_little_motion" || moved || one.code == "scale_change" ||
            (certain_of_either(one) && !stream_fault(one) && !undersampling(one));
   };
   if (fit.verdict < Verdict::doubtful &&

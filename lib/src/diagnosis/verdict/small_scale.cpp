@@ -14,6 +14,7 @@
 #include "diagnosis/goal/goal.hpp"
 #include "diagnosis/verdict/besides.hpp"
 #include "diagnosis/verdict/far_off.hpp"
+#include "diagnosis/verdict/foreseen.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
@@ -192,10 +193,13 @@ void name_small_scale(const Evidence& evidence, const DiagnosisOptions& options,
                       Diagnosis& result, const SmallScaleOptions& small) {
   const auto estimated = [](double stddev) { return stddev > 0; };
   if (std::any_of(answered.scale_stddev.begin(), answered.scale_stddev.end(), estimated)) return;
-  for (const Finding& finding : result.findings)
-    if (explains(finding, options) || finding.code == "mount_moved" || finding.code == "scale_change" ||
-        finding.code == "units" || finding.code == "too_little_motion")
+  for (const Finding& finding : result.findings) {
+    // right streams, whose answer is less certain than their motions say
+    const bool right = finding.code.starts_with("undersampled_") || of_frozen_stream(finding);
+    if ((!right && explains(finding, options)) || finding.code == "mount_moved" ||
+        finding.code == "scale_change" || finding.code == "units" || finding.code == "too_little_motion")
       return;
+  }
   if (!explains(evidence.scaled.explained, options)) return;
   const std::optional<ScaleOfAnswer> scale = scale_of_answer(evidence, answered, options, small);
   if (!scale) return;
