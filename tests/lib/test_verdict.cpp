@@ -143,7 +143,7 @@ TEST(Verdict, AClearlyWrongScaleIsDoubtfulWhereItMovesTheAnswerByMoreThanItState
 
 // Half a minute on rails knows x to metres, and a clock that noise showed was a contradiction.
 TEST(Verdict, AClockContradictsTheAnswerBeyondWhatItStates) {
-  const auto verdict_of = [](double stddev, double improvement) {
+  const auto verdict_of = [](double stddev, double improvement, double offset = 0.02) {
     Answered answered;
     answered.observability.observable.fill(true);
     answered.observability.stddev.fill(stddev);
@@ -151,6 +151,7 @@ TEST(Verdict, AClockContradictsTheAnswerBeyondWhatItStates) {
     Diagnosis diagnosis;
     Finding finding;
     finding.code = "clock_offset";
+    finding.value = offset;
     finding.certain = true;
     finding.improvement = improvement;
     finding.T_a_b = Pose{Eigen::Quaterniond::Identity(), {1.5, 0, 0}};
@@ -161,6 +162,7 @@ TEST(Verdict, AClockContradictsTheAnswerBeyondWhatItStates) {
   EXPECT_EQ(verdict_of(0.5, 2), Verdict::contradictory);
   EXPECT_EQ(verdict_of(1, 2), Verdict::incomplete);
   EXPECT_EQ(verdict_of(1, 1000), Verdict::contradictory) << "the motions say so whatever the answer states";
+  EXPECT_EQ(verdict_of(1, 2, -3.3), Verdict::contradictory) << "no noise shows that: two drives";
 }
 
 // Noise that wanders looks like a mounting that moves a little. Where the two cannot be told apart, the

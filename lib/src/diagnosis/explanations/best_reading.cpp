@@ -54,7 +54,10 @@ std::vector<Ranked> combined_readings(const Evidence& evidence, const DiagnosisO
     Explanation here = explained(evidence, candidate.code, candidate.a, candidate.b, options);
     if (here.explained.motions.all.empty()) continue;
     Explanation scaled = with_scale(here, options);
-    if (explains(scaled.explained, options)) readings.push_back({std::move(here), std::move(scaled)});
+    // far from the origin any residual is a small part of an inverse motion
+    if (explains(scaled.explained, options) &&
+        loss_in_metres(evidence.given.explained, scaled.explained) <= 0)
+      readings.push_back({std::move(here), std::move(scaled)});
   }
   return readings;
 }

@@ -148,14 +148,13 @@ bool misread(const Finding& finding) {
          !finding.code.starts_with("held_") && !stream_fault(finding) && !undersampling(finding);
 }
 
-/// One more unknown, with which the motions fit better. It contradicts the answer only beyond what that
-/// states to be uncertain: half a minute on rails knows x to metres, and noise alone may show a clock that is
-/// off by 20 ms.
-bool within_what_is_stated(const Finding& finding, const Answered& answered) {
-  const bool unknown =
-      finding.code == "scale" || finding.code == "clock_offset" || finding.code == "clock_drift";
-  if (!unknown) return false;
-  // what such a finding moves is in there already
+/// A clock that is off by little, which noise alone may show: half a minute on rails knows x to metres, and
+/// fits better with 17 ms. It contradicts the answer only beyond what that states to be uncertain.
+bool within_what_is_stated(const Finding& finding, const Answered& answered,
+                           const ClockCheckOptions& options) {
+  if (finding.code != "clock_offset" || !finding.value || !(std::abs(*finding.value) <= options.widest))
+    return false;
+  // what the clock moves is in there already
   Answered by_motions = answered;
   by_motions.timing_stddev = {};
   return in_stated_stddevs(finding, by_motions) < two_sided_95;
@@ -201,7 +200,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     Verdict verdict = Verdict::good;
     const double far = far_off(finding, answered, options);
     const bool certain = certain_of_either(finding);
-    const double apart = certain && !within_what_is_stated(finding, answered) ? far : 0;
+    const double apart = certain && !within_what_is_stated(finding, answered, options.clock_check) ? far : 0;
     if (finding.code == "too_little_motion")
       verdict = Verdict::incomplete;
     else if (undersampling(finding))
