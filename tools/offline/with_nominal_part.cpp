@@ -16,7 +16,7 @@ void word_for_part(const Pose& part, Calibration& calibration) {
     if (finding.code != "nominal") continue;
     const bool is_reason = calibration.reason == finding.message;
     FindingWords words = finding.words;
-    words.claim = "Of the nominal value is given: " + known_in_words(part) + ". " + words.claim;
+    words.claim = "Only " + known_in_words(part) + " of the nominal value is given. " + words.claim;
     say(finding, std::move(words));
     if (is_reason) calibration.reason = finding.message;
   }
