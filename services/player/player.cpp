@@ -292,7 +292,7 @@ void Player::play() {
 void Player::watch_over() {
   const std::int64_t now = loop_.mono_us();
   show_progress(false);
-  // without a network nobody can be heard, so the waiting times start when it is back
+  // without a network no message arrives, so the waiting times start when it is back
   if (!loop_.network_error().empty()) started_mono_us_ = progress_mono_us_ = now;
   say_that_it_waits(now);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {

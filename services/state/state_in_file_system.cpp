@@ -83,7 +83,7 @@ class StateInFileSystem final : public StateMedium {
   std::optional<Found> read(const Expected& expected) override { return whole(file_, expected, options_); }
 
   void replace(std::span<const std::byte> bytes) override {
-    // the folder existed at the start, and whoever removed it did not mean to lose the current state
+    // the folder existed at the start; its removal was not meant to lose the current state
     std::error_code none;
     std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), none);
     lock_.confirm();

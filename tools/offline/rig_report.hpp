@@ -17,7 +17,7 @@ std::string rig_text(const RigReport& report);
 /// Of a rig whose answer should not be used: why, one sentence.
 std::string contradiction(const RigReport& report);
 
-/// What whoever writes the tree (tree_of()) must know, one line each, for standard error; empty: nothing.
+/// Remarks on the tree (tree_of()) for standard error, one line each.
 std::vector<std::string> tree_remarks(const RigReport& report);
 
 }  // namespace egocal::tools

@@ -16,8 +16,8 @@ namespace egocal::tools {
 /// What was calibrated while somebody watched.
 struct Outcome {
   bool answered = false;  ///< any solver, for any pair
-  /// Some pair's motions contradict each other, miss the goal, or are not in its answer, or nobody has judged
-  /// the answer that they moved it to.
+  /// The answer of some pair should not be used: its motions contradict each other, it misses the goal, it
+  /// lacks the end of the log, or it has moved since the last verdict.
   bool unusable = false;
   /// Of each pair verdict, proof and transform, or that there is no answer. Of a bus that was watched and on
   /// which nothing was answered: why, in one line, or empty.
@@ -32,8 +32,8 @@ struct OutcomeOptions {
   /// The end of a log is reported as missing in an answer where the pair's last motion is farther from it
   /// [s], and so is a hole in its middle that is longer. As BusNewsOptions::standing.
   double standing = 5;
-  /// A sensor is reported as silent where it sends nothing for longer than `standing`, and than so many times
-  /// the mean time between two of its messages: slow sensors are not silent.
+  /// A sensor is reported as silent if it sends nothing for longer than `standing`, and for longer than this
+  /// many times the mean time between two of its messages. So slow sensors are not silent.
   double silent_periods = 10;
   /// What is missing in many short pieces is reported from this part of the drive on: single messages may be
   /// lost or late.

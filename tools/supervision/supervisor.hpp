@@ -49,7 +49,7 @@ struct SupervisorOptions {
 /// Returns 0 after a regular end, and 1 if a program could not be started (reported on standard error).
 /// Throws Error if an output file cannot be opened before the first program starts; then none is started. If
 /// it cannot be opened later, the output of that program goes to /dev/null. The caller must ignore SIGPIPE:
-/// otherwise a report that nobody reads ends this process. The programs do not inherit that.
+/// otherwise a report to a closed pipe ends this process. The programs do not inherit that.
 int supervise(const std::vector<Program>& programs, const SupervisorOptions& options);
 
 }  // namespace egocal::tools

@@ -4,6 +4,9 @@
 
 namespace egocal::detail {
 
+/// 95 % of a normal distribution is within this many standard deviations (mathematics).
+inline constexpr double two_sided_95 = 1.96;
+
 /// Probability that a variable with the F distribution of (d1, d2) degrees of freedom exceeds f. 1 for f <= 0
 /// or no degrees of freedom; to about 1e-12.
 double f_exceeded(double f, double d1, double d2);

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace egocal::detail {
@@ -24,6 +26,14 @@ Number order_statistic_in_place(std::vector<Number>& values, std::size_t place) 
 template <typename Number>
 Number median(std::vector<Number> values) {
   return values.empty() ? Number{} : order_statistic_in_place(values, values.size() / 2);
+}
+
+/// Median distance of the (finite) numbers from their median, as a part of the median; of numbers near zero
+/// as a part of 1e-12.
+inline double relative_deviation(std::vector<double> values) {
+  const double typical = median(values);
+  for (double& value : values) value = std::abs(value - typical);
+  return median(std::move(values)) / std::max(typical, 1e-12);
 }
 
 }  // namespace egocal::detail

@@ -16,11 +16,12 @@ struct TurnedStepsOptions {
   /// Of a row, by which the part that suits the motions best may differ from what a mistake makes, at most:
   /// 0.15 in those that were found.
   double near = 0.2;
-  /// It is at least so many of its standard deviations (jack-knife) from none; the finding is certain from
-  /// `certain` on. Real pairs reach 1.7: the long way of cars drifts as if they were turned by 0.4 of a row.
+  /// Least distance of the part from zero, in its standard deviations (jack-knife). From `certain` on the
+  /// finding is certain. Real pairs reach 1.7: the long way of cars drifts as if they were turned by 0.4 of a
+  /// row.
   double sigmas = 3, certain = 5;
   double most_sigmas = 3;  ///< that it may be from what the mistake makes
-  unsigned blocks = 16;    ///< consecutive parts of the drive that are left out one by one, at most
+  unsigned blocks = 16;    ///< parts of the drive that the jack-knife omits in turn, at most
   unsigned fewest = 4;     ///< fewer say nothing of a standard deviation
   /// Mean logarithm by which the squared residuals of the translations [m^2] are smaller then, at least.
   /// Real pairs reach 0.03, mistakes that move the answer by decimetres 0.15 to 5.

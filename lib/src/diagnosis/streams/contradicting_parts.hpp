@@ -26,8 +26,8 @@ struct ContradictingPartsOptions {
   /// by more. 5 % wrong poses in both streams spoil the median of a tenth, as each also spoils those that are
   /// interpolated from it (2 of 36 short clean drives).
   double quantile = 0.25;
-  /// A part contradicts where that is so many times more than in the median part, in degrees and for each
-  /// degree that is turned. Clean drives: 3.2 (116 of an independent simulator).
+  /// A part contradicts if its quantile is this many times that of the median part, both in degrees and for
+  /// each degree that is turned. Clean drives: 3.2 (116 of an independent simulator).
   double times = 10;
   /// And at least [rad]: as large as what users call wrong.
   double least_rotation = std::numbers::pi / 180;

@@ -39,12 +39,6 @@ struct Scatter {
   double of_residuals = 0, of_parts = 0;
 };
 
-double scatter_of(std::vector<double> values) {
-  const double typical = median(values);
-  for (double& value : values) value = std::abs(value - typical);
-  return median(std::move(values)) / std::max(typical, 1e-12);
-}
-
 class Patterns {
  public:
   Patterns(const Instants& instants, const MixedFramesOptions& options)
@@ -76,7 +70,7 @@ class Patterns {
       residuals.push_back(of(left(i, 1, T_a_b)).*half);
       parts.push_back(residuals.back() / std::max(of(motion(side, i, span)).*half, 1e-12));
     }
-    return {scatter_of(residuals), scatter_of(parts)};
+    return {relative_deviation(std::move(residuals)), relative_deviation(std::move(parts))};
   }
   /// Residual of single steps perpendicular to the motion of b over `span` instants [m].
   double across(std::size_t span, const Pose& T_a_b) const {

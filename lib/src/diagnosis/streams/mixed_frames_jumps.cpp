@@ -151,12 +151,6 @@ Eigen::Vector3d median_of_each(const std::vector<Eigen::Vector3d>& vectors) {
   return result;
 }
 
-double deviation_of(std::vector<double> values) {
-  const double typical = median(values);
-  for (double& value : values) value = std::abs(value - typical);
-  return median(std::move(values)) / std::max(typical, 1e-12);
-}
-
 /// What the steps of a stream show of the frames in one half of the poses.
 class JumpsOfHalf {
  public:
@@ -268,8 +262,8 @@ class JumpsOfHalf {
       of_steps.push_back(sizes.back() / std::max(way(i, frame.side).norm(), 1e-12));
       of_speeds.push_back(of_steps.back() * steps_[i].seconds);
     }
-    return options_.clearly_constant * deviation_of(std::move(sizes)) <
-           std::min(deviation_of(std::move(of_steps)), deviation_of(std::move(of_speeds)));
+    return options_.clearly_constant * relative_deviation(std::move(sizes)) <
+           std::min(relative_deviation(std::move(of_steps)), relative_deviation(std::move(of_speeds)));
   }
 
   const std::vector<FrameStep>& steps_;

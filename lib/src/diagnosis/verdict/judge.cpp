@@ -15,6 +15,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/directions.hpp"
+#include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal {
@@ -26,8 +27,6 @@ namespace {
 constexpr double degrees = 180 / std::numbers::pi;
 /// 95 % of a normal distribution, on one side (mathematics).
 constexpr double confidence_one_sided = 1.645;
-/// The same on both sides.
-constexpr double two_sided_95 = 1.96;
 /// 95 % of the length of three equal, independent components (mathematics).
 constexpr double length_of_three = 2.79;
 /// Two answers within this part of the tolerances are near each other: which of them is right matters little.

@@ -19,15 +19,13 @@
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
 #include "scale/joint_jackknife.hpp"
+#include "statistics/distributions.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-/// 95 % of a normal distribution, on both sides (mathematics).
-constexpr double confidence = 1.96;
 
 /// The scale of b as the motions of an answer show it.
 struct ScaleOfAnswer {
@@ -42,7 +40,7 @@ struct ScaleOfAnswer {
   /// The one farthest from zero that these motions do not exclude. Beyond what right odometries differ by
   /// only what the motions themselves say.
   double farthest(double right) const {
-    const double interval = confidence * stddev, size = std::abs(log_scale);
+    const double interval = two_sided_95 * stddev, size = std::abs(log_scale);
     return std::copysign(std::min(size + interval, std::max(right, size - interval)), log_scale);
   }
 };
@@ -218,7 +216,7 @@ void name_small_scale(const Evidence& evidence, const DiagnosisOptions& options,
   if (!named) result.findings.push_back(finding_of_scale(*scale, another_one, farthest, answered, options));
   for (std::size_t i = 0; i < 6; ++i)
     answered.timing_stddev[i] =
-        std::hypot(answered.timing_stddev[i], moved[static_cast<Eigen::Index>(i)] / confidence);
+        std::hypot(answered.timing_stddev[i], moved[static_cast<Eigen::Index>(i)] / two_sided_95);
   result.timing_stddev = answered.timing_stddev;
 }
 
