@@ -327,5 +327,34 @@ TEST(Observability, SharedRotationNoiseOnRampsKeepsTheHeight) {
   }
 }
 
+/// On a motorway, in units of the long motions, a height that noise hides has the curvature of the roll now
+/// and then: their eigenvectors were mixed, and the roll was hidden with the height.
+TEST(Observability, AHeightThatNoiseHidesTakesNoRotationWithIt) {
+  int hidden_heights = 0, rotations_lost = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    Random random(seed);
+    std::vector<MotionPair> pairs;
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3d suspension = random.normal3(4e-3);  // [rad]
+      const Eigen::Vector3d turn = suspension + 0.1 * random.normal() * Eigen::Vector3d::UnitZ();
+      const DualQuaternion a = displacement(turn, {50 * (1 + 0.1 * random.normal()), 0, 0});
+      const DualQuaternion b = conjugate(T_a_b) * a * T_a_b;
+      const auto measured = [&](const DualQuaternion& motion) {
+        const Eigen::Vector3d rotation = random.normal3(2e-3), shift = random.normal3(0.01);
+        return motion * displacement(rotation, shift);
+      };
+      const DualQuaternion a_measured = measured(a);
+      pairs.push_back({a_measured, measured(b)});
+    }
+    Problem problem = problem_of(pairs);
+    problem.balance = {1, 0.01};
+    const Flags observable = solve(problem, Method::dual).observability.observable;
+    hidden_heights += !observable[2];
+    rotations_lost += !observable[3] || !observable[4] || !observable[5];
+  }
+  EXPECT_LE(rotations_lost, 2);  // 10 where they were mixed
+  EXPECT_GT(hidden_heights, 80);
+}
+
 }  // namespace
 }  // namespace egocal::test_observability

@@ -11,6 +11,7 @@
 
 #include "egocal/solvers/global.hpp"
 #include "egocal/uncertainty/leave_out.hpp"
+#include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/frame_a.hpp"
 #include "uncertainty/hint.hpp"
@@ -61,6 +62,34 @@ bool shown_by_translations(const Vector6d& direction, const Problem& problem, co
   return std::abs(direction.head<3>().dot(to_pose(T_a_b).translation)) / length > sigmas * stddev;
 }
 
+/// A direction with that translation, and the rotation that costs least with it. An eigenvector mixes a
+/// rotation into a translation of nearly its curvature, which they have in these units by chance. clean: the
+/// curvatures; what is hidden already stays as it is.
+Vector6d followed_by_rotation(const Eigen::Vector3d& translation, const Matrix6d& clean,
+                              const Surroundings& around) {
+  const auto hidden = around.hidden_vectors();
+  const Matrix6d stiff = clean + clean.diagonal().cwiseAbs().sum() * (hidden * hidden.transpose());
+  const SmallFactor rotations(stiff.bottomRightCorner<3, 3>());
+  Vector6d direction;
+  direction << translation, -rotations.solve(UpToSix(stiff.bottomLeftCorner<3, 3>() * translation));
+  return direction.normalized();
+}
+
+/// Takes a direction to those that are not seen, unless most of it is among them. The others remain
+/// orthogonal to it.
+void hide(Vector6d direction, double least_new, Surroundings& around) {
+  const auto hidden = around.hidden_vectors();
+  direction -= hidden * (hidden.transpose() * direction);
+  if (!(direction.norm() > least_new)) return;
+  // a reflection of those that are seen takes the first of them to it
+  const int first = around.hidden++;
+  const Vector6d mirror = around.vectors.col(first) - direction.normalized();
+  const double squared = mirror.squaredNorm();
+  if (!(squared > epsilon)) return;
+  for (int k = first; k < 6; ++k)
+    around.vectors.col(k) -= 2 / squared * mirror.dot(around.vectors.col(k)) * mirror;
+}
+
 Surroundings look_around(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b,
                          ErrorCorrelation errors, const ObservabilityOptions& options) {
   Surroundings around;
@@ -88,16 +117,16 @@ Surroundings look_around(const Problem& problem, const Matrix8d& Q_metres, const
   // usually all directions are seen clearly, which a factorisation shows at a tenth of the cost
   if (exceeds(clean, doubtful)) return around;
   const Spectrum seen = spectrum(clean);
-  int hidden = 0;
-  while (hidden < 6 && !(seen.curvatures[hidden] > floor)) ++hidden;
-  if (may_share)
-    while (hidden < 6 && seen.curvatures[hidden] < doubtful &&
-           seen.vectors.col(hidden).head<3>().norm() > options.least_translation_part &&
-           !shown_by_translations(seen.vectors.col(hidden), problem, Q_metres, T_a_b, around.length,
-                                  options.shown_sigmas))
-      ++hidden;
   around.vectors = seen.vectors;
-  around.hidden = hidden;
+  while (around.hidden < 6 && !(seen.curvatures[around.hidden] > floor)) ++around.hidden;
+  if (!may_share) return around;
+  for (int k = around.hidden; k < 6 && seen.curvatures[k] < doubtful; ++k) {
+    const Vector6d direction = seen.vectors.col(k);
+    if (!(direction.head<3>().norm() > options.least_translation_part) ||
+        shown_by_translations(direction, problem, Q_metres, T_a_b, around.length, options.shown_sigmas))
+      break;
+    hide(followed_by_rotation(direction.head<3>(), clean, around), options.least_translation_part, around);
+  }
   return around;
 }
 
