@@ -146,6 +146,10 @@ TEST_F(WrittenExtrinsics, CheckAdvisesACommandThatHasTheOption) {
   const json checked = json::parse(egocal("check --json " + off).out);
   EXPECT_EQ(checked["findings"][0]["remedy"], "egocal solve A B --time-offset auto");
   EXPECT_THAT(egocal("solve " + off).out, HasSubstr("cure: --time-offset auto\n"));
+  ASSERT_EQ(
+      egocal("simulate --noise 0.01 --poses 400 --clock-offset camera=0.3 --out " + path("off.log")).code, 0);
+  EXPECT_THAT(egocal("check ODOMETRY_LIDAR ODOMETRY_CAMERA --log " + path("off.log")).out,
+              HasSubstr("cure: egocal solve A B --log LOG --time-offset auto\n"));
   std::string late;
   for (int i = 0; i < 100; ++i) late += std::to_string(9e8 + i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
   const Outcome never = egocal("check " + path("off/lidar.tum") + " " + file("late.tum", late));

@@ -9,9 +9,9 @@
 
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
-#include "offline/calibration.hpp"
-#include "offline/provenance.hpp"
-#include "offline/trust_report.hpp"
+#include "offline/pair/calibration.hpp"
+#include "offline/printing/provenance.hpp"
+#include "offline/printing/trust.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -46,7 +46,8 @@ void run_check(const CheckOptions& options, const std::string& command_line) {
   request.source = options.source;
   request.source.reading_a = options.reading.of_a();
   request.source.reading_b = options.reading.of_b();
-  request.solve = "egocal solve A B ";  // check has none of its options but those for reading
+  // check has none of its options but those for reading
+  request.solve = options.source.log.empty() ? "egocal solve A B " : "egocal solve A B --log LOG ";
   const SolveResult result = calibrate_offline(request);
   print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
