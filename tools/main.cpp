@@ -27,9 +27,9 @@ int main(int argc, char** argv) {
       egocal::version());
   program.require_subcommand();
   program.footer(
-      "Exit codes: 0 success, 1 failure (one line on standard error), 2 wrong usage, 3 an answer was printed "
-      "that should not be used: contradictory, or a goal not reached; of a rig also where a loop is open or "
-      "a finding makes a pair doubtful.");
+      "Exit codes: 0 success, 1 failure (one line on standard error), 2 wrong usage. Commands that print an "
+      "answer: 3 where it should not be used, as it is contradictory or a goal is not reached; of a rig also "
+      "where a loop is open or a finding makes a pair doubtful.");
   egocal::tools::add_commands(program);
   return program.run(argc, argv);
 }

@@ -29,8 +29,8 @@ int main(int argc, char** argv) {
       .show_default();
   app.add_option("--duration", options.duration_s, "end after this time [s]; 0: never")
       .check(egocal::cli::Check::range(0.0, 1e9));
-  app.add_option("--screen", options.screen, "screen to begin with: overview, detail or events")
-      .check(egocal::cli::Check::one_of({"overview", "detail", "events"}));
+  app.add_option("--screen", options.screen, "screen to begin with: overview, detail, events or streams")
+      .check(egocal::cli::Check::one_of({"overview", "detail", "events", "streams"}));
   app.add_option("--size", options.size, "with --once: print the screen as text, e.g. 100x30")
       .needs(once)
       .excludes(json);

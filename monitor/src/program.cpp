@@ -151,7 +151,10 @@ std::string no_session(const std::string& log) {
 }
 
 Screen screen_from(const std::string& name) {
-  return name == "detail" ? Screen::detail : name == "events" ? Screen::events : Screen::overview;
+  return name == "detail"    ? Screen::detail
+         : name == "events"  ? Screen::events
+         : name == "streams" ? Screen::streams
+                             : Screen::overview;
 }
 
 ViewState first_view(const ProgramOptions& options, const Source& source) {

@@ -21,7 +21,7 @@ class HeaderLine {
  public:
   HeaderLine(const Pane& pane, const ViewState& view, std::int64_t wall_us)
       : pane_(pane), view_(view), right_(clock_time(wall_us, view.utc_offset_s)) {
-    if (view.frozen) right_ = "VIEW PAUSED  " + right_;
+    if (view.frozen) right_ = std::string(view_paused) + "  " + right_;
     end_ = pane.width() - (pane.width() >= 40 || view.frozen ? width_of(right_) + 3 : 0);
   }
 
@@ -40,13 +40,26 @@ class HeaderLine {
     constexpr const char* no_network = "NO NETWORK";
     if (!view_.network_error.empty() && x_ + width_of(no_network) <= width()) must(no_network, Style::bad, 2);
   }
+  /// As much of it as there is room for. A paused view says so at any width: its clock does not go on.
   void draw_clock(const std::string& before = "") {
-    const std::string right = before + right_;
-    const int at = width() - width_of(right) - 1;
-    if (at > x_) pane_.text(at, 0, right, view_.frozen ? Style::warning : Style::dim);
+    const Style style = view_.frozen ? Style::warning : Style::dim;
+    for (const std::string& text : {before + right_, right_})
+      if (draw_right(text, style, x_)) return;
+    if (view_.frozen && !draw_right(view_paused, style, x_))
+      draw_right(std::string(" ") + view_paused, style, -1);
   }
 
  private:
+  static constexpr const char* view_paused = "VIEW PAUSED";
+
+  /// At the end of the line; false: it would begin before after + 1.
+  bool draw_right(const std::string& text, Style style, int after) {
+    const int at = width() - width_of(text) - 1;
+    if (at <= after) return false;
+    pane_.text(at, 0, text, style);
+    return true;
+  }
+
   const Pane& pane_;
   const ViewState& view_;
   std::string right_;

@@ -227,7 +227,8 @@ int main(int argc, char** argv) {
   double chance = services::DiagnosingOptions().false_alarms;
   double minutes = 60, noise = 0.01, every = 2;
   std::uint64_t seed = 1;
-  std::vector<std::string> only;
+  std::vector<std::string> only, names;
+  for (const Sort& sort : sorts) names.emplace_back(sort.name);
   std::string path;
   bool show = false;
   app.add_option("--drives", drives, "of each sort").show_default();
@@ -236,7 +237,7 @@ int main(int argc, char** argv) {
   app.add_option("--every", every, "seconds between two looks; a look takes 70 ms of 4 % of a core")
       .show_default();
   app.add_option("--chance", chance, "of a false alarm in a look").show_default();
-  app.add_option("--only", only, "sorts of drives: white heavy wandering outliers flat stops bump");
+  app.add_option("--only", only, "sorts of drives").check(egocal::cli::Check::one_of(names));
   app.add_option("--seed", seed, "of the drives").show_default();
   app.add_option("--record", path, "file of one line a drive, which is continued");
   app.add_flag("--show", show, "each look that calls the mount moved");

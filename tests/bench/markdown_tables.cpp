@@ -139,6 +139,10 @@ std::string with_rows_of(const std::string& page, const Table& table) {
 
 int publish(const Table& table, const std::string& write, const std::string& check) {
   std::printf("%s\n", markdown(table).c_str());
+  if (table.rows.size() < 2) {
+    std::printf("%s: no row was asked for\n", table.name.c_str());
+    return 2;
+  }
   if (!write.empty()) write_whole_file(write, with_table(read_page(write), table));
   if (check.empty()) return 0;
   const std::vector<std::string> found = differences(with_rows_of(read_page(check), table), table, 0.03);

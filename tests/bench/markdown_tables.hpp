@@ -13,6 +13,9 @@ struct Table {
   std::vector<std::vector<std::string>> rows;  ///< cells; the first row is the heading
 };
 
+/// Exit code of a program that has compared nothing, as it has no data: CTest's SKIP_RETURN_CODE.
+inline constexpr int not_compared = 77;
+
 /// "3 of 4".
 std::string part(int x, int of);
 
@@ -32,8 +35,8 @@ std::vector<std::string> differences(const std::string& page, const Table& table
 std::string with_rows_of(const std::string& page, const Table& table);
 
 /// What a study does with a finished table: prints it, puts it into the page `write`, and compares it with
-/// the rows of its own in the page `check`, to 3 %. Empty names: not. Returns the exit code, 1 where a row
-/// differs.
+/// the rows of its own in the page `check`, to 3 %. Empty names: not. Returns the exit code: 1 where a row
+/// differs, 2 where the table has none.
 int publish(const Table& table, const std::string& write, const std::string& check);
 
 }  // namespace egocal::bench

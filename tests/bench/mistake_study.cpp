@@ -194,7 +194,9 @@ int main(int argc, char** argv) {
   program.add_option("--seeds", seeds, "of the simulated drives; 0: none");
   program.add_option("--poses", poses, "of the simulated drives");
   program.add_option("--rate-b", study.rate_b, "own rate of b [Hz], stamps of its own; 0: a's stamps");
-  program.add_option("--mistake", study.only, "this one alone");
+  std::vector<std::string> names;
+  for (const Mistake& mistake : testing::mistakes()) names.push_back(mistake.name);
+  program.add_option("--mistake", study.only, "this one alone").check(cli::Check::one_of(names));
   program.add_option("--few", few, "simulated drives and one real one for each mistake; 0: all");
   program.add_option("--series", series, "clean simulated drives besides");
   program.add_option("--first", first, "number of the series' first drive, to run it in parts");

@@ -241,7 +241,9 @@ int main(int argc, char** argv) {
   MovesOptions moves;
   int drives = 500, blocks = static_cast<int>(moves.most_blocks);
   double hours = 100;
-  std::vector<std::string> only;
+  std::vector<std::string> only, names;
+  const std::vector<Sort> all = sorts();
+  for (const Sort& sort : all) names.push_back(sort.name);
   std::string path;
   std::uint64_t seed = 1;
   app.add_option("--drives", drives, "of each sort whose mount moves").show_default();
@@ -249,7 +251,8 @@ int main(int argc, char** argv) {
                  "of driving with a still mount: a quarter of each noise and flat, and as "
                  "much as one of them with an odometry that jumps")
       .show_default();
-  app.add_option("--only", only, "sorts of drives, such as still-white bump-15s creep");
+  app.add_option("--only", only, "sorts of drives, such as still-white bump-15s creep")
+      .check(egocal::cli::Check::one_of(names));
   app.add_option("--blocks", blocks, "at most, that a drive is divided into").show_default();
   app.add_option("--chance", moves.false_alarms, "of a false alarm in a drive").show_default();
   app.add_option("--seed", seed, "of the drives").show_default();
@@ -260,7 +263,6 @@ int main(int argc, char** argv) {
                           " chance " + std::to_string(moves.false_alarms));
 
   int alarms = 0;
-  const std::vector<Sort> all = sorts();
   for (std::size_t s = 0; s < all.size(); ++s) {
     const Sort& sort = all[s];
     if (!only.empty() && std::find(only.begin(), only.end(), sort.name) == only.end()) continue;

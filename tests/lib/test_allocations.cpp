@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
 #include <new>
 
@@ -17,14 +18,34 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-// Eigen calls malloc by itself: where the C library lets us, count that too. Sanitizers bring a malloc of
-// their own.
+// Eigen calls malloc by itself: where the C library lets us, count what C allocates with, too. Sanitizers
+// bring functions of their own.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 extern "C" {
 void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
 void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* p, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** p, std::size_t alignment, std::size_t size) {
+  ++allocations;
+  *p = __libc_memalign(alignment, size);
+  return *p ? 0 : ENOMEM;
 }
 }
 constexpr long counts_malloc = 1;
@@ -41,6 +62,15 @@ constexpr long counts_malloc = 0;
 [[gnu::noinline]] void* operator new[](std::size_t size) {
   return operator new(size);
 }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  if (!counts_malloc) ++allocations;
+  const auto step = static_cast<std::size_t>(alignment);
+  if (void* p = std::aligned_alloc(step, (size + step - 1) / step * step)) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return operator new(size, alignment);
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept {
   std::free(p);
 }
@@ -51,6 +81,18 @@ constexpr long counts_malloc = 0;
   std::free(p);
 }
 [[gnu::noinline]] void operator delete[](void* p, std::size_t) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete[](void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
   std::free(p);
 }
 
@@ -89,6 +131,22 @@ TEST(Allocations, AreSeenByThisTest) {
   delete kept;
   EXPECT_EQ(counted([&] { kept = static_cast<int*>(Eigen::internal::aligned_malloc(64)); }), counts_malloc);
   Eigen::internal::aligned_free(kept);
+
+  struct alignas(64) Wide {
+    double numbers[8];
+  };
+  Wide* volatile wide = nullptr;
+  EXPECT_EQ(counted([&] { wide = new Wide; }), 1);
+  delete wide;
+  void* volatile raw = nullptr;
+  EXPECT_EQ(counted([&] { raw = std::calloc(4, 4); }), counts_malloc);
+  EXPECT_EQ(counted([&] { raw = std::realloc(raw, 4096); }), counts_malloc);
+  std::free(raw);
+  EXPECT_EQ(counted([&] { raw = std::aligned_alloc(64, 64); }), counts_malloc);
+  std::free(raw);
+  void* aligned = nullptr;
+  EXPECT_EQ(counted([&] { EXPECT_EQ(posix_memalign(&aligned, 64, 64), 0); }), counts_malloc);
+  std::free(aligned);
 }
 
 TEST(Allocations, NoneInTheDualLineSearch) {

@@ -227,6 +227,16 @@ TEST_F(View, PausedIsSeenOnEveryScreen) {
       EXPECT_THAT(shown(screen, width, height), HasSubstr("PAUSED")) << width << "x" << height;
 }
 
+TEST_F(View, APausedViewSaysSoOnEveryScreen) {
+  view.frozen = true;
+  for (const bool network_away : {false, true}) {
+    if (network_away) view.network_error = "no route";
+    for (int width = 20; width <= 130; ++width)
+      for (const Screen screen : {Screen::overview, Screen::detail, Screen::events, Screen::streams})
+        EXPECT_THAT(shown(screen, width, 8), HasSubstr("VIEW PAUSED")) << width;
+  }
+}
+
 TEST_F(View, NoPartOfAHeaderStandsAlone) {
   command_t command{};
   command.to = "*";

@@ -56,7 +56,7 @@ TEST_F(Manual, HasAPageForEveryCommandWithEveryOption) {
   EXPECT_GT(options, 20);
   EXPECT_THAT(read("egocal.1"), HasSubstr("egocal\\-log\\fR(1)"));
   EXPECT_THAT(read("egocal-log-create.1"), HasSubstr("\\fIRIG\\fR"));
-  if (!installed("man")) return;  // only whether roff has warnings is not known then
+  if (!installed("man")) GTEST_SKIP() << "man is not installed: whether it warns is not known";
   EXPECT_EQ(run("(man --warnings -E UTF-8 -l -Tutf8 " + folder.path("egocal-solve.1") + " >/dev/null)"), 0);
   EXPECT_EQ(read("out"), "") << "man warns";
 }
@@ -76,10 +76,11 @@ TEST_F(Manual, FishAndZshTakeTheirScripts) {
   for (const char* shell : {"fish", "zsh"}) {
     ASSERT_EQ(run(egocal + " --completion " + shell), 0);
     std::ofstream(folder.path(shell)) << read("out");
-    if (!installed(shell)) continue;  // the words are those of bash, tested above
-    EXPECT_EQ(run(std::string(shell) + " -n " + folder.path(shell)), 0) << read("out");
+    if (installed(shell)) {
+      EXPECT_EQ(run(std::string(shell) + " -n " + folder.path(shell)), 0) << read("out");
+    }
   }
-  if (!installed("fish")) return;
+  if (!installed("fish") || !installed("zsh")) GTEST_SKIP() << "fish and zsh are not both installed";
   ASSERT_EQ(run("fish -c \"source " + folder.path("fish") + "; complete -C 'egocal solve --method sq'\""), 0);
   EXPECT_THAT(read("out"), HasSubstr("sqp\t"));
   EXPECT_THAT(read("out"), Not(HasSubstr("dual")));

@@ -288,10 +288,13 @@ void add_simulate(cli::App program) {
   number("--speed-variation", simulation.speed_variation, "of the speed on the ground, as a part of it",
          in::speed_variation);
   number("--roughness", simulation.roughness, "amplitude of the road's surface [m]", in::roughness);
-  number("--noise", simulation.relative_noise, "of each motion, as a part of the mean one", in::noise);
-  number("--noise-of-motion", simulation.noise_of_motion, "and as a part of each motion itself", in::noise);
-  number("--noise-rotation", simulation.noise_rotation, "added to it [rad]", in::noise);
-  number("--noise-translation", simulation.noise_translation, "added to it [m]", in::noise);
+  number("--noise", simulation.relative_noise, "noise of each motion, as a part of the mean motion",
+         in::noise);
+  number("--noise-of-motion", simulation.noise_of_motion, "further noise, as a part of each motion itself",
+         in::noise);
+  number("--noise-rotation", simulation.noise_rotation, "further noise of the rotations [rad]", in::noise);
+  number("--noise-translation", simulation.noise_translation, "further noise of the translations [m]",
+         in::noise);
   command.add_flag("--random-walk", simulation.random_walk, "noise of consecutive motions is correlated");
   command.add_flag("--heavy-tails", simulation.heavy_tails, "noise with rare large errors (Student, 3)");
   add_fault_options(command, options->faults);

@@ -85,8 +85,8 @@ void add_fault_options(cli::App command, FaultTexts& texts) {
   add("--phase", texts.phases, "NAME=S: time of its first pose");
   add("--scale", texts.scales, "NAME=S: its lengths are S times too short");
   add("--scale-drift", texts.scale_drifts, "NAME=R: its scale grows by the part R every second");
-  add("--clock-offset", texts.clock_offsets, "NAME=S: added to its stamps");
-  add("--clock-drift", texts.clock_drifts, "NAME=R: and R more every second [s/s]");
+  add("--clock-offset", texts.clock_offsets, "NAME=S: added to its stamps [s]");
+  add("--clock-drift", texts.clock_drifts, "NAME=R: its stamps gain R every second [s/s]");
   add("--drop", texts.dropped, "NAME=SHARE of its poses that are missing");
   add("--outliers", texts.outliers, "NAME=SHARE of its poses that are wrong");
   add("--noise-factor", texts.noise_factors, "NAME=F: its noise is F times the drive's");
