@@ -8,13 +8,14 @@
 #include <langinfo.h>
 #include <sys/ioctl.h>
 #include <term.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <array>
-#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+
+#include "terminal_rescue.hpp"
 
 // curses.h and term.h define these as macros
 #undef lines
@@ -24,72 +25,6 @@
 
 namespace egocal::monitor {
 namespace {
-
-// Data for signal handlers: plain memory, set up before the handlers are installed.
-constexpr std::size_t sequence_length = 250;
-struct Rescue {
-  struct termios modes {};
-  bool has_modes = false;
-  char sequence[sequence_length + 2] = {};
-  std::size_t length = 0;
-  int real_stderr = -1;
-};
-Rescue rescue;
-volatile std::sig_atomic_t quit_flag = 0;
-volatile std::sig_atomic_t resize_flag = 0;
-volatile std::sig_atomic_t suspend_flag = 0;
-alignas(16) char crash_stack[64 * 1024];
-
-constexpr int fatal_signals[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-
-extern "C" void on_quit(int) {
-  quit_flag = 1;
-}
-extern "C" void on_resize(int) {
-  resize_flag = 1;
-}
-extern "C" void on_suspend(int) {
-  suspend_flag = 1;
-}
-
-// Only async-signal-safe calls: the process is about to end and the terminal must be restored.
-extern "C" void on_crash(int signal_number) {
-  if (rescue.length > 0) {
-    const auto written = write(STDOUT_FILENO, rescue.sequence, rescue.length);
-    static_cast<void>(written);
-  }
-  if (rescue.has_modes) tcsetattr(STDIN_FILENO, TCSANOW, &rescue.modes);
-  if (rescue.real_stderr >= 0) dup2(rescue.real_stderr, STDERR_FILENO);
-  signal(signal_number, SIG_DFL);
-  raise(signal_number);
-}
-
-void handle(int signal_number, void (*handler)(int), int flags = 0) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = flags;
-  sigemptyset(&action.sa_mask);
-  sigaction(signal_number, &action, nullptr);
-}
-
-// A capability's string without its padding "$<5>".
-void add_capability(const char* name) {
-  const char* text = tigetstr(name);
-  if (text == nullptr || text == reinterpret_cast<const char*>(-1)) return;
-  for (const char* c = text; *c != '\0' && rescue.length < sequence_length;) {
-    if (c[0] == '$' && c[1] == '<') {
-      while (*c != '\0' && *c != '>') ++c;
-      if (*c == '>') ++c;
-      continue;
-    }
-    rescue.sequence[rescue.length++] = *c++;
-  }
-}
-
-bool can(const char* capability) {
-  const char* text = tigetstr(capability);
-  return text != nullptr && text != reinterpret_cast<const char*>(-1);
-}
 
 // Returns to the shell. On a terminal without a second screen the last picture stays, with the prompt on a
 // new line below it.
@@ -179,14 +114,6 @@ std::string why_no_terminal() {
   return "";
 }
 
-/// Prepares the bytes that restore the terminal, for a crash in which no function may be called any more.
-void prepare_rescue() {
-  for (const char* name : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_capability(name);
-  if (can("rmcup")) return;
-  for (char c : {'\r', '\n'}) rescue.sequence[rescue.length++] = c;
-  add_capability("ed");
-}
-
 Charset charset_for(const std::optional<Charset>& wanted) {
   if (std::strcmp(nl_langinfo(CODESET), "UTF-8") != 0) return Charset::ascii;
   // the Linux console has no braille, a vt100 has no UTF-8
@@ -223,24 +150,8 @@ void start_input() {
 void capture_errors(std::array<int, 2>& capture) {
   if (pipe2(capture.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
   std::fflush(stderr);
-  rescue.real_stderr = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+  remember_stderr(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3));
   dup2(capture[1], STDERR_FILENO);
-}
-
-void handle_signals() {
-  quit_flag = 0;
-  resize_flag = 0;
-  suspend_flag = 0;
-  for (int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) handle(signal_number, on_quit);
-  handle(SIGWINCH, on_resize);
-  handle(SIGTSTP, on_suspend);
-  handle(SIGPIPE, SIG_IGN);
-  stack_t stack{};
-  stack.ss_sp = crash_stack;
-  stack.ss_size = sizeof crash_stack;
-  sigaltstack(&stack, nullptr);
-  for (int signal_number : fatal_signals)
-    handle(signal_number, on_crash, static_cast<int>(SA_ONSTACK | SA_RESETHAND));
 }
 
 }  // namespace
@@ -248,8 +159,7 @@ void handle_signals() {
 std::unique_ptr<Terminal> Terminal::open(const TerminalOptions& options, std::string& why_not) {
   why_not = why_no_terminal();
   if (!why_not.empty()) return nullptr;
-  rescue = Rescue();
-  rescue.has_modes = tcgetattr(STDIN_FILENO, &rescue.modes) == 0;
+  remember_modes();
 
   std::unique_ptr<Terminal> terminal(new Terminal());
   State& s = *terminal->state_;
@@ -273,19 +183,10 @@ Terminal::~Terminal() {
     leave();
     delscreen(s.screen);
   }
-  if (rescue.has_modes) tcsetattr(STDIN_FILENO, TCSANOW, &rescue.modes);
-  if (rescue.real_stderr >= 0) {
-    std::fflush(stderr);
-    dup2(rescue.real_stderr, STDERR_FILENO);
-    close(rescue.real_stderr);
-    rescue.real_stderr = -1;
-  }
+  restore_modes_and_stderr();
   for (int fd : s.capture)
     if (fd >= 0) close(fd);
-  // from here on an ending needs no care
-  for (int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGTSTP})
-    handle(signal_number, SIG_DFL);
-  for (int signal_number : fatal_signals) handle(signal_number, SIG_DFL);
+  default_signals();
 }
 
 Charset Terminal::charset() const {
@@ -377,24 +278,19 @@ std::vector<int> Terminal::fds() const {
 
 Interrupts Terminal::interrupts() {
   Interrupts result;
-  if (suspend_flag) {
-    suspend_flag = 0;
+  const bool stopped = take_suspend();
+  if (stopped) {
     leave();
-    // stopped by the default action, as the shell expects; back here after SIGCONT
-    handle(SIGTSTP, SIG_DFL);
-    raise(SIGTSTP);
-    handle(SIGTSTP, on_suspend);
-    resize_flag = 1;
+    stop_here();
   }
-  if (resize_flag) {
-    resize_flag = 0;
+  if (take_resize() || stopped) {
     struct winsize size {};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 && size.ws_col > 0)
       resizeterm(size.ws_row, size.ws_col);
     draw_anew();
     result.resized = true;
   }
-  result.quit = quit_flag != 0;
+  result.quit = quit_asked();
   return result;
 }
 

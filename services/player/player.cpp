@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/error.hpp"
 #include "egocal/microseconds.hpp"
+#include "player/printed_text.hpp"
 
 namespace egocal::services {
 
@@ -21,13 +21,6 @@ using namespace std::chrono_literals;
 /// A longer wait does not fit into a timer [us].
 constexpr double longest_wait_us = 1e15;
 
-template <class... Arguments>
-std::string text(const char* format, Arguments... arguments) {
-  char buffer[400];
-  std::snprintf(buffer, sizeof buffer, format, arguments...);
-  return buffer;
-}
-
 }  // namespace
 
 Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& options)
@@ -36,7 +29,6 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
       options_(options),
       tape_(options.log, options.range),
       paused_(options.paused) {
-  terminal_ = isatty(STDERR_FILENO) != 0;
   load();
   started_mono_us_ = progress_mono_us_ = loop_.mono_us();
   anchor(next_->time_us);
@@ -56,7 +48,7 @@ Player::Player(bus::Loop& loop, bus::Heartbeat& heartbeat, const PlayerOptions& 
   heartbeat_.publish();
   loop_.every(100ms, [this] { watch_over(); });
   if (terminal_keys_.there()) {
-    say(std::string("keys: ") + keys_help);
+    console_.say(std::string("keys: ") + keys_help);
     loop_.watch(STDIN_FILENO, [this] { take_keys(); });
   }
   play();
@@ -140,13 +132,12 @@ void Player::seek(double seconds) {
   there.rewind(std::max(seconds, options_.range.start));
   std::optional<bus::LogEvent> event = there.next();
   if (!event) {
-    say(text("nothing to play at %.1f s and later", seconds));
+    console_.say(printed_text("nothing to play at %.1f s and later", seconds));
     return;
   }
   tape_ = std::move(there);
   next_ = std::move(event);
-  reported_regions_ = tape_.damage().regions;
-  reported_jumps_ = tape_.damage().jumps;
+  console_.take_as_reported(tape_.damage());
   in_flight_.clear();
   ended_ = false;
   say_it_jumps();
@@ -161,14 +152,14 @@ void Player::say_it_jumps() {
 
 void Player::load() {
   next_ = tape_.next();
-  say_damage();
+  console_.say_damage(tape_.damage(), options_.pace.most_reported);
 }
 
 /// From the start of what is to be played.
 bool Player::begin_again() {
   if (!options_.loop) return false;
   report();
-  reported_regions_ = reported_jumps_ = 0;
+  console_.take_as_reported({});
   tape_.rewind(options_.range.start);
   load();
   if (!next_) return false;
@@ -209,7 +200,7 @@ bool Player::network_may_return() {
   const std::int64_t now = loop_.mono_us();
   if (!refused_mono_us_) {
     refused_mono_us_ = now;
-    say(loop_.send_error());
+    console_.say(loop_.send_error());
   }
   const bool away = !loop_.network_error().empty();
   if (!away && now - *refused_mono_us_ > options_.pace.refused_us) {
@@ -255,9 +246,9 @@ void Player::play() {
       if (wait > 0) {
         if (wait > options_.pace.announced_wait_us && announced_gap_us_ != next_->time_us) {
           announced_gap_us_ = next_->time_us;
-          const std::string gap = text("gap in the log, nothing until %.1f s into it: %.1f s to wait",
-                                       into_log(next_->time_us), to_seconds(wait));
-          say(gap);
+          const std::string gap = printed_text("gap in the log, nothing until %.1f s into it: %.1f s to wait",
+                                               into_log(next_->time_us), to_seconds(wait));
+          console_.say(gap);
           heartbeat_.set_error(gap);
         }
         wait_until(due);
@@ -297,8 +288,8 @@ void Player::watch_over() {
   say_that_it_waits(now);
   if (!in_flight_.heard() && !alone_ && now - started_mono_us_ > options_.pace.wait_for_pairing_us) {
     alone_ = true;
-    say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
-        (options_.speed == 0 ? ", at the recorded speed" : ""));
+    console_.say(std::string("no pairing process acknowledges anything; going on without keeping in step") +
+                 (options_.speed == 0 ? ", at the recorded speed" : ""));
     if (next_) anchor(paused_ ? anchor_us_ : next_->time_us);
     play();
   }
@@ -312,7 +303,7 @@ void Player::watch_over() {
   }
   // at the end of the log, a pairing process that has been gone for long is not waited for
   if (ended_ && in_flight_.count() > 0 && now - progress_mono_us_ > options_.pace.end_wait_us) {
-    say(text("%zu messages were never acknowledged", in_flight_.count()));
+    console_.say(printed_text("%zu messages were never acknowledged", in_flight_.count()));
     in_flight_.clear();
     play();
   }
@@ -325,7 +316,7 @@ void Player::say_that_it_waits(std::int64_t now) {
   if (waits == waits_announced_) return;
   waits_announced_ = waits;
   constexpr const char* waiting = "waiting for a pairing process";
-  if (waits) say(waiting);
+  if (waits) console_.say(waiting);
   heartbeat_.set_error(waits ? waiting : "");
 }
 
@@ -333,58 +324,15 @@ void Player::finish() {
   loop_.stop();
 }
 
-/// Prints a line without breaking the line that shows the progress.
-void Player::say(const std::string& line) {
-  std::fprintf(stderr, "%segocal-player: %s\n", line_open_ ? "\n" : "", line.c_str());
-  line_open_ = false;
-}
-
-/// What has been skipped just now.
-void Player::say_damage() {
-  const bus::LogDamage& damage = tape_.damage();
-  if (damage.regions <= reported_regions_ && damage.jumps <= reported_jumps_) return;
-  const std::uint64_t places = damage.regions + damage.jumps;
-  if (places <= options_.pace.most_reported)
-    say(text("the log is damaged here: %llu bytes and at least %llu events lost so far",
-             static_cast<unsigned long long>(damage.bytes),
-             static_cast<unsigned long long>(damage.lost_events)));
-  else if (reported_regions_ + reported_jumps_ <= options_.pace.most_reported)
-    say("the log is damaged in more places; their number will be reported at the end");
-  reported_regions_ = damage.regions;
-  reported_jumps_ = damage.jumps;
-}
-
 void Player::report() {
   show_progress(true);
-  const bus::LogDamage& damage = tape_.damage();
-  if (damage.any())
-    say(text("%s: %llu damaged region%s skipped, %llu bytes and at least %llu event%s lost%s",
-             options_.log.c_str(), static_cast<unsigned long long>(damage.regions),
-             damage.regions == 1 ? "" : "s", static_cast<unsigned long long>(damage.bytes),
-             static_cast<unsigned long long>(damage.lost_events), damage.lost_events == 1 ? "" : "s",
-             damage.truncated ? "; the log is cut off" : ""));
-  if (tape_.damaged_times() > 0)
-    say(text("%llu events with damaged times were played when their neighbours were",
-             static_cast<unsigned long long>(tape_.damaged_times())));
-  if (tape_.skipped() > 0)
-    say(text("%llu events of egocal's own channels (EGOCAL_*) were skipped; --channel plays them",
-             static_cast<unsigned long long>(tape_.skipped())));
+  console_.report(options_.log, tape_);
 }
 
 void Player::show_progress(bool last) {
-  if (!terminal_ || (last && out_ == 0)) return;
-  const std::int64_t now = loop_.mono_us();
-  if (!last && now - shown_mono_us_ < options_.pace.progress_period_us) return;
-  shown_mono_us_ = now;
-  const std::string state = paused_               ? "paused"
-                            : options_.speed == 0 ? "playing, full speed"
-                                                  : text("playing x %g", options_.speed);
-  std::fprintf(stderr, "\r%-20s %3.0f %%  %8.1f s  %llu messages  %s\x1b[K", state.c_str(),
-               100 * tape_.part(), into_log(recorded_now()), static_cast<unsigned long long>(out_),
-               keys_.number().c_str());
-  if (last) std::fputc('\n', stderr);
-  line_open_ = !last;
-  std::fflush(stderr);
+  const Progress progress{paused_, options_.speed, tape_.part(), into_log(recorded_now()),
+                          out_,    keys_.number()};
+  console_.show(progress, loop_.mono_us(), options_.pace.progress_period_us, last);
 }
 
 }  // namespace egocal::services

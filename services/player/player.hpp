@@ -9,6 +9,7 @@
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/loop.hpp"
 #include "egocal/command_t.hpp"
+#include "player/console.hpp"
 #include "player/control.hpp"
 #include "player/in_flight.hpp"
 #include "player/pace_options.hpp"
@@ -55,8 +56,6 @@ class Player {
   std::int64_t recorded_now() const;
   void anchor(std::int64_t recorded_us);
   double into_log(std::int64_t recorded_us) const;
-  void say(const std::string& line);
-  void say_damage();
   void show_progress(bool last);
 
   bus::Loop& loop_;
@@ -64,6 +63,7 @@ class Player {
   PlayerOptions options_;
   Tape tape_;
   InFlight in_flight_;
+  Console console_;
   TerminalKeys terminal_keys_;
   Keys keys_;
   std::optional<bus::LogEvent> next_;
@@ -71,14 +71,13 @@ class Player {
   std::int64_t anchor_us_ = 0;        ///< recorded time that ...
   std::int64_t anchor_mono_us_ = 0;   ///< ... is played at this time of the clock
   std::int64_t started_mono_us_ = 0;  ///< with a network
-  std::int64_t progress_mono_us_ = 0, shown_mono_us_ = 0;
+  std::int64_t progress_mono_us_ = 0;
   std::int64_t pairing_mono_us_ = 0;              ///< when a status of pairing was heard last
   std::optional<std::int64_t> refused_mono_us_;   ///< since when the next message cannot be sent
   std::optional<std::int64_t> announced_gap_us_;  ///< recorded time at the end of the gap that was reported
   std::optional<bus::Loop::TimerId> timer_;
-  bool paused_ = false, step_ = false, alone_ = false, waits_announced_ = false, ended_ = false,
-       terminal_ = false, line_open_ = false;
-  std::uint64_t out_ = 0, reported_regions_ = 0, reported_jumps_ = 0;
+  bool paused_ = false, step_ = false, alone_ = false, waits_announced_ = false, ended_ = false;
+  std::uint64_t out_ = 0;
 };
 
 }  // namespace egocal::services

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "offline/append.hpp"
+#include "offline/drives/append.hpp"
 
 namespace egocal::tools::test_append {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "offline/beside.hpp"
+#include "offline/common/beside.hpp"
 
 namespace egocal::tools::test_beside_threads {
 namespace {

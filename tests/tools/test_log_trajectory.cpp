@@ -10,7 +10,7 @@
 #include "egocal/bus/log_file.hpp"
 #include "egocal/error.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
-#include "offline/log_trajectory.hpp"
+#include "offline/reading/log_trajectory.hpp"
 #include "support/damaged_log.hpp"
 
 namespace egocal::tools::test_log_trajectory {

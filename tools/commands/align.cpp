@@ -11,9 +11,9 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "egocal/in_words.hpp"
-#include "offline/provenance.hpp"
-#include "offline/scale_report.hpp"
-#include "offline/trust_report.hpp"
+#include "offline/pair/unit.hpp"
+#include "offline/printing/provenance.hpp"
+#include "offline/printing/trust.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {

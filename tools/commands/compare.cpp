@@ -11,7 +11,7 @@
 #include "commands/source_options.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/table_text.hpp"
-#include "offline/provenance.hpp"
+#include "offline/printing/provenance.hpp"
 
 namespace egocal::tools {
 

@@ -14,8 +14,8 @@
 #include "egocal/in_words.hpp"
 #include "egocal/io/stream_summary.hpp"
 #include "egocal/microseconds.hpp"
-#include "offline/provenance.hpp"
-#include "offline/trajectory_source.hpp"
+#include "offline/printing/provenance.hpp"
+#include "offline/reading/trajectory_source.hpp"
 
 namespace egocal::tools {
 

@@ -21,8 +21,8 @@
 #include "egocal/in_words.hpp"
 #include "egocal/io/mcap_writer.hpp"
 #include "egocal/microseconds.hpp"
-#include "offline/lcm_pose.hpp"
-#include "offline/trajectory_source.hpp"
+#include "offline/reading/lcm_pose.hpp"
+#include "offline/reading/trajectory_source.hpp"
 #include "progress.hpp"
 #include "warnings.hpp"
 

@@ -9,7 +9,7 @@
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "offline/scale_report.hpp"
+#include "offline/pair/unit.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {

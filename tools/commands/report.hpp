@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "offline/calibration.hpp"
+#include "offline/pair/calibration.hpp"
 #include "report/html.hpp"
 
 namespace egocal::tools {

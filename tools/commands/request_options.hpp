@@ -7,7 +7,7 @@
 
 #include "commands/reading_options.hpp"
 #include "egocal/cli/cli.hpp"
-#include "offline/calibration.hpp"
+#include "offline/pair/calibration.hpp"
 
 namespace egocal::tools {
 

@@ -11,11 +11,11 @@
 #include "commands/solve_rig.hpp"
 #include "egocal/io/extrinsic_text.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "offline/calibration.hpp"
-#include "offline/named_extrinsic.hpp"
-#include "offline/provenance.hpp"
-#include "offline/report.hpp"
-#include "offline/scale_report.hpp"
+#include "offline/extrinsics/named_extrinsic.hpp"
+#include "offline/pair/calibration.hpp"
+#include "offline/pair/unit.hpp"
+#include "offline/printing/provenance.hpp"
+#include "offline/printing/report.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {

@@ -9,9 +9,9 @@
 
 #include "arguments.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "offline/provenance.hpp"
-#include "offline/rig_joint.hpp"
-#include "offline/rig_report.hpp"
+#include "offline/extrinsics/tree_of_rig.hpp"
+#include "offline/printing/provenance.hpp"
+#include "offline/printing/rig.hpp"
 #include "progress.hpp"
 #include "warnings.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "arguments.hpp"
-#include "offline/trajectory_source.hpp"
+#include "offline/reading/trajectory_source.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {

@@ -19,7 +19,7 @@
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/io/whole_file.hpp"
-#include "offline/log_channels.hpp"
+#include "offline/reading/log_channels.hpp"
 #include "supervision/bus_watch.hpp"
 #include "supervision/interruptions.hpp"
 #include "supervision/output_file.hpp"

@@ -13,9 +13,9 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
-#include "offline/named_extrinsic.hpp"
-#include "offline/report.hpp"
-#include "offline/trust_report.hpp"
+#include "offline/common/backing_of.hpp"
+#include "offline/printing/report.hpp"
+#include "offline/printing/trust.hpp"
 #include "report/series.hpp"
 
 namespace egocal::tools {

@@ -12,7 +12,7 @@
 #include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/scale_drive.hpp"
-#include "offline/log_damage.hpp"
+#include "offline/reading/log_damage.hpp"
 
 namespace egocal::tools {
 

@@ -8,18 +8,11 @@
 
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
-#include "statistics/median.hpp"
+#include "statistics/quantile.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  const auto place =
-      std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())));
-  return order_statistic_in_place(values, place);
-}
 
 double median_if_any(const std::vector<double>& values) {
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(values, 0.5);

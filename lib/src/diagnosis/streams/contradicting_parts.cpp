@@ -10,6 +10,7 @@
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "statistics/median.hpp"
+#include "statistics/quantile.hpp"
 
 namespace egocal::detail {
 
@@ -24,12 +25,6 @@ struct PartResidual {
 struct TimeSpan {
   double begin = 0, end = 0;  ///< [s]
 };
-
-double quantile(std::vector<double>& values, double part) {
-  if (values.empty()) return 0;
-  return order_statistic_in_place(values,
-                                  static_cast<std::size_t>(part * static_cast<double>(values.size())));
-}
 
 std::vector<PartResidual> residuals_of_parts(const Motions& motions, const Pose& T_a_b, const TimeSpan& drive,
                                              const ContradictingPartsOptions& tuning) {

@@ -32,6 +32,9 @@ struct TextLayout {
   std::vector<std::string> notes;  ///< what was assumed
 };
 
+/// Times above it are no seconds since 1970 [s]: 2100.
+inline constexpr double latest_seconds = 4.1e9;
+
 /// Decides by the first 64 KiB of the file. Throws Error where the file holds no data, is no text, or its
 /// columns are not understood.
 TextLayout detect_layout(ByteSource& source, const ReadOptions& options);

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "egocal/bus/log_file.hpp"
+#include "player/tape.hpp"
+
+namespace egocal::services {
+
+/// Where the player is.
+struct Progress {
+  bool paused = false;
+  double speed = 1;            ///< 0: as fast as everybody keeps up
+  double part = 0;             ///< of the log
+  double seconds = 0;          ///< into the log
+  std::uint64_t messages = 0;  ///< sent
+  std::string typed;           ///< a number that is being typed
+};
+
+/// What the player tells people, on standard error: lines, and on a terminal one that shows the progress.
+class Console {
+ public:
+  Console();
+
+  /// Prints a line without breaking the line that shows the progress.
+  void say(const std::string& line);
+
+  /// What has been skipped just now; of the first most_reported places each by itself.
+  void say_damage(const bus::LogDamage& damage, std::uint64_t most_reported);
+  /// This much of it is known already.
+  void take_as_reported(const bus::LogDamage& damage);
+
+  /// What could not be played of the log.
+  void report(const std::string& log, const Tape& tape);
+
+  /// At most once a period, or for the last time.
+  void show(const Progress& progress, std::int64_t mono_us, std::int64_t period_us, bool last);
+
+ private:
+  bool terminal_ = false, line_open_ = false;
+  std::int64_t shown_mono_us_ = 0;
+  std::uint64_t reported_regions_ = 0, reported_jumps_ = 0;
+};
+
+}  // namespace egocal::services

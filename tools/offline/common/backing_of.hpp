@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "egocal/calibrate.hpp"
+#include "egocal/io/extrinsic_text.hpp"
+
+namespace egocal::tools {
+
+/// What the numbers of x y z roll pitch yaw rest on.
+std::array<Backing, 6> backing_of(const Calibration& calibration);
+
+}  // namespace egocal::tools

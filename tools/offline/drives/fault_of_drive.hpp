@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "egocal/calibrate.hpp"
+#include "offline/drives/append.hpp"
+
+namespace egocal::tools {
+
+/// What is wrong with one drive of several, as its own answer says: "Drive 3 (c.tum) differs: ...", with a
+/// cure of that drive alone. Empty where its findings are uncertain and do not make it contradictory, or are
+/// of a time within it: the answer to all drives has those.
+std::optional<Finding> fault_of_drive(const Drives& drives, std::size_t drive, const Calibration& alone);
+
+}  // namespace egocal::tools
