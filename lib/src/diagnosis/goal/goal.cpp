@@ -84,7 +84,7 @@ Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpr
     if (answered.seconds > 0)
       goal.seconds_left = answered.seconds * (std::pow(excess, 1 / tuning.exponent) - 1);
   }
-  goal.next = next_manoeuvre(answered, options, missing, goal.seconds_left, tuning.exponent);
+  goal.next = next_manoeuvre(answered, options, missing, tuning.exponent);
   return goal;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,12 +15,13 @@ namespace egocal::detail {
 /// infinite where the motions do not show it.
 using Missing = std::pair<double, std::size_t>;
 
-/// In a driver's words, the manoeuvre of the platform's catalogue after which the missing directions would be
-/// known best: the information of each is added to that of the drive. Where none, repeated, would reach the
-/// goal in half of seconds_left, the advice is to go on as before. exponent: with which power of the
+/// In a driver's words, the manoeuvre of the platform's catalogue to drive next: of those that bring a
+/// missing direction to the goal much faster than more of the same driving, the one that brings all of them
+/// nearest to it. It need not show all of them: the next advice is for what is missing then. Where none is
+/// much faster, or other directions, which no manoeuvre shows, take as long anyway, the advice is to go on as
+/// before. The information of a manoeuvre is added to that of the drive. exponent: with which power of the
 /// information standard deviations fall.
 std::string next_manoeuvre(const Answered& answered, const GoalOptions& options,
-                           const std::vector<Missing>& missing, std::optional<double> seconds_left,
-                           double exponent);
+                           const std::vector<Missing>& missing, double exponent);
 
 }  // namespace egocal::detail
