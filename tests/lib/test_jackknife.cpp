@@ -238,12 +238,13 @@ TEST(Jackknife, FourAtATimeAreOneAfterTheOther) {
 }
 
 struct Correlations {
-  double of_neighbours = 0, sum = 0;
+  double of_neighbours = 0, sum = 0, scatter = 0, error = 0;
 };
 
 /// Mean of `drives` drives.
 Correlations correlations_of(double memory, int blocks, int drives) {
   Correlations mean;
+  double squares = 0;
   Random random(11);
   for (int drive = 0; drive < drives; ++drive) {
     detail::Jackknife jackknife(blocks);
@@ -253,9 +254,14 @@ Correlations correlations_of(double memory, int blocks, int drives) {
         difference[i] = memory * difference[i] + std::pow(10.0, -i) * random.normal();
       if (k >= 0) jackknife.leave_out(1, difference, Vector6d::Ones(), difference);
     }
-    mean.of_neighbours += jackknife.correlation_of_neighbours(2) / drives;
-    mean.sum += jackknife.sum_of_correlations(2) / drives;
+    EXPECT_DOUBLE_EQ(jackknife.mean_equal_blocks(2), blocks);
+    const double found = jackknife.correlation_of_neighbours(0, blocks);
+    mean.of_neighbours += found / drives;
+    squares += found * found / drives;
+    mean.sum += jackknife.sum_of_correlations(blocks) / drives;
+    mean.error = jackknife.error_of_correlation(memory, blocks);
   }
+  mean.scatter = std::sqrt(squares - mean.of_neighbours * mean.of_neighbours);
   return mean;
 }
 
@@ -264,6 +270,72 @@ TEST(Jackknife, SeesWhetherNeighboursShareTheirErrors) {
     EXPECT_NEAR(correlations_of(memory, 2000, 1).of_neighbours, memory, 0.03);
     EXPECT_NEAR(correlations_of(memory, 24, 100).of_neighbours, memory, 0.05);
   }
+}
+
+TEST(Jackknife, KnowsHowWellItKnowsACorrelation) {
+  for (const double memory : {0.0, 0.5, 0.7})
+    for (const int blocks : {12, 24}) {
+      const Correlations found = correlations_of(memory, blocks, 200);
+      EXPECT_NEAR(found.error, found.scatter, 0.25 * found.scatter) << memory << " " << blocks;
+    }
+}
+
+/// Neighbours share half of their errors, and no error lasts; the first direction alone also has some that
+/// do.
+TEST(Jackknife, TellsWhatNeighboursShareFromWhatLasts) {
+  Random random(5);
+  double mean = 0, first = 0, second = 0;
+  constexpr int drives = 200, blocks = 20;
+  for (int drive = 0; drive < drives; ++drive) {
+    detail::Jackknife jackknife(blocks);
+    double lasting = 0;
+    Vector6d last = Vector6d::Zero(), next;
+    for (int k = -20; k < blocks; ++k) {
+      for (int i = 0; i < 6; ++i) next[i] = random.normal();
+      lasting = 0.8 * lasting + random.normal();
+      Vector6d difference = last + next;
+      difference[0] += lasting;
+      if (k >= 0) jackknife.leave_out(1, difference, Vector6d::Ones(), difference);
+      last = next;
+    }
+    mean += jackknife.correlation_of_neighbours(0.5, blocks) / drives;
+    first += jackknife.correlation_in_direction(0, 0.5, blocks).value() / drives;
+    second += jackknife.correlation_in_direction(1, 0.5, blocks).value() / drives;
+  }
+  EXPECT_LT(second, 0.05);  // nothing lasts
+  EXPECT_GT(second, -0.3);  // their mean takes 3 r / m of what is shared as well, which stays
+  EXPECT_GT(first, second + 0.15);
+  EXPECT_NEAR(mean, (first + 5 * second) / 6, 0.05);
+}
+
+/// x, y and yaw of cars on flat ground.
+TEST(Jackknife, CoversShortDrivesInThePlaneWhoseNoiseLasts) {
+  SimulationOptions drive;
+  drive.terrain = Terrain::flat;
+  drive.poses = 21;
+  drive.relative_noise = 0.01;
+  drive.random_walk = true;
+  PairingOptions options;
+  options.mode = Mode::planar;
+  const auto ground = [](const Pose& T) {
+    return GroundPlane{T.rotation.conjugate() * Eigen::Vector3d::UnitZ(), -T.translation.z()};
+  };
+  options.plane_a = ground(testing::T_vehicle_a);
+  options.plane_b = ground(testing::T_vehicle_b);
+  int observable = 0, covered = 0;
+  for (drive.seed = 1001; drive.seed <= 1040; ++drive.seed) {
+    const testing::Streams streams = testing::simulated_drive(drive);
+    const Answer answer = solve(pair_motions(options, streams.a, streams.b).drive.problem(), Method::dual);
+    const Vector6d error = detail::frame_a_difference(streams.T, answer.T_a_b);
+    for (int i = 0; i < 6; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!answer.observability.observable[k] || !std::isfinite(answer.observability.stddev[k])) continue;
+      ++observable;
+      covered += std::abs(error[i]) <= 1.96 * answer.observability.stddev[k];
+    }
+  }
+  EXPECT_GE(covered, 0.93 * observable);  // 0.895 where the error of the correlation did not count
+  EXPECT_GT(observable, 100);
 }
 
 TEST(Jackknife, AddsUpTheCorrelationsOfNearBlocks) {

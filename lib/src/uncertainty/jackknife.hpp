@@ -38,6 +38,7 @@ class Jackknife {
     information_ += information;
     information_squares_ += information.cwiseAbs2();
     neighbours_.add(parts);
+    changes_.add(difference);
   }
   double count() const { return count_; }
   /// Mean of (pseudo - mean)^2 / (h - 1).
@@ -49,22 +50,40 @@ class Jackknife {
     const double student = student_factor(count_ - 1);
     return student * student * spread();
   }
-  /// Lag-one correlation of what omitting a block changes, the mean over the parts that change at all.
+  /// How many equal blocks are as concentrated, see concentration(): the mean over the directions about which
+  /// the blocks hold information. m below.
+  double mean_equal_blocks(double least) const {
+    double sum = 0, directions = 0;
+    for (int i = 0; i < 6; ++i) {
+      if (!(information_squares_[i] > 0)) continue;
+      sum += equal_blocks(i, least);
+      directions += 1;
+    }
+    return directions > 0 ? sum / directions : count_;
+  }
+  /// Lag-one correlation of errors that last, from that of what omitting a block changes: the mean over the
+  /// parts that change at all. shared: what neighbours correlate by where no error lasts, which is taken off.
   /// Of m equal blocks, as seen from their own mean, a correlation of r is found as r - (1 + 3 r) / m in the
-  /// mean (Kendall 1954), which is undone.
-  double correlation_of_neighbours(double least_equal_blocks) const {
-    constexpr double least_left = 0.5;  // of r: with six blocks half of it is found
-    const double m = mean_equal_blocks(least_equal_blocks);
-    return mean_over_parts([&](int i) -> std::optional<double> {
-      const std::optional<double> found = neighbours_.correlation(i, 1);
-      if (!found) return std::nullopt;
-      return (*found + 1 / m) / std::max(least_left, 1 - 3 / m);
-    });
+  /// mean (Kendall 1954), which is undone; 3 r / m only of errors that last. Undone of what is shared as
+  /// well, noise on the motions of one sensor and the poses of the other would have r = 0.37, not 0.18, in
+  /// 100 motions, as m is less than the number of blocks that touch (docs/accuracy.md, "Noise that lasts").
+  double correlation_of_neighbours(double shared, double m) const {
+    return mean_over_parts([&](int i) { return lasting(neighbours_.correlation(i, 1), shared, m); });
+  }
+  /// The same of what changes in one direction; empty where nothing does.
+  std::optional<double> correlation_in_direction(int direction, double shared, double m) const {
+    return lasting(changes_.correlation(direction, 1), shared, m);
+  }
+  /// Standard error by chance of correlation_of_neighbours() where that is r: one of m blocks has
+  /// sqrt((1 - r^2) / m) (Bartlett 1946), and the parts are independent.
+  double error_of_correlation(double r, double m) const {
+    double parts = 0;
+    for (int i = 0; i < 6; ++i) parts += neighbours_.changes(i);
+    return std::sqrt((1 - r * r) / (m * std::max(1.0, parts))) / part_found(m);
   }
   /// Sum of the correlations of blocks up to most_lag apart, averaged over the parts. The mean of the blocks
   /// takes about 1 / m from each, which is corrected.
-  double sum_of_correlations(double least_equal_blocks) const {
-    const double m = mean_equal_blocks(least_equal_blocks);
+  double sum_of_correlations(double m) const {
     return mean_over_parts([&](int i) -> std::optional<double> {
       double sum = 0;
       for (std::size_t lag = 1; lag <= most_lag && neighbours_.count > lag + 2; ++lag) {
@@ -96,15 +115,13 @@ class Jackknife {
     return std::clamp(squares > 0 ? sum * sum / squares : count_, least, count_);
   }
 
-  /// Mean over the directions about which the blocks hold information.
-  double mean_equal_blocks(double least) const {
-    double sum = 0, directions = 0;
-    for (int i = 0; i < 6; ++i) {
-      if (!(information_squares_[i] > 0)) continue;
-      sum += equal_blocks(i, least);
-      directions += 1;
-    }
-    return directions > 0 ? sum / directions : count_;
+  /// What is found of r in m blocks as seen from their own mean: with six blocks half of it.
+  static double part_found(double m) { return std::max(0.5, 1 - 3 / m); }
+
+  /// See correlation_of_neighbours().
+  static std::optional<double> lasting(std::optional<double> found, double shared, double m) {
+    if (found) found = (*found + 1 / m - shared) / ((1 - shared) * part_found(m));
+    return found;
   }
 
   /// of_part: empty where it does not count.
@@ -120,12 +137,13 @@ class Jackknife {
     return parts > 0 ? sum / parts : 0;
   }
 
-  /// Sums of parts and of products of those that are up to most_lag blocks apart.
+  /// Sums of parts and of products of those that are up to `most` blocks apart.
+  template <std::size_t most>
   struct Neighbours {
     std::size_t count = 0;
-    std::array<Vector6d, most_lag> last;   ///< number k at place k % most_lag
-    std::array<Vector6d, most_lag> first;  ///< the sums of the first 1, 2, ...
-    std::array<Vector6d, most_lag> products;
+    std::array<Vector6d, most> last;   ///< number k at place k % most
+    std::array<Vector6d, most> first;  ///< the sums of the first 1, 2, ...
+    std::array<Vector6d, most> products;
     Vector6d sum = Vector6d::Zero(), squares = Vector6d::Zero();
 
     Neighbours() {
@@ -134,23 +152,27 @@ class Jackknife {
     void add(const Vector6d& parts) {
       sum += parts;
       squares += parts.cwiseAbs2();
-      if (count < most_lag) first[count] = sum;
-      for (std::size_t lag = 1; lag <= std::min<std::size_t>(count, most_lag); ++lag)
-        products[lag - 1] += last[(count - lag) % most_lag].cwiseProduct(parts);
-      last[count % most_lag] = parts;
+      if (count < most) first[count] = sum;
+      for (std::size_t lag = 1; lag <= std::min<std::size_t>(count, most); ++lag)
+        products[lag - 1] += last[(count - lag) % most].cwiseProduct(parts);
+      last[count % most] = parts;
       ++count;
     }
+    double variance(int part) const {
+      return squares[part] - sum[part] * sum[part] / static_cast<double>(count);
+    }
+    /// Not where a block cannot be omitted.
+    bool changes(int part) const { return variance(part) > 0 && std::isfinite(variance(part)); }
     /// Correlation at this lag; there must be more blocks than it. Empty: nothing changes, or a block cannot
     /// be omitted.
     std::optional<double> correlation(int part, std::size_t lag) const {
       const double blocks = static_cast<double>(count), pairs = static_cast<double>(count - lag);
+      if (!changes(part)) return std::nullopt;
       const double total = sum[part], mean = total / blocks;
-      const double variance = squares[part] - mean * total;
-      if (!(variance > 0) || !std::isfinite(variance)) return std::nullopt;
       double of_last = 0;
-      for (std::size_t k = 1; k <= lag; ++k) of_last += last[(count - k) % most_lag][part];
+      for (std::size_t k = 1; k <= lag; ++k) of_last += last[(count - k) % most][part];
       const double of_pairs = 2 * total - first[lag - 1][part] - of_last;
-      return (products[lag - 1][part] - mean * of_pairs + pairs * mean * mean) / variance;
+      return (products[lag - 1][part] - mean * of_pairs + pairs * mean * mean) / variance(part);
     }
   };
 
@@ -158,7 +180,8 @@ class Jackknife {
   double count_ = 0, weights_ = 0;
   Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
   Vector6d information_ = Vector6d::Zero(), information_squares_ = Vector6d::Zero();
-  Neighbours neighbours_;
+  Neighbours<most_lag> neighbours_;
+  Neighbours<1> changes_;
 };
 
 }  // namespace egocal::detail

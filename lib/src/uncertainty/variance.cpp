@@ -178,22 +178,45 @@ struct Sharing {
   double overlap_, longest_;
 };
 
-/// By how many times the variance of a sum of many blocks exceeds that of as many single ones: the larger of
-/// two. Where errors fade from block to block as the lag-one correlation says (an autoregression of order
-/// one), blocks show the variance itself with fewer degrees of freedom, as (1 - r^2) / (1 + r^2) times as
-/// many would (Bartlett 1946). And the correlations of near blocks add up, as errors need not fade like that.
-double of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
+/// By how many times the variance of a sum of many blocks exceeds that of as many single ones, where errors
+/// fade from block to block as the lag-one correlation r says (an autoregression of order one). Blocks show
+/// the variance itself with fewer degrees of freedom, as (1 - r^2) / (1 + r^2) times as many would (Bartlett
+/// 1946). error: standard error of r, from which the logarithm of the factor, 2 atanh(r), has one of
+/// 2 error / (1 - r^2), at most itself, as the factor is not below one. A variance of nu degrees of freedom
+/// has a logarithm with the variance 2 / nu; the two add up (Satterthwaite 1946).
+double of_fading(double r, double error, double freedom) {
   constexpr double least_freedom = 2;  // below, student_factor() is too small
+  const double factor = (1 + r) / (1 - r);
+  const double uncertain = std::min(2 * error / (1 - r * r), std::log(factor));
+  const double fewer = 1 / ((1 + r * r) / ((1 - r * r) * freedom) + 0.5 * uncertain * uncertain);
+  const double student = student_factor(std::max(least_freedom, fewer)) / student_factor(freedom);
+  return factor * student * student;
+}
+
+/// The part of what a direction's own correlation exceeds the mean by that counts; the rest is chance. With
+/// 0.5 wandering noise in the plane is covered to half a percent more (20 motions), and white noise has
+/// standard deviations that are 1.5 % larger in 25 blocks (docs/accuracy.md, "Noise that lasts").
+constexpr double part_of_own = 0.3;
+
+/// Of each direction, the larger of two: of_fading(), and the sum of the correlations of near blocks, as
+/// errors need not fade like that. Where blocks touch, most of what single directions and chance show is
+/// what the blocks share, so both count less.
+Vector6d of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
   const Sharing sharing(overlap);
-  const double found = single.correlation_of_neighbours(options.least_equal_blocks);
-  const double of_neighbours = sharing.of_neighbours();
-  const double r = std::clamp((found - of_neighbours) / (1 - of_neighbours), 0.0, options.most_correlation);
-  const double freedom = single.count() - 1;
-  const double fewer = std::max(least_freedom, freedom * (1 - r * r) / (1 + r * r));
-  const double student = student_factor(std::min(fewer, freedom)) / student_factor(freedom);
-  const double fading = (1 + r) / (1 - r) * student * student;
-  const double of_near = single.sum_of_correlations(options.least_equal_blocks) - sharing.of_near_blocks();
-  return std::max(fading, 1 + 2 * sharing.near_blocks_count() * of_near);
+  const double blocks = single.mean_equal_blocks(options.least_equal_blocks);
+  const double most = options.most_correlation;
+  const double of_neighbours = sharing.of_neighbours(), disjoint = 1 - overlap;
+  const double mean = single.correlation_of_neighbours(of_neighbours, blocks);
+  const double error = disjoint * single.error_of_correlation(std::clamp(mean, 0.0, most), blocks);
+  const double of_near = single.sum_of_correlations(blocks) - sharing.of_near_blocks();
+  const double near_blocks = 1 + 2 * sharing.near_blocks_count() * of_near;
+  Vector6d factor;
+  for (int i = 0; i < 6; ++i) {
+    const double own = single.correlation_in_direction(i, of_neighbours, blocks).value_or(mean);
+    const double r = std::clamp(mean + part_of_own * disjoint * std::max(0.0, own - mean), 0.0, most);
+    factor[i] = std::max(of_fading(r, error, single.count() - 1), near_blocks);
+  }
+  return factor;
 }
 
 /// The largest part of the information about a direction that one block holds.
@@ -252,10 +275,10 @@ Vector6d detail::variance_by_blocks(const Problem& problem, double pairs,
   const double overlap =
       blocks.pairs.size() < problem.blocks.size() ? count_once(blocks, sum, directions.shown) : 0;
   const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
-  const double shared =  // how many times the variance is that of blocks without common errors
-      errors == ErrorCorrelation::correlated ? of_memory(single, overlap, options) : 1;
-  return shared *
-         single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(single.variance());
+  const Vector6d variance =
+      single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(single.variance());
+  if (errors == ErrorCorrelation::independent) return variance;
+  return variance.cwiseProduct(of_memory(single, overlap, options));
 }
 
 }  // namespace egocal
