@@ -20,6 +20,7 @@
 #include "diagnosis/explanations/turning_of_steps.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/io/twist_integrator.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "statistics/median.hpp"
 
@@ -293,79 +294,23 @@ TEST(OtherContents, PositionsInTheAxesOfTheSensorAreNamed) {
   expect_cured(right, calibration, certain_finding(calibration, "axes_b"), 0.01, 0.1);
 }
 
-/// Steps of b summed up again, each turned on by a part of the turn of its row.
-Trajectory with_turned_steps(const Trajectory& right, double part) {
-  Trajectory result{right.front()};
-  Eigen::Vector3d position = to_pose(right.front().pose).translation;
-  for (std::size_t i = 1; i < right.size(); ++i) {
-    const Pose before = to_pose(right[i - 1].pose), here = to_pose(right[i].pose);
-    const Rotation turn = rotation_exp(part * rotation_log(here.rotation * before.rotation.conjugate()));
-    position += turn * (here.translation - before.translation);
-    result.push_back({right[i].time_us, canonical_sign(to_dual_quaternion(Pose{here.rotation, position}))});
+/// Rates in degrees a second that were summed up as radians: each row is the screw of its twist.
+TEST(OtherContents, TurningRatesInDegreesAreNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  TwistIntegrator integrator;
+  Trajectory wrong;
+  for (std::size_t i = 1; i < right.b.size(); ++i) {
+    const double seconds = 1e-6 * static_cast<double>(right.b[i].time_us - right.b[i - 1].time_us);
+    const Pose step = to_pose(conjugate(right.b[i - 1].pose) * right.b[i].pose);
+    const Twist twist{right.b[i].time_us, step.translation / seconds,
+                      180 / std::numbers::pi * rotation_log(step.rotation) / seconds};
+    if (const std::optional<DualQuaternion> pose = integrator.add(twist))
+      wrong.push_back({twist.time_us, canonical_sign(*pose)});
   }
-  return result;
-}
-
-/// A car of 2 Hz that stops, backs and turns: at a constant speed these are poses of another point of the
-/// body.
-testing::Streams stop_and_go(std::uint64_t seed, double noise = 0.003) {
-  testing::Random random(seed);
-  const Pose mount{rotation_exp({0.1, -0.2, 0.7}), {0.8, -0.5, 0.3}};
-  const auto noisy = [&](const Pose& step) {
-    return Pose{step.rotation * rotation_exp(0.001 * random.normal3()),
-                step.translation + noise * step.translation.norm() * random.normal3()};
-  };
-  testing::Streams streams;
-  Pose a, b;
-  for (int i = 0; i < 240; ++i) {
-    const std::int64_t time_us = static_cast<std::int64_t>(i) * 500'000;
-    streams.a.push_back({time_us, canonical_sign(to_dual_quaternion(a))});
-    streams.b.push_back({time_us, canonical_sign(to_dual_quaternion(b))});
-    const double speed = std::max(0.0, 6 + 6 * std::sin(0.11 * i));
-    const Pose step{
-        rotation_exp({0.05 * std::sin(0.7 * i), 0.04 * std::cos(0.9 * i), 0.15 * std::sin(0.05 * i)}),
-        {0.5 * speed, 0, 0}};
-    a = a * noisy(step);
-    b = b * noisy(inverse(mount) * step * mount);
-  }
-  streams.T = to_dual_quaternion(mount);
-  return streams;
-}
-
-TEST(OtherContents, StepsThatAreTurnedByAttitudesOfAnotherInstantAreNamed) {
-  for (const auto& [part, words] : {std::pair<double, const char*>{1, "a row too late"},
-                                    {0.5, "half a row too late"},
-                                    {-0.5, "half a row too early"}})
-    for (const char side : {'a', 'b'}) {
-      const testing::Streams right = stop_and_go(1);
-      testing::Streams wrong = right;
-      Trajectory& stream = side == 'a' ? wrong.a : wrong.b;
-      stream = with_turned_steps(stream, part);
-      const Calibration calibration = calibrate(wrong.a, wrong.b);
-      const Finding finding = certain_finding(calibration, std::string("axes_") + side);
-      EXPECT_NE(finding.message.find(words), std::string::npos)
-          << part << " of " << side << ": " << finding.message;
-      expect_cured(right, calibration, finding, 0.005, 0.15);
-    }
-}
-
-TEST(OtherContents, StepsAreNotCalledTurnedWhereTheyAreRightOrPositionsAreEarly) {
-  for (const std::uint64_t seed : {1, 2}) {
-    testing::Streams streams = stop_and_go(seed);
-    const Calibration right = calibrate(streams.a, streams.b);
-    EXPECT_EQ(right.verdict, Verdict::good) << right.reason;
-    EXPECT_EQ(find(right, "axes_b"), nullptr);
-    Trajectory early;
-    for (std::size_t i = 0; i + 1 < streams.b.size(); ++i)
-      early.push_back({streams.b[i].time_us,
-                       canonical_sign(to_dual_quaternion(Pose{to_pose(streams.b[i].pose).rotation,
-                                                              to_pose(streams.b[i + 1].pose).translation}))});
-    const Calibration late = calibrate(streams.a, early);
-    EXPECT_EQ(find(late, "axes_a"), nullptr) << late.reason;
-    EXPECT_EQ(find(late, "axes_b"), nullptr) << late.reason;
-    EXPECT_TRUE(find(late, "late_positions_b") != nullptr || find(late, "late_positions_a") != nullptr)
-        << late.reason;
-  }
+  const Calibration calibration = calibrate(right.a, wrong);
+  const Finding finding = certain_finding(calibration, "turning_scale_b");
+  EXPECT_NE(finding.message.find("degrees a second"), std::string::npos) << finding.message;
+  EXPECT_EQ(find(calibrate(right.a, right.b), "turning_scale_b"), nullptr);
 }
 
 /// A heading alone beside a sensor that tilts with the road.

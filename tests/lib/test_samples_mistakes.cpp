@@ -184,6 +184,56 @@ TEST(SampleMistakes, BothListsInvertedAreNamedWithTheOtherAnswer) {
   EXPECT_GT(right, 10);
 }
 
+/// y and what turns about x and z with the opposite sign; or x and y exchanged, quaternions too.
+enum class LeftHanded { mirrored, exchanged };
+
+DualQuaternion left_handed(const DualQuaternion& pose, LeftHanded how) {
+  const Pose right = to_pose(pose);
+  const Eigen::Vector3d t = right.translation;
+  const Eigen::Quaterniond q = right.rotation;
+  const Pose left = how == LeftHanded::mirrored ? Pose{{q.w(), -q.x(), q.y(), -q.z()}, {t.x(), -t.y(), t.z()}}
+                                                : Pose{{q.w(), q.y(), q.x(), q.z()}, {t.y(), t.x(), t.z()}};
+  return to_dual_quaternion(left);
+}
+
+/// The rotations agree as well as right ones, with an answer that is half a turn off.
+TEST(SampleMistakes, AListInLeftHandedAxesIsNamed) {
+  for (const LeftHanded how : {LeftHanded::mirrored, LeftHanded::exchanged})
+    for (const bool of_b : {false, true})
+      for (const std::size_t n : {8u, 20u})
+        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+          SimulatedSamples drawn = arm(n, seed);
+          EXPECT_THAT(calibrate_samples(drawn.samples).calibration.findings,
+                      ::testing::Not(::testing::Contains(::testing::Field(&Finding::code, "axes_b"))));
+          for (PoseSample& sample : drawn.samples) {
+            DualQuaternion& pose = of_b ? sample.b : sample.a;
+            pose = left_handed(pose, how);
+          }
+          const Calibration found = calibrate_samples(drawn.samples).calibration;
+          EXPECT_EQ(found.verdict, Verdict::contradictory) << n << " " << seed << " " << found.reason;
+          EXPECT_NE(find(found, of_b ? "axes_b" : "axes_a"), nullptr) << n << " " << seed;
+        }
+}
+
+/// Columns of the positions alone.
+TEST(SampleMistakes, ExchangedColumnsOfPositionsAreNamed) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const SimulatedSamples drawn = arm(15, seed);
+    std::vector<PoseSample> samples = drawn.samples;
+    for (PoseSample& sample : samples) {
+      Pose pose = to_pose(sample.b);
+      pose.translation = Eigen::Vector3d(pose.translation.y(), pose.translation.x(), -pose.translation.z());
+      sample.b = to_dual_quaternion(pose);
+    }
+    const Calibration found = calibrate_samples(samples).calibration;
+    EXPECT_EQ(found.verdict, Verdict::contradictory) << seed;
+    const Finding* axes = find(found, "axes_b");
+    ASSERT_NE(axes, nullptr) << seed;
+    ASSERT_TRUE(axes->T_a_b);
+    EXPECT_LT(axes->T_a_b->rotation.angularDistance(to_pose(drawn.X).rotation), degree) << seed;
+  }
+}
+
 TEST(SampleMistakes, BothListsInMillimetresAreNamed) {
   for (const double unit : {1000.0, 100.0})
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -124,7 +124,7 @@ void measure_spread(const SampleSet& set, const AgreeingSamples& agreeing,
 }
 
 bool another_reading(const Finding& finding) {
-  return finding.code == "inverted_a" || finding.code == "inverted_b" ||
+  return finding.code == "inverted_a" || finding.code == "inverted_b" || finding.code.starts_with("axes_") ||
          finding.code.starts_with("quaternion_order_");
 }
 

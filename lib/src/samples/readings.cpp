@@ -14,7 +14,8 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/solvers/global.hpp"
-#include "linear_algebra/symmetric_eigen.hpp"
+#include "samples/list_axes.hpp"
+#include "samples/rotations_alone.hpp"
 #include "statistics/distributions.hpp"
 
 namespace egocal::detail {
@@ -23,11 +24,11 @@ namespace {
 
 struct Alternative {
   const char* code;
-  Reading a, b;
+  PoseReading a, b;
 };
 
-std::vector<Alternative> alternatives() {
-  Reading inverted, wxyz, xyzw;
+std::vector<Alternative> with_options() {
+  PoseReading inverted, wxyz, xyzw;
   inverted.invert = true;
   wxyz.quaternion_order = QuaternionOrder::wxyz;
   xyzw.quaternion_order = QuaternionOrder::xyzw;
@@ -36,30 +37,13 @@ std::vector<Alternative> alternatives() {
           {"quaternion_order_both", wxyz, wxyz}, {"quaternion_order_both", xyzw, xyzw}};
 }
 
-/// Variance of the rotations at the X that suits them best, whatever the positions [rad^2].
-double rotation_variance(std::span<const PoseSample> samples, int rounds_of_signs) {
-  std::vector<Eigen::Matrix4d> seen;
-  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  for (const PoseSample& sample : samples) {
-    Eigen::Matrix4d one = left_matrix(sample.a.real) * right_matrix(quaternion_conjugate(sample.b.real));
-    const PoseSample& first = samples.front();
-    if ((first.a.real.dot(sample.a.real) < 0) != (first.b.real.dot(sample.b.real) < 0)) one = -one;
-    sum += one;
-    seen.push_back(one);
-  }
-  const auto n = static_cast<double>(samples.size());
-  double largest = 0;
-  for (int round = 0; round < rounds_of_signs; ++round) {
-    const SymmetricEigen<4> eigen = symmetric_eigen<4>(sum.transpose() * sum / n);
-    largest = eigen.values[3];
-    const Eigen::Vector4d x = eigen.vectors.col(3), y = sum * x;
-    sum.setZero();
-    for (Eigen::Matrix4d& one : seen) {
-      if (y.dot(one * x) < 0) one = -one;
-      sum += one;
-    }
-  }
-  return 4 * (n - largest) / (3 * (n - 1));
+std::vector<Alternative> of_axes(std::span<const PoseSample> samples, const SampleReadingOptions& search) {
+  std::vector<Alternative> result;
+  for (const PoseReading& a : list_axes_readings(samples, Side::a, search.rounds_of_signs))
+    result.push_back({"axes_a", a, {}});
+  for (const PoseReading& b : list_axes_readings(samples, Side::b, search.rounds_of_signs))
+    result.push_back({"axes_b", {}, b});
+  return result;
 }
 
 /// Samples spread over the chosen ones.
@@ -75,7 +59,8 @@ std::vector<PoseSample> some(std::span<const PoseSample> samples, const std::vec
 /// do not show quaternions of another order in both lists, which only exchanges X and Y.
 bool hopeless(const std::vector<PoseSample>& few, const SampleFit& given,
               const SampleReadingOptions& search) {
-  if (rotation_variance(few, search.rounds_of_signs) > search.most_worse_rotation * given.noise.rotation)
+  if (rotations_alone(few, search.rounds_of_signs).variance >
+      search.most_worse_rotation * given.noise.rotation)
     return true;
   std::vector<std::size_t> all(few.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -130,7 +115,7 @@ PoseReading full(const Reading& reading) {
 
 /// The options to type, as --eye-to-hand and --invert-a do the same to a.
 Finding worded(Finding finding, const Alternative& other) {
-  finding = worded_reading(std::move(finding), full(other.a), full(other.b));
+  finding = worded_reading(std::move(finding), other.a, other.b);
   const bool of_a = finding.code == "inverted_a";
   if (!of_a && finding.code != "inverted_b") return finding;
   FindingWords words;
@@ -149,17 +134,24 @@ Finding worded(Finding finding, const Alternative& other) {
   return finding;
 }
 
+/// The same mistake in the other list; empty where there is none.
+std::string of_other_list(const std::string& code) {
+  if (!code.starts_with("inverted_") && !code.starts_with("axes_")) return {};
+  return code.substr(0, code.size() - 1) + (code.ends_with('a') ? 'b' : 'a');
+}
+
 /// The reading that fits best. Whether a or b is inverted the motions cannot tell: X and Y change places, and
-/// only noise is left to decide. Then both, the better one first.
+/// only noise is left to decide. Positions of a that are mirrored are those of b mirrored. Then both, the
+/// better one first.
 std::vector<Finding> best_of(const std::vector<std::pair<Finding, Alternative>>& fitting,
                              const SampleReadingOptions& search) {
   const auto better = [](const auto& x, const auto& y) { return x.first.improvement < y.first.improvement; };
   const auto best = std::max_element(fitting.begin(), fitting.end(), better);
   if (best == fitting.end()) return {};
-  const std::string& code = best->first.code;
-  const std::string opposite = code == "inverted_a" ? "inverted_b" : code == "inverted_b" ? "inverted_a" : "";
-  const auto other = std::find_if(fitting.begin(), fitting.end(),
-                                  [&](const auto& one) { return one.first.code == opposite; });
+  const std::string opposite = of_other_list(best->first.code);
+  auto other = fitting.end();
+  for (auto one = fitting.begin(); one != fitting.end(); ++one)
+    if (one->first.code == opposite && (other == fitting.end() || better(*other, *one))) other = one;
   if (other == fitting.end() || other->first.improvement * search.least_improvement < best->first.improvement)
     return {worded(best->first, best->second)};
   std::vector<Finding> both;
@@ -250,13 +242,18 @@ std::optional<Finding> finding_of(const FoundScale& scale, const SampleReadingOp
 
 }  // namespace
 
-std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Reading& read_a,
-                               const Reading& read_b) {
+std::vector<PoseSample> reread(std::span<const PoseSample> samples, const PoseReading& read_a,
+                               const PoseReading& read_b) {
   std::vector<PoseSample> result;
   for (const PoseSample& sample : samples)
-    result.push_back({canonical_sign(normalized(reread(sample.a, full(read_a)))),
-                      canonical_sign(normalized(reread(sample.b, full(read_b))))});
+    result.push_back({canonical_sign(normalized(reread(sample.a, read_a))),
+                      canonical_sign(normalized(reread(sample.b, read_b)))});
   return result;
+}
+
+std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Reading& read_a,
+                               const Reading& read_b) {
+  return reread(samples, full(read_a), full(read_b));
 }
 
 std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, const AgreeingSamples& given,
@@ -265,7 +262,9 @@ std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, co
   if (given.chosen.size() < search.least_samples) return findings;
   std::vector<std::pair<Finding, Alternative>> fitting;
   const AsGiven as_given(samples, given, options, search);
-  for (const Alternative& other : alternatives()) {
+  std::vector<Alternative> alternatives = with_options();
+  for (Alternative& other : of_axes(samples, search)) alternatives.push_back(std::move(other));
+  for (const Alternative& other : alternatives) {
     if (as_given.withstands(other)) continue;
     const std::vector<PoseSample> read = reread(samples, other.a, other.b);
     const AgreeingSamples fit = find_agreeing(SampleSet(read), options);

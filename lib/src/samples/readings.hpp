@@ -6,12 +6,16 @@
 #include <span>
 #include <vector>
 
+#include "diagnosis/motions/reading.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
 #include "samples/agreeing.hpp"
 
 namespace egocal::detail {
 
-/// The samples as understood by the readings of the options, unit and with canonical signs.
+/// The samples as understood by the readings, unit and with canonical signs.
+std::vector<PoseSample> reread(std::span<const PoseSample> samples, const PoseReading& read_a,
+                               const PoseReading& read_b);
+/// By those of the options.
 std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Reading& read_a,
                                const Reading& read_b);
 
@@ -35,7 +39,8 @@ struct SampleReadingOptions {
 };
 
 /// Readings of the poses under which they fit far better than as given: one list inverted, another order of
-/// the quaternion, another unit of length; or better than chance allows: another size of the target.
+/// the quaternion, positions in other axes than the rotations or both in left-handed ones, another unit of
+/// length; or better than chance allows: another size of the target.
 std::vector<Finding> find_other_readings(std::span<const PoseSample> samples, const AgreeingSamples& given,
                                          const SampleOptions& options,
                                          const SampleReadingOptions& search = {});

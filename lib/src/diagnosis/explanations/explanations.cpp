@@ -43,9 +43,10 @@ Finding scale_finding(const Explanation& explanation, const Comparison& comparis
   if (!units) return worded_scale(std::move(finding));
   // in the unit of the shorter one, the longer stream goes as the shorter one does
   const double speed = speed_of_a(evidence), of_longer = power > 0 ? speed / explanation.scale : speed;
-  finding = worded_scale(std::move(finding), of_longer > 0 && of_longer < options.scale.slowest);
-  // the answer is in the units of a: those of the longer stream are the wrong ones
-  if (power > 0) finding.T_a_b->translation /= *finding.value;
+  const bool shorter_likelier = of_longer > 0 && of_longer < options.scale.slowest;
+  finding = worded_scale(std::move(finding), shorter_likelier);
+  // the answer is in the units of a: those of the longer stream are the wrong ones, or of the shorter one
+  if ((power > 0) != shorter_likelier) finding.T_a_b->translation /= *finding.value;
   return finding;
 }
 
@@ -107,6 +108,17 @@ std::vector<Explanation> with_clock(const Evidence& evidence, const Explanation&
   const Explained& so_far = result.empty() ? best.explained : result.back().explained;
   take("clock_drift", fits.drift, Explained(so_far));
   return result;
+}
+
+/// Which of two streams is inverted shows in metres, but not on a clock that is off: the other one is taken
+/// where it fits better with the clock that suits it. clocks: those of the best one.
+void take_better_twin(const Evidence& evidence, const DiagnosisOptions& options, Explanation& best,
+                      Explanation& twin, std::vector<Explanation>& clocks) {
+  if (!best.code.starts_with("inverted_") || !twin.code.starts_with("inverted_")) return;
+  std::vector<Explanation> of_twin = with_clock(evidence, twin, options);
+  if (of_twin.empty() || !(loss_in_metres(of_twin.back().explained, clocks.back().explained) > 0)) return;
+  std::swap(best, twin);
+  clocks = std::move(of_twin);
 }
 
 /// Positions that are turned by less than what makes an answer wrong: an honest odometry that drifts by a per
@@ -193,6 +205,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     reading.twin.reset();
   } else if (!best.code.empty() || best.scale != 1)
     clocks = with_clock(evidence, best, options);
+  if (reading.twin && !clocks.empty()) take_better_twin(evidence, options, best, *reading.twin, clocks);
 
   const Explained& final = clocks.empty() ? best.explained : clocks.back().explained;
   // an explanation under which the motions still do not agree explains nothing; both streams inverted may

@@ -13,6 +13,7 @@
 #include "diagnosis/explanations/wandering_scale.hpp"
 #include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/standing_still.hpp"
+#include "diagnosis/mount/in_parts.hpp"
 #include "diagnosis/mount/large_move.hpp"
 #include "diagnosis/mount/mount.hpp"
 #include "diagnosis/words/wording.hpp"
@@ -80,24 +81,6 @@ std::string in_words(const ScaleCourse& course, std::int64_t origin_us) {
   return text;
 }
 
-/// The motions as given, each part between the moves with an extrinsic of its own.
-Explained in_parts(const Explained& given, const std::vector<Finding>& moves,
-                   const DiagnosisOptions& options) {
-  Explained result{given.motions, {}};
-  std::size_t from = 0;
-  for (std::size_t k = 0; k <= moves.size(); ++k) {
-    std::size_t to = given.motions.all.size();
-    if (k < moves.size() && moves[k].time)
-      while (to > from && given.motions.all[to - 1].time > *moves[k].time) --to;
-    if (to == from) continue;
-    const RobustFit fit = robust_fit(part_of(given.motions, from, to), options.fit);
-    result.fit.squares.insert(result.fit.squares.end(), fit.squares.begin(), fit.squares.end());
-    result.fit.typical = std::max(result.fit.typical, fit.typical);
-    from = to;
-  }
-  return result;
-}
-
 /// Whether sensors that move show more than one scale: of those that stand the noise has one.
 bool changes_while_moving(const ScaleCourse& course, const Explained& given, std::int64_t origin_us) {
   const Motions moving = without_rest(given.motions, to_pose(given.fit.T));
@@ -138,7 +121,7 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   explained.fit = robust_fit(explained.motions, options.fit);
   const double gain = compare(evidence.given.explained, explained).gain;
   if (!(gain > options.least_gain) ||
-      (!left.empty() && !(gain > compare(explained, in_parts(explained, left, options)).gain)))
+      (!left.empty() && !(gain > compare(explained, in_parts(explained.motions, left, options)).gain)))
     return std::nullopt;
   const std::int64_t origin_us = a.front().time_us;
   Finding finding;
@@ -181,7 +164,7 @@ bool explained_by_reading(const PoseReading& of_both, const Evidence& evidence,
   if (motions.all.empty() || !moved_mount(evidence.instants, answered, options, of_both).findings.empty())
     return false;
   const Explained both{motions, robust_fit(motions, options.fit)};
-  const Explained parts = in_parts(evidence.given.explained, moves, options);
+  const Explained parts = in_parts(evidence.given.explained.motions, moves, options);
   return compare(parts, both).gain > -options.gain;
 }
 
@@ -203,7 +186,7 @@ bool moves_with_the_scale(const PairingOptions& pairing, const Evidence& evidenc
 double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves,
                      const DiagnosisOptions& options) {
   const Explained& given = evidence.given.explained;
-  return compare(given, in_parts(given, moves, options)).gain;
+  return compare(given, in_parts(given.motions, moves, options)).gain;
 }
 
 std::vector<PoseReading> readings_of_both(const std::vector<Finding>& findings) {
@@ -221,7 +204,7 @@ std::optional<Finding> inverse_rotations_instead(const Evidence& evidence, const
                                                  const Answered& answered, const DiagnosisOptions& options) {
   if (moves.empty()) return std::nullopt;
   const CommonAxesOptions least;
-  const Explained parts = in_parts(evidence.given.explained, moves, options);
+  const Explained parts = in_parts(evidence.given.explained.motions, moves, options);
   const Explained& given = evidence.given.explained;
   for (const PoseReading& reading : inverse_rotation_readings()) {
     Explanation here = explained(evidence, "axes_both", reading, reading, options);

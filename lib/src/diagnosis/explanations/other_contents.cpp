@@ -7,12 +7,15 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/late_by_a_row.hpp"
 #include "diagnosis/explanations/other_contents_steps.hpp"
+#include "diagnosis/explanations/rates_in_degrees.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -271,7 +274,13 @@ std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOpt
                                     const OtherContentsOptions& search) {
   if (evidence.given.explained.motions.all.size() < options.motions.least) return {};
   std::vector<Finding> contents = of_catalogue(evidence, options, search);
-  std::vector<Finding> steps = worded_steps(turned_steps(evidence, options), evidence, options);
+  if (contents.empty())
+    if (std::optional<Finding> rates = rates_in_degrees(evidence, options)) return {*std::move(rates)};
+  const std::vector<TurnedSteps> turned = turned_steps(evidence, options);
+  const std::vector<LateByARow> late = late_by_a_row(evidence, options);
+  const bool late_fit_better = !late.empty() && (turned.empty() || late.front().gain > turned.front().gain);
+  std::vector<Finding> steps =
+      late_fit_better ? worded_rows(late, evidence, options) : worded_steps(turned, evidence, options);
   if (contents.empty() || (!steps.empty() && steps.front().improvement > contents.front().improvement))
     return steps.empty() ? contents : steps;
   return contents;

@@ -11,8 +11,7 @@
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/late_positions.hpp"
-#include "diagnosis/motions/changed_motions.hpp"
-#include "diagnosis/motions/stillest_point.hpp"
+#include "diagnosis/explanations/row_changes.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
@@ -27,99 +26,21 @@ using Changes = std::vector<Vector3d>;
 /// (steps between poses), or either for that in its middle (a speed times the duration of a row).
 constexpr std::array<double, 3> parts_of_mistakes{1, 0.5, -0.5};
 
-/// What positions change by, up to each row, where each step is turned back by a part of the turn of its row.
-class TurnedBack {
- public:
-  TurnedBack(const Trajectory& rows, Times times, double part) : times_(std::move(times)) {
-    sums_.reserve(rows.size());
-    sums_.emplace_back(Vector3d::Zero());
-    Pose before = to_pose(rows.front().pose);
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-      const Pose here = to_pose(rows[i].pose);
-      const Vector3d step = here.translation - before.translation;
-      const Vector3d turn = rotation_log(here.rotation * before.rotation.conjugate());
-      sums_.push_back(sums_.back() + rotation_exp(-part * turn) * step - step);
-      before = here;
-    }
-  }
-
-  /// Times ascend from call to call.
-  Vector3d at(double time) {
-    while (row_ + 2 < sums_.size() && times_[row_ + 1] <= time) ++row_;
-    const double from = times_[row_], to = times_[row_ + 1];
-    const double way = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0;
-    return sums_[row_] + way * (sums_[row_ + 1] - sums_[row_]);
-  }
-
- private:
-  Times times_;
-  Changes sums_;
-  std::size_t row_ = 0;
-};
-
-const Trajectory& rows_of(const Evidence& evidence, Side side) {
-  return side == Side::a ? evidence.streams.a : evidence.streams.b;
-}
-
-/// What each motion changes by, in the frame of its begin.
+/// What the motions change by where each step is turned back by a part of the turn of its row.
 Changes changes_of(const Evidence& evidence, Side side, double part) {
-  const Motions& motions = evidence.given.explained.motions;
-  const ClockModel clock = side == Side::a ? ClockModel{} : evidence.clock;
-  const Times times(rows_of(evidence, side), evidence.streams.a.front().time_us, clock);
-  TurnedBack begin(rows_of(evidence, side), times, part), end = begin;
-  const auto span = static_cast<std::size_t>(motions.stride);
-  Changes changes;
-  for (const std::size_t i : begins_of(evidence.instants, motions)) {
-    const PosePair poses = evidence.instants.at(i);
-    changes.push_back(rotation_of(side == Side::a ? poses.a : poses.b).transpose() *
-                      (end.at(evidence.instants.time(i + span)) - begin.at(evidence.instants.time(i))));
-  }
-  return changes;
-}
-
-Explained turned_back(const Explained& given, const Changes& changes, Side side,
-                      const DiagnosisOptions& options) {
-  Explained result{given.motions, {}};
-  for (std::size_t i = 0; i < result.motions.all.size(); ++i) {
-    Motion& motion = result.motions.all[i];
-    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
-               (side == Side::a ? motion.t_a : motion.t_b) + changes[i]);
-  }
-  result.fit = robust_fit(result.motions, options.fit);
-  return result;
-}
-
-/// Of these changes, the one that suits the motions best.
-double best_multiple(const Explained& given, const Changes& changes, Side side) {
-  return best_numbers<1>(given, changes, side)[0];
-}
-
-/// Its standard deviation.
-double jack_knife(const Explained& given, const Changes& changes, Side side,
-                  const TurnedStepsOptions& turned) {
-  const std::size_t n = changes.size(), blocks = std::min<std::size_t>(turned.blocks, given.motions.blocks);
-  if (blocks < turned.fewest) return INFINITY;
-  std::vector<double> without;
-  double mean = 0;
-  Explained rest = given;
-  for (std::size_t k = 0; k < blocks; ++k) {
-    rest.fit.weights = given.fit.weights;
-    for (std::size_t i = k * n / blocks; i < (k + 1) * n / blocks; ++i) rest.fit.weights[i] = 0;
-    without.push_back(best_multiple(rest, changes, side));
-    mean += without.back() / static_cast<double>(blocks);
-  }
-  double sum = 0;
-  for (const double x : without) sum += (x - mean) * (x - mean);
-  return std::sqrt(sum * static_cast<double>(blocks - 1) / static_cast<double>(blocks));
-}
-
-/// The way in the usual row of a stream; attitudes of another instant make a lever arm of about that [m].
-double way_in_a_row(const Evidence& evidence, Side side) {
   const Trajectory& rows = rows_of(evidence, side);
-  const Motions& motions = evidence.given.explained.motions;
-  const double seconds = to_seconds(rows.back().time_us - rows.front().time_us);
-  const double of_motion = motions.stride * evidence.instants.period;
-  return of_motion > 0 ? motions.translation / of_motion * seconds / static_cast<double>(rows.size() - 1) : 0;
+  Changes sums;
+  sums.reserve(rows.size());
+  sums.emplace_back(Vector3d::Zero());
+  Pose before = to_pose(rows.front().pose);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const Pose here = to_pose(rows[i].pose);
+    const Vector3d step = here.translation - before.translation;
+    const Vector3d turn = rotation_log(here.rotation * before.rotation.conjugate());
+    sums.push_back(sums.back() + rotation_exp(-part * turn) * step - step);
+    before = here;
+  }
+  return changes_of_rows(evidence, side, sums);
 }
 
 bool fits_late_positions_better(const Evidence& evidence, const Explained& steps,
@@ -136,7 +57,7 @@ bool is_that_part(const Explained& given, const Changes& changes, const TurnedSt
   steps.fitted = steps.part * best_multiple(given, changes, steps.side);
   const double off = std::abs(steps.fitted - steps.part);
   if (!(off < turned.near)) return false;
-  steps.stddev = std::abs(steps.part) * jack_knife(given, changes, steps.side, turned);
+  steps.stddev = std::abs(steps.part) * jack_knife(given, changes, steps.side, turned.blocks, turned.fewest);
   return std::abs(steps.fitted) > turned.sigmas * steps.stddev &&
          off < std::max(turned.most_sigmas * steps.stddev, 0.25 * turned.near);
 }
@@ -169,7 +90,7 @@ std::vector<TurnedSteps> turned_steps(const Evidence& evidence, const DiagnosisO
       TurnedSteps here{side, part, 0, 0, 0, {}};
       const Changes changes = changes_of(evidence, side, part);
       if (!is_that_part(given, changes, turned, here)) continue;
-      here.explained = turned_back(given, changes, side, options);
+      here.explained = with_changes(given, changes, side, options);
       here.gain = -loss_in_metres(given, here.explained);
       if (counts(evidence, here, options, turned)) found.push_back(std::move(here));
     }

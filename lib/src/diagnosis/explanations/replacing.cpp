@@ -80,7 +80,8 @@ const std::vector<Finding>& WrongStream::best() {
   };
   if (std::optional<Finding> arm = turned_lever_arm(evidence_.instants, given, options_))
     take({*std::move(arm)});
-  if (late() && certain(*late(), options_)) take(worded(*late()));
+  const bool by_a_row = !contents().empty() && contents().front().code.starts_with("late_positions_");
+  if (!by_a_row && late() && certain(*late(), options_)) take(worded(*late()));
   take(columns());
   // small angles times a factor are nearly those of rotation vectors: both are named where both fit
   return *(best_ = more_likely(std::move(best), contents(), options_.alike));

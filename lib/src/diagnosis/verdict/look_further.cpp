@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/inverted_and_moved.hpp"
 #include "diagnosis/explanations/not_a_move.hpp"
 #include "diagnosis/mount/back_and_forth.hpp"
 #include "diagnosis/mount/following_mount.hpp"
@@ -139,6 +140,11 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.insert(findings.begin(), moves.begin(), moves.end());
     return;
   }
+  if (answered.problem.mode != Mode::planar)
+    if (std::optional<Finding> other = inverted_and_moved(evidence, answered, options)) {
+      std::erase_if(findings, [](const Finding& one) { return one.code == "inverted_both"; });
+      findings.push_back(*std::move(other));
+    }
   if (scale_may_change(fit, options))
     if (std::optional<Finding> scale = changing_scale(pairing, evidence, answered, options);
         scale && explains_more(scale->improvement)) {

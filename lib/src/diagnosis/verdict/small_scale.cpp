@@ -193,7 +193,9 @@ void name_small_scale(const Evidence& evidence, const DiagnosisOptions& options,
   if (std::any_of(answered.scale_stddev.begin(), answered.scale_stddev.end(), estimated)) return;
   for (const Finding& finding : result.findings) {
     // right streams, whose answer is less certain than their motions say
-    const bool right = finding.code.starts_with("undersampled_") || of_frozen_stream(finding);
+    const bool right = finding.code.starts_with("undersampled_") || of_frozen_stream(finding) ||
+                       (finding.code == "scale" && finding.value &&
+                        std::abs(std::log(*finding.value)) < options.scale_check.least);
     if ((!right && explains(finding, options)) || finding.code == "mount_moved" ||
         finding.code == "scale_change" || finding.code == "units" || finding.code == "too_little_motion")
       return;

@@ -141,11 +141,12 @@ Finding worded_scale(Finding finding, bool either) {
   if (finding.code == "units") {
     const std::string of_a = format("{solve}--scale %g", 1 / scale),
                       of_b = format("{solve}--scale-b %g", scale);
-    const char longer = scale < 1 ? 'b' : 'a', shorter = scale < 1 ? 'a' : 'b';
+    const char longer = scale < 1 ? 'b' : 'a';
     std::string cure = scale < 1 ? of_b : of_a;
+    // nothing goes as slowly as the longer one would: the shorter one is likelier to be in kilometres
     if (either)
-      cure += format(", or %s if it is the lengths of %s that are wrong.", (scale < 1 ? of_a : of_b).c_str(),
-                     mark(shorter));
+      cure = format("%s, or %s if it is the lengths of %s that are wrong.", (scale < 1 ? of_a : of_b).c_str(),
+                    cure.c_str(), mark(longer));
     say(finding,
         either ? std::string("The lengths of {a} or of {b} are not in metres")
                : format("The lengths of %s are not in metres", mark(longer)),

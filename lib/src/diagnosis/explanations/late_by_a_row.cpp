@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/explanations/late_by_a_row.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/row_changes.hpp"
+#include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// What the positions change by when each is taken from the row that is `later` rows on.
+std::vector<Vector3d> from_another_row(const Trajectory& rows, int later) {
+  std::vector<Vector3d> added;
+  added.reserve(rows.size());
+  const auto last = static_cast<std::ptrdiff_t>(rows.size()) - 1;
+  for (std::ptrdiff_t i = 0; i <= last; ++i) {
+    // at the end the step is that of the row before
+    const std::ptrdiff_t from =
+        std::clamp<std::ptrdiff_t>(i, later < 0 ? -later : 0, later > 0 ? last - later : last);
+    added.push_back(position_of(rows[static_cast<std::size_t>(from + later)].pose) -
+                    position_of(rows[static_cast<std::size_t>(from)].pose));
+  }
+  return added;
+}
+
+/// Whether the number of rows that suits the motions best is one, and not none.
+bool is_one(const Explained& given, const std::vector<Vector3d>& changes, Side side,
+            const LateByARowOptions& late) {
+  const double number = best_multiple(given, changes, side), off = std::abs(number - 1);
+  if (!(off < late.near)) return false;
+  const double stddev = jack_knife(given, changes, side, late.blocks, late.fewest);
+  return number > late.sigmas * stddev && off < std::max(late.most_sigmas * stddev, 0.25 * late.near);
+}
+
+bool counts(const Evidence& evidence, const LateByARow& found, const DiagnosisOptions& options,
+            const LateByARowOptions& late) {
+  const Pose given = to_pose(evidence.given.explained.fit.T), here = to_pose(found.explained.fit.T);
+  return found.gain > late.least_gain && explains(found.explained, options) &&
+         (here.translation - given.translation).norm() >= late.least_change * options.tolerance_translation;
+}
+
+}  // namespace
+
+std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisOptions& options,
+                                      const LateByARowOptions& late) {
+  const Explained& given = evidence.given.explained;
+  std::vector<LateByARow> found;
+  for (const Side side : {Side::b, Side::a}) {
+    const Trajectory& rows = rows_of(evidence, side);
+    constexpr std::size_t least_rows = 3;  // one that has a row on either side
+    if (rows.size() < least_rows ||
+        way_in_a_row(evidence, side) < late.least_change * options.tolerance_translation)
+      continue;
+    const double seconds =
+        to_seconds(rows.back().time_us - rows.front().time_us) / static_cast<double>(rows.size() - 1);
+    for (const int later : {1, -1}) {
+      const std::vector<Vector3d> changes = changes_of_rows(evidence, side, from_another_row(rows, later));
+      if (!is_one(given, changes, side, late)) continue;
+      LateByARow here{side, later, seconds, 0, with_changes(given, changes, side, options)};
+      here.gain = -loss_in_metres(given, here.explained);
+      if (counts(evidence, here, options, late)) found.push_back(std::move(here));
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; });
+  return found;
+}
+
+std::vector<Finding> worded_rows(const std::vector<LateByARow>& found, const Evidence& evidence,
+                                 const DiagnosisOptions& options) {
+  std::vector<Finding> findings;
+  for (const LateByARow& one : found) {
+    if (one.gain < found.front().gain - options.alike) break;
+    const char which = one.side == Side::a ? 'a' : 'b';
+    Finding finding;
+    finding.code = std::string("late_positions_") + which;
+    finding.certain = true;
+    finding.improvement = std::exp(std::max(0.0, compare(evidence.given.explained, one.explained).gain));
+    finding.T_a_b = to_pose(one.explained.fit.T);
+    finding.value = one.rows * one.seconds;
+    say(finding,
+        format("The positions of %s are one row (%.3g s) %s than its rotations", mark(which), one.seconds,
+               one.rows > 0 ? "later" : "earlier"),
+        format("Write position and rotation of the same time into each row of %s.", mark(which)),
+        format(": the squared residuals of the translations are %.3g times smaller without that.",
+               std::exp(one.gain)));
+    findings.push_back(std::move(finding));
+  }
+  if (findings.size() > 1)
+    for (Finding& finding : findings) finding.certain = false;
+  return findings;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/explanations/row_changes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "diagnosis/motions/changed_motions.hpp"
+#include "diagnosis/motions/stillest_point.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+using Eigen::Vector3d;
+using Changes = std::vector<Vector3d>;
+
+/// What is added to the positions, between the rows too.
+class Added {
+ public:
+  Added(const Changes& added, Times times) : times_(std::move(times)), added_(added) {}
+
+  /// Times ascend from call to call.
+  Vector3d at(double time) {
+    while (row_ + 2 < added_.size() && times_[row_ + 1] <= time) ++row_;
+    const double from = times_[row_], to = times_[row_ + 1];
+    const double way = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0;
+    return added_[row_] + way * (added_[row_ + 1] - added_[row_]);
+  }
+
+ private:
+  Times times_;
+  const Changes& added_;
+  std::size_t row_ = 0;
+};
+
+}  // namespace
+
+const Trajectory& rows_of(const Evidence& evidence, Side side) {
+  return side == Side::a ? evidence.streams.a : evidence.streams.b;
+}
+
+std::vector<Vector3d> changes_of_rows(const Evidence& evidence, Side side, const Changes& added) {
+  const Motions& motions = evidence.given.explained.motions;
+  const ClockModel clock = side == Side::a ? ClockModel{} : evidence.clock;
+  const Times times(rows_of(evidence, side), evidence.streams.a.front().time_us, clock);
+  Added begin(added, times), end = begin;
+  const auto span = static_cast<std::size_t>(motions.stride);
+  Changes changes;
+  for (const std::size_t i : begins_of(evidence.instants, motions)) {
+    const PosePair poses = evidence.instants.at(i);
+    changes.push_back(rotation_of(side == Side::a ? poses.a : poses.b).transpose() *
+                      (end.at(evidence.instants.time(i + span)) - begin.at(evidence.instants.time(i))));
+  }
+  return changes;
+}
+
+double best_multiple(const Explained& given, const Changes& changes, Side side) {
+  return best_numbers<1>(given, changes, side)[0];
+}
+
+double jack_knife(const Explained& given, const Changes& changes, Side side, unsigned most, unsigned fewest) {
+  const std::size_t n = changes.size(), blocks = std::min<std::size_t>(most, given.motions.blocks);
+  if (blocks < fewest) return INFINITY;
+  std::vector<double> without;
+  double mean = 0;
+  Explained rest = given;
+  for (std::size_t k = 0; k < blocks; ++k) {
+    rest.fit.weights = given.fit.weights;
+    for (std::size_t i = k * n / blocks; i < (k + 1) * n / blocks; ++i) rest.fit.weights[i] = 0;
+    without.push_back(best_multiple(rest, changes, side));
+    mean += without.back() / static_cast<double>(blocks);
+  }
+  double sum = 0;
+  for (const double x : without) sum += (x - mean) * (x - mean);
+  return std::sqrt(sum * static_cast<double>(blocks - 1) / static_cast<double>(blocks));
+}
+
+Explained with_changes(const Explained& given, const Changes& changes, Side side,
+                       const DiagnosisOptions& options) {
+  Explained result{given.motions, {}};
+  for (std::size_t i = 0; i < result.motions.all.size(); ++i) {
+    Motion& motion = result.motions.all[i];
+    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
+               (side == Side::a ? motion.t_a : motion.t_b) + changes[i]);
+  }
+  result.fit = robust_fit(result.motions, options.fit);
+  return result;
+}
+
+double way_in_a_row(const Evidence& evidence, Side side) {
+  const Trajectory& rows = rows_of(evidence, side);
+  const Motions& motions = evidence.given.explained.motions;
+  const double seconds = to_seconds(rows.back().time_us - rows.front().time_us);
+  const double of_motion = motions.stride * evidence.instants.period;
+  return of_motion > 0 ? motions.translation / of_motion * seconds / static_cast<double>(rows.size() - 1) : 0;
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Motions where the positions of one stream change by what its rows say: a number times what each row adds.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/explanations/explanations.hpp"
+
+namespace egocal::detail {
+
+/// The poses of one stream as its file has them.
+const Trajectory& rows_of(const Evidence& evidence, Side side);
+
+/// What each motion as given changes by, in the frame of its begin [m]. added: to the position of each row,
+/// in the stream's world.
+std::vector<Eigen::Vector3d> changes_of_rows(const Evidence& evidence, Side side,
+                                             const std::vector<Eigen::Vector3d>& added);
+
+/// Of these changes, the multiple that suits the motions best.
+double best_multiple(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side);
+
+/// Its standard deviation, where parts of the drive are left out in turn: at most `most` of them; infinite
+/// where the drive has fewer than `fewest`.
+double jack_knife(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side,
+                  unsigned most, unsigned fewest);
+
+/// The motions changed once, and what explains them.
+Explained with_changes(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side,
+                       const DiagnosisOptions& options);
+
+/// The way in the usual row of a stream [m].
+double way_in_a_row(const Evidence& evidence, Side side);
+
+}  // namespace egocal::detail
