@@ -60,7 +60,7 @@ void PairSession::reset() {
 
 void PairSession::timeline_restarts(Side side) {
   const bool second_of_both = state_.session >= 0 && state_.restarted_by && *state_.restarted_by != side &&
-                              pairing().counts().synchronised == 0 && state_.early.size() < max_early_poses;
+                              pairing().synchronised() == 0 && state_.early.size() < max_early_poses;
   if (!second_of_both) {
     state_.session = -1;
     state_.restarted_by = side;
@@ -84,7 +84,7 @@ void PairSession::push(Side side, const NumberedPose& sample, std::vector<Motion
 
 void PairSession::accumulate(Side side, const StampedPose& pose, std::vector<MotionOut>& out) {
   if (state_.restarted_by) {
-    if (pairing().counts().synchronised > 0) {
+    if (pairing().synchronised() > 0) {
       state_.restarted_by.reset();
       state_.early = {};
     } else if (state_.early.size() < max_early_poses) {
@@ -99,7 +99,7 @@ void PairSession::accumulate(Side side, const StampedPose& pose, std::vector<Mot
     motion_pair_t& message = out.emplace_back(MotionOut{index_, bus::to_message(pair)}).message;
     message.session = state_.session;
     message.seq = state_.seq;
-    message.stride = scale_ ? scale_->choice().stride : drive_.choice().stride;
+    message.stride = scale_ ? scale_->choice().stride : drive_.stride_of_pairs();
   }
   if (scale_ && scale_->solved_motions() != solved) fresh_ = true;
 }

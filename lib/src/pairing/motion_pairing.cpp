@@ -36,7 +36,7 @@ MotionPairing::MotionPairing(PairingOptions options, PairingState state)
       synchroniser_(options_, std::move(state.synchroniser)),
       screening_(options_.screening, std::move(state.screening)),
       accumulator_(options_, std::move(state.accumulator)),
-      early_(accumulator_.with_early_choice()) {}
+      early_is_old_(true) {}
 
 std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given) {
   ++(side == Side::a ? poses_a_ : poses_b_);
@@ -78,8 +78,12 @@ std::vector<MotionPair> MotionPairing::finish() {
 /// Before answers are asked for.
 void MotionPairing::settle() {
   accumulator_.settle();
-  if (early_ && early_->newest_us() == accumulator_.newest_us()) return;
-  early_ = accumulator_.with_early_choice();
+  early_is_old_ = !early_ || early_->newest_us() != accumulator_.newest_us();
+}
+
+const Accumulator& MotionPairing::current() const {
+  if (std::exchange(early_is_old_, false)) early_ = accumulator_.with_early_choice();
+  return early_ ? *early_ : accumulator_;
 }
 
 void MotionPairing::take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs) {
@@ -108,7 +112,7 @@ PairingCounts MotionPairing::counts() const {
   PairingCounts counts;
   counts.poses_a = poses_a_;
   counts.poses_b = poses_b_;
-  counts.synchronised = synchroniser_.state().synchronised;
+  counts.synchronised = synchronised();
   counts.matched = current().inlier_pairs();
   counts.outliers = current().outlier_pairs();
   counts.jumps = current().jumps();

@@ -63,7 +63,11 @@ class MotionPairing {
   /// The same from the motions of the best single stride alone, in disjoint blocks.
   Problem single_stride_problem() const { return current().single_stride_problem(); }
   Choice choice() const { return current().choice(); }
+  /// Of the motion pairs that push() returns.
+  int stride_of_pairs() const { return accumulator_.choice().stride; }
   PairingCounts counts() const;
+  /// Instants of both streams so far, as in counts().
+  std::uint64_t synchronised() const { return synchroniser_.state().synchronised; }
   const PairingOptions& options() const { return options_; }
   PairingState state() const;
   /// Time of the newest instant in the statistics [us].
@@ -76,7 +80,7 @@ class MotionPairing {
  private:
   void take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs);
   void settle();
-  const Accumulator& current() const { return early_ ? *early_ : accumulator_; }
+  const Accumulator& current() const;
 
   PairingOptions options_;
   std::uint64_t poses_a_ = 0, poses_b_ = 0;
@@ -86,8 +90,11 @@ class MotionPairing {
   Synchroniser synchroniser_;
   Screening screening_;
   Accumulator accumulator_;
-  std::optional<Accumulator> early_;  ///< of short drives; made again from the accumulator
-  bool settles_ = true;               ///< after every pose
+  /// Of short drives, made from the accumulator where somebody asks: a choice costs a hundred times what a
+  /// pose does.
+  mutable std::optional<Accumulator> early_;
+  mutable bool early_is_old_ = false;
+  bool settles_ = true;  ///< after every pose
 };
 
 /// Both trajectories through a MotionPairing, in the order of time.
